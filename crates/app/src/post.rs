@@ -10,32 +10,32 @@ use crate::watch::Watch;
 use ::post::Output;
 use machine::Machine;
 use machine::time::Times;
-use program::{Diagnostic, Op, Program, Record};
+use program::{Diagnostic, Op, Program, Record, Rule};
 use proof::Tolerances;
 use serde_json::json;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [&str; 19] = [
-    "arc-orientation",
-    "axis-limit",
-    "cycle-missing",
-    "cycle-tap",
-    "feed-range",
-    "line-length",
-    "linearisation",
-    "memory",
-    "number-range",
-    "one-opening",
-    "orientation-in-cut",
-    "spindle-range",
-    "taper",
-    "taper-limit",
-    "tool-range",
-    "unreachable-orientation",
-    "unsupported",
-    "uv-limit",
-    "wire-leans",
+const MACHINE_CANNOT: [Rule; 19] = [
+    Rule::ArcOrientation,
+    Rule::AxisLimit,
+    Rule::NoCycle,
+    Rule::CycleTap,
+    Rule::FeedRange,
+    Rule::LineLength,
+    Rule::Linearisation,
+    Rule::Memory,
+    Rule::NumberRange,
+    Rule::OneOpening,
+    Rule::OrientationInCut,
+    Rule::SpindleRange,
+    Rule::Taper,
+    Rule::TaperLimit,
+    Rule::ToolRange,
+    Rule::UnreachableOrientation,
+    Rule::Unsupported,
+    Rule::UvLimit,
+    Rule::WireLeans,
 ];
 
 /// A program that is proven, or is not, and what is reported of it.

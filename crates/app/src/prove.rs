@@ -112,7 +112,7 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
         rows.push(("smoothing", text));
     }
     if !proof.accepted.is_empty() {
-        let rules: Vec<&str> = proof.accepted.iter().map(|found| found.rule).collect();
+        let rules: Vec<&str> = proof.accepted.iter().map(|found| found.rule.name()).collect();
         rows.push(("accepted", format!("{}, which the proof would refuse", rules.join(", "))));
     }
     if compared.excursions > 0 {

@@ -10,7 +10,7 @@ use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, Reach, library};
 use program::{
-    CompensatedPath, Diagnostic, Digest, Op, Program, Purpose, Severity, encoding, line_of,
+    CompensatedPath, Diagnostic, Digest, Op, Program, Purpose, Rule, Severity, encoding, line_of,
 };
 use serde_json::{Value, json};
 use source::apt::{self, Csys, Cutcom, SetUps};
@@ -188,7 +188,7 @@ fn read_by(
             let machine = set_up(origin.reach.load_origin(from)?);
             let setup = origin.setup(from, purpose)?;
             let folders = setup.folders.clone();
-            let asked = |found: &Diagnostic| found.rule.ends_with("unknown-position");
+            let asked = |found: &Diagnostic| is_unknown_position(found.rule);
             let reading = match nc::read(&machine, setup.clone(), &file, &bytes) {
                 Err(found) if purpose != Purpose::Program && asked(&found) => {
                     flat(&machine, setup, &file, &bytes)?.ok_or(found)?
@@ -291,6 +291,11 @@ fn flat(
     let message = "the program cuts before a block says Z: it is read as a flat contour, at Z 0";
     reading.warnings.push(Diagnostic::warning("flat-contour", message));
     Ok(Some(reading))
+}
+
+/// Whether a block needs a position that no block before has given.
+pub(crate) fn is_unknown_position(rule: Rule) -> bool {
+    [Rule::UnknownPosition, Rule::CompensationUnknownPosition].contains(&rule)
 }
 
 /// Within which two heights of a flat contour are the same, mm.

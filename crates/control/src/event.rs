@@ -3,7 +3,7 @@
 use geom::Vec3;
 use program::{
     Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, MachineMove, Output, PathMode,
-    Probe, Spindle, Tool, WorkOffset, WorkOffsetData,
+    Probe, Rule, Spindle, Tool, WorkOffset, WorkOffsetData,
 };
 
 /// One thing that the control does, and the line (from 1) of the program that makes it do so.
@@ -221,7 +221,7 @@ impl FeedPath {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Risk {
     /// Its name, by which it may be accepted.
-    pub rule: &'static str,
+    pub rule: Rule,
     /// What may happen, after "the program".
     pub what: &'static str,
     /// The way out.
@@ -235,7 +235,7 @@ impl Risk {
     /// reset. `M49`, `M50 P0`, `M51 P0`, `M53 P0` of LinuxCNC ("M Codes", "Override Control"), `M49` of the others, `G63` of
     /// FANUC ("Cutting feedrate control") and of SINUMERIK.
     pub(crate) const OPERATOR_CONTROLS: Risk = Risk {
-        rule: "operator-controls",
+        rule: Rule::OperatorControls,
         what: "takes single block, feed hold, an override or exact stop from the operator",
         help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
         refused: true,
@@ -243,7 +243,7 @@ impl Risk {
 
     /// `LFON`, `POLF`, `POLFMASK` and their kin (SINUMERIK, "Rapid retraction"): ways that the axes take at a stop alone.
     pub(crate) const STOP_RETRACT: Risk = Risk {
-        rule: "stop-retract",
+        rule: Rule::StopRetract,
         what: "says where the axes go when it is stopped (LFON, POLF and the like), which is not followed",
         help: "nothing to do, if the machine may stop where it stands",
         refused: false,
@@ -251,7 +251,7 @@ impl Risk {
 
     /// `A0` in a program of which only the control is known.
     pub(crate) const ROTARY_AT_ZERO: Risk = Risk {
-        rule: "rotary-at-zero",
+        rule: Rule::RotaryAtZero,
         what: "has rotary axes that stand at 0 throughout: it is read as that of a machine without them",
         help: "nothing to do, if they are not meant to turn; `--from` with the machine's file says what they do",
         refused: false,
@@ -259,7 +259,7 @@ impl Risk {
 
     /// `M30` without a line end behind it (SINUMERIK, found on an 828D): where the motion goes does not depend on it.
     pub(crate) const LINE_END: Risk = Risk {
-        rule: "line-end",
+        rule: Rule::LineEnd,
         what: "ends without a line end behind its last block, and a control (828D) may not take it as ended",
         help: "end the last line of the file by a line feed",
         refused: true,
@@ -268,7 +268,7 @@ impl Risk {
     /// `WALIMOF` of SINUMERIK (PM, "Working area limitation"): the limits that whoever set the machine up has entered hold
     /// no longer.
     pub(crate) const WORK_AREA_OFF: Risk = Risk {
-        rule: "operator-controls",
+        rule: Rule::OperatorControls,
         what: "switches off the limits of the work area, which protect what the operator has set up",
         help: "leave WALIMOF out; where the operator knows of it, `--accept operator-controls` lets it pass",
         refused: true,
@@ -277,7 +277,7 @@ impl Risk {
     /// `M107` and `M141` of HEIDENHAIN (iTNC 530, "Miscellaneous functions"): the control no longer stops for a replacement
     /// tool with a positive delta value, nor for a touch probe that touches.
     pub(crate) const MONITORING_OFF: Risk = Risk {
-        rule: "operator-controls",
+        rule: Rule::OperatorControls,
         what: "switches off a check at which the control stops: oversize of replacement tools (M107), the touch probe (M141)",
         help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
         refused: true,
@@ -285,7 +285,7 @@ impl Risk {
 
     /// `M101` of HEIDENHAIN (iTNC 530, "Automatic tool change if the tool life expires").
     pub(crate) const REPLACEMENT_TOOL: Risk = Risk {
-        rule: "replacement-tool",
+        rule: Rule::ReplacementTool,
         what: "changes a tool whose life is over for its replacement by itself (M101): between which blocks, and by which way, the \
                program does not say",
         help: "leave M101 out, or write M102 before the cut",
@@ -294,7 +294,7 @@ impl Risk {
 
     /// `_TC` of CYCLE800 (PM p. 678): the swivel data set is the kinematics by which the plane is reached.
     pub(crate) const SWIVEL_DATA: Risk = Risk {
-        rule: "swivel-data",
+        rule: Rule::SwivelData,
         what: "swivels by another swivel data set than the machine file names: another kinematics",
         help: "name the data set of this machine in `swivel_data` in [options] of the machine file, and in _TC",
         refused: true,
@@ -302,7 +302,7 @@ impl Risk {
 
     /// `M52` of LinuxCNC ("M Codes", "Adaptive Feed Control"): F times the value of a pin.
     pub(crate) const ADAPTIVE_FEED: Risk = Risk {
-        rule: "adaptive-feed",
+        rule: Rule::AdaptiveFeed,
         what: "has an input of the machine multiply the feed (M52), so that F is not the speed of the cut",
         help: "write M52 P0, or leave it out",
         refused: true,
@@ -311,7 +311,7 @@ impl Risk {
     /// `ACC`, `ACCLIMA`, `JERKLIMA`, `VELOLIMA` of SINUMERIK above 100 percent (PM, "Percentage acceleration override"): more
     /// than the machine data let the axis do.
     pub(crate) const AXIS_DYNAMICS: Risk = Risk {
-        rule: "axis-dynamics",
+        rule: Rule::AxisDynamics,
         what: "lets an axis accelerate, jerk or go faster than the machine data allow it: more than 100 percent",
         help: "write at most 100 percent, as in ACC[X]=100",
         refused: true,
@@ -320,7 +320,7 @@ impl Risk {
     /// `M41` to `M45` of SINUMERIK (PM 2.13): a gear stage holds the spindle within the speeds of the stage (S1, "Minimum /
     /// maximum speed of the gear stage").
     pub(crate) const GEAR: Risk = Risk {
-        rule: "gear",
+        rule: Rule::Gear,
         what: "chooses a gear of the spindle (M41 to M45): in which gear the speeds of the program are reached it does not say",
         help: "leave it out or write M40; a machine with gears lists the number in `auxiliary`",
         refused: true,
@@ -329,7 +329,7 @@ impl Risk {
     /// P of a dwell counts least increments of time on a FANUC: a millisecond, and a tenth of one with increment system C
     /// and parameter 1015#7 = 0.
     pub(crate) const DWELL_UNIT: Risk = Risk {
-        rule: "dwell-unit",
+        rule: Rule::DwellUnit,
         what: "dwells by P, which counts milliseconds or tenths of them, as parameters 1013 and 1015#7 say",
         help: "write G4 X with a decimal point, or say `dwell_p_milliseconds` in [settings] of the machine file",
         refused: true,
@@ -337,7 +337,7 @@ impl Risk {
 
     /// FANUC parameter 3405#1: under `G95` a dwell counts seconds or turns of the spindle.
     pub(crate) const DWELL_TURNS: Risk = Risk {
-        rule: "dwell-unit",
+        rule: Rule::DwellUnit,
         what: "dwells under G95: seconds, or turns of the spindle, as parameter 3405#1 says",
         help: "write G94 before the dwell",
         refused: true,
@@ -345,7 +345,7 @@ impl Risk {
 
     /// `M99` of a program that nobody has called (B-64484EN-2, "Subprogram"; Haas, M99).
     pub(crate) const PROGRAM_REPEATS: Risk = Risk {
-        rule: "program-repeats",
+        rule: Rule::ProgramRepeats,
         what: "ends with M99, by which the control begins it again without end",
         help: "write M30 where it shall run once",
         refused: false,
@@ -353,7 +353,7 @@ impl Risk {
 
     /// LinuxCNC `M61` ("Set Current Tool"): the spindle keeps the tool that it has.
     pub(crate) const TOOL_DECLARED: Risk = Risk {
-        rule: "operator-data",
+        rule: Rule::OperatorData,
         what: "tells the control which tool is in the spindle, and changes none",
         help: "call the tool by T and M6; where the operator puts it in before, `--accept operator-data` lets it pass",
         refused: true,
@@ -361,7 +361,7 @@ impl Risk {
 
     /// B-64484EN-2, "Inch/metric conversion": `G20`, `G21` stand in a block of their own.
     pub(crate) const UNIT_BLOCK: Risk = Risk {
-        rule: "unit-block",
+        rule: Rule::UnitBlock,
         what: "says G20 or G21 in a block with other words, which the manual does not allow",
         help: "write it in a block of its own at the start of the program",
         refused: false,
@@ -370,7 +370,7 @@ impl Risk {
     /// A stop behind which somebody opens the door, reaches in or jogs, while the spindle turns or coolant runs. That the
     /// control stops both is sure on Haas alone (*Mill Operator's Manual*, M00); on a HEIDENHAIN `M0` stops the spindle.
     pub(crate) const STOP_RUNNING: Risk = Risk {
-        rule: "stop-running",
+        rule: Rule::StopRunning,
         what: "stops and waits for somebody while the spindle turns or coolant runs: this control need not stop them",
         help: "write M5 and M9 before it, with the tool out of the cut; where the machine's builder has M0 and M1 stop both, \
                `--accept stop-running` lets it pass",
@@ -380,7 +380,7 @@ impl Risk {
     /// `G84` and `G74` that do not couple feed and spindle: LinuxCNC ("Canned Cycles": for a floating chuck), Mach3, and
     /// FANUC without `M29` (parameter 5200#0).
     pub(crate) const FLOATING_TAP: Risk = Risk {
-        rule: "floating-tap",
+        rule: Rule::FloatingTap,
         what: "taps without coupling feed and spindle: a tap that is held fast breaks",
         help: "tap by G33.1 (LinuxCNC) or behind M29 (FANUC); or say `floating_holder = true` in [settings] of the machine file",
         refused: true,
@@ -389,7 +389,7 @@ impl Risk {
     /// FANUC moves Z by a length that begins, ends or changes, or it moves the coordinates: parameter 5006, bit 6
     /// (B-64484EN-2, "Tool length compensation").
     pub(crate) const LENGTH_CHANGE: Risk = Risk {
-        rule: "length-change",
+        rule: Rule::LengthChange,
         what: "changes the tool length offset where Z is not home: whether Z moves by it, parameter 5006#6 says",
         help: "send Z home before (`G91 G28 Z0`), or say Z in the same block",
         refused: true,
@@ -398,7 +398,7 @@ impl Risk {
     /// A tool length counts along the axis that stands on the plane, or along Z always (SINUMERIK SD42940, "Tool offsets";
     /// FANUC parameter 5001, tool length types A and B).
     pub(crate) const LENGTH_PLANE: Risk = Risk {
-        rule: "length-plane",
+        rule: Rule::LengthPlane,
         what: "uses a tool length in G18 or G19: whether it counts along Z there, a parameter says (SD42940, 5001)",
         help: "write G17, or say `length_along_z = true` in [settings] of the machine file where it does",
         refused: true,
@@ -407,7 +407,7 @@ impl Risk {
     /// Where `G30` goes, and `G28` of LinuxCNC and GRBL, parameters or the operator have set, and Marlin's `G28` goes to
     /// a switch, which may be at the bed.
     pub(crate) const STORED_POSITION: Risk = Risk {
-        rule: "stored-position",
+        rule: Rule::StoredPosition,
         what: "sends Z to a position that only the machine knows: one that is stored, or a switch",
         help: "retract by G53 to the safe height of the machine, or by the G28 of a control whose G28 is the reference position",
         refused: true,
@@ -416,7 +416,7 @@ impl Risk {
     /// `G642` to `G645` and the compressors of SINUMERIK keep to tolerances of machine data (MD33100, MD33120), unless CTOL or
     /// CYCLE832 says another; G644 never takes that of CTOL (B1, "Contour/Orientation tolerance").
     pub(crate) const SMOOTHING: Risk = Risk {
-        rule: "path-tolerance",
+        rule: Rule::PathTolerance,
         what: "lets the control leave the path by as much as its machine data say",
         help: "write G64 (G64 in place of G644 in any case), or say how far by CTOL= or CYCLE832 before the first move",
         refused: true,
@@ -424,7 +424,7 @@ impl Risk {
 
     /// Turns over the part whose way the program does not say ([`way`](crate::kernel::way)).
     pub(crate) const ROTARY_WAY: Risk = Risk {
-        rule: "rotary-way",
+        rule: Rule::RotaryWay,
         what: "turns a rotary axis, and by which way hangs on whether the control counts it modulo 360°",
         help: "say `modulo` of the axis in the machine file, or write M126 (HEIDENHAIN), DC() (SINUMERIK)",
         refused: true,
@@ -433,7 +433,7 @@ impl Risk {
     /// Where X, Y and Z count under `G43.4` that comes with a turned table: in the frame of the part with the table at 0, or
     /// in the work offset as it lies over the turned table (A-79348E p. 19, parameter 19696#5).
     pub(crate) const TABLE_FRAME: Risk = Risk {
-        rule: "table-frame",
+        rule: Rule::TableFrame,
         what: "switches G43.4 on with a turned table, and in which frame X, Y and Z count then the machine file does not say",
         help: "turn the table to 0 before G43.4; or try a place beside the centre of the table on the machine, and write \
                `table_frame_at_zero = true` below [settings] where it is that of the part",
@@ -444,7 +444,7 @@ impl Risk {
     /// `ORIWKS`; `PATHCTRL VECTOR`), or as its axes turn evenly (`ORIAXES`, `ORIMKS`; `M128`, `PATHCTRL AXIS`). Which of the two
     /// G groups says it on a SINUMERIK, MD21104 decides.
     pub(crate) const ORIENTATION_WAY: Risk = Risk {
-        rule: "orientation-way",
+        rule: Rule::OrientationWay,
         what: "turns the tool while the control keeps its tip, and does not say that it turns the way that its words need",
         help: "SINUMERIK: ORIWKS and ORIVECT where the tool turns by vectors, ORIMKS and ORIAXES where it turns by positions of axes: with \
                both it is so whatever MD21104 is; HEIDENHAIN: PATHCTRL VECTOR with vectors, M128 or PATHCTRL AXIS with positions",
@@ -455,7 +455,7 @@ impl Risk {
     /// setting data: by how much the control may turn the tool out
     /// of the orientation of the program.
     pub(crate) const ORIENTATION_TOLERANCE: Risk = Risk {
-        rule: "orientation-tolerance",
+        rule: Rule::OrientationTolerance,
         what: "lets the control turn the tool out of its orientation by more than the machine file allows",
         help: "say how far in `orientation_tolerance` in [options] of the machine file (degrees), or write no more than that",
         refused: true,
@@ -464,7 +464,7 @@ impl Risk {
     /// `M140 MB MAX` (HEIDENHAIN) and `CYCLE800` with `_FR` 4 or 5 (SINUMERIK) go back along the tool, by as much as the travels or a
     /// word say. Where the tool leans in a head, Z is not home behind it.
     pub(crate) const LEANING_RETRACT: Risk = Risk {
-        rule: "leaning-retract",
+        rule: Rule::LeaningRetract,
         what: "goes back along a tool that may lean in its head: how far the axes then are from their ends the program does not say",
         help: "send Z home in machine coordinates behind it (`L Z+0 R0 FMAX M91`, `SUPA Z0 D0`; CYCLE800 with _FR 0 or 1)",
         refused: true,
@@ -472,7 +472,7 @@ impl Risk {
 
     /// Haas setting 52 ("G83 Retract Above R"): chips are cleared that far above the R plane.
     pub(crate) const PECK_RETRACT: Risk = Risk {
-        rule: "peck-retract",
+        rule: Rule::PeckRetract,
         what: "clears chips above the R plane of G83, and how far setting 52 says, which the machine file does not state",
         help: "say `retract_above_r` in mm below [settings] (setting 52 of the control; 0 as it is delivered)",
         refused: false,
@@ -481,7 +481,7 @@ impl Risk {
     /// `G5.1 Q1` and `G5 P10000` are for contours; with cycles, a tool change, `G43.4` and `G68.2` the control may give an
     /// alarm, and what it does at the end is a parameter.
     pub(crate) const LOOK_AHEAD: Risk = Risk {
-        rule: "look-ahead",
+        rule: Rule::LookAhead,
         what: "has look-ahead on at a cycle, a tool change, G43.4, a tilted plane or the end, where not every control takes that",
         help: "write G5.1 Q0 (G5 P0) in a block of its own before it",
         refused: true,
@@ -489,7 +489,7 @@ impl Risk {
 
     /// SST1 of CYCLE84 (PGZ, "CYCLE84": 0 is as SST), Q403 of cycle 209: the speed of the spindle on the way out of a thread.
     pub(crate) const TAP_RETURN: Risk = Risk {
-        rule: "spindle",
+        rule: Rule::Spindle,
         what: "comes out of a thread at another speed than it goes in (SST1 of CYCLE84, Q403 of cycle 209)",
         help: "leave SST1 out or write that of SST; Q403=+1",
         refused: true,
@@ -497,7 +497,7 @@ impl Risk {
 
     /// SDAC of CYCLE84 (PGZ): what the spindle does behind the cycle.
     pub(crate) const TURNS_BACK: Risk = Risk {
-        rule: "spindle",
+        rule: Rule::Spindle,
         what: "leaves the spindle turning against the tool behind a thread (SDAC of CYCLE84)",
         help: "write SDAC as the spindle turns before the cycle: 3 for M3, 4 for M4; or 5, which stops it",
         refused: true,
@@ -506,7 +506,7 @@ impl Risk {
     /// DTS of CYCLE83 (PGZ: with VARI 1, seconds or, below 0, turns), and DTB beside a `_DTD` that differs: dwells that the
     /// source does not have.
     pub(crate) const PECK_DWELL: Risk = Risk {
-        rule: "dwell",
+        rule: Rule::Dwell,
         what: "dwells between the pecks of CYCLE83 (DTS, or DTB beside another _DTD)",
         help: "write DTS as 0, and leave _DTD out",
         refused: true,
@@ -515,7 +515,7 @@ impl Risk {
     /// Q258, Q259 of cycle 205, Q200 of 200 and 203 (TNC 640 cycles): how far above the last depth the rapid back into the hole
     /// ends.
     pub(crate) const RAPID_TO_DEPTH: Risk = Risk {
-        rule: "peck",
+        rule: Rule::Peck,
         what: "goes back into the hole by rapid down to the last depth itself: what keeps it above is 0 (Q258, Q259 of cycle 205; Q200 \
                of cycles 200 and 203)",
         help: "write more than 0, as in Q258=+0.5 and Q259=+0.5",
@@ -525,7 +525,7 @@ impl Risk {
     /// `G25`, `G26` of SINUMERIK (PM, "Working area limitation", "Programmable spindle speed limitation"): SD43420, SD43430,
     /// SD43210, SD43220 keep them.
     pub(crate) const LIMITS_WRITTEN: Risk = Risk {
-        rule: "operator-data",
+        rule: Rule::OperatorData,
         what: "rewrites the limits of the work area or of the spindle (G25, G26), and they stay so when it has ended",
         help: "leave them to the operator; for one run `--accept operator-data` lets it pass",
         refused: true,
@@ -533,7 +533,7 @@ impl Risk {
 
     /// R parameters in `operator_parameters` of the machine file: what the operator has entered there shifts a rotary axis.
     pub(crate) const OPERATOR_PARAMETER: Risk = Risk {
-        rule: "operator-data",
+        rule: Rule::OperatorData,
         what: "sets a parameter that the operator sets at the machine (`operator_parameters`), and it stays so when it has ended",
         help: "leave it to the operator, or calculate with another parameter",
         refused: true,
@@ -542,7 +542,7 @@ impl Risk {
     /// `#500` to `#999` of FANUC and Haas, QR of HEIDENHAIN: they stay when the power is switched off, and macros of the shop
     /// and of probes keep their data there.
     pub(crate) const KEPT_VARIABLE: Risk = Risk {
-        rule: "operator-data",
+        rule: Rule::OperatorData,
         what: "sets a variable that is kept when it has ended and the power is off, where macros of the shop keep their data",
         help: "use #100 to #149 (FANUC, Haas), Q0 to Q99 (HEIDENHAIN); for one run `--accept operator-data` lets it pass",
         refused: true,
@@ -551,12 +551,12 @@ impl Risk {
     /// A state that the control keeps, or may keep, when the program has ended, and that each program takes as off at its start
     /// (`docs/proof.md`, "What a program finds, and what it leaves"). `what` begins with "ends".
     pub(crate) const fn left_on(what: &'static str, help: &'static str) -> Risk {
-        Risk { rule: "left-on", what, help, refused: true }
+        Risk { rule: Rule::LeftOn, what, help, refused: true }
     }
 
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
-        rule: "operator-data",
+        rule: Rule::OperatorData,
         what: "rewrites work offsets, stored positions or tool data of the operator, and they stay so when it has ended",
         help: "leave them to the operator; for one run `--accept operator-data` lets it pass, and a machine whose shop sets its fixtures by G10 L2 says `sets_work_offsets` in [settings]",
         refused: true,

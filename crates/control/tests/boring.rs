@@ -22,7 +22,7 @@ fn holes(
         }
         Ok(())
     });
-    run.map(|()| holes).map_err(|found| found.rule)
+    run.map(|()| holes).map_err(|found| found.rule.name())
 }
 
 /// Without a peck, at the active feed, with no dwell.
@@ -60,10 +60,10 @@ fn fine_boring_goes_aside_as_the_machine_is_set() {
         (down, "M5\nG98 G76 X1. Z-20. R2. Q0.5 F50"),
     ] {
         let text = format!("{START}{block}\n");
-        assert_eq!(holes(Dialect::Fanuc, aside, &text), Err("nc-cycle"), "{block}");
+        assert_eq!(holes(Dialect::Fanuc, aside, &text), Err("cycle"), "{block}");
     }
     let turned = format!("{START}G68 X0 Y0 R30.\nG98 G76 X1. Y0 Z-20. R2. Q0.5 F50\n");
-    assert_eq!(holes(Dialect::Fanuc, down, &turned), Err("nc-frame"));
+    assert_eq!(holes(Dialect::Fanuc, down, &turned), Err("frame"));
 }
 
 /// B-64484EN-2, "Back boring cycle": aside at the initial level, by rapid to R, back to the axis, up to Z
@@ -84,7 +84,7 @@ fn back_boring_feeds_up_from_r_to_z() {
         "M5\nM4\nG98 G87 X1. Z-20. R-30. Q3. F50",
     ] {
         let text = format!("{START}{block}\n");
-        assert_eq!(holes(Dialect::Fanuc, right, &text), Err("nc-cycle"), "{block}");
+        assert_eq!(holes(Dialect::Fanuc, right, &text), Err("cycle"), "{block}");
     }
 }
 

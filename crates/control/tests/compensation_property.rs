@@ -275,8 +275,8 @@ fn centre(dialect: Dialect, contour: &Contour) -> Result<Vec<Side>, &'static str
         }
         Ok(())
     })
-    .map_err(|error| match error.rule.starts_with("compensation-") {
-        true => error.rule,
+    .map_err(|error| match error.rule.name().starts_with("compensation-") {
+        true => error.rule.name(),
         false => panic!("{error}\n{program}"),
     })?;
     // To where the tool waits, to the contour; and off it to where the tool waits.

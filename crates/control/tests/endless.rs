@@ -8,7 +8,7 @@ use toolpost_control::{Dialect, Settings, Setup, read};
 #[test]
 fn an_endless_loop_that_moves_is_refused_after_two_million_jumps_and_calls() {
     for (dialect, rule, text) in [
-        (Dialect::Fanuc, "nc-endless", "G21\nG0 X0. Y0. Z0.\nG91\nN10 X1.\nGOTO 10\nM30\n"),
+        (Dialect::Fanuc, "endless", "G21\nG0 X0. Y0. Z0.\nG91\nN10 X1.\nGOTO 10\nM30\n"),
         (Dialect::Sinumerik, "endless", "G0 X0 Y0 Z0\nR1=0\nLOOP\nX=R1\nR1=R1+1\nENDLOOP\nM30\n"),
     ] {
         let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };

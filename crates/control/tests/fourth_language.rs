@@ -168,7 +168,9 @@ fn run(text: &[u8], channel: &mut Channel) -> Fallible<()> {
         };
         let begun = structures.unclosed().next_back().map(|[first, _]| structures[first].word);
         if !begins && begun != Some(ends) {
-            return Err(source.block_error("structure", format!("no {ends} belongs to this")));
+            return Err(
+                source.block_error("control-structure", format!("no {ends} belongs to this"))
+            );
         }
         if name == "SUB" {
             labels.add(block.name(), after);
@@ -200,7 +202,7 @@ impl Run<'_, '_, '_> {
         let first = block.name();
         let name = if block.take(b':') { block.name() } else { first };
         let partner = || self.structures.partner(here.at);
-        let whole = |message: &str| source.block_error("structure", message);
+        let whole = |message: &str| source.block_error("control-structure", message);
         let mut to = Some(after);
         match name.as_str() {
             "" => {}
@@ -287,14 +289,18 @@ fn what_is_wrong_is_shown_in_its_block() {
         ("n = 4 / (2 - 2)\nEND\n", "arithmetic", 1, 5),
         ("n = m\nEND\n", "syntax", 1, 6),
         ("PTP 0,0,0\nCIRC 1,0,0, 2,0,0\nEND\n", "arc", 2, 1),
-        ("GOTO in\nWHILE 1 > 0\nin: n = 1\nENDWHILE\nEND\n", "structure", 1, 1),
-        ("ENDWHILE\nEND\n", "structure", 1, 1),
-        ("SUB a\nCALL a\nENDSUB\nCALL a\nEND\n", "structure", 2, 1),
+        ("GOTO in\nWHILE 1 > 0\nin: n = 1\nENDWHILE\nEND\n", "control-structure", 1, 1),
+        ("ENDWHILE\nEND\n", "control-structure", 1, 1),
+        ("SUB a\nCALL a\nENDSUB\nCALL a\nEND\n", "control-structure", 2, 1),
         ("WHILE 1 > 0\nENDWHILE\nEND\n", "endless", 2, 1),
         (&deep, "syntax", 1, 26),
     ] {
         let found = events(text).unwrap_err();
-        assert_eq!((found.rule, found.line, found.column), (rule, line, column), "{text}: {found}");
+        assert_eq!(
+            (found.rule.name(), found.line, found.column),
+            (rule, line, column),
+            "{text}: {found}"
+        );
         assert_eq!(found.file, "a.rob");
     }
 }

@@ -188,7 +188,7 @@ fn the_size_of_a_corner_is_a_length_like_others() {
         &[(5, [17.5, 0.0, 0.0], None), (5, [20.0, 2.5, 0.0], None), (6, [20.0, 20.0, 0.0], None)],
     );
     assert_eq!(cuts("G1 X20. ,C#1\nY20.").len(), 2, "a null is no corner");
-    assert_eq!(refused("G1 X20. ,C3\nY20.").rule, "nc-decimal-point");
+    assert_eq!(refused("G1 X20. ,C3\nY20.").rule, "decimal-point");
     let first = |whole_numbers| {
         let events = run_on(Dialect::Fanuc, whole_numbers, "G1 X20. ,C3\nY20.").unwrap();
         let cut = events.iter().find_map(|event| match &event.action {

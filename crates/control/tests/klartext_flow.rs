@@ -61,7 +61,7 @@ fn a_repetition_that_a_jump_has_left_is_not_taken_up_again() {
     assert_eq!(xs(&format!("Q1 = 0\n{once}")), [1.0, 2.0]);
     let again = format!("Q1 = 0\n{once}\nFN 12: IF +Q1 LT +3 GOTO LBL 1");
     let error = refused(&format!("{START}{again}"));
-    assert_eq!(error.rule, "label");
+    assert_eq!(error.rule.name(), "label");
     assert!(error.message.contains("4 still to go"), "{error}");
 }
 
@@ -104,13 +104,13 @@ fn labels_have_one_place_and_names_may_come_from_a_text() {
 #[test]
 fn a_program_that_never_ends_is_refused() {
     let error = refused("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1");
-    assert_eq!((error.rule, error.line), ("endless", 3));
+    assert_eq!((error.rule.name(), error.line), ("endless", 3));
     // What is only said is nothing, and a long way round takes as long as many jumps.
     let error = refused("LBL 1\n; ROUND\nFN 9: IF +1 EQU +1 GOTO LBL 1");
-    assert_eq!((error.rule, error.line), ("endless", 4));
+    assert_eq!((error.rule.name(), error.line), ("endless", 4));
     let way = format!("Q1 = {}1\n", " ".repeat(400)).repeat(1000);
     let error = refused(&format!("LBL 1\n{way}FN 9: IF +1 EQU +1 GOTO LBL 1"));
-    assert_eq!((error.rule, error.line), ("endless", 1003));
+    assert_eq!((error.rule.name(), error.line), ("endless", 1003));
 }
 
 #[test]
@@ -156,14 +156,14 @@ fn formulas_are_calculated_in_the_order_of_the_manual() {
 #[test]
 fn what_cannot_be_calculated_is_refused() {
     for (formula, rule) in [
-        ("1 / 0", "formula"),
-        ("SQRT -1", "formula"),
-        ("LN 0", "formula"),
-        ("ASIN 2", "formula"),
-        ("SGN 0", "formula"),
-        ("2 * 7 % 3", "formula"),
-        ("-7 % 3", "formula"),
-        ("0 ^ -1", "formula"),
+        ("1 / 0", "expression"),
+        ("SQRT -1", "expression"),
+        ("LN 0", "expression"),
+        ("ASIN 2", "expression"),
+        ("SGN 0", "expression"),
+        ("2 * 7 % 3", "expression"),
+        ("-7 % 3", "expression"),
+        ("0 ^ -1", "expression"),
         ("10 ^ 11", "parameter"),
         ("TAN 90", "parameter"),
         ("Q99", "parameter"),
@@ -175,7 +175,7 @@ fn what_cannot_be_calculated_is_refused() {
         ("SINH 1", "unknown-word"),
     ] {
         let error = value(formula).unwrap_err();
-        assert_eq!(error.rule, rule, "{formula}: {error}");
+        assert_eq!(error.rule.name(), rule, "{formula}: {error}");
         assert!(error.line == 4 && error.column > 0);
     }
     let deep = format!("{}1{}", "(".repeat(10_000), ")".repeat(10_000));
@@ -213,7 +213,7 @@ fn numbered_functions_calculate() {
         refused(function);
     }
     let error = refused("FN 14: ERROR = 1000");
-    assert_eq!(error.rule, "program-error");
+    assert_eq!(error.rule.name(), "alarm");
 }
 
 #[test]
@@ -251,12 +251,12 @@ L X+Q108 Y+Q109 Z+Q110 FMAX\nM5\nM9\nL X+Q110 Y+Q111 Z+Q113 FMAX\nL X+Q114 FMAX"
     // A tool that the program defines itself has its data.
     let defined = "TOOL DEF 7 L+90 R+6\nTOOL CALL 7 Z\nL X+Q108 Y+Q114 Z+0 FMAX";
     assert_near(&points(&run(defined)), &[[6.0, 90.0, 0.0]]);
-    assert_eq!(refused("TOOL DEF 7 R+6").rule, "missing-word");
+    assert_eq!(refused("TOOL DEF 7 R+6").rule.name(), "missing-word");
     let system = "FN 18: SYSREAD Q1 = ID20 NR1\nFN 18: SYSREAD Q2 = ID270 NR1 IDX3
 FN 18: SYSREAD Q3 = ID210 NR2\nL X+Q1 Y+Q2 Z+Q3 FMAX";
     assert_near(&points(&run(&format!("{START}{system}")))[1..], &[[5.0, 50.0, 0.0]]);
-    assert_eq!(refused("FN 18: SYSREAD Q1 = ID1000 NR1").rule, "parameter");
-    assert_eq!(refused("FN 18: SYSREAD Q1 = ID270 NR1 IDX1").rule, "parameter");
+    assert_eq!(refused("FN 18: SYSREAD Q1 = ID1000 NR1").rule.name(), "parameter");
+    assert_eq!(refused("FN 18: SYSREAD Q1 = ID270 NR1 IDX1").rule.name(), "parameter");
 }
 
 #[test]
@@ -274,7 +274,7 @@ Q201 = 7";
     let depths: Vec<f64> =
         cycles(&run(&format!("{START}{blocks}"))).iter().map(|cycle| cycle.depth).collect();
     assert_eq!(depths, [15.0, 7.0]);
-    assert_eq!(refused(&format!("{START}{blocks}\nCYCL CALL")).rule, "cycle-parameter");
+    assert_eq!(refused(&format!("{START}{blocks}\nCYCL CALL")).rule.name(), "cycle-parameter");
 }
 
 #[test]
@@ -336,7 +336,11 @@ fn a_called_program_is_refused_with_its_name_and_line() {
         ("CALL PGM SUB.I", "t.h", 3, "called-program"),
     ] {
         let error = run_in(folder.path(), &format!("QL1 = 1\n{call}")).unwrap_err();
-        assert_eq!((&*error.file, error.line, error.rule), (file, line, rule), "{call}: {error}");
+        assert_eq!(
+            (&*error.file, error.line, error.rule.name()),
+            (file, line, rule),
+            "{call}: {error}"
+        );
     }
 }
 
@@ -344,7 +348,7 @@ fn a_called_program_is_refused_with_its_name_and_line() {
 fn blocks_may_all_be_without_numbers() {
     let text = b"BEGIN PGM A MM\nLBL 1\nL IX+1 FMAX\nCALL LBL 1 REP 1\nEND PGM A MM\n";
     let error = read_on([false; 3], text).unwrap_err();
-    assert_eq!((error.rule, error.line), ("unknown-position", 3));
+    assert_eq!((error.rule.name(), error.line), ("unknown-position", 3));
     let text = b"\xef\xbb\xbfBEGIN PGM A MM\nL X+1 FMAX\n* - HEAD\n; MORE ~\nLINES\nEND PGM A MM\n";
     assert_eq!(read_on([false; 3], text).unwrap().len(), 5);
     let error = read_on([false; 3], b"0 BEGIN PGM A MM\nEND PGM A MM\n").unwrap_err();
@@ -353,7 +357,7 @@ fn blocks_may_all_be_without_numbers() {
 
 #[test]
 fn functions_of_the_control_are_neutral_or_refused_with_a_reason() {
-    for neutral in [90, 101, 108, 111, 126, 134, 148] {
+    for neutral in [90, 108, 111, 126, 134] {
         assert_eq!(run(&format!("L X+1 FMAX M{neutral}")).len(), 2, "M{neutral}");
     }
     for refusal in [94, 97, 98, 103, 109, 110, 116, 118, 120, 124, 130, 138, 143, 144] {
@@ -362,7 +366,7 @@ fn functions_of_the_control_are_neutral_or_refused_with_a_reason() {
     }
     let ops = run("TOOL CALL 5 Z S3000 F700\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\nL X+2 FAUTO");
     assert_eq!(ops.iter().filter(|op| **op == Action::Feed(Feed::PerMinute(700.0))).count(), 2);
-    assert_eq!(refused("L X+1 FZ0.1").rule, "feed");
+    assert_eq!(refused("L X+1 FZ0.1").rule.name(), "feed");
 }
 
 #[test]
@@ -373,7 +377,7 @@ fn texts_end_at_their_longest() {
             .is_ok()
     );
     let error = refused(&format!("QS1 = \"{long}\"\nQS2 = QS1 || QS1"));
-    assert_eq!(error.rule, "parameter");
+    assert_eq!(error.rule.name(), "parameter");
     refused(&format!("QS1 = \"{long}\"\nQS2 = QS1{}", " || QS1".repeat(100_000)));
 }
 

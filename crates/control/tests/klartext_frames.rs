@@ -168,7 +168,7 @@ fn three_points_give_a_plane_with_x_from_the_first_to_the_second() {
     assert!(z.distance(Vec3::new(387.5, -375.0, 1230.0).normalize()) < 1e-12);
     assert!(y.distance(z.cross(x)) < 1e-12);
     let line = "PLANE POINTS P1X+0 P1Y+0 P1Z+0 P2X+1 P2Y+1 P2Z+1 P3X+2 P3Y+2 P3Z+2 TURN FMAX";
-    assert_eq!(refused_five(line).rule, "plane");
+    assert_eq!(refused_five(line).rule, "tilted-plane");
 }
 
 /// Cycle 19 is PLANE SPATIAL where its entries are spatial angles (iTNC 530 340 422 p. 460), and of one
@@ -196,7 +196,7 @@ fn cycle_19_tilts_the_plane_about_one_axis() {
     assert_eq!(refused_five(&format!("{tilt}{at}\nL X+5 F100")).rule, "unknown-position");
     let two = tilt.replace("C+0", "C+90");
     assert_eq!(refused_five(&two).rule, "unsupported");
-    assert_eq!(refused_five(&tilt.replace("C+0", "F1000")).rule, "plane");
+    assert_eq!(refused_five(&tilt.replace("C+0", "F1000")).rule, "tilted-plane");
     // About an axis that the machine does not have other axes turn.
     let other = tilt.replace("A+0 B+30", "A+30");
     assert_eq!(refused_five(&format!("{other}{turn}")).rule, "parameter");
@@ -346,7 +346,7 @@ fn a_defined_pattern_is_drilled_where_it_is_called() {
         ("PATTERN DEF ROW1 (X+0 Y+0 D+8 NUM2.5 Z+0)", "pattern"),
         ("PATTERN DEF ROW1 (X+0 Y+0 NUM2 Z+0)", "pattern"),
         ("PATTERN DEF POS1 (X+0 Y+0 D+8)", "pattern"),
-        ("PATTERN DEF POS1 (X+0 X+0)", "word-twice"),
+        ("PATTERN DEF POS1 (X+0 X+0)", "repeated-word"),
         ("PATTERN DEF POS1 (X+0 Q9)", "unknown-word"),
         ("PATTERN DEF POS1 X+0", "syntax"),
         ("PATTERN DEF", "pattern"),

@@ -430,7 +430,7 @@ proptest! {
         });
         match result {
             // The control reckons division by zero within a formula as an error, doubles do not.
-            Err(error) => prop_assert!(text.contains('/') && error.rule == "formula", "{error}"),
+            Err(error) => prop_assert!(text.contains('/') && error.rule == "expression", "{error}"),
             Ok(()) => {
                 let found = found.unwrap();
                 prop_assert!((found - expected).abs() <= 1e-9 * (1.0 + expected.abs()), "{found} {expected}\n{text}");

@@ -10,7 +10,7 @@ fn left_on(settings: &Settings, text: &str) -> Vec<&'static str> {
     let actions =
         common::ops(settings, "p.nc", text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let left = |action: Action| match action {
-        Action::Risk(risk) if risk.rule == "left-on" && risk.refused => Some(risk.what),
+        Action::Risk(risk) if risk.rule.name() == "left-on" && risk.refused => Some(risk.what),
         _ => None,
     };
     actions.into_iter().filter_map(left).collect()
@@ -265,7 +265,7 @@ fn the_spindle_of_a_sinumerik_starts_with_a_speed_of_the_program() {
         ("S900\nM3\nM30\n", None),
         ("M3 S900\nM5\nM4\nM30\n", None),
     ] {
-        let found = common::ops(&settings, "p.mpf", text).err().map(|error| error.rule);
+        let found = common::ops(&settings, "p.mpf", text).err().map(|error| error.rule.name());
         assert_eq!(found, rule, "{text}");
     }
 }

@@ -48,25 +48,25 @@ fn whatever_is_no_point_is_refused_where_it_stands() {
     let refused = |text: &str| {
         let found = run(text, None).unwrap_err();
         assert_eq!(found.file, "part.pts");
-        (found.rule, found.line, found.column)
+        (found.rule.name(), found.line, found.column)
     };
-    assert_eq!(refused(""), ("nc-syntax", 1, 1));
-    assert_eq!(refused("1 2\n\n3 4\n"), ("nc-syntax", 2, 1));
-    assert_eq!(refused("1 2\n3 4\n\n"), ("nc-syntax", 3, 1));
-    assert_eq!(refused("1 2\n3\n"), ("nc-syntax", 2, 1));
-    assert_eq!(refused("1 2 3\n"), ("nc-syntax", 1, 1));
-    assert_eq!(refused("1 2 3 4 5\n"), ("nc-syntax", 1, 9));
-    assert_eq!(refused("1 2\n3 4 0 0\n"), ("nc-syntax", 2, 1));
-    assert_eq!(refused("1 2\nX3 Y4\n"), ("nc-syntax", 2, 1));
-    assert_eq!(refused("1 2\n3,4\n"), ("nc-syntax", 2, 2));
-    assert_eq!(refused("1 2\n3-4\n"), ("nc-syntax", 2, 2));
-    assert_eq!(refused("1 2\n3 1e3\n"), ("nc-syntax", 2, 4));
+    assert_eq!(refused(""), ("syntax", 1, 1));
+    assert_eq!(refused("1 2\n\n3 4\n"), ("syntax", 2, 1));
+    assert_eq!(refused("1 2\n3 4\n\n"), ("syntax", 3, 1));
+    assert_eq!(refused("1 2\n3\n"), ("syntax", 2, 1));
+    assert_eq!(refused("1 2 3\n"), ("syntax", 1, 1));
+    assert_eq!(refused("1 2 3 4 5\n"), ("syntax", 1, 9));
+    assert_eq!(refused("1 2\n3 4 0 0\n"), ("syntax", 2, 1));
+    assert_eq!(refused("1 2\nX3 Y4\n"), ("syntax", 2, 1));
+    assert_eq!(refused("1 2\n3,4\n"), ("syntax", 2, 2));
+    assert_eq!(refused("1 2\n3-4\n"), ("syntax", 2, 2));
+    assert_eq!(refused("1 2\n3 1e3\n"), ("syntax", 2, 4));
     assert_eq!(refused("1 2 0 0\n"), ("upper-plane", 1, 1));
     assert_eq!(run("1 2 1e0 0", Some(1.0)).unwrap_err().column, 6);
     let far = format!("1 2 {} 0\n", "9".repeat(200));
-    assert_eq!(run(&far, Some(1.0)).unwrap_err().rule, "nc-number");
+    assert_eq!(run(&far, Some(1.0)).unwrap_err().rule.name(), "number");
     let long = format!("1 {}\n", "9".repeat(400));
-    assert_eq!(refused(&long), ("nc-number", 1, 3));
+    assert_eq!(refused(&long), ("number", 1, 3));
 }
 
 proptest! {

@@ -415,7 +415,11 @@ fn where_axes_go_when_the_program_stops_moves_nothing_and_is_reported() {
         let risks: Vec<_> = ops
             .iter()
             .filter_map(|op| {
-                if let Action::Risk(risk) = op { Some((risk.rule, risk.refused)) } else { None }
+                if let Action::Risk(risk) = op {
+                    Some((risk.rule.name(), risk.refused))
+                } else {
+                    None
+                }
             })
             .collect();
         assert_eq!(risks, [("stop-retract", false)], "{text}");

@@ -193,7 +193,7 @@ fn a_cycle_that_cannot_be_right_is_refused() {
         ("MCALL TRAORI", "unsupported"),
         ("G18\nCYCLE81(10,0,2,-15)", "unsupported"),
         ("G75 X0\nCYCLE81(10,0,2,-15)", "unknown-position"),
-        ("G93\nCYCLE81(10,0,2,-15)", "missing-feed"),
+        ("G93\nCYCLE81(10,0,2,-15)", "no-feed"),
         ("G1 X5 CYCLE81(10,0,2,-15)", "syntax"),
     ] {
         assert_eq!(error(text).rule, rule, "{text}");

@@ -6,7 +6,7 @@ use crate::listing::Listing;
 use control::Setup;
 use geom::Vec3;
 use machine::Machine;
-use program::{Diagnostic, Op, Program, Purpose, Record, Spindle};
+use program::{Diagnostic, Op, Program, Purpose, Record, Rule, Spindle};
 use std::collections::HashMap;
 use std::mem;
 
@@ -109,12 +109,12 @@ fn without_feed(job: &Job) -> Option<(&str, &str)> {
 /// Adds to a finding of the control where FreeCAD corrects it.
 fn way_out(mut found: Diagnostic) -> Diagnostic {
     let way_out = match found.rule {
-        "nc-feed" => {
+        Rule::Feed => {
             "give the tool controller of the operation its feeds, horizontal and vertical, and recompute"
         }
-        "nc-spindle" => "give the tool controller of the operation its speed, and recompute",
-        "nc-tool" => "give the tool controller a number above 0, and recompute",
-        "nc-unknown-word" => "change the commands of the operation",
+        Rule::Spindle => "give the tool controller of the operation its speed, and recompute",
+        Rule::Tool => "give the tool controller a number above 0, and recompute",
+        Rule::UnknownWord => "change the commands of the operation",
         _ => return found,
     };
     found.help_too(way_out);

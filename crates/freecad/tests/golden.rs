@@ -164,8 +164,8 @@ fn what_the_control_does_not_take_is_not_proven() {
     assert_eq!(broken(" M30\n", " M30"), "line-end");
     assert_eq!(broken(" M30\n", " M5\n"), "program-end");
     // One G function of a group in a block.
-    assert_eq!(broken(" G17 G40", " G17 G18"), "group-conflict");
-    assert_eq!(broken(" G0 Z20.000", " G0 G1 Z20.000"), "group-conflict");
+    assert_eq!(broken(" G17 G40", " G17 G18"), "modal-group");
+    assert_eq!(broken(" G0 Z20.000", " G0 G1 Z20.000"), "modal-group");
     // An arc in the plane may leave Z out: most of those printed do.
     assert!(text.contains(" G2 X46.211 Y66.477 I26.149 J25.461\n"));
 }

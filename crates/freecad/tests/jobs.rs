@@ -40,7 +40,7 @@ fn ops(job: &Value) -> Vec<Op> {
 #[track_caller]
 fn refused(job: &Value, rule: &str, place: &str, help: &str) {
     let found = read(job).unwrap_err();
-    assert_eq!(found.rule, rule, "{found}");
+    assert_eq!(found.rule.name(), rule, "{found}");
     assert_eq!(format!("{}:{}", found.file, found.line), place, "{found}");
     assert!(found.help.contains(help), "{found}");
 }
@@ -53,7 +53,7 @@ fn the_stock_of_a_job_is_that_of_the_program() {
     let corners = [[0.0, 0.0, -10.0], [80.0, 50.0, 1.0]].map(Vec3::from);
     assert_eq!(read(&stated).unwrap().stock, Some(corners));
     stated["stock"] = json!({ "low": [0, 0] });
-    assert_eq!(read(&stated).unwrap_err().rule, "freecad-job");
+    assert_eq!(read(&stated).unwrap_err().rule.name(), "freecad-job");
 }
 
 const START: &str = "G0 Z20.000000\nG0 X1.000000 Y2.000000\n";
@@ -177,7 +177,7 @@ fn beside_a_tap_f_is_the_pitch() {
     assert_eq!(cycle, Some(CycleKind::Tap { pitch: 1.25, left: false }));
     // The pitch is no feed for what follows.
     let cut = format!("{tap}G1 X9.0\n");
-    refused(&operation(&cut), "nc-feed", "part.json: operation `Profile`:7", "tool controller");
+    refused(&operation(&cut), "feed", "part.json: operation `Profile`:7", "tool controller");
 }
 
 /// FreeCAD's posts write 60 F in every mode, so that F counts a second: `G93` F0.5 is 30 moves a minute.
@@ -205,9 +205,9 @@ fn feeds_are_a_second_in_every_mode() {
     let place = "part.json: operation `Profile`:6";
     // Each move of its own time has an F, and the number of one mode means nothing in another.
     let alone = format!("{START}G1 F2.0 Z5.0\nG93\nG1 F0.5 X5.0\nG1 X9.0\n");
-    refused(&operation(&alone), "nc-feed", place, "tool controller");
+    refused(&operation(&alone), "feed", place, "tool controller");
     let back = format!("{START}G93\nG1 F0.5 X5.0\nG94\nG1 X9.0\n");
-    refused(&operation(&back), "nc-feed", place, "tool controller");
+    refused(&operation(&back), "feed", place, "tool controller");
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn an_arc_has_its_centre_from_its_start_and_its_k_means_nothing() {
 #[test]
 fn words_for_rotary_axes_need_a_machine_that_has_them() {
     let cut = format!("G0 A0.0 C0.0\n{START}G1 F2.0 Z0.0\n");
-    refused(&operation(&cut), "nc-axis", "part.json: operation `Profile`:1", "rotary axes");
+    refused(&operation(&cut), "unknown-axis", "part.json: operation `Profile`:1", "rotary axes");
     assert!(read_on("sinumerik-840d-table-ac", &operation(&cut)).is_ok());
     let upright = operation(&format!("{START}G1 F2.0 Z0.0\n"));
     assert_eq!(read_on("sinumerik-840d-table-ac", &upright), read(&upright));
@@ -287,7 +287,7 @@ fn operations_keep_their_order_however_long_they_are() {
     // A finding has its operation and the number of its command.
     let mut operations = operations;
     operations[4]["commands"] = json!("G0 X1.000000\nG1 Q1.000000");
-    refused(&job(json!(operations)), "nc-unused-word", "part.json: operation `of 900`:2", "");
+    refused(&job(json!(operations)), "unused-word", "part.json: operation `of 900`:2", "");
 }
 
 #[test]
@@ -302,8 +302,8 @@ fn what_an_operation_lacks_is_told_with_the_operation_and_its_command() {
     let place = |command: u32| format!("part.json: operation `Profile`:{command}");
     // Feed.
     let zero = operation(&format!("{START}G1 F0.000000 Z0.0\n"));
-    refused(&zero, "nc-feed", &place(3), "tool controller");
-    refused(&operation(&format!("{START}G1 Z0.0\n")), "nc-feed", &place(3), "tool controller");
+    refused(&zero, "feed", &place(3), "tool controller");
+    refused(&operation(&format!("{START}G1 Z0.0\n")), "feed", &place(3), "tool controller");
     // Tool.
     let mut bare = operation(&format!("{START}G1 F2.0 Z0.0\n"));
     bare["operations"].as_array_mut().unwrap().remove(0);
@@ -312,14 +312,17 @@ fn what_an_operation_lacks_is_told_with_the_operation_and_its_command() {
     refused(&job(json!([cut])), "tool-number", &place(2), "tool controller");
     // Number of the tool, speed of the spindle.
     for (controller, rule) in [
-        ("M6 T0.000000\nM3 S2000.0\n", "nc-tool"),
+        ("M6 T0.000000\nM3 S2000.0\n", "tool"),
         ("M6 T1.000000\nM3 S0.000000\n", "spindle-speed"),
-        ("M6 T1.000000\nM3\n", "nc-spindle"),
+        ("M6 T1.000000\nM3\n", "spindle"),
     ] {
         let mut job = operation(START);
         job["operations"][0]["commands"] = controller.into();
         let found = read(&job).unwrap_err();
-        assert_eq!((found.rule, found.file.as_str()), (rule, "part.json: operation `Mill 5`"));
+        assert_eq!(
+            (found.rule.name(), found.file.as_str()),
+            (rule, "part.json: operation `Mill 5`")
+        );
         assert!(found.help.contains("tool controller"), "{found}");
     }
     let mut standing = operation(&format!("{START}G1 F2.0 Z0.0\n"));
@@ -331,16 +334,16 @@ fn what_an_operation_lacks_is_told_with_the_operation_and_its_command() {
 fn commands_that_mean_nothing_are_named() {
     let place = "part.json: operation `Profile`:3";
     let wrong = |command: &str| operation(&format!("{START}{command}\n"));
-    refused(&wrong("G123 X1.0"), "nc-unknown-word", place, "commands of the operation");
-    refused(&wrong("M77"), "nc-unknown-word", place, "auxiliary");
-    refused(&wrong("G20"), "nc-unknown-word", place, "in mm");
+    refused(&wrong("G123 X1.0"), "unknown-word", place, "commands of the operation");
+    refused(&wrong("M77"), "unknown-word", place, "auxiliary");
+    refused(&wrong("G20"), "unknown-word", place, "in mm");
     // FreeCAD itself takes the words behind it.
-    refused(&wrong("G1 X7.000000 ;Y9.000000"), "nc-syntax", place, "a command of its own");
+    refused(&wrong("G1 X7.000000 ;Y9.000000"), "syntax", place, "a command of its own");
     // A NaN, and an infinite number, as `toGCode` writes them, and by their names.
     for number in ["-922337203685.477581", "nan", "-inf"] {
         for letter in ["X", "I", "F"] {
             let nothing = format!("G2 {letter}{number} Y2.0");
-            refused(&wrong(&nothing), "nc-number", place, "recompute");
+            refused(&wrong(&nothing), "number", place, "recompute");
         }
     }
 }
@@ -362,14 +365,14 @@ fn a_million_commands_are_read() {
 fn what_is_no_job_is_refused_with_its_place() {
     let read = |text: &str| Job::of("part.json", text.as_bytes()).unwrap_err();
     let found = read("{\n  \"toolpost\": 1 }");
-    assert_eq!((found.rule, found.line), ("freecad-job", 2), "{found}");
-    assert!(read("{").line == 1 && read("").rule == "freecad-job");
+    assert_eq!((found.rule.name(), found.line), ("freecad-job", 2), "{found}");
+    assert!(read("{").line == 1 && read("").rule.name() == "freecad-job");
     let other = read(r#"{ "toolpost": "other", "version": 1, "operations": [] }"#);
     assert!(other.message.contains("`other`"), "{other}");
     let later = read(r#"{ "toolpost": "freecad-job", "version": 2, "operations": [] }"#);
     assert!(later.message.contains("version 2"), "{later}");
     // A chain of brackets without end.
-    assert_eq!(read(&"[".repeat(100_000)).rule, "freecad-job");
+    assert_eq!(read(&"[".repeat(100_000)).rule.name(), "freecad-job");
 }
 
 #[test]
@@ -377,7 +380,10 @@ fn what_is_no_dump_is_refused_with_its_line() {
     let wrong = |line: &str| {
         let text = format!("(Path: A)\nCommand M6 [ T:1 ]\n{line}\n");
         let found = Job::of("a.dump", text.as_bytes()).unwrap_err();
-        assert_eq!((found.rule, found.line, found.file.as_str()), ("freecad-dump", 3, "a.dump"));
+        assert_eq!(
+            (found.rule.name(), found.line, found.file.as_str()),
+            ("freecad-dump", 3, "a.dump")
+        );
         found.message.clone()
     };
     assert!(wrong("...").contains("no line of a dump"));
@@ -400,7 +406,7 @@ fn an_operation_that_freecad_could_not_recompute_is_refused_with_its_name() {
         ]))
     };
     let found = read(&with(true)).unwrap_err();
-    assert_eq!(found.rule, "freecad-invalid");
+    assert_eq!(found.rule.name(), "freecad-invalid");
     assert!(found.message.contains("Pocket003"), "{found}");
     assert!(read(&with(false)).is_ok());
 }
@@ -415,7 +421,7 @@ fn two_tools_do_not_have_one_number() {
         ]);
         job
     };
-    assert_eq!(read(&with("ballend")).unwrap_err().rule, "two-tools");
+    assert_eq!(read(&with("ballend")).unwrap_err().rule.name(), "two-tools");
     // Two controllers of one tool: another speed, another feed.
     assert!(read(&with("endmill")).is_ok());
 }
@@ -433,7 +439,7 @@ fn a_tool_controller_without_a_horizontal_feed_is_refused_where_it_cuts_sideways
     let sideways = format!("{plunge}G1 X9.000000\n");
     let found = read(&with(0.0, &sideways)).unwrap_err();
     assert!(found.message.contains("Profile") && found.message.contains("Mill 5"), "{found}");
-    assert_eq!(found.rule, "nc-feed");
+    assert_eq!(found.rule.name(), "feed");
     for (feed, commands) in
         [(5.0, sideways.as_str()), (0.0, plunge), (0.0, "G1 F3.333333 X9.000000\n")]
     {

@@ -186,7 +186,7 @@ fn the_axes_have_to_reach_what_the_probe_can_find() {
     assert!(post::write(&flat, &machine(-31.09)).is_ok());
     assert!(post::write(&program, &machine(-31.11)).is_ok());
     let found = post::write(&program, &machine(-31.09)).unwrap_err();
-    assert_eq!(found[0].rule, "axis-limit", "{}", found[0]);
+    assert_eq!(found[0].rule.name(), "axis-limit", "{}", found[0]);
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn arcs_that_the_machine_takes_in_parts_are_refused() {
     };
     for can in ["helix = false", "arcs = []"] {
         let found = post::write(&program, &machine(can)).unwrap_err();
-        assert_eq!(found[0].rule, "surface", "{}", found[0]);
+        assert_eq!(found[0].rule.name(), "surface", "{}", found[0]);
         assert!(found[0].message.contains("in parts only"), "{}", found[0]);
     }
     // A program without arcs needs none.
@@ -249,7 +249,7 @@ fn arcs_too_short_for_the_decimals_become_one_line() {
     assert!(as_arcs > 10 && as_lines > 10, "{as_arcs} {as_lines}");
     // Two arcs of 2 rad each: no line is one of them.
     let found = post::write(&arcs(0.006, 4.0), &machine).unwrap_err();
-    assert_eq!(found[0].rule, "surface", "{}", found[0]);
+    assert_eq!(found[0].rule.name(), "surface", "{}", found[0]);
 }
 
 /// Columns 40/3 mm apart, in words of two decimals.
@@ -274,7 +274,7 @@ fn a_parameter_that_the_control_does_not_have_is_refused() {
     assert!(post::write(&program, &machine(1009)).is_ok());
     for _ in 0..2 {
         let found = post::write(&program, &machine(1008)).unwrap_err();
-        assert_eq!(found[0].rule, "number-range", "{}", found[0]);
+        assert_eq!(found[0].rule.name(), "number-range", "{}", found[0]);
         assert!(found[0].message.contains("1009"), "{}", found[0]);
         program.records.retain(|record| !matches!(record.op, Op::Probe(_)));
     }
@@ -308,14 +308,14 @@ fn what_does_not_follow_a_surface_is_refused() {
         program.records.splice(end..end, records);
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
         let found = post::write(&program, &machine).unwrap_err();
-        assert_eq!((found[0].rule, found[0].line), ("surface", 7), "{}", found[0]);
+        assert_eq!((found[0].rule.name(), found[0].line), ("surface", 7), "{}", found[0]);
     }
 }
 
 #[track_caller]
 fn refuses(program: &Program, message: &str) {
     let found = follow(program, &grid(2, 2), &PROBING, 0.02, &ALLOWED).unwrap_err();
-    assert_eq!(found.rule, "levelling", "{found}");
+    assert_eq!(found.rule.name(), "levelling", "{found}");
     assert!(found.message.contains(message), "{found}");
 }
 
@@ -340,6 +340,6 @@ fn what_cannot_find_its_surface_is_refused() {
     refuses(&twice, "a probing move");
     for steepness in [0.0, -1.0, f64::NAN, 2.0] {
         let found = follow(&board(Vec::new()), &grid(2, 2), &PROBING, steepness, &ALLOWED);
-        assert_eq!(found.unwrap_err().rule, "levelling-tolerance");
+        assert_eq!(found.unwrap_err().rule.name(), "levelling-tolerance");
     }
 }

@@ -43,7 +43,7 @@ use geom::{Arc, Vec3};
 use machine::{LengthOffset, Machine, Mount, RotaryFeed};
 use program::{
     ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Outcome, Pose,
-    Probe, Program, Record, Severity, Spindle, Thread, Tool, WorkOffset,
+    Probe, Program, Record, Rule, Severity, Spindle, Thread, Tool, WorkOffset,
 };
 use std::collections::{BTreeSet, HashMap};
 
@@ -354,13 +354,9 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
 
 /// Adds to what a control refuses what the user of a source can do about it.
 fn way_out(mut found: Box<Diagnostic>) -> Box<Diagnostic> {
-    let way_out = match found.rule {
-        "nc-unknown-position" | "unknown-position" => {
-            "or give the position of the tool at the start"
-        }
-        _ => return found,
-    };
-    found.help_too(way_out);
+    if found.rule == Rule::UnknownPosition {
+        found.help_too("or give the position of the tool at the start");
+    }
     found
 }
 

@@ -81,7 +81,7 @@ fn where_z_is_at_its_switch_g92_says() {
     assert_eq!(found, expected);
     // Where X and Y are nobody has said.
     let error = read_for(&machine, Setup::default(), text).unwrap_err();
-    assert_eq!(error.rule, "unknown-position");
+    assert_eq!(error.rule.name(), "unknown-position");
 }
 
 /// The boring bar goes aside along X of the machine: on a table that has turned by 90 degrees that is
@@ -133,10 +133,10 @@ fn z_home_stays_between_two_moves_and_goes_where_the_tool_is_changed() {
 #[test]
 fn a_cut_from_a_place_that_is_not_known_is_refused_with_its_line() {
     let found = refused("G21 G90 G54\nG0 X0. Y0.\nG1 Z-1. F100.\nM30\n");
-    assert_eq!((found.rule, found.line), ("unknown-position", 3));
+    assert_eq!((found.rule.name(), found.line), ("unknown-position", 3));
     assert!(found.message.ends_with("not known in Z"), "{found}");
     let found = refused("G21 G90 G54\nG0 X0. Y0. Z9.\nG91 G28 Z0\nG90 G1 Z-1. F100.\nM30\n");
-    assert_eq!((found.rule, found.line), ("unknown-position", 4));
+    assert_eq!((found.rule.name(), found.line), ("unknown-position", 4));
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn where_the_tool_stands_at_the_start_stays_known_when_the_first_offset_is_named
     let start = Setup { start: Some(Vec3::new(0.0, 0.0, 50.0)), ..Setup::default() };
     let read = |text: &str| read_for(&machine, start.clone(), text);
     assert!(read("G21 G54\nG1 X5 F100\n").is_ok());
-    assert_eq!(read("G21\nG1 X5 F100\nG55\nG1 X6\n").unwrap_err().rule, "unknown-position");
+    assert_eq!(read("G21\nG1 X5 F100\nG55\nG1 X6\n").unwrap_err().rule.name(), "unknown-position");
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn the_register_of_a_length_offset_is_that_of_the_tool() {
     let Op::Tool(tool) = moves(&program)[0].1 else { panic!("no tool") };
     assert_eq!((tool.number, tool.offset), (3, Some(13)));
     let found = refused("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H3\nG43 Z4. H13\nM30\n");
-    assert_eq!((found.rule, found.line), ("length-offset", 5));
+    assert_eq!((found.rule.name(), found.line), ("length-offset", 5));
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn a_turned_head_needs_the_length_of_the_tool() {
     let machine = load("sinumerik-840d-traori").unwrap();
     let text = "G90 G54\nT1\nM6\nD1\nG0 A90 C0\nX0 Y0 Z0\nG1 X5 F100\nM30\n";
     let found = read_for(&machine, Setup::default(), text).unwrap_err();
-    assert_eq!((found.rule, found.line), ("tool-length", 7));
+    assert_eq!((found.rule.name(), found.line), ("tool-length", 7));
     let tool = ToolData { number: 1, name: String::new(), radius: 3.0, length: 100.0 };
     let setup = Setup { tools: vec![tool], ..Setup::default() };
     assert!(read_for(&machine, setup, text).is_ok());
@@ -215,13 +215,13 @@ fn a_tool_with_a_name_gets_a_number_and_a_warning_says_so() {
     let setup = Setup { tools: vec![drill], ..Setup::default() };
     assert_eq!(numbers(&read_for(&machine, setup, text).unwrap()), [1, 7, 1]);
     let text = "G90 G54\nT=\"MILL\"\nM6\nT1\nM6\nM30\n";
-    assert_eq!(read_for(&machine, Setup::default(), text).unwrap_err().rule, "tool-number");
+    assert_eq!(read_for(&machine, Setup::default(), text).unwrap_err().rule.name(), "tool-number");
 }
 
 #[test]
 fn axes_are_not_sent_home_beside_the_part() {
     let found = refused("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 X0 Y0\nM30\n");
-    assert_eq!((found.rule, found.line), ("home", 3));
+    assert_eq!((found.rule.name(), found.line), ("home", 3));
     fanuc("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 Z0\nG28 X0 Y0\nM30\n");
 }
 
@@ -255,7 +255,10 @@ fn threads_and_probes_are_moves_at_feed() {
     let skip = Op::Probe(Box::new(Probe { end, away: false, must_answer: false, place: None }));
     assert!(probe.records.iter().any(|record| record.op == skip));
     // Where the probe has stopped is not known: nothing is cut from there.
-    assert_eq!(refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule, "unknown-position");
+    assert_eq!(
+        refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule.name(),
+        "unknown-position"
+    );
 }
 
 /// Charmilles, FANUC and others begin a wire's program so: the operator has brought it to the place.
@@ -267,7 +270,10 @@ fn a_cut_may_begin_where_g92_says_that_the_tool_stands() {
     let program = wire("G21 G90\nG92 X5. Y-3.\nG1 X10.\nM2\n").unwrap();
     let expected = [(3, &Op::Rapid(at(5.0, -3.0, 0.0))), (3, &Op::Line(at(10.0, -3.0, 0.0)))];
     assert_eq!(moves(&program), expected);
-    assert_eq!(wire("G21 G90\nG92 X5.\nG1 X10. Y0.\nM2\n").unwrap_err().rule, "unknown-position");
+    assert_eq!(
+        wire("G21 G90\nG92 X5.\nG1 X10. Y0.\nM2\n").unwrap_err().rule.name(),
+        "unknown-position"
+    );
 }
 
 /// A file that is cut off is no program: FANUC and Haas end by M30 or M2, LinuxCNC by those or a second `%` (manual, "File
@@ -278,12 +284,12 @@ fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
         let machine = machine::load(machine).unwrap();
         match nc::read(&machine, Setup::default(), "p.nc", text.as_bytes()) {
             Ok(reading) => {
-                let ends = reading.warnings.iter().find(|found| found.rule == "program-end");
+                let ends = reading.warnings.iter().find(|found| found.rule.name() == "program-end");
                 ends.map_or("whole", |_| "reported")
             }
             Err(error) => {
                 assert!(error.line > 0 && !error.help.is_empty(), "{error}");
-                error.rule
+                error.rule.name()
             }
         }
     };
@@ -294,8 +300,8 @@ fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
         ("generic-3axis-iso", "program-end", "program-end"),
         ("generic-3axis-linuxcnc", "program-end", "program-end"),
         ("generic-3axis-mach3", "reported", "program-end"),
-        ("generic-3axis-grbl", "reported", "nc-syntax"),
-        ("generic-3axis-marlin", "whole", "nc-syntax"),
+        ("generic-3axis-grbl", "reported", "syntax"),
+        ("generic-3axis-marlin", "whole", "syntax"),
     ] {
         let body =
             if machine.ends_with("marlin") { "G21\nG90\nG17\nG54\nG0 X0 Y0\n" } else { body };
@@ -321,7 +327,8 @@ fn registers(control: &str, text: &str) -> (Vec<(u32, Option<u32>)>, Vec<Diagnos
         Op::Tool(tool) => Some((tool.number, tool.offset)),
         _ => None,
     });
-    let findings = reading.warnings.into_iter().filter(|found| found.rule == "length-offset");
+    let findings =
+        reading.warnings.into_iter().filter(|found| found.rule.name() == "length-offset");
     (tools.collect(), findings.collect())
 }
 
@@ -373,9 +380,9 @@ fn a_length_offset_that_was_called_before_the_tool_stays_its_own_and_is_reported
 fn a_tool_that_cuts_with_and_without_its_length_offset_is_refused() {
     let start = "G21 G90 G94 G54\nT2 M6\nS900 M3\n";
     let found = refused(&format!("{start}{CUT}G43 H2\n{CUT}M30\n"));
-    assert_eq!((found.rule, found.line), ("length-offset", 10), "{found}");
+    assert_eq!((found.rule.name(), found.line), ("length-offset", 10), "{found}");
     let found = refused(&format!("{start}G43 H2\n{CUT}G49\n{CUT}M30\n"));
-    assert_eq!((found.rule, found.line), ("length-offset", 11), "{found}");
+    assert_eq!((found.rule.name(), found.line), ("length-offset", 11), "{found}");
     // Up and home without it is no cut.
     fanuc(&format!("{start}G43 H2\n{CUT}G49 G0 Z9.\nM30\n"));
 }
@@ -393,11 +400,15 @@ fn a_place_beyond_every_machine_is_refused_with_its_line() {
     ] {
         let error = refused(&format!("{START}{block}\nM30\n"));
         let line = 5 + block.matches('\n').count() as u32;
-        assert_eq!((error.rule, error.line), ("out-of-range", line), "{block}");
+        assert_eq!((error.rule.name(), error.line), ("out-of-range", line), "{block}");
         assert!(error.message.len() < 200, "{error}");
     }
     for block in [format!("G4 X{digits}."), format!("G1 X5. F{digits}."), format!("S{digits} M3")] {
-        assert_eq!(refused(&format!("{START}{block}\nM30\n")).rule, "out-of-range", "{block}");
+        assert_eq!(
+            refused(&format!("{START}{block}\nM30\n")).rule.name(),
+            "out-of-range",
+            "{block}"
+        );
     }
     assert!(fanuc(&format!("{START}G1 X1000000. F100.\nM30\n")).records.len() > 3);
 }

@@ -78,7 +78,7 @@ impl Findings {
             let message = format!(
                 "{what}: {count} written as {blocks} lines, tolerance {tolerance} mm, first here"
             );
-            Diagnostic::warning(rule, message).line(*line)
+            Diagnostic::warning(*rule, message).line(*line)
         }));
         Ok(warnings)
     }

@@ -1,6 +1,6 @@
 //! Many findings that are alike, as a few and how many more there are.
 
-use crate::{Diagnostic, Severity};
+use crate::{Diagnostic, Rule, Severity};
 use std::collections::HashMap;
 
 /// So many like findings are kept as they are.
@@ -20,8 +20,8 @@ const KINDS: usize = 20;
 #[derive(Debug, Default)]
 pub struct Findings {
     kept: Vec<Option<Diagnostic>>,
-    groups: HashMap<(Severity, &'static str, String), Group>,
-    kinds: HashMap<(Severity, &'static str), usize>,
+    groups: HashMap<(Severity, Rule, String), Group>,
+    kinds: HashMap<(Severity, Rule), usize>,
 }
 
 /// Where like findings are kept.
@@ -105,7 +105,7 @@ fn kind(message: &str) -> String {
 mod tests {
     use super::*;
 
-    fn found(rule: &'static str, message: String, line: u32) -> Diagnostic {
+    fn found(rule: Rule, message: String, line: u32) -> Diagnostic {
         Diagnostic::error(rule, message).help("correct it").line(line)
     }
 
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn of_many_like_findings_the_third_counts_the_others() {
-        let many = (1..=150_000).map(|i| found("word", format!("no word is called `W{i}`"), i));
+        let many = (1..=150_000).map(|i| found(Rule::Word, format!("no word is called `W{i}`"), i));
         let kept = many.collect::<Findings>().finish();
         assert_eq!(counts(&kept), [(1, 1), (2, 1), (3, 149_998)]);
         assert_eq!(
@@ -130,9 +130,9 @@ mod tests {
     #[test]
     fn nineteen_like_findings_and_findings_of_other_kinds_stay() {
         let all: Vec<_> = (1..=19)
-            .map(|i| found("a", format!("{i} mm"), i))
-            .chain((20..=38).map(|i| found("b", format!("{i} mm"), i)))
-            .chain((39..=57).map(|i| found("a", format!("{i} degrees"), i)))
+            .map(|i| found(Rule::Angle, format!("{i} mm"), i))
+            .chain((20..=38).map(|i| found(Rule::Block, format!("{i} mm"), i)))
+            .chain((39..=57).map(|i| found(Rule::Angle, format!("{i} degrees"), i)))
             .collect();
         assert_eq!(all.iter().cloned().collect::<Findings>().finish(), all);
     }
@@ -140,7 +140,7 @@ mod tests {
     #[test]
     fn messages_that_are_all_different_are_bounded_too() {
         let word = |i: u32| "x".repeat(i as usize % 997 + 1);
-        let many = (1..=20_000).map(|i| found("a", format!("{} is unknown", word(i)), i));
+        let many = (1..=20_000).map(|i| found(Rule::Angle, format!("{} is unknown", word(i)), i));
         let kept = many.collect::<Findings>().finish();
         assert!(kept.len() <= (KINDS + 1) * MOST, "{}", kept.len());
         assert_eq!(kept.iter().map(|found| found.count).sum::<u32>(), 20_000);

@@ -1,6 +1,6 @@
 //! What a reader, a writer or the proof has to say about a place in a file.
 
-use crate::ways_out::way_out;
+use crate::rule::Rule;
 use serde::Serialize;
 use std::fmt::{self, Write as _};
 
@@ -22,8 +22,9 @@ pub type Outcome<T = ()> = Result<T, Box<Diagnostic>>;
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
-    /// Short name of the rule, in kebab case (`zero-vector`, `axis-limit`): stable, for machines.
-    pub rule: &'static str,
+    /// The rule that it is of.
+    #[serde(flatten, serialize_with = "Rule::fields")]
+    pub rule: Rule,
     /// What is wrong, with values and units.
     pub message: String,
     /// The way out: that of the finding, or that of its rule.
@@ -49,21 +50,21 @@ const EXCERPT: usize = 160;
 
 impl Diagnostic {
     /// An error of `rule`, with the way out of the rule.
-    pub fn error(rule: &'static str, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Severity::Error, rule, message.into())
+    pub fn error(rule: impl Into<Rule>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Severity::Error, rule.into(), message.into())
     }
 
     /// A warning of `rule`, with the way out of the rule.
-    pub fn warning(rule: &'static str, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Severity::Warning, rule, message.into())
+    pub fn warning(rule: impl Into<Rule>, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Severity::Warning, rule.into(), message.into())
     }
 
-    fn new(severity: Severity, rule: &'static str, message: String) -> Diagnostic {
+    fn new(severity: Severity, rule: Rule, message: String) -> Diagnostic {
         Diagnostic {
             severity,
             rule,
             message: readable(message),
-            help: way_out(rule).into(),
+            help: rule.way_out().into(),
             file: String::new(),
             line: 0,
             column: 0,
@@ -250,7 +251,7 @@ pub fn within(name: &str, value: f64, low: f64, high: f64) -> Result<(), Box<Dia
         return Ok(());
     }
     let help = format!("give a number from {low} to {high}");
-    Err(Diagnostic::error("setting", format!("`{name}` is {value}")).help(help).into())
+    Err(Diagnostic::error(Rule::Setting, format!("`{name}` is {value}")).help(help).into())
 }
 
 /// One finding where there may be several.
@@ -286,7 +287,7 @@ mod tests {
 
     #[test]
     fn an_error_names_file_line_column_rule_and_way_out() {
-        let shown = Diagnostic::error("zero-vector", "the tool axis has no length")
+        let shown = Diagnostic::error(Rule::ZeroVector, "the tool axis has no length")
             .help("give a direction")
             .file("a.cls")
             .at(3, b"GOTO/1,2,3,0,0,0", 11, 16)
@@ -300,15 +301,15 @@ mod tests {
 
     #[test]
     fn a_finding_about_a_whole_line_shows_it_without_a_caret() {
-        let shown = Diagnostic::error("x", "y").on(3, b"GOTO/1,2,3").to_string();
-        assert_eq!(shown, "3: error[x]: y\n    | GOTO/1,2,3");
+        let shown = Diagnostic::error(Rule::NoFini, "y").help("z").on(3, b"GOTO/1,2,3").to_string();
+        assert_eq!(shown, "3: error[no-fini]: y\n    | GOTO/1,2,3\n    = z");
     }
 
     #[test]
     fn a_very_long_line_is_shown_as_a_window() {
         let mut text = vec![b'A'; 1_000_000];
         text[500_000] = b'!';
-        let d = Diagnostic::error("x", "y").at(1, &text, 500_000, 500_001);
+        let d = Diagnostic::error(Rule::Syntax, "y").at(1, &text, 500_000, 500_001);
         assert_eq!(d.column, 500_001);
         assert!(d.excerpt.len() < 600);
         let mut lines = d.excerpt.lines();

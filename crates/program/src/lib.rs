@@ -26,10 +26,10 @@ mod motion;
 mod pose;
 mod purpose;
 mod record;
+mod rule;
 pub mod statistics;
 mod surface;
 mod technology;
-mod ways_out;
 
 pub use builder::Builder;
 pub use compensated::{CompensatedPath, PathEvidence};
@@ -44,5 +44,6 @@ pub use motion::*;
 pub use pose::{FullPose, NoPose, Pose};
 pub use purpose::Purpose;
 pub use record::*;
+pub use rule::Rule;
 pub use surface::Surface;
 pub use technology::*;

@@ -1,6 +1,8 @@
 //! Rules that whoever posts a program may let pass for one run: each hangs on how the machine is set up, which the
 //! program does not say.
 
+use program::Rule;
+
 /// The rules that may be accepted, each with what its acceptance answers for.
 pub const ACCEPTABLE: [(&str, &str); 25] = [
     ("adaptive-feed", "an input of the machine multiplies the feed"),
@@ -40,7 +42,7 @@ impl Accepted {
     /// # Errors
     /// No rule of this name may be accepted.
     pub fn and(self, rule: &str) -> Result<Accepted, String> {
-        match ACCEPTABLE.iter().position(|(name, _)| *name == rule) {
+        match ACCEPTABLE.iter().position(|(name, _)| Rule::named(rule) == Some(Rule::from(*name))) {
             Some(index) => Ok(Accepted(self.0 | 1 << index)),
             None => {
                 let all: Vec<&str> = ACCEPTABLE.iter().map(|(name, _)| *name).collect();
@@ -55,7 +57,7 @@ impl Accepted {
         rules.filter(move |(index, _)| self.0 & (1 << index) != 0).map(|(_, (name, _))| *name)
     }
 
-    pub(crate) fn holds(self, rule: &str) -> bool {
-        self.names().any(|name| name == rule)
+    pub(crate) fn holds(self, rule: Rule) -> bool {
+        self.names().any(|name| rule == name)
     }
 }

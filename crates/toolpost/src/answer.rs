@@ -2,7 +2,7 @@
 //! output, or everything as one JSON object.
 
 use app::{Account, Stop, Verdict, summary};
-use program::{Diagnostic, Findings};
+use program::{Diagnostic, Findings, Rule};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
@@ -118,8 +118,8 @@ fn printable(text: &str) -> String {
 }
 
 /// Whether a program rests on what a finding of this rule says: a unit that was guessed, a rule that was accepted.
-fn is_assumption(rule: &str) -> bool {
-    rule == "unknown-unit" || proof::ACCEPTABLE.iter().any(|(name, _)| *name == rule)
+fn is_assumption(rule: Rule) -> bool {
+    rule == Rule::UnknownUnit || proof::ACCEPTABLE.iter().any(|(name, _)| rule == *name)
 }
 
 #[cfg(test)]

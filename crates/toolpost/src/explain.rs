@@ -1,11 +1,12 @@
-//! `toolpost explain`: every name that a machine or control file may use, with unit and help; of a single
-//! block also how the controls of the library write it.
+//! `toolpost explain`: every name that a machine or control file may use, with unit and help, and every rule of
+//! findings; of a single block also how the controls of the library write it, of a single rule also the way out and
+//! an example.
 
 use crate::answer::Answer;
 use app::{Stop, summary};
 use machine::Key;
 use machine::library::{CONTROLS, names};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde_json::{Map, Value, json};
 
 /// A name, as it is listed.
@@ -27,27 +28,45 @@ impl Row {
         let data = json!({ "kind": "key", "name": name, "unit": key.unit, "help": key.help });
         Row::new(name, key.unit, key.help, data)
     }
+
+    fn rule(rule: Rule) -> Row {
+        let data = json!({
+            "kind": "rule",
+            "name": rule,
+            "help": rule.meaning(),
+            "way_out": rule.way_out(),
+            "example": rule.example(),
+            "former_names": rule.former_names(),
+        });
+        Row::new(rule.name().to_owned(), "", rule.meaning(), data)
+    }
 }
 
-/// Explains one name, or all of them. The last part of a key is enough: `min` is that of every table.
+/// Explains one name, or all of them. The last part of a key is enough: `min` is that of every table. A rule is also
+/// found by a former name.
 pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     let names = post::catalogue().iter();
     let names = names.map(|p| Row::new(p.name.to_owned(), p.unit, p.help, json!(p)));
     let rows = names.chain(machine::keys().map(Row::key));
-    let found: Vec<Row> = rows.filter(|row| topic.is_none_or(|t| matches(&row.name, t))).collect();
+    let mut found: Vec<Row> =
+        rows.filter(|row| topic.is_none_or(|t| matches(&row.name, t))).collect();
+    let written = match &found[..] {
+        [row] => written(&row.name)?,
+        _ => Vec::new(),
+    };
+    let rule = topic.and_then(Rule::named);
+    let rules = topic.map_or(Rule::ALL, |_| rule.as_slice());
+    found.extend(rules.iter().map(|rule| Row::rule(*rule)));
     if let (true, Some(topic)) = (found.is_empty(), topic) {
-        let message = format!("`{topic}` is no name of machine and control files");
-        return Err(Diagnostic::error("topic", message)
+        let message = format!("`{topic}` is no name of machine and control files, and no rule");
+        return Err(Diagnostic::error(Rule::Topic, message)
             .help("`toolpost explain` lists them all")
             .into());
     }
     let lines: Vec<_> = found.iter().map(|row| (row.name.as_str(), row.text.clone())).collect();
     let data: Vec<_> = found.iter().map(|row| &row.data).collect();
-    let written = match &found[..] {
-        [row] => written(&row.name)?,
-        _ => Vec::new(),
-    };
     let mut text = summary::rows(&lines);
+    text.extend(rule.iter().map(about));
     for (control, block) in &written {
         text.push_str(&format!("\n{control}\n"));
         text.extend(block.trim().lines().map(|line| format!("    {line}\n")));
@@ -55,6 +74,16 @@ pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     let written: Map<String, Value> =
         written.into_iter().map(|(control, block)| (control.into(), block.into())).collect();
     Ok(Answer::product(text, json!({ "names": data, "written": written })))
+}
+
+/// What is said of a rule below its meaning.
+fn about(rule: &Rule) -> String {
+    let (way_out, example) = (rule.way_out().to_owned(), rule.example().to_owned());
+    let mut lines = vec![("way out", way_out), ("example", example)];
+    if !rule.former_names().is_empty() {
+        lines.push(("former names", rule.former_names().join(", ")));
+    }
+    format!("\n{}", summary::rows(&lines))
 }
 
 /// What the controls of the library write for the block of that name: each that has it, with its text.

@@ -37,7 +37,7 @@ fn proven(source: &Program, machine: &Machine, text: &str) {
 fn refused(source: &Program, machine: &Machine, text: &str) -> (&'static str, String) {
     let found = found(source, machine, text);
     let first = found.first().unwrap_or_else(|| panic!("proven:\n{text}"));
-    (first.rule, text.lines().nth(first.line as usize - 1).unwrap_or_default().to_owned())
+    (first.rule.name(), text.lines().nth(first.line as usize - 1).unwrap_or_default().to_owned())
 }
 
 /// A trunnion: A tilts the table about X through Z -100, C turns on it. Work zero is the zero of the machine, the spindle
@@ -200,7 +200,7 @@ fn each_return_from_home_is_looked_at_as_the_first_approach_is() {
         lines[at + 1] = "Z20.";
         let rules: Vec<_> = found(&source, &machine, &(lines.join("\n") + "\n"))
             .iter()
-            .map(|found| (found.rule, found.line))
+            .map(|found| (found.rule.name(), found.line))
             .collect();
         assert_eq!(rules.first(), Some(&("rapid-path", at as u32 + 1)), "{good}");
     }
@@ -212,14 +212,14 @@ fn home_is_not_above_a_part_that_the_table_swings_up_to_it() {
     let far = LEDGE.replace("-2", "-4").replace("-1", "-3").replace("0,-3,0", "0,-1,0");
     let (source, machine) = (read(&far), fanuc());
     let refusal = post::write(&source, &machine).unwrap_err();
-    assert_eq!(refusal[0].rule, "home-height", "{refusal:?}");
+    assert_eq!(refusal[0].rule.name(), "home-height", "{refusal:?}");
     // Written for a machine whose spindle is home 200 mm higher, it is no program for this one.
     let mut higher = fanuc();
     higher.safe_height = Some(600.0);
     higher.linear[2].max = 600.0;
     let text = written(&source, &higher);
     proven(&source, &higher, &text);
-    assert!(found(&source, &machine, &text).iter().any(|found| found.rule == "home-height"));
+    assert!(found(&source, &machine, &text).iter().any(|found| found.rule.name() == "home-height"));
 }
 
 /// The programs of the library that were written before: X and Y, then Z.

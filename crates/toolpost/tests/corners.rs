@@ -18,7 +18,7 @@ fn posted(machine: &Machine) -> String {
 /// Whether the program is proven on the machine, or the rule of the first mismatch.
 fn proven(machine: &Machine, text: &str) -> Result<(), &'static str> {
     let report = proof::prove(&sample(), machine, "t", text.as_bytes(), &Default::default());
-    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule))
+    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule.name()))
 }
 
 /// The same with `line` instead of the line that starts with `old`.
@@ -54,7 +54,7 @@ fn linuxcnc_keeps_to_the_path_within_the_bound_of_its_file() {
         let expected = if held { Ok(()) } else { Err("path-tolerance") };
         assert_eq!(proven(&machine, &instead(&text, "G64", line)), expected, "{line}");
     }
-    assert_eq!(proven(&machine, &instead(&text, "G64", "G64 P-1")), Err("nc-path-mode"));
+    assert_eq!(proven(&machine, &instead(&text, "G64", "G64 P-1")), Err("path-mode"));
     // In inches a bound is in inches.
     let inches = instead(&text, "G64", "G20 G64 P0.005 Q0\nG21");
     assert_eq!(proven(&machine, &inches), Err("path-tolerance"));
@@ -73,10 +73,13 @@ fn a_rule_that_is_accepted_passes_and_stands_in_the_report() {
     let report = prove(&text);
     assert!(report.proven && report.mismatches.is_empty());
     let [found] = &report.accepted[..] else { panic!("{:?}", report.accepted) };
-    assert!(found.rule == "path-tolerance" && !found.is_error() && found.count > 1, "{found:?}");
+    assert!(
+        found.rule.name() == "path-tolerance" && !found.is_error() && found.count > 1,
+        "{found:?}"
+    );
     assert!(found.message.contains("by any amount"), "{}", found.message);
     let deeper = prove(&text.replacen("Z-2 ", "Z-3 ", 1));
-    assert_eq!(deeper.mismatches[0].rule, "path");
+    assert_eq!(deeper.mismatches[0].rule.name(), "path");
     for rule in ["end-point", "tool", "machine-position", ""] {
         assert!(proof::Accepted::default().and(rule).is_err(), "{rule}");
     }
@@ -189,7 +192,7 @@ fn what_a_source_asks_for_and_the_machine_does_not_give_is_told() {
         );
         let read = nc::read(&machine, Default::default(), "s.ngc", text.as_bytes()).unwrap();
         let output = post::write(&read.program, &machine).unwrap();
-        let rules = output.warnings.iter().filter(|found| found.rule == "path-mode");
+        let rules = output.warnings.iter().filter(|found| found.rule.name() == "path-mode");
         rules.map(|found| found.message.clone()).collect::<Vec<_>>()
     };
     assert_eq!(told("G64 P0.1"), [""; 0]);

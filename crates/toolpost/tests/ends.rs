@@ -86,7 +86,7 @@ impl Job {
     fn judged(&self, text: &str) -> Vec<&'static str> {
         let tolerances = proof::Tolerances::default();
         let report = proof::prove(&self.source, &self.machine, "t", text.as_bytes(), &tolerances);
-        report.mismatches.iter().map(|found| found.rule).collect()
+        report.mismatches.iter().map(|found| found.rule.name()).collect()
     }
 
     /// What a text makes the machine do from its line `from` on.
@@ -119,7 +119,7 @@ impl Job {
             }
             Ok(())
         })
-        .map_err(|found| found.rule)?;
+        .map_err(|found| found.rule.name())?;
         Ok(does)
     }
 
@@ -132,9 +132,9 @@ impl Job {
         let again = match self.does(&text, from) {
             Ok(again) => again,
             // An alarm at the start moves nothing; a unit is said by each program, on this control before the first move.
-            Err("nc-units") => return Ok(()),
+            Err("units") => return Ok(()),
             // What G92.1 takes away was there before the first program, if anything was: nothing that it has left.
-            Err("nc-unknown-shift") => return Ok(()),
+            Err("unknown-shift") => return Ok(()),
             Err(rule) => return Err(format!("the next program is refused: {rule}")),
         };
         match alone.iter().zip(&again).find(|(a, b)| !alike(a, b)) {
@@ -293,8 +293,8 @@ fn blocks(machine: &Machine, dialect: Dialect) -> Vec<String> {
 fn is_known(machine: &Machine, word: &str) -> bool {
     let settings = nc::settings(machine, Setup::default()).unwrap();
     let found = control::read(&settings, "t", format!("{word}\n").as_bytes(), &mut |_| Ok(()));
-    let unknown = ["nc-unknown-word", "unknown-word", "unknown-m"];
-    found.err().is_none_or(|found| !unknown.contains(&found.rule))
+    let unknown = ["unknown-word", "unknown-m"];
+    found.err().is_none_or(|found| !unknown.contains(&found.rule.name()))
 }
 
 #[test]

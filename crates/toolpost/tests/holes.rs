@@ -61,7 +61,7 @@ fn posted(machine: &str, cycle: Cycle) -> Result<Vec<String>, &'static str> {
 
 fn posted_for(machine: &Machine, cycle: Cycle) -> Result<Vec<String>, &'static str> {
     let source = source(cycle);
-    let output = post::write(&source, machine).map_err(|found| found[0].rule)?;
+    let output = post::write(&source, machine).map_err(|found| found[0].rule.name())?;
     let report = proof::prove(&source, machine, "p", &output.text, &Default::default());
     assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
     let numbered = |line: &str| match line.split_once(' ') {
@@ -180,7 +180,7 @@ fn taps_that_are_not_coupled_need_a_floating_holder() {
             let source = source(cycle(TAP, 0.0));
             let output = post::write(&source, &machine).unwrap();
             let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
-            let found = report.mismatches.first().map(|found| found.rule);
+            let found = report.mismatches.first().map(|found| found.rule.name());
             assert_eq!(found, (!floats).then_some("floating-tap"), "{name}");
         }
     }
@@ -199,7 +199,7 @@ fn the_way_up_belongs_to_a_hole_that_ends_at_the_r_plane() {
     let text = String::from_utf8(output.text).unwrap();
     let rule = |text: &str| {
         let report = proof::prove(&source, &machine, "p", text.as_bytes(), &Default::default());
-        report.mismatches.first().map(|found| found.rule)
+        report.mismatches.first().map(|found| found.rule.name())
     };
     assert_eq!(rule(&text), None);
     let up = "G33.1 Z-12 K1.25\nG0 Z20\n";

@@ -65,9 +65,9 @@ fn sample(machine: &Machine) -> Result<String, &'static str> {
     let sample = include_str!("../../../machines/samples/three-axes.cls");
     let program =
         source::apt::read("s.cls", sample.as_bytes(), &Default::default()).unwrap().program;
-    let output = post::write(&program, machine).map_err(|found| found[0].rule)?;
+    let output = post::write(&program, machine).map_err(|found| found[0].rule.name())?;
     let report = proof::prove(&program, machine, "p", &output.text, &Default::default());
-    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule))?;
+    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule.name()))?;
     Ok(String::from_utf8(output.text).unwrap())
 }
 
@@ -81,8 +81,8 @@ fn blocks(machine: &Machine, expected: &[(&str, &str)]) {
 
 /// The lines of what is told of the post, with its rule. What no post says, the safe height, is not among them.
 fn told(import: &Import) -> Vec<(u32, &'static str)> {
-    let findings = import.findings.iter().filter(|found| found.rule != "safe-height");
-    findings.map(|found| (found.line, found.rule)).collect()
+    let findings = import.findings.iter().filter(|found| found.rule.name() != "safe-height");
+    findings.map(|found| (found.line, found.rule.name())).collect()
 }
 
 const LOST: &str = "not-carried-over";
@@ -247,7 +247,7 @@ fn centres_may_be_absolute_and_a_radius_may_stand_for_them() {
     assert!(program.contains("G3X50.000Y20.000R10.0000"), "{program}");
     // Without the code that says so the control counts from the start: the proof finds it.
     let wrong = post.replace("G90.1", "G98") + &arcs("[X][Y][IA][JA]");
-    assert_eq!(sample(&imported("c.pp", &wrong, None).1), Err("nc-arc"));
+    assert_eq!(sample(&imported("c.pp", &wrong, None).1), Err("arc"));
 }
 
 #[test]
@@ -371,7 +371,7 @@ G98 G81 X@x@ Y@y@ Z@depth@ R@clearance@ F@feed@
     assert!(program.contains("R10"), "{program}");
     // A control keeps the level to which it goes back from the program before: the proof finds it.
     let (_, machine) = imported("mill.txt", &text.replace("G98 ", ""), Some("linuxcnc"));
-    assert_eq!(sample(&machine), Err("nc-cycle"));
+    assert_eq!(sample(&machine), Err("cycle"));
 }
 
 /// `R` alone: it becomes the one with a sign. GRBL has no G81, so holes are moves.
@@ -491,7 +491,7 @@ fn what_cannot_be_read_is_refused_with_its_line() {
         assert!(at == line && message.contains(what), "{text}: {at} {message}");
     }
     let large = vec![b'+'; (1 << 20) + 1];
-    assert_eq!(import("a.pp", &large, None).unwrap_err()[0].rule, "import");
+    assert_eq!(import("a.pp", &large, None).unwrap_err()[0].rule.name(), "import");
     // A control that is named by nobody, by two, and by a name that is none.
     let post = [WORDS, MOVES].concat();
     for (name, extends, rule) in [
@@ -500,7 +500,7 @@ fn what_cannot_be_read_is_refused_with_its_line() {
         ("Router", Some("nonesuch"), "machine-unknown"),
     ] {
         let text = format!("POST_NAME = \"{name}\"\n{post}");
-        assert_eq!(import("a.pp", text.as_bytes(), extends).unwrap_err()[0].rule, rule);
+        assert_eq!(import("a.pp", text.as_bytes(), extends).unwrap_err()[0].rule.name(), rule);
     }
 }
 

@@ -20,14 +20,14 @@ fn sample() -> program::Program {
 }
 
 fn posted(machine: &Machine) -> Result<String, &'static str> {
-    let text = post::write(&sample(), machine).map_err(|found| found[0].rule)?.text;
+    let text = post::write(&sample(), machine).map_err(|found| found[0].rule.name())?.text;
     Ok(String::from_utf8(text).unwrap())
 }
 
 /// Whether the program is proven on the machine, or the rule of the first mismatch.
 fn proven(machine: &Machine, text: &str) -> Result<(), &'static str> {
     let report = proof::prove(&sample(), machine, "t", text.as_bytes(), &Default::default());
-    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule))
+    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule.name()))
 }
 
 /// The mills of three axes, with the program of the sample on each.
@@ -117,7 +117,7 @@ fn a_block_of_the_machine_is_held_to_the_same() {
 fn without_a_safe_height_no_retract_is_written() {
     let machine = load_text("own.toml", "extends = \"linuxcnc\"\n").unwrap();
     let found = post::write(&sample(), &machine).map(|_| ()).unwrap_err();
-    assert_eq!(found[0].rule, "safe-height");
+    assert_eq!(found[0].rule.name(), "safe-height");
     assert!(found[0].help.contains("`safe_height = 0`"), "{}", found[0]);
     // A way home by reference points needs none.
     let machine = load_text("own.toml", "extends = \"fanuc-31i\"\n").unwrap();

@@ -23,7 +23,7 @@ fn dome(machine: &Machine) -> (Vec<&'static str>, String) {
     let source = source.unwrap().program;
     let output = post::write(&source, machine).unwrap_or_else(|found| panic!("{found:?}"));
     let report = proof::prove(&source, machine, "p", &output.text, &Default::default());
-    let found = report.mismatches.iter().map(|found| found.rule).collect();
+    let found = report.mismatches.iter().map(|found| found.rule.name()).collect();
     (found, String::from_utf8(output.text).unwrap())
 }
 

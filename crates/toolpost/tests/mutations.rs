@@ -970,7 +970,7 @@ fn judged(seed: u64, damage: impl Fn(&Sample, &mut Dice) -> Vec<u8>) {
         let report =
             proof::prove(&sample.source, &sample.machine, "", &text, &Tolerances::default());
         let (end, why) = match report.mismatches.first() {
-            Some(found) => ("caught", found.rule),
+            Some(found) => ("caught", found.rule.name()),
             None => match sample.harmless(&text) {
                 Ok(why) => {
                     let (_, before, after) = difference(&sample.text, &text);

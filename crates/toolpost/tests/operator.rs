@@ -27,7 +27,7 @@ fn rule(machine: &Machine, text: &str, accepted: &[&str]) -> Option<&'static str
         tolerances.accepted = tolerances.accepted.and(rule).unwrap();
     }
     let report = proof::prove(&sample(), machine, "t", text.as_bytes(), &tolerances);
-    report.mismatches.first().map(|found| found.rule)
+    report.mismatches.first().map(|found| found.rule.name())
 }
 
 #[test]
@@ -102,9 +102,9 @@ fn work_offsets_are_written_where_the_machine_declares_it() {
             .unwrap_or_else(|e| panic!("{e}"))
     };
     // In a source of another machine they are told of.
-    assert!(read(&keeps).warnings.iter().any(|found| found.rule == "operator-data"));
+    assert!(read(&keeps).warnings.iter().any(|found| found.rule.name() == "operator-data"));
     let source = read(&sets);
-    assert!(source.warnings.iter().all(|found| found.rule != "operator-data"));
+    assert!(source.warnings.iter().all(|found| found.rule.name() != "operator-data"));
     let source = source.program;
 
     let output = post::write(&source, &sets).unwrap_or_else(|found| panic!("{found:?}"));
@@ -113,7 +113,7 @@ fn work_offsets_are_written_where_the_machine_declares_it() {
     assert!(blocks.iter().all(|block| written.contains(block)), "{written}");
     let rule = |machine: &Machine, text: &str| {
         let report = proof::prove(&source, machine, "t", text.as_bytes(), &Default::default());
-        report.mismatches.first().map(|found| found.rule)
+        report.mismatches.first().map(|found| found.rule.name())
     };
     assert_eq!(rule(&sets, &written), None, "{written}");
     for (from, to) in [
@@ -133,7 +133,7 @@ fn work_offsets_are_written_where_the_machine_declares_it() {
     // Another machine's operator has measured his own.
     assert_eq!(rule(&keeps, &written), Some("operator-data"));
     let output = post::write(&source, &keeps).unwrap();
-    assert!(output.warnings.iter().any(|found| found.rule == "operator-data"));
+    assert!(output.warnings.iter().any(|found| found.rule.name() == "operator-data"));
     let written = String::from_utf8(output.text).unwrap();
     assert!(!written.contains("G10"));
     assert_eq!(rule(&keeps, &written), None);

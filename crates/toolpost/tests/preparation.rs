@@ -146,7 +146,7 @@ fn function_tcpm_may_stand_in_place_of_m128() {
     // The other way of turning is another program.
     let turned = text.replace("PATHCTRL AXIS", "PATHCTRL VECTOR");
     let found = found(&job, &tcpm, &turned);
-    assert_eq!(found.first().map(|found| found.rule), Some("orientation-way"), "{found:#?}");
+    assert_eq!(found.first().map(|found| found.rule.name()), Some("orientation-way"), "{found:#?}");
 }
 
 /// TNC 620 34056x-04, p. 340: M128 has to be off before `M91` and a tool call, and it stays on behind a break.
@@ -167,7 +167,7 @@ fn the_tolerance_of_the_orientation_is_that_of_the_machine_file() {
     let text = proven(&job, &heidenhain);
     stands(&text, &["CYCL DEF 32.1 T0.01", "CYCL DEF 32.2 HSC-MODE:0 TA0.05"]);
     let wide = text.replace("TA0.05", "TA0.1");
-    assert_eq!(found(&job, &heidenhain, &wide)[0].rule, "orientation-tolerance");
+    assert_eq!(found(&job, &heidenhain, &wide)[0].rule.name(), "orientation-tolerance");
     let rough =
         "extends = \"dmu50-heidenhain\"\n[options]\nhsc_mode = 1\norientation_tolerance = 1\n";
     stands(&proven(&job, &machine(rough)), &["CYCL DEF 32.2 HSC-MODE:1 TA1"]);
@@ -178,7 +178,7 @@ fn the_tolerance_of_the_orientation_is_that_of_the_machine_file() {
     let text = proven(&job, &sinumerik);
     stands(&text, &["CYCLE832(0.01,_ORI_FINISH,0.05)"]);
     let wide = text.replace("_ORI_FINISH,0.05", "_ORI_FINISH,0.1");
-    assert_eq!(found(&job, &sinumerik, &wide)[0].rule, "orientation-tolerance");
+    assert_eq!(found(&job, &sinumerik, &wide)[0].rule.name(), "orientation-tolerance");
     let rough = "extends = \"sinumerik-840d-traori\"\n[options]\nmachining = \"ROUGH\"\norientation_tolerance = 0\n";
     stands(&proven(&job, &machine(rough)), &["CYCLE832(0.01,_ROUGH,1)"]);
 }

@@ -22,7 +22,7 @@ fn sample(axes: &str) -> Program {
 
 fn rules(source: &Program, machine: &Machine, text: &str) -> Vec<&'static str> {
     let report = proof::prove(source, machine, "p", text.as_bytes(), &Default::default());
-    report.mismatches.iter().map(|found| found.rule).collect()
+    report.mismatches.iter().map(|found| found.rule.name()).collect()
 }
 
 /// The proven program, without the numbers of its blocks.
@@ -129,7 +129,7 @@ fn a_fanuc_retracts_by_g53_where_its_file_says_so() {
     // Where the top of Z is, nobody guesses.
     let unsaid = "extends = \"generic-3axis-fanuc\"\n[options]\nretract_by_g53 = true\n";
     let unsaid = machine::load_text("own.toml", unsaid).unwrap();
-    assert_eq!(post::check(&unsaid).unwrap_err()[0].rule, "safe-height");
+    assert_eq!(post::check(&unsaid).unwrap_err()[0].rule.name(), "safe-height");
     // In a tilted plane G53 is an alarm: such a machine keeps G28.
     let machine = machine("extends = \"fanuc-table-bc\"\n[options]\nretract_by_g53 = true\n");
     assert!(!written(&sample("five-axes"), &machine).contains("G53 "));
@@ -205,10 +205,12 @@ fn a_haas_clears_chips_above_r_as_far_as_setting_52_says() {
         ["axis-limit"],
         "{text}"
     );
-    assert_eq!(post::write(&source, &far).unwrap_err()[0].rule, "axis-limit");
+    assert_eq!(post::write(&source, &far).unwrap_err()[0].rule.name(), "axis-limit");
     // A file that does not say it is told so.
     let unsaid = machine("extends = \"haas\"\n");
     let text = post::write(&source, &unsaid).unwrap().text;
     let report = proof::prove(&source, &unsaid, "p", &text, &Default::default());
-    assert!(report.proven && report.warnings.iter().any(|found| found.rule == "peck-retract"));
+    assert!(
+        report.proven && report.warnings.iter().any(|found| found.rule.name() == "peck-retract")
+    );
 }

@@ -49,7 +49,7 @@ fn proven(source: &Program, machine: &Machine, text: &str) {
 
 /// The rules that a program breaks, and in which lines.
 fn refused(source: &Program, machine: &Machine, text: &str) -> Vec<(&'static str, u32)> {
-    found(source, machine, text).iter().map(|found| (found.rule, found.line)).collect()
+    found(source, machine, text).iter().map(|found| (found.rule.name(), found.line)).collect()
 }
 
 /// The number behind `letter` in a block of a SINUMERIK.
@@ -268,7 +268,7 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
     let mut machine = load("generic-3axis-fanuc").unwrap();
     let high_feed = machine.settings.high_feed.take();
     let found = found(&source, &machine, &at_once);
-    let rules: Vec<_> = found.iter().map(|found| (found.rule, found.count)).collect();
+    let rules: Vec<_> = found.iter().map(|found| (found.rule.name(), found.count)).collect();
     assert_eq!(rules, [("rapid-path", 3)], "{at_once}");
     let output = written(&source, &machine);
     let good = plain(&text(&output));
@@ -277,7 +277,7 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
     assert!(good.contains("G0 Z2.\nX60. Y20.\nG1 Z-5."), "{good}");
     assert!(good.contains("X0. Z-4.\nX30. Y0.\nZ-5.\n"), "{good}");
     let warnings: Vec<_> =
-        output.warnings.iter().filter(|found| found.rule == "rapid-path").collect();
+        output.warnings.iter().filter(|found| found.rule.name() == "rapid-path").collect();
     assert!(warnings.len() == 1 && warnings[0].message.contains("300 mm/min"), "{warnings:?}");
     // From X60 Y20 Z-5 to X0 Y20 Z-4 and on to X30 Y0: 60.01 mm and 36.06 mm, 19.2 s at F300.
     assert!(warnings[0].message.ends_with("together 0.10 m, 19 s"), "{warnings:?}");
@@ -290,7 +290,7 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
     let text = plain(&text(&output));
     proven(&source, &fast, &text);
     assert!(text.contains("X0. Z-4. F5000.\nX30. Y0.\nZ-5. F300.\n"), "{text}");
-    let warning = output.warnings.iter().find(|found| found.rule == "rapid-path").unwrap();
+    let warning = output.warnings.iter().find(|found| found.rule.name() == "rapid-path").unwrap();
     assert!(
         warning.message.contains("5000 mm/min") && warning.message.ends_with("1 s"),
         "{warning}"

@@ -256,7 +256,7 @@ fn posted(program: &Program, machine: &Machine) -> String {
 
 fn prove(program: &Program, machine: &Machine, text: &str) -> Result<(), &'static str> {
     let report = proof::prove(program, machine, "p", text.as_bytes(), &Default::default());
-    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule))
+    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule.name()))
 }
 
 /// A job on a machine with this path tolerance, and how much faster than programmed it runs. Where arcs meet a real control

@@ -118,14 +118,15 @@ fn a_function_of_the_builder_is_written_where_the_machine_file_has_it() {
 
     let found = rewritten(&has, text, &fanuc("")).unwrap_err();
     assert_eq!(
-        found.iter().map(|found| (found.rule, found.line)).collect::<Vec<_>>(),
+        found.iter().map(|found| (found.rule.name(), found.line)).collect::<Vec<_>>(),
         [("auxiliary", 6), ("auxiliary", 8)]
     );
     // As the help says: an empty block leaves them out, with a warning.
     let without = fanuc("[blocks]\nauxiliary = \"\"\n");
     let reading = nc::read(&has, Setup::default(), "old", text.as_bytes()).unwrap();
     let output = post::write(&reading.program, &without).unwrap();
-    let warned: Vec<_> = output.warnings.iter().filter(|found| found.rule == "auxiliary").collect();
+    let warned: Vec<_> =
+        output.warnings.iter().filter(|found| found.rule.name() == "auxiliary").collect();
     assert_eq!(warned.len(), 2, "{:?}", output.warnings);
     assert!(rewritten(&has, text, &without).is_ok());
     // A control that hands no values over refuses them.
@@ -136,7 +137,7 @@ fn a_function_of_the_builder_is_written_where_the_machine_file_has_it() {
         .collect::<Vec<_>>()
         .join("\n");
     let found = rewritten(&linuxcnc(), &calls, &fanuc("auxiliary = [101]\n")).unwrap_err();
-    assert!(found.iter().any(|found| found.rule == "auxiliary"), "{found:?}");
+    assert!(found.iter().any(|found| found.rule.name() == "auxiliary"), "{found:?}");
 }
 
 #[test]

@@ -32,7 +32,7 @@ fn written(machine: &str, ops: Vec<Op>) -> Result<String, Box<Diagnostic>> {
 }
 
 fn refused(machine: &str, ops: Vec<Op>) -> &'static str {
-    written(machine, ops).expect_err("a program").rule
+    written(machine, ops).expect_err("a program").rule.name()
 }
 
 /// Two places probed downwards, each left upwards.
@@ -156,7 +156,7 @@ fn threads() {
 #[test]
 fn a_thread_needs_a_pitch_and_a_spindle_that_turns() {
     for pitch in [0.0, -1.5, f64::NAN, f64::INFINITY] {
-        let refused = Thread::new(at(0.0, -12.0), pitch).map_err(|found| found.rule);
+        let refused = Thread::new(at(0.0, -12.0), pitch).map_err(|found| found.rule.name());
         assert_eq!(refused, Err("thread"), "{pitch}");
     }
     // Finer than the program can say.
@@ -177,7 +177,7 @@ fn another_thread_or_probing_move_is_not_proven() {
         assert!(text.contains(from), "{text}");
         let text = text.replacen(from, to, 1);
         let report = proof::prove(&source, &machine, "p", text.as_bytes(), &Default::default());
-        report.mismatches.first().map(|found| found.rule)
+        report.mismatches.first().map(|found| found.rule.name())
     };
     let probes = |from: &str, to: &str| rule(probing(false, true), from, to);
     assert_eq!(probes("G38.2", "G38.2"), None);

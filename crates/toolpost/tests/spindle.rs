@@ -204,7 +204,7 @@ fn slot(text: &str) -> (Program, Machine, String) {
 
 fn rules(source: &Program, machine: &Machine, text: &str) -> Vec<&'static str> {
     let report = proof::prove(source, machine, "p", text.as_bytes(), &Default::default());
-    report.mismatches.iter().map(|found| found.rule).collect()
+    report.mismatches.iter().map(|found| found.rule.name()).collect()
 }
 
 /// Two seconds, in the unit of each control.

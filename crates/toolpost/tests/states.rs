@@ -38,7 +38,7 @@ fn program(ops: Vec<Op>) -> Program {
 /// The program that a machine makes of `ops`, proven, or the rule of its refusal.
 fn written(machine: &Machine, ops: &[Op]) -> Result<String, &'static str> {
     let source = program(ops.to_vec());
-    let output = post::write(&source, machine).map_err(|found| found[0].rule)?;
+    let output = post::write(&source, machine).map_err(|found| found[0].rule.name())?;
     let report = proof::prove(&source, machine, "p", &output.text, &Default::default());
     assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
     Ok(String::from_utf8(output.text).unwrap())

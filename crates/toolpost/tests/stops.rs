@@ -37,7 +37,7 @@ fn groove(machine: &Machine, ops: &[Op]) -> Program {
 
 fn proven(source: &Program, machine: &Machine, text: &str) -> Result<(), Vec<&'static str>> {
     let report = proof::prove(source, machine, "p", text.as_bytes(), &Default::default());
-    let rules = report.mismatches.iter().map(|found| found.rule).collect();
+    let rules = report.mismatches.iter().map(|found| found.rule.name()).collect();
     if report.proven { Ok(()) } else { Err(rules) }
 }
 
@@ -102,7 +102,12 @@ fn a_stop_in_the_cut_is_refused_with_its_line_and_the_way_out() {
             let source = groove(&machine, &[end, vec![Op::Stop]].concat());
             let found = post::write(&source, &machine).unwrap_err();
             let line = source.records.iter().find(|record| record.op == Op::Stop).unwrap().line;
-            assert_eq!((found[0].rule, found[0].line), ("stop-in-cut", line), "{}", machine.name);
+            assert_eq!(
+                (found[0].rule.name(), found[0].line),
+                ("stop-in-cut", line),
+                "{}",
+                machine.name
+            );
             assert!(found[0].help.contains("draw the tool back"));
         }
     }
@@ -117,7 +122,7 @@ fn the_spindle_turns_until_the_tool_is_out_of_the_cut() {
         let records = source.records.len();
         source.records.remove(records - 2);
         let output = post::write(&source, &machine).unwrap();
-        let warned = output.warnings.iter().filter(|found| found.rule == "ends-in-cut");
+        let warned = output.warnings.iter().filter(|found| found.rule.name() == "ends-in-cut");
         assert_eq!(warned.count(), 2, "{}", machine.name);
         let text = String::from_utf8(output.text).unwrap();
         proven(&source, &machine, &text)

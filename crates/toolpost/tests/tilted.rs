@@ -120,12 +120,12 @@ fn a_plane_that_the_table_does_not_reach_is_refused_by_the_writer_and_by_the_pro
     for found in
         [written(&machine, &below).unwrap_err(), proven(&machine, &below, &text).unwrap_err()]
     {
-        assert_eq!(found.rule, "axis-limit", "{found}");
+        assert_eq!(found.rule.name(), "axis-limit", "{found}");
         assert!(found.line > 0, "{found}");
     }
     // The library's own table turns as far.
     let library = load("fanuc-table-bc").unwrap();
-    assert_eq!(written(&library, &below).unwrap_err().rule, "axis-limit");
+    assert_eq!(written(&library, &below).unwrap_err().rule.name(), "axis-limit");
 }
 
 /// FANUC compares how far the axes turn, which hangs on where they stand: the program turns them to the solution first.
@@ -145,7 +145,7 @@ fn a_fanuc_stands_at_its_solution_before_the_plane_is_tilted() {
         .map(|line| format!("{line}\n"))
         .collect();
     let found = proven(&machine, &slope, &without).unwrap_err();
-    assert_eq!(found.rule, "axis-limit");
+    assert_eq!(found.rule.name(), "axis-limit");
     assert!(
         found.message.contains("A at -40") && found.help.contains("tilt_within_travel"),
         "{found}"
@@ -180,17 +180,20 @@ fn cycle800_is_told_the_direction_where_the_machines_file_says_which_axis_it_mea
         if let Ok(text) = &text {
             proven(&machine, &slope, text).unwrap();
         }
-        text.map_err(|found| found.rule)
+        text.map_err(|found| found.rule.name())
     });
     sides.sort_by_key(Result::is_err);
     assert!(sides[0].is_ok() && sides[1] == Err("axis-limit"), "{sides:?}");
     // Nobody says which axis the direction is about: either solution may be taken.
     let mut unsaid = made("", 1, WIDE);
     unsaid.linear[0].max = 60.0;
-    assert_eq!(written(&unsaid, &slope).unwrap_err().rule, "axis-limit");
+    assert_eq!(written(&unsaid, &slope).unwrap_err().rule.name(), "axis-limit");
     let text = sides[0].clone().unwrap();
     let found = proven(&unsaid, &slope, &text).unwrap_err();
-    assert!(found.rule == "axis-limit" && found.help.contains("swivel_direction"), "{found}");
+    assert!(
+        found.rule.name() == "axis-limit" && found.help.contains("swivel_direction"),
+        "{found}"
+    );
 }
 
 #[test]
@@ -214,7 +217,7 @@ fn a_heidenhain_is_told_the_sequence_where_both_solutions_are_within_the_travel(
         // Without it either is possible.
         let without = text.replace(" SEQ+", "").replace(" SEQ-", "");
         let found = proven(&narrow, &slope, &without).unwrap_err();
-        assert!(found.rule == "axis-limit" && found.help.contains("SEQ"), "{found}");
+        assert!(found.rule.name() == "axis-limit" && found.help.contains("SEQ"), "{found}");
     }
     // One way only: there is nothing to choose.
     let machine = table("heidenhain-tnc640", ZERO, "", "min = -30\nmax = 110", WIDE);
@@ -258,7 +261,7 @@ fn what_the_travel_does_not_take_is_refused_before_it_is_written() {
                         Err(why) => {
                             refused += 1;
                             assert!(
-                                matches!(why.rule, "axis-limit" | "home-height"),
+                                matches!(why.rule.name(), "axis-limit" | "home-height"),
                                 "{control} {zero} {a} job {number}: {why}"
                             );
                         }
@@ -280,7 +283,7 @@ fn a_rapid_that_leaves_the_travel_on_its_way_is_refused_before_it_is_written() {
         assert!(wide.contains(" C50.\n") && wide.contains(" C-40.\n"), "{wide}");
         machine.linear[0].max = most;
         let (made, read) = (written(&machine, &turning()), proven(&machine, &turning(), &wide));
-        [made.map(drop), read].map(|found| found.map_err(|found| found.rule))
+        [made.map(drop), read].map(|found| found.map_err(|found| found.rule.name()))
     };
     assert_eq!(judged(82.5), [Ok(()), Ok(())]);
     assert_eq!(judged(82.4), [Err("axis-limit"); 2]);

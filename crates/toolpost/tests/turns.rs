@@ -13,7 +13,7 @@ fn sample() -> Program {
 
 fn proven(machine: &Machine, text: &str) -> Result<(), (&'static str, u32)> {
     let report = proof::prove(&sample(), machine, "p", text.as_bytes(), &Default::default());
-    report.mismatches.first().map_or(Ok(()), |found| Err((found.rule, found.line)))
+    report.mismatches.first().map_or(Ok(()), |found| Err((found.rule.name(), found.line)))
 }
 
 /// The sample program of the machine without every block that holds `retract` before the block that holds `turn`, from the

@@ -134,16 +134,16 @@ fn a_point_list_that_cuts_an_arc_off_is_refused() {
     // Without two neighbours of 50 the chord error is nine times as large.
     lines.drain(20..22);
     let report = proof(&program, &machine, &(lines.join("\n") + "\n"));
-    assert_eq!(report.mismatches[0].rule, "path", "{:?}", report.mismatches);
+    assert_eq!(report.mismatches[0].rule.name(), "path", "{:?}", report.mismatches);
 }
 
 #[test]
 fn what_a_wire_cannot_do_is_refused_with_its_line() {
     let list = machine(LIST);
-    let rule = |ops: Vec<Op>| refused(&program(ops), &list).rule;
+    let rule = |ops: Vec<Op>| refused(&program(ops), &list).rule.name();
     let (start, end) = (upright(0.0, 0.0), upright(10.0, 0.0));
-    assert_eq!(rule(vec![Op::Rapid(start), Op::Line(end)]), "wire-missing");
-    assert_eq!(rule(vec![Op::Rapid(start), Op::CutWire]), "wire-missing");
+    assert_eq!(rule(vec![Op::Rapid(start), Op::Line(end)]), "no-wire");
+    assert_eq!(rule(vec![Op::Rapid(start), Op::CutWire]), "no-wire");
     assert_eq!(rule(vec![Op::Rapid(start), Op::ThreadWire, Op::Rapid(end)]), "wire-threaded");
     assert_eq!(rule(vec![Op::Rapid(start), Op::ThreadWire, Op::ThreadWire]), "wire-threaded");
     let ends = vec![Op::Rapid(start), Op::ThreadWire, Op::Line(end), Op::End];
@@ -160,9 +160,9 @@ fn what_a_wire_cannot_do_is_refused_with_its_line() {
         "missing-block"
     );
     let found = refused(&frustum(), &machine("extends = \"bp-95d\""));
-    assert_eq!((found.rule, found.line), ("wire-height", 1));
+    assert_eq!((found.rule.name(), found.line), ("wire-height", 1));
     let small = machine("extends = \"bp-95d\"\n[wire]\nmemory = 52\n");
-    assert_eq!(refused(&sector(), &small).rule, "memory");
+    assert_eq!(refused(&sector(), &small).rule.name(), "memory");
 }
 
 /// A die in ISO code, offset and leant by the control: in from the middle, round three sides and an arc, and back.
@@ -242,7 +242,7 @@ fn any_damage_to_a_program_of_iso_code_is_refused() {
 #[test]
 fn a_mill_threads_no_wire() {
     let mill = machine("extends = \"generic-3axis-fanuc\"");
-    assert_eq!(refused(&sector(), &mill).rule, "unsupported");
+    assert_eq!(refused(&sector(), &mill).rule.name(), "unsupported");
 }
 
 proptest! {

@@ -27,7 +27,7 @@ fn proven(source: &Program, machine: &Machine) -> String {
 /// The rules that a program breaks.
 fn rules(source: &Program, machine: &Machine, text: &str) -> Vec<&'static str> {
     let report = proof::prove(source, machine, "p", text.as_bytes(), &Default::default());
-    report.mismatches.iter().map(|found| found.rule).collect()
+    report.mismatches.iter().map(|found| found.rule.name()).collect()
 }
 
 /// The text with a line put in before line `at`, from 0; Klartext is numbered anew.
@@ -132,20 +132,20 @@ fn a_word_that_takes_something_from_the_operator_is_refused_wherever_it_stands()
 #[test]
 fn a_block_that_leans_on_an_older_one_is_refused() {
     for (name, source, from, to, rule) in [
-        ("generic-3axis-fanuc", "examples/plate.cls", "G80", "G81", "nc-cycle"),
-        ("generic-3axis-haas", "examples/plate.cls", "G80", "G81", "nc-cycle"),
-        ("generic-3axis-fanuc", "examples/plate.cls", "G91 G28 Z0", "G91 G29 Z0", "nc-home"),
-        ("generic-3axis-haas", "examples/plate.cls", "G91 G28 Z0", "G91 G29 Z0", "nc-home"),
-        ("fanuc-table-bc", "machines/samples/five-axes.cls", " H", " ", "nc-length"),
+        ("generic-3axis-fanuc", "examples/plate.cls", "G80", "G81", "cycle"),
+        ("generic-3axis-haas", "examples/plate.cls", "G80", "G81", "cycle"),
+        ("generic-3axis-fanuc", "examples/plate.cls", "G91 G28 Z0", "G91 G29 Z0", "home"),
+        ("generic-3axis-haas", "examples/plate.cls", "G91 G28 Z0", "G91 G29 Z0", "home"),
+        ("fanuc-table-bc", "machines/samples/five-axes.cls", " H", " ", "length-offset"),
     ] {
         let (machine, source) = (load(name).unwrap(), file(source));
         let text = proven(&source, &machine);
         // The last of them, but for the head of the program.
         let at = match rule {
-            "nc-length" => last(&text, &["G43"]),
+            "length-offset" => last(&text, &["G43"]),
             _ => last(&text, &[from]),
         };
-        let replace = |(i, line): (usize, &str)| match i == at && rule == "nc-length" {
+        let replace = |(i, line): (usize, &str)| match i == at && rule == "length-offset" {
             true => {
                 let words = line.split(' ').filter(|word| !word.starts_with('H'));
                 words.collect::<Vec<_>>().join(" ") + "\n"
@@ -175,7 +175,7 @@ fn two_tools_under_one_number_are_refused_on_every_mill() {
     let mills = files::mills();
     for machine in mills {
         let found = post::write(&twice, &machine).unwrap_err();
-        let found: Vec<_> = found.iter().map(|found| (found.rule, found.line)).collect();
+        let found: Vec<_> = found.iter().map(|found| (found.rule.name(), found.line)).collect();
         assert_eq!(found, [("tool-twice", 11)], "{}", machine.name);
         let written = proven(&same, &machine);
         assert!(rules(&twice, &machine, &written).contains(&"tool-twice"), "{}", machine.name);

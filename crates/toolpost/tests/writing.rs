@@ -10,13 +10,13 @@ fn posted(machine: &str, path: &str) -> (Vec<String>, Vec<&'static str>) {
     let blocks: Vec<String> = text.lines().map(String::from).collect();
     let turns = |block: &String| block.split(' ').any(|word| word == "M3");
     let change = blocks.iter().rposition(turns).unwrap();
-    (blocks[change + 1..].to_vec(), warnings.iter().map(|found| found.rule).collect())
+    (blocks[change + 1..].to_vec(), warnings.iter().map(|found| found.rule.name()).collect())
 }
 
 /// The rule and line of the first error.
 fn refused(machine: &str, path: &str) -> (&'static str, u32) {
     let errors = written(machine, path).expect_err("a program");
-    (errors[0].rule, errors[0].line)
+    (errors[0].rule.name(), errors[0].line)
 }
 
 fn written(machine: &str, path: &str) -> Result<(String, Vec<Diagnostic>), Vec<Diagnostic>> {
@@ -155,7 +155,7 @@ fn grbl_has_no_optional_stop_and_says_so() {
         let (text, warnings) =
             written(machine, path).unwrap_or_else(|errors| panic!("{}", errors[0]));
         let stops = text.lines().filter(|block| *block == "M1").count();
-        (stops, warnings.iter().map(|found| found.rule).collect::<Vec<_>>())
+        (stops, warnings.iter().map(|found| found.rule.name()).collect::<Vec<_>>())
     };
     assert_eq!(stops("generic-3axis-grbl"), (0, vec!["optional-stop"]));
     assert_eq!(stops(LINUXCNC), (2, vec![]));

@@ -7,7 +7,7 @@ use crate::plan::{Opening, Pass, Settings};
 use crate::round::{Round, middle};
 use cavalier_contours::static_aabb2d_index::Control;
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// How near to its own end a lead may touch the upper path of the last pass, mm.
 const JOINS: f64 = 0.01;
@@ -49,7 +49,7 @@ impl<'a> Room<'a> {
         opening: &Opening,
     ) -> Result<Vec<Pass>, Box<Diagnostic>> {
         self.fitting(round, index, self.settings).map_err(|found| {
-            let leads = ["cuts-part", "taper-lead"].contains(&found.rule);
+            let leads = [Rule::CutsPart, Rule::TaperLead].contains(&found.rule);
             let offers = if leads { self.offers(round, opening) } else { Vec::new() };
             let offer = offers.into_iter().find(|offer| self.has_room(offer, index, opening));
             match offer {

@@ -93,7 +93,7 @@ fn points_and_instructions_find_each_other() {
 #[test]
 fn a_step_that_does_not_fit_comes_back_with_the_finest_that_does() {
     let refusal = divided(&sector(), Step::Length(0.1), Some(200)).unwrap_err();
-    assert_eq!(refusal.diagnostic.rule, "memory");
+    assert_eq!(refusal.diagnostic.rule.name(), "memory");
     let Some(Step::Length(k)) = refusal.offer else { panic!("{refusal:?}") };
     // 200 points are the start, two ends of lines and 197 on the arc of 20π mm.
     assert!((k - 20.0 * PI / 197.0).abs() < 1e-6, "{k}");
@@ -112,10 +112,10 @@ fn fit_takes_the_smallest_chord_error_whose_points_fit() {
         assert!((error - expected).abs() < 1e-9, "{error} {expected}");
     }
     let refused = divided(&sector(), Step::Fit, Some(3)).unwrap_err();
-    assert_eq!((refused.diagnostic.rule, refused.offer), ("memory", None));
+    assert_eq!((refused.diagnostic.rule.name(), refused.offer), ("memory", None));
     assert!(refused.diagnostic.message.contains("4 points"), "{}", refused.diagnostic);
     let refused = divided(&sector(), Step::Fit, None).unwrap_err();
-    assert_eq!(refused.diagnostic.rule, "fit-without-memory");
+    assert_eq!(refused.diagnostic.rule.name(), "fit-without-memory");
 }
 
 #[test]
@@ -131,11 +131,11 @@ fn several_paths_share_the_memory() {
 fn a_step_that_is_no_step_is_refused() {
     for bad in [0.0, -0.1, f64::NAN, f64::INFINITY, 143.0] {
         for step in [Step::Length(bad), Step::ChordError(bad)] {
-            assert_eq!(divided(&sector(), step, None).unwrap_err().diagnostic.rule, "step");
+            assert_eq!(divided(&sector(), step, None).unwrap_err().diagnostic.rule.name(), "step");
         }
     }
     let refused = divided(&sector(), Step::Length(1e-300), None).unwrap_err();
-    assert_eq!(refused.diagnostic.rule, "memory");
+    assert_eq!(refused.diagnostic.rule.name(), "memory");
     assert!(refused.offer.is_some());
 }
 

@@ -22,7 +22,7 @@ COOLED = [
 # What FreeCAD does not say, or a machine cannot do: the rule by which it is refused.
 REFUSED = {
     # As FreeCAD ships it, this job has neither feeds nor speeds.
-    ("boxtest-Job", ""): "nc-feed",
+    ("boxtest-Job", ""): "feed",
     # The teaching mill: 200 mm of travel in X, tools up to 55 mm.
     ("Drilling_1", "emco"): "axis-limit",
     ("boxtest-Job001", "emco"): "tool-range",

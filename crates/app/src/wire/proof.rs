@@ -122,6 +122,6 @@ mod tests {
         assert!(report.proven, "{:?}", report.mismatches);
         let report = cone(0.05);
         assert!(!report.proven);
-        assert_eq!((report.mismatches[0].rule, report.mismatches[0].line), ("path", 10));
+        assert_eq!((report.mismatches[0].rule.name(), report.mismatches[0].line), ("path", 10));
     }
 }

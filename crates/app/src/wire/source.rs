@@ -3,7 +3,7 @@
 use super::{Settings, Sync};
 use crate::account::Stop;
 use crate::input;
-use crate::toolpath::{self, Origin, Toolpath};
+use crate::toolpath::{self, Origin, Toolpath, is_unknown_position};
 use geom::Vec2;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program};
 use wire::{Contour, Element, OffsetContour, Path, contours, cuts, dxf, offset_contours};
@@ -203,7 +203,7 @@ fn left_out(program: &Program) -> Vec<Diagnostic> {
 
 /// Says how a program that never names Z is read.
 fn without_height(mut stop: Stop) -> Stop {
-    for found in stop.findings.iter_mut().filter(|f| f.rule.ends_with("unknown-position")) {
+    for found in stop.findings.iter_mut().filter(|f| is_unknown_position(f.rule)) {
         found.help =
             "--from with a wire machine, which has no Z; or --start with where it starts".into();
     }

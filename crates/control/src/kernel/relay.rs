@@ -3,7 +3,7 @@
 use crate::Sink;
 use crate::event::Event;
 use crate::kernel::belt::belt;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::{mem, panic, thread};
 
 /// Events that are handed over at once.
@@ -28,7 +28,7 @@ pub fn relayed(
                     return Ok(());
                 }
                 // Where nobody takes it, the sink has refused an event, and its answer is the one that counts.
-                let stopped = || Diagnostic::error("stopped", "");
+                let stopped = || Diagnostic::error(Rule::Stopped, "");
                 batch = feed.lay(mem::take(&mut batch)).ok_or_else(stopped)?;
                 Ok(())
             });
@@ -56,7 +56,7 @@ mod tests {
     /// A control that makes so many events, and then stops with an error where it has one.
     fn control(
         count: u32,
-        end: Option<&'static str>,
+        end: Option<Rule>,
     ) -> impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send {
         move |sink| {
             (1..=count).try_for_each(|line| sink(Event { line, action: Action::End }))?;
@@ -68,7 +68,7 @@ mod tests {
     fn every_event_arrives_in_its_order_and_before_what_is_refused_behind_it() {
         let batch = BATCH as u32;
         for count in [0, 1, batch - 1, batch, batch + 1, 20 * batch + 7] {
-            for end in [None, Some("nc-syntax")] {
+            for end in [None, Some(Rule::Syntax)] {
                 let mut lines = Vec::new();
                 let answer = relayed(control(count, end), &mut |event| {
                     lines.push(event.line);
@@ -84,10 +84,10 @@ mod tests {
     fn the_sink_stops_a_control_that_would_go_on() {
         for last in [1, BATCH as u32, 50_000] {
             let mut taken = 0;
-            let answer = relayed(control(u32::MAX, Some("nc-syntax")), &mut |event| {
+            let answer = relayed(control(u32::MAX, Some(Rule::Syntax)), &mut |event| {
                 taken += 1;
                 match event.line == last {
-                    true => Err(Diagnostic::error("program-length", "").into()),
+                    true => Err(Diagnostic::error(Rule::ProgramLength, "").into()),
                     false => Ok(()),
                 }
             });

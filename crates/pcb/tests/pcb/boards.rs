@@ -60,7 +60,7 @@ fn assert_area(reading: &Reading, expected: f64) {
 #[track_caller]
 fn refused(reading: Result<Reading, Vec<Diagnostic>>, rule: &str, says: &str) -> Diagnostic {
     let errors = reading.expect_err("this is refused");
-    assert_eq!(errors[0].rule, rule, "{errors:#?}");
+    assert_eq!(errors[0].rule.name(), rule, "{errors:#?}");
     assert!(errors[0].message.contains(says), "{errors:#?}");
     assert!(!errors[0].help.is_empty());
     errors[0].clone()
@@ -68,7 +68,7 @@ fn refused(reading: Result<Reading, Vec<Diagnostic>>, rule: &str, says: &str) ->
 
 /// The rules of the warnings, but of that about the short coordinates of these tests.
 fn rules(reading: &Reading) -> Vec<&str> {
-    let rules = reading.warnings.iter().map(|found| found.rule);
+    let rules = reading.warnings.iter().map(|found| found.rule.name());
     rules.filter(|rule| *rule != "deprecated").collect()
 }
 
@@ -105,7 +105,7 @@ fn the_folders_of_the_real_boards() {
 fn all_real_boards_in_one_folder_are_refused() {
     let Some(data) = data::folder() else { return };
     let errors = folder(&data.join("kicad")).unwrap_err();
-    assert!(errors.iter().all(|error| error.rule == "layer-twice"), "{errors:#?}");
+    assert!(errors.iter().all(|error| error.rule.name() == "layer-twice"), "{errors:#?}");
     let names = |error: &Diagnostic| {
         error.file.contains("carte_test-F_Cu") && error.message.contains("StickHub-F_Cu")
     };
@@ -137,7 +137,7 @@ fn a_file_is_what_it_says_or_what_its_name_says() {
     ];
     assert_eq!(names, expected);
     assert_eq!(rules(&reading), ["layer-by-name", "layer-unknown", "file-unused"]);
-    let of = |rule: &str| reading.warnings.iter().find(|found| found.rule == rule).unwrap();
+    let of = |rule: &str| reading.warnings.iter().find(|found| found.rule.name() == rule).unwrap();
     assert!(of("layer-by-name").message.contains("outline"));
     assert_eq!(of("layer-unknown").file, "stuff.gbr");
     assert!(of("file-unused").message.contains("paste.gtp, readme.txt"));
@@ -235,7 +235,7 @@ fn gaps_are_closed_or_named() {
     // 1 µm is rounding, 20 µm is worth a word.
     assert!(!rules(&outline(&ring(0.001)).unwrap()).contains(&"outline-gap"));
     let closed = outline(&ring(0.02)).unwrap();
-    let gap = closed.warnings.iter().find(|found| found.rule == "outline-gap").unwrap();
+    let gap = closed.warnings.iter().find(|found| found.rule.name() == "outline-gap").unwrap();
     assert!(gap.message.contains("0.0200 mm at X 0.0") && gap.file == "edge.gko", "{gap}");
     assert_area(&closed, 400.0);
     let open = refused(outline(&ring(0.3)), "outline-open", "a gap of 0.3000 mm");
@@ -275,13 +275,13 @@ fn layers_that_do_not_fit() {
     assert_eq!(rules(&board("X10000Y10000", "X10.0Y10.0").unwrap()), [""; 0]);
     // Half of the pad, π/8 mm², is over the edge.
     let over = board("X20000Y10000", "X10.0Y10.0").unwrap();
-    let found = over.warnings.iter().find(|found| found.rule == "copper-outside").unwrap();
+    let found = over.warnings.iter().find(|found| found.rule.name() == "copper-outside").unwrap();
     assert!(
         found.message.starts_with("0.393 mm²") && found.message.contains("in 1 place,"),
         "{found}"
     );
     let beyond = board("X10000Y10000", "X10.0Y10.0\nX20.2Y5.0").unwrap();
-    let found = beyond.warnings.iter().find(|found| found.rule == "hole-outside").unwrap();
+    let found = beyond.warnings.iter().find(|found| found.rule.name() == "hole-outside").unwrap();
     assert!(found.message.contains("1 of 2 holes") && found.message.contains("X 20.2000 Y 5.0000"));
     let apart = board("X10000Y10000", "X110.0Y10.0");
     refused(apart, "layers-apart", "holes within X 109.600 to 110.400");
@@ -339,7 +339,7 @@ fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
         assert_eq!((*face, copper.region.islands().len()), (expected, 1));
     }
     let odd: Vec<(&str, &str)> =
-        odd.iter().map(|found| (found.rule, found.file.as_str())).collect();
+        odd.iter().map(|found| (found.rule.name(), found.file.as_str())).collect();
     let joined = [("nets-joined", "a.gtl"), ("nets-joined", "a.gbl")];
     let named = ["a.gbl", "a.gko", "a.gtl"].map(|file| ("layer-by-name", file));
     let outside = [("copper-outside", ""), ("hole-outside", "")];

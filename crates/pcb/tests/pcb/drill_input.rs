@@ -42,13 +42,13 @@ fn each_fault_has_its_rule_and_its_line() {
         ("G93X1.0Y1.0", "unknown-command", 6),
     ] {
         let all = errors(&format!("M48\nMETRIC\nT1C1.0\n%\nT1\n{text}\nM30\n"));
-        assert_eq!((all[0].rule, all[0].line), (rule, line), "{text}: {}", all[0]);
+        assert_eq!((all[0].rule.name(), all[0].line), (rule, line), "{text}: {}", all[0]);
     }
 }
 
 #[test]
 fn what_a_file_has_to_say_first() {
-    let first = |text: &str| errors(text)[0].rule;
+    let first = |text: &str| errors(text)[0].rule.name();
     // 0.125 may be inches or mm.
     assert_eq!(first("M48\nT1C0.125\n%\nT1\nX1.0Y1.0\nM30"), "no-unit");
     assert_eq!(first("M48\nMETRIC\nT1F200S65\n%\nT1\nX1.0Y1.0\nM30"), "no-diameter");

@@ -76,7 +76,7 @@ fn formats_stated_in_the_header_and_in_comments() {
 fn what_is_not_said_is_concluded_from_the_coordinates() {
     let concluded = |text: &str| {
         let reading = reading(text);
-        let rules: Vec<&str> = reading.warnings.iter().map(|warning| warning.rule).collect();
+        let rules: Vec<&str> = reading.warnings.iter().map(|warning| warning.rule.name()).collect();
         (holes(&reading.drill)[0], rules.join(" "))
     };
     // Short coordinates that end with zeros can only lack those in front.

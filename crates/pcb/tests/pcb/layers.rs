@@ -121,7 +121,7 @@ fn strokes_of_a_rectangle_cover_what_it_sweeps() {
     // Section 8.2.3: no rotation; the area is w·h + |dx|·h + |dy|·w.
     let reading = layer("%ADD10R,2X1*%D10*X0Y0D02*X3000000Y4000000D01*");
     assert_area(&reading.image, 2.0 + 3.0 + 8.0);
-    assert!(reading.warnings.iter().any(|warning| warning.rule == "deprecated"));
+    assert!(reading.warnings.iter().any(|warning| warning.rule.name() == "deprecated"));
     assert_area(&image("%ADD10R,2X1*%D10*X0Y0D02*X-3000000D01*"), 5.0);
     assert_area(&image("%ADD10R,2X1*%D10*X0Y0D02*X0Y0D01*"), 2.0);
     assert_area(&image("%ADD10R,2X1*%%LR90*%D10*X0Y0D02*X-3000000D01*"), 2.0 + 6.0);
@@ -387,7 +387,7 @@ fn what_is_deprecated_is_read_with_a_warning() {
     );
     let text = text.replace("M01*", "").replace("G90*", "G90*M01*");
     let reading = read("old.gbr", text.as_bytes()).unwrap_or_else(|e| panic!("{e:#?}"));
-    assert!(reading.warnings.iter().all(|warning| warning.rule == "deprecated"));
+    assert!(reading.warnings.iter().all(|warning| warning.rule.name() == "deprecated"));
     assert!(reading.warnings.len() >= 8, "{:#?}", reading.warnings);
     let image = reading.image;
     // Trailing zeros are left out: X1 is 10 inches, X02 2 inches.
@@ -482,7 +482,7 @@ fn an_unclosed_region_of_the_fixtures_is_refused_with_its_gap() {
     let file = folder.join("features/regions/region-with-lines.gbr");
     let errors = read("region-with-lines.gbr", &data::bytes(&file)).unwrap_err();
     // It starts at X 0.02 and ends at X 0.2 inches.
-    assert_eq!((errors.len(), errors[0].rule, errors[0].line), (1, "region-open", 14));
+    assert_eq!((errors.len(), errors[0].rule.name(), errors[0].line), (1, "region-open", 14));
     assert!(errors[0].message.contains("4.572000 mm away"), "{}", errors[0].message);
 }
 

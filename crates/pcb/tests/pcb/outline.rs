@@ -89,7 +89,7 @@ fn cut_outs_come_first_and_the_edge_is_cut_outside() {
     let turned: Vec<f64> = self::paths(&climb).iter().map(|path| area(path)).collect();
     assert!(turned[2] < 0.0 && turned[0] > 0.0 && turned[1] > 0.0);
     // Four corners in each cut-out stay round.
-    let corners: Vec<&str> = cut.warnings.iter().map(|warning| warning.rule).collect();
+    let corners: Vec<&str> = cut.warnings.iter().map(|warning| warning.rule.name()).collect();
     assert_eq!(corners, ["narrow-corner"; 8]);
 }
 
@@ -134,12 +134,12 @@ fn a_round_board_has_its_tabs_on_the_arc_and_a_small_one_fewer() {
     let tabs = Tabs { count: 3, width: 3.0, height: 0.8 };
     let disc = Region::disc(Vec2::ZERO, 15.0).unwrap();
     let cut = outline(Some(tabs)).cut(&disc).unwrap();
-    assert_eq!(cut.warnings[0].rule, "tabs-bent");
+    assert_eq!(cut.warnings[0].rule.name(), "tabs-bent");
     let left = swept(&cut, 0.5).difference(&swept(&cut, 1.7)).unwrap();
     assert_eq!(left.islands().len(), 3);
     let small = Region::disc(Vec2::ZERO, 2.5).unwrap();
     let cut = outline(Some(tabs)).cut(&small).unwrap();
-    let rules: Vec<&str> = cut.warnings.iter().map(|warning| warning.rule).collect();
+    let rules: Vec<&str> = cut.warnings.iter().map(|warning| warning.rule.name()).collect();
     // 2π·3.5 = 22 mm hold two tabs of 5 mm with as much between them.
     assert_eq!(rules, ["tabs-left-out", "tabs-bent"]);
     // Of a cut-out that the tool clears nothing comes loose.
@@ -152,7 +152,7 @@ fn a_round_board_has_its_tabs_on_the_arc_and_a_small_one_fewer() {
 fn too_wide_tools_are_found_with_the_place_and_what_fits() {
     let board = region(&[rectangle((0.0, 0.0), (40.0, 20.0)), rectangle((5.0, 5.0), (6.5, 15.0))]);
     let errors = outline(None).cut(&board).unwrap_err();
-    assert_eq!(errors[0].rule, "cutout-too-small");
+    assert_eq!(errors[0].rule.name(), "cutout-too-small");
     assert!(errors[0].message.contains("X 5.750 Y 10.000"), "{}", errors[0]);
     // 1.375 is the next below 1.5 of sixteenths of 2.
     assert!(errors[0].help.contains("1.375"), "{}", errors[0]);
@@ -161,7 +161,7 @@ fn too_wide_tools_are_found_with_the_place_and_what_fits() {
         region(&[rectangle((0.0, 0.0), (40.0, 20.0)), rectangle((30.0, 9.0), (40.0, 10.5))]);
     let cut = outline(None).cut(&notched).unwrap();
     let [warning] = &*cut.warnings else { panic!("{:?}", cut.warnings) };
-    assert_eq!(warning.rule, "narrow-corner");
+    assert_eq!(warning.rule.name(), "narrow-corner");
     assert!(swept(&cut, 1.0).intersection(&notched).unwrap().area() < 1e-6);
 }
 
@@ -173,7 +173,7 @@ fn pieces_that_the_tool_does_not_part_are_refused() {
     };
     let errors = outline(None).cut(&panel(1.5)).unwrap_err();
     let [error] = &*errors else { panic!("{errors:?}") };
-    assert_eq!(error.rule, "not-parted");
+    assert_eq!(error.rule.name(), "not-parted");
     assert!(error.message.contains("X 16.500 Y 5.000"), "{error}");
     assert!(error.help.contains("1.375"), "{error}");
     assert_eq!(paths(&outline(None).cut(&panel(2.1)).unwrap()).len(), 2);
@@ -181,7 +181,7 @@ fn pieces_that_the_tool_does_not_part_are_refused() {
     let frame =
         [((0.0, 0.0), (40.0, 40.0)), ((5.0, 5.0), (35.0, 35.0)), ((6.5, 6.5), (33.5, 33.5))];
     let framed = region(&frame.map(|(low, high)| rectangle(low, high)));
-    assert_eq!(outline(None).cut(&framed).unwrap_err()[0].rule, "not-parted");
+    assert_eq!(outline(None).cut(&framed).unwrap_err()[0].rule.name(), "not-parted");
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn many_tight_cut_outs_are_counted() {
 #[test]
 fn what_makes_no_sense_is_refused() {
     let board = region(&[rectangle((0.0, 0.0), (40.0, 20.0))]);
-    let rule = |outline: Outline, board: &Region| outline.cut(board).unwrap_err()[0].rule;
+    let rule = |outline: Outline, board: &Region| outline.cut(board).unwrap_err()[0].rule.name();
     let tabs = |count, width, height| Some(Tabs { count, width, height });
     assert_eq!(rule(outline(None), &Region::default()), "no-outline");
     assert_eq!(rule(Outline { step: 0.0, ..outline(None) }, &board), "length");
@@ -269,7 +269,7 @@ proptest! {
             Ok(cut) => cut,
             Err(errors) => {
                 let tight = |rule| matches!(rule, "cutout-too-small" | "not-parted");
-                prop_assert!(errors.iter().all(|error| tight(error.rule)));
+                prop_assert!(errors.iter().all(|error| tight(error.rule.name())));
                 return Ok(());
             }
         };
@@ -280,7 +280,7 @@ proptest! {
         let around = board.offset(1.0).unwrap().offset(1.0).unwrap();
         let reach = around.difference(&board.offset(1.0).unwrap().offset(-1.0).unwrap()).unwrap();
         prop_assert!(reach.difference(&all).unwrap().offset(-0.003).unwrap().area() < 1e-6);
-        let missing = cut.warnings.iter().any(|warning| warning.rule == "tabs-left-out");
+        let missing = cut.warnings.iter().any(|warning| warning.rule.name() == "tabs-left-out");
         let through = swept(&cut, 1.7);
         let left = all.difference(&through).unwrap();
         prop_assert!(missing || !left.is_empty());

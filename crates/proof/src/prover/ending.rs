@@ -1,6 +1,7 @@
 //! The end of a program: what it leaves on, the next one begins with.
 
 use super::*;
+use program::Rule;
 
 impl Prover<'_> {
     /// The end. What frames, planes and modes the program leaves on, its control reports ([`control::Risk`]).
@@ -15,7 +16,7 @@ impl Prover<'_> {
         let mut left: Vec<String> =
             on.iter().filter(|(is_on, _)| *is_on).map(|(_, what)| (*what).into()).collect();
         // Where a cut has been refused for its offset, that is known.
-        let known = ["work-offset", "length-offset"];
+        let known = [Rule::WorkOffset, Rule::LengthOffset];
         if !self.report.mismatches.iter().any(|found| known.contains(&found.rule)) {
             left.extend(state::offset_left(machine, &self.cursor.wanted, running));
         }

@@ -193,7 +193,7 @@ pub fn run(machine: &Machine, source: &Program, does: Vec<Action>) -> Report {
 /// The rules that a report names.
 pub fn rules(report: &Report) -> Vec<&'static str> {
     assert_eq!(report.proven, report.mismatches.is_empty());
-    report.mismatches.iter().map(|found| found.rule).collect()
+    report.mismatches.iter().map(|found| found.rule.name()).collect()
 }
 
 #[track_caller]

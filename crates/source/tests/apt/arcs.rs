@@ -29,7 +29,7 @@ fn the_way_an_arc_turns_is_the_habit_of_the_system() {
         let whole = reading(&format!("{sign}\n{HEAD}{}\n{}\n", body.0, body.1));
         assert_eq!(whole.dialect, dialect);
         // Where no source says how, that is said.
-        let doubt = whole.warnings.iter().any(|w| w.rule == "arc-direction");
+        let doubt = whole.warnings.iter().any(|w| w.rule.name() == "arc-direction");
         assert_eq!(doubt, dialect == Dialect::Iso, "{dialect}");
     }
 }
@@ -45,13 +45,13 @@ fn the_path_is_held_against_the_habit() {
     assert_eq!(error(&path(-1)), "arc-direction");
     let nx = format!("PAINT/PATH\n{HEAD}{}\n", path(1));
     assert_eq!(
-        read("a.cls", nx.as_bytes(), &Options::default()).unwrap_err()[0].rule,
+        read("a.cls", nx.as_bytes(), &Options::default()).unwrap_err()[0].rule.name(),
         "arc-direction"
     );
     // One of three: a warning that names its line.
     let mixed = format!("{HEAD}{}\n{}\n{}\nFINI", path(1), path(1), path(-1));
     let warnings = reading(&mixed).warnings;
-    assert_eq!((warnings[0].rule, warnings[0].line), ("arc-direction", 18));
+    assert_eq!((warnings[0].rule.name(), warnings[0].line), ("arc-direction", 18));
     assert!(warnings[0].excerpt.starts_with("GOTO/0,10,0\n^"));
 }
 
@@ -122,6 +122,7 @@ fn creo_lists_the_points_of_an_arc_line_by_line() {
         read("c.ncl", format!("{head}{points}\nFINI").as_bytes(), &Options::default()).unwrap_err()
             [0]
         .rule
+        .name()
     };
     assert_eq!(wrong("GOTO / -10,0,0\n0,10,0"), "arc-direction");
     assert_eq!(wrong("GOTO / 0,10,0\nGOTO / -10,0,0"), "arc-points");
@@ -129,7 +130,7 @@ fn creo_lists_the_points_of_an_arc_line_by_line() {
     let closed = reading(&format!("{head}GOTO / -10,0,0\nGOTO / 10,0,0\nFINI"));
     assert_eq!(closed.program.records[5].op, Op::Line(at(10., 0., 0.)));
     assert_eq!(
-        closed.warnings.iter().map(|w| (w.rule, w.line)).collect::<Vec<_>>(),
+        closed.warnings.iter().map(|w| (w.rule.name(), w.line)).collect::<Vec<_>>(),
         [("arc-points", 9)]
     );
     assert_eq!(error("1,2,3"), "malformed");

@@ -13,7 +13,8 @@ fn file(cutter: &str, path: &str) -> String {
 
 fn reading(text: &str, cutcom: Option<CompensatedPath>) -> Result<Reading, (&'static str, u32)> {
     let options = Options { cutcom, ..Options::default() };
-    read("part.apt", text.as_bytes(), &options).map_err(|found| (found[0].rule, found[0].line))
+    read("part.apt", text.as_bytes(), &options)
+        .map_err(|found| (found[0].rule.name(), found[0].line))
 }
 
 /// The path that the file shows, and the line that shows it.

@@ -277,7 +277,7 @@ fn a_real_file_in_strict_mode_fails_by_its_warnings_only() {
             Ok(_) => assert!(warnings.is_empty()),
             Err(errors) => {
                 let rules = |list: &[program::Diagnostic]| -> Vec<&str> {
-                    list.iter().map(|d| d.rule).collect()
+                    list.iter().map(|d| d.rule.name()).collect()
                 };
                 assert_eq!(rules(&errors), rules(&warnings), "{name}");
             }

@@ -24,14 +24,14 @@ pub fn ops(body: &str) -> Vec<Op> {
 
 /// The rules of the warnings of `body` after [`HEAD`].
 pub fn warnings(body: &str) -> Vec<&'static str> {
-    reading(&format!("{HEAD}{body}\nFINI\n")).warnings.iter().map(|w| w.rule).collect()
+    reading(&format!("{HEAD}{body}\nFINI\n")).warnings.iter().map(|w| w.rule.name()).collect()
 }
 
 /// The one error of `body` after [`HEAD`].
 pub fn error(body: &str) -> &'static str {
     let text = format!("{HEAD}{body}\nFINI\n");
     let errors = read("test.apt", text.as_bytes(), &Options::default()).expect_err(body);
-    errors[0].rule
+    errors[0].rule.name()
 }
 
 pub fn at(x: f64, y: f64, z: f64) -> Pose {

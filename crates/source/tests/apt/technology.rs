@@ -87,7 +87,7 @@ fn maxrpm_caps_a_surface_speed_and_the_gear_range_is_named() {
             Op::Spindle(spindle) => Some(spindle),
             _ => None,
         });
-        let rules: Vec<&str> = reading.warnings.iter().map(|w| w.rule).collect();
+        let rules: Vec<&str> = reading.warnings.iter().map(|w| w.rule.name()).collect();
         (speed.unwrap(), rules)
     };
     // 100 m/min on a diameter of 10 mm are 3183 1/min, 60 m/min are 1910.
@@ -237,7 +237,7 @@ fn without_a_load_the_tool_is_number_one_and_a_second_tool_is_refused() {
     let text = "UNITS/MM\nTOOL PATH/A,TOOL,MILL\nTLDATA/MILL,30.0,2.0,75.0,0.0,0.0\n\
                 SPINDL/RPM,1000,CLW\nFEDRAT/MMPM,250\nGOTO/0,0,0\nEND-OF-PATH\n";
     let first = reading(text);
-    assert_eq!(first.warnings[0].rule, "tool-number");
+    assert_eq!(first.warnings[0].rule.name(), "tool-number");
     let expected = Tool {
         number: 1,
         name: "MILL".into(),
@@ -248,11 +248,11 @@ fn without_a_load_the_tool_is_number_one_and_a_second_tool_is_refused() {
     assert!(first.program.records.iter().any(|r| r.op == Op::Tool(Box::new(expected.clone()))));
     let second = "TOOL PATH/B,TOOL,DRILL\nTLDATA/DRILL,MILL,8.0,0.0,80.0,118.0,35.0\nGOTO/0,0,1\nEND-OF-PATH\n";
     let errors = read("t.cls", format!("{text}{second}").as_bytes(), &Options::default());
-    assert_eq!(errors.unwrap_err()[0].rule, "tool-change");
+    assert_eq!(errors.unwrap_err()[0].rule.name(), "tool-change");
     // With its own LOAD it is changed to; but then the number of the first tool is to be said as well.
     let loaded = second.replace("GOTO", "LOAD/TOOL,2\nGOTO");
     let first_unknown = read("t.cls", format!("{text}{loaded}").as_bytes(), &Options::default());
-    assert_eq!(first_unknown.unwrap_err()[0].rule, "tool-number");
+    assert_eq!(first_unknown.unwrap_err()[0].rule.name(), "tool-number");
     let first = text.replace("SPINDL", "LOAD/TOOL,1\nSPINDL");
     let both = reading(&format!("{first}{loaded}"));
     assert!(both.program.records.iter().any(|r| matches!(&r.op, Op::Tool(t) if t.name == "DRILL")));
@@ -285,7 +285,7 @@ fn a_rapid_before_the_first_load_is_made_with_that_tool_and_a_cut_is_refused() {
     ];
     assert_eq!(ops, expected.iter().collect::<Vec<_>>());
     let [warning] = &read_so.warnings[..] else { panic!("{:?}", read_so.warnings) };
-    assert_eq!((warning.rule, warning.line), ("tool-number", 4));
+    assert_eq!((warning.rule.name(), warning.line), ("tool-number", 4));
     assert!(warning.message.contains("line 4 ") && warning.message.contains("line 8)"));
     // The tool is described after the load as well.
     let after = reading(&text.replace("LOADTL/5\n", "LOADTL/5\nCUTTER/12\n"));
@@ -299,7 +299,7 @@ fn a_rapid_before_the_first_load_is_made_with_that_tool_and_a_cut_is_refused() {
         [(cut, 4, "line 8)"), (second, 6, "line 9)"), (other, 9, "line 5 "), (none, 10, "line 9 ")]
     {
         let error = read("t.apt", text.as_bytes(), &Options::default()).unwrap_err().remove(0);
-        assert_eq!((error.rule, error.line), ("tool-number", line), "{text}");
+        assert_eq!((error.rule.name(), error.line), ("tool-number", line), "{text}");
         assert!(error.message.contains(named), "{}", error.message);
         assert!(!error.help.is_empty());
     }

@@ -46,7 +46,7 @@ fn the_published_sample_of_catia_is_read() {
         Op::End,
     ];
     assert_eq!(ops, expected.iter().collect::<Vec<_>>());
-    let rules: Vec<&str> = reading.warnings.iter().map(|w| w.rule).collect();
+    let rules: Vec<&str> = reading.warnings.iter().map(|w| w.rule.name()).collect();
     assert_eq!(rules, ["unknown-unit", "no-fini"]);
 }
 
@@ -69,7 +69,10 @@ fn words_for_people_stay_words() {
         ops,
         [&Op::Comment("M00 G91".into()), &Op::Message("turn the part".into()), &Op::Stop]
     );
-    assert_eq!(inserted.warnings.iter().map(|w| w.rule).collect::<Vec<_>>(), ["insert", "insert"]);
+    assert_eq!(
+        inserted.warnings.iter().map(|w| w.rule.name()).collect::<Vec<_>>(),
+        ["insert", "insert"]
+    );
     assert_eq!(
         reading(&format!("PARTNO/Housing 7\n{HEAD}GOTO/0,0,0\nFINI")).program.name,
         "Housing 7"
@@ -81,13 +84,14 @@ fn words_for_people_stay_words() {
 fn words_that_are_not_known_are_one_warning_each() {
     let text = format!("{HEAD}FOO/1\nBAR\nFOO/2\nGOTO/1,2,3\nOPSKIP/ON\nFINI");
     let found = reading(&text).warnings;
-    let seen: Vec<(&str, u32, u32)> = found.iter().map(|w| (w.rule, w.line, w.count)).collect();
+    let seen: Vec<(&str, u32, u32)> =
+        found.iter().map(|w| (w.rule.name(), w.line, w.count)).collect();
     assert_eq!(seen, [("unknown-word", 5, 2), ("unknown-word", 6, 1), ("ignored-word", 9, 1)]);
     let strict = read("s.apt", text.as_bytes(), &Options { strict: true, ..Options::default() })
         .unwrap_err();
     assert!(strict.iter().all(|e| e.is_error()));
     assert_eq!(
-        strict.iter().map(|e| (e.rule, e.line)).collect::<Vec<_>>()[..2],
+        strict.iter().map(|e| (e.rule.name(), e.line)).collect::<Vec<_>>()[..2],
         [("unknown-word", 5), ("unknown-word", 6)]
     );
     for text in ["FOO/it's 5 o'clock (yes", "(remark)", "%", "FOO 1 2 3", "FOO/1,"] {

@@ -59,9 +59,9 @@ pub enum Command {
     Machines(Machines),
     /// Count and measure a toolpath, and draw it.
     Show(Show),
-    /// Say what a name of machine and control files means.
+    /// Say what a name of machine and control files, or a rule of a finding, means.
     Explain {
-        /// A key, a word, a block or a variable; without one, all of them.
+        /// A key, a word, a block, a variable, or a rule; without one, all of them.
         topic: Option<String>,
     },
     /// Print the completions of a shell.

@@ -89,7 +89,7 @@ fn what_the_operator_knows_is_asked_for_and_not_guessed() {
     let folder = Folder::new();
     let show = |more: &[&str]| folder.run(&[&["show", "old.nc"], &FANUC[..], more].concat());
     folder.write("old.nc", "G90 G54\nG0 X10. Y0. Z5.\nG1 X20 F100\nM30\n");
-    assert!(show(&[]).err.contains("nc-units"));
+    assert!(show(&[]).err.contains("units"));
     let units = ["--units", "mm"];
     assert!(show(&units).err.contains("old.nc:3:"), "{:?}", show(&units));
     let all = [&units[..], &["--whole-numbers", "increments", "--json"]].concat();

@@ -144,12 +144,12 @@ fn rotary_axes_that_stay_at_0_need_no_machine_and_others_do() {
     assert!(folder.read("new.nc").contains("X40"));
     // A machine of which it is known that it has no such axis stops there.
     let said = call("generic-3axis-linuxcnc");
-    assert!(said.code == 2 && said.err.contains("error[nc-axis]"), "{said:?}");
+    assert!(said.code == 2 && said.err.contains("error[unknown-axis]"), "{said:?}");
     // Where the tip goes that a table turns, only the machine says: it is asked for once.
     for source in [source.replace("X40 A0", "X40 A30"), source.replace("X40 A0", "G91 X40 A0")] {
         folder.write("old.ngc", &source);
         let said = call("linuxcnc");
-        assert!(said.code == 2 && said.err.contains("error[nc-axis]"), "{said:?}");
+        assert!(said.code == 2 && said.err.contains("error[unknown-axis]"), "{said:?}");
         assert_eq!(
             said.err.matches("name the machine that the program was written for").count(),
             1,

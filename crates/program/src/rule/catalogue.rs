@@ -1,0 +1,1970 @@
+//! The rows of the catalogue, in the order of the names: name, former names, meaning, way out, example.
+
+use super::{Entry, rules};
+
+rules! {
+    AdaptiveFeed "adaptive-feed" []
+        "An input of the machine multiplies the feed, so that F is not the speed of the cut."
+        "write M52 P0, or leave it out"
+        "linuxcnc: `M52 P1`";
+    AfterEnd "after-end" ["nc-after-end", "after-the-end"]
+        "A program, or a record of one, goes on behind its end."
+        "move the end of the program behind its last block, or delete what follows it"
+        "linuxcnc: `M2`, `G1 X10`";
+    Alarm "alarm" ["nc-alarm", "program-error"]
+        "The program reports an error or an alarm by itself."
+        "the program stops itself here: set the variables so that it does not come here, or remove the alarm"
+        "fanuc: `#3000=1(NO TOOL)`";
+    Angle "angle" []
+        "An angle is missing, out of range, or does not fit the move."
+        "give the angle in degrees, within the range that the control takes"
+        "A KiCad arc of 400°";
+    Aperture "aperture" []
+        "The definition of a Gerber aperture is wrong, or its values are."
+        "correct the definition: a number from 10 on, a template, and the values that it takes"
+        "`%ADD10C*%`: a circle without a diameter";
+    ApertureAgain "aperture-again" []
+        "A Gerber file defines an aperture twice."
+        "use another number for the second aperture"
+        "`%ADD10C,1*%` and later `%ADD10C,2*%`";
+    Arc "arc" ["nc-arc"]
+        "An arc cannot be: its end, its centre and its radius do not fit."
+        "correct the end point, the centre or the radius of the arc"
+        "fanuc: `G2 X100. Y0 R1.`";
+    ArcCenter "arc-center" []
+        "The centre of an arc does not fit its ends."
+        "correct the centre or the ends of the arc"
+        "A Gerber arc from X0 to X2 with I0.5";
+    ArcChord "arc-chord" []
+        "An arc turns by a whole circle or more and does not end where it began, or a long arc has nearly equal ends."
+        "give the same point for a full circle"
+        "`CIRCLE/0,0,0,0,0,1,10,TIMES,2` and a GOTO beside the start";
+    ArcDirection "arc-direction" []
+        "The direction in which the tool leaves does not fit the circle."
+        "give the direction in which the tool leaves, tangent to the circle"
+        "`INDIRV/0,0,1` before a circle in XY";
+    ArcLowered "arc-lowered" []
+        "Arcs are written as lines, within the tolerance, because the control has no block for them."
+        "nothing to do, if the tolerance suits the part; a control with the block `arc_cw` or `helix_cw` writes the arc itself"
+        "A helix for a control without `helix_cw`";
+    ArcOrientation "arc-orientation" []
+        "The tool axis changes along an arc."
+        "split the arc into lines, or give its end the tool axis of its start"
+        "An arc whose end has another tool axis than its start, on a machine with rotary axes";
+    ArcPoints "arc-points" []
+        "The points of an arc do not say which arc it is."
+        "let the CAM system write one point for an arc (Creo: NUMBER_OF_ARC_PTS 1)"
+        "A Creo circle with two points between its ends that do not lie on it";
+    ArcRadius "arc-radius" []
+        "The radius of an arc does not reach from its start to its end."
+        "correct the radius: the end point must be reachable with it"
+        "sinumerik: `G2 X100 Y0 CR=1`";
+    ArcStart "arc-start" []
+        "An arc starts at a position that is not known."
+        "give a rapid to the start before the arc"
+        "A toolpath that begins with an arc";
+    Argument "argument" []
+        "A function of the Python package got a value that it does not take."
+        "give one of the values that the documentation of the function lists"
+        "`toolpost.post(path, machine, tolerance=\"fine\")`";
+    Arithmetic "arithmetic" ["nc-arithmetic"]
+        "The value of an expression is not a finite number."
+        "correct the formula or the values that it gets"
+        "linuxcnc: `#1=[1/0]`";
+    ArmBranch "arm-branch" []
+        "A joint of an arm carries nothing that leads to the flange."
+        "compare the reach of the new file with the data sheet"
+        "A joint for a hose beside the six of the arm";
+    ArmCalibration "arm-calibration" []
+        "The calibration of an arm differs from the arm that it is for."
+        "give the calibration of this very arm, and compare the difference that the message names"
+        "A calibration of a UR10e given with a UR5e";
+    ArmCoupling "arm-coupling" []
+        "Two joints of the wrist of an arm may be coupled."
+        "look in the manual of the arm for a coupling, and write it into the new file"
+        "An arm whose joint 6 turns when joint 5 does";
+    ArmExtends "arm-extends" []
+        "Which arm a calibration is for is missing, or given where it is not needed."
+        "give the arm by `--extends`, for a calibration alone"
+        "`machines import calibration.yaml` without `--extends`";
+    ArmKind "arm-kind" []
+        "The joints of a description are no arm that is known."
+        "import an arm of six revolute joints whose wrist meets in a point, or that is offset as a UR is"
+        "Seven revolute joints in a row";
+    ArmKinematics "arm-kinematics" []
+        "The program moves joints, and the machine is no arm whose kinematics are known."
+        "name a machine whose file has the kinematics"
+        "An arm without its kinematics given by `--from`";
+    ArmReach "arm-reach" []
+        "The reach of an arm is missing, is not that of its kinematics, or is given where it is not needed."
+        "give the reach of the data sheet by `--reach`"
+        "`--reach 850` for an arm whose links reach 900 mm";
+    ArmSnapped "arm-snapped" []
+        "Angles of a description that are nearly right angles are taken as right angles."
+        "nothing to do; a calibration says how the arm really stands"
+        "A joint turned by 1.5708 in place of half of pi";
+    ArrayIndex "array-index" []
+        "An index is outside the size of its array."
+        "use an index within the declared size of the array"
+        "`DEF REAL A[2]` and later `A[5]=1` (SINUMERIK)";
+    ArrayShape "array-shape" []
+        "An array of the Python package has the wrong shape."
+        "give an array of the named shape"
+        "Points of shape (10, 2) where X, Y and Z are needed";
+    Aside "aside" []
+        "The step aside of a boring cycle is missing, or stands in another cycle."
+        "choose one of these cycles, or leave the way aside out"
+        "`fine-bore` without a direction";
+    Attribute "attribute" []
+        "A Gerber attribute has no name."
+        "write the name of the attribute, or leave it out"
+        "`%TF*%`";
+    Auxiliary "auxiliary" []
+        "A function of the machine's builder is left out, missing or not known to the machine."
+        "add the block `auxiliary` to the control's file where the machine needs this function"
+        "M81 in the source, and no 81 in `auxiliary` of the machine file";
+    Axes "axes" []
+        "A drill file gives its axes other directions."
+        "write X to the right and Y up (VER,1)"
+        "`VER,2` in an Excellon header";
+    AxisDynamics "axis-dynamics" []
+        "Axes may be faster than their machine data allow."
+        "write at most 100 percent, as in ACC[X]=100"
+        "sinumerik: `ACC[X]=150`";
+    AxisLimit "axis-limit" []
+        "An axis would leave its travel."
+        "move the part in the machine (`work_zero`), or choose a machine with more travel"
+        "Z -310 on a machine with Z from -300 to 0";
+    AxisSwing "axis-swing" []
+        "A cut needs a turn of an axis by half a turn, and which way it would go is not known."
+        "split the cut, or tilt the tool a little there"
+        "A cut over the pole of a table";
+    Blank "blank" []
+        "The corners of the blank are missing, or not in order."
+        "give two corners, the second above the first in X, Y and Z, or leave both out"
+        "`BLK FORM 0.2` without `BLK FORM 0.1`";
+    BlindVia "blind-via" []
+        "A board has a via that does not go through, which is not drilled."
+        "let vias go through the board, or drill this one elsewhere"
+        "A KiCad via from F.Cu to In1.Cu";
+    Block "block" []
+        "A Gerber block aperture has no number, or no end."
+        "begin it with %ABD10*% (a number from 10 on), and end it with %AB*%"
+        "`%ABD5*%`";
+    BlockDelete "block-delete" []
+        "A drill file has lines that may be skipped."
+        "decide which holes are drilled, and write those alone"
+        "`/X1Y1`";
+    BlockLength "block-length" ["nc-long-block"]
+        "A block is longer than the control takes."
+        "divide the block into several"
+        "A SINUMERIK block of 600 characters";
+    BlockNumber "block-number" ["nc-block-number"]
+        "A block number is out of range, or stands where none may stand."
+        "give a block number that the control takes, or none"
+        "linuxcnc: `G1 N5 X1`";
+    BlockSkip "block-skip" []
+        "Blocks are marked as skippable, and what the program does depends on the switch at the control."
+        "leave the marks out, or say which of the programs is meant"
+        "`/G1 X10`";
+    Board "board" []
+        "A file of a board is not what is needed here."
+        "give the files of one board"
+        "Two .kicad_pcb files for one board";
+    BoardEmpty "board-empty" []
+        "There is nothing on the board that could be made."
+        "check which files of the board were read, and as what"
+        "A folder of Gerber files without copper, holes and outline";
+    BoardFile "board-file" []
+        "A board file (TOML) cannot be read."
+        "correct the file at the mark; docs/pcb.md lists what stands in it"
+        "`[[pad]]` without `at`";
+    BoardTooLarge "board-too-large" []
+        "A board is too large to be worked on in one piece."
+        "take a part of the board, or a wider tool"
+        "A board of 10 m with conductors of 0.1 mm";
+    Branch "branch" []
+        "More than two lines of a drawing meet in one point."
+        "choose layers so that a contour has no branches, or delete what is too much"
+        "A T of three lines on the layer of the contour";
+    ByControl "by-control" []
+        "Leads or corners that the control is to make do not go with other settings."
+        "leave `--by-control` out, or choose a machine that offsets the wire"
+        "`--by-control` on a machine without wire offset";
+    Calibration "calibration" []
+        "A calibration cannot be read."
+        "take the file as the driver of Universal Robots saves it: six links, each with x, y, z, roll, pitch and yaw"
+        "A file with the rows of five links";
+    Call "call" ["nc-call"]
+        "A program is called by a wrong number, name or parameter."
+        "correct the name or the parameters of the call; a called program lies in the folder of the main program"
+        "fanuc: `M98`";
+    CalledProgram "called-program" ["unknown-program"]
+        "A called program cannot be found or used."
+        "save the called program, in the control's own format, in the folder of the main program"
+        "klartext: `CALL PGM MISSING.H`";
+    Cancelled "cancelled" []
+        "The work was cancelled. There is no result."
+        "start it again"
+        "Ctrl-C while a program is proven";
+    CarriedOtherwise "carried-otherwise" []
+        "An imported post differs here from the new machine file."
+        "compare this with the manual of the machine, and correct the new file where they differ"
+        "A post whose safe height is written in inches";
+    ChainTooLong "chain-too-long" []
+        "A drill file has a chain of slots that is too long to be milled."
+        "divide the route"
+        "A route of a million points";
+    CircleWithoutGoto "circle-without-goto" []
+        "A CIRCLE record has no GOTO that ends it."
+        "add the GOTO that ends the arc"
+        "`CIRCLE/0,0,0,0,0,1,10` and then `FINI`";
+    Clamp "clamp" []
+        "A rotary axis turns while its clamp is closed, or a clamp of the source is left out."
+        "check that `unclamp` and `clamp` in the machine file are those of this machine"
+        "A turn of A with M10 active, where M11 opens the clamp";
+    ClearPlane "clear-plane" []
+        "A cycle names its clear plane twice."
+        "leave CLEAR or RAPTO out"
+        "`CYCLE/DRILL,...,CLEAR,2,RAPTO,3`";
+    Comment "comment" ["nc-comment"]
+        "A comment is not closed, or stands within another."
+        "close the comment in its own line; comments cannot be nested"
+        "linuxcnc: `(no end`";
+    CommentSigns "comment-signs" []
+        "A sign in `comment_signs` of the machine file may end a comment or be a command in it."
+        "leave the sign out; letters, digits and blanks harm no control"
+        "`comment_signs = \")\"`";
+    CompensatedPath "compensated-path" []
+        "Whether the points of the toolpath are the centre of the tool or the contour is not known, or does not fit the machine."
+        "leave `--cutcom` out, or give what the points of the toolpath are (`centre` or `contour`)"
+        "`CUTCOM/LEFT` in a file whose points may be either";
+    Compensation "compensation" ["nc-compensation"]
+        "Cutter compensation is switched where the control does not take it."
+        "switch the compensation in a straight move in the plane, with a tool radius set"
+        "fanuc: `G41 D1 G2 X10. Y0 R5.`";
+    CompensationActive "compensation-active" []
+        "A record needs cutter compensation off, and it is on."
+        "switch the compensation off (CUTCOM/OFF) before it"
+        "A tool change between `CUTCOM/LEFT` and `CUTCOM/OFF`";
+    CompensationArc "compensation-arc" []
+        "An inside arc is too small for the tool that is compensated."
+        "make the inside arc larger than the tool radius, or use a smaller tool"
+        "An inside arc of R 3 with a tool of R 5";
+    CompensationArcRadius "compensation-arc-radius" []
+        "An inside arc is smaller than the radius of the tool."
+        "use a smaller tool"
+        "An inside arc of R 3 with a tool of R 5 under G41";
+    CompensationChange "compensation-change" []
+        "Side or radius of the compensation change while it is on."
+        "switch the compensation off with a straight move first"
+        "`G42` behind `G41` without `G40`";
+    CompensationEntry "compensation-entry" []
+        "The move that switches compensation on cannot do so."
+        "approach the contour by a straight move that is longer than the tool radius"
+        "An approach that is shorter than the radius of the tool";
+    CompensationExit "compensation-exit" []
+        "The move that switches compensation off cannot do so."
+        "switch it off in a straight move in the plane"
+        "`G40` with an arc behind it";
+    CompensationFeed "compensation-feed" []
+        "Compensation is on with the feed as inverse time."
+        "use G94 while compensation is on: corners add moves whose time is not known"
+        "`G93` behind `G41`";
+    CompensationGouge "compensation-gouge" []
+        "The way to or from a compensated contour cuts into it."
+        "begin and end on the tool's side of the contour, beyond its ends"
+        "An approach from the other side of the contour";
+    CompensationInnerCorner "compensation-inner-corner" []
+        "An inside corner is too narrow for the tool."
+        "use a smaller tool, or leave out what is shorter than it"
+        "A slot of 8 mm with a tool of 10 mm";
+    CompensationLookAhead "compensation-look-ahead" []
+        "Too many blocks without movement stand within a compensated contour."
+        "put fewer blocks without movement between two moves of the compensated contour"
+        "Three dwells between two cuts under G41";
+    CompensationOn "compensation-on" []
+        "This block needs cutter compensation off."
+        "switch the compensation off (G40) before this block"
+        "`M6` under G41";
+    CompensationOpen "compensation-open" []
+        "Cutter compensation is on at the end of the program."
+        "switch the compensation off (G40) before the end of the program"
+        "`M30` under G41";
+    CompensationOrientation "compensation-orientation" []
+        "A rotary axis moves while compensation is on."
+        "switch the compensation off before a rotary axis moves"
+        "`G1 A10` under G41";
+    CompensationPending "compensation-pending" []
+        "Compensation is switched, and no straight cut follows."
+        "let a straight cut follow the switch of the compensation"
+        "`CUTCOM/LEFT` at the end of the file";
+    CompensationPlane "compensation-plane" []
+        "Compensation is on outside of the plane in which it was switched on."
+        "select the plane before the compensation is switched on"
+        "`G18` under G41";
+    CompensationRadius "compensation-radius" []
+        "Compensation is switched on, and the radius of the tool is not known."
+        "give the radius of the tool, in the tool table or by the program"
+        "`G41 D5` and no tool 5 in the tool table";
+    CompensationUnknownPosition "compensation-unknown-position" []
+        "Compensation is on at a position that is not known."
+        "move X, Y and Z to a known position before it is switched on"
+        "`G41` behind `G28`";
+    CompensationUnsupported "compensation-unsupported" []
+        "This form of compensation cannot be resolved into a path."
+        "leave the tool out of the tool table: compensation then stays a state"
+        "`KONT` with a tool table";
+    ConductorSevered "conductor-severed" []
+        "A tool cuts through a conductor."
+        "use a narrower tool, or make the conductor wider"
+        "A track of 0.1 mm between two cuts of 0.2 mm";
+    Contour "contour" []
+        "A contour cannot be approached, left or followed as the block says."
+        "correct the approach or the departure: it needs a known start, a tangent, and a length or radius that fits"
+        "klartext: `RND`";
+    ControlStructure "control-structure" []
+        "IF, FOR, WHILE or another structure has no end, or ends in the wrong order."
+        "close each structure in its own order: IF with ENDIF, FOR with ENDFOR, WHILE with ENDWHILE, REPEAT with UNTIL, LOOP with ENDLOOP"
+        "sinumerik: `ENDIF`";
+    Coolant "coolant" ["nc-coolant"]
+        "Coolant is switched in a way that the control does not take, or not as the source has it."
+        "give one M function of coolant a block, and one that the control knows"
+        "The source switches flood on, and the program does not";
+    CopperOutside "copper-outside" []
+        "Copper lies outside the outline of the board."
+        "correct the outline or the copper in the CAD program; only copper within the outline is cut around"
+        "A pad on the edge of the board";
+    Corner "corner" ["nc-corner"]
+        "A chamfer or rounding of a corner does not fit the moves around it."
+        "put the corner between two moves in the plane, each longer than it takes away"
+        "fanuc: `G1 X10. ,R20.`, `G1 Y10.`";
+    CornerRounded "corner-rounded" []
+        "The wire rounds an inside corner."
+        "a thinner wire leaves less"
+        "A sharp inside corner with a wire of 0.25 mm";
+    Curve "curve" []
+        "A Bézier curve of a KiCad board has not four points."
+        "draw it again in KiCad"
+        "`(gr_curve (pts (xy 0 0) (xy 1 1)))`";
+    CurveFit "curve-fit" []
+        "A curve of a drawing cannot be made of arcs within the tolerance."
+        "allow more deviation, or draw it again"
+        "An ellipse of 10 m with a tolerance of 0.000001 mm";
+    CutTooWide "cut-too-wide" []
+        "A cut is wider than the board can be worked with."
+        "use a narrower tool"
+        "A tool of 100 mm for isolation";
+    CutoutTooSmall "cutout-too-small" []
+        "A cutout of the board is too small for the tool."
+        "use a smaller tool for the outline, or a larger cutout"
+        "A slot of 1 mm with a tool of 2 mm";
+    CutsPart "cuts-part" []
+        "The way of the wire to its contour cuts into the part."
+        "thread elsewhere, start elsewhere, or use a smaller lead-in"
+        "A place to thread on the wrong side of the contour";
+    Cutter "cutter" []
+        "The tool for the outline or for holes is no end mill."
+        "use an end mill"
+        "`--outline-tool` with an engraver";
+    Cycle "cycle" ["nc-cycle"]
+        "A canned cycle lacks a word, or stands where the control does not take it."
+        "define the cycle before it is called, and call it where nothing forbids it (compensation off, plane selected)"
+        "fanuc: `G81 Z-10. F100.`";
+    CycleBore "cycle-bore" []
+        "The control has no cycle for this bore, and it cannot be made of moves."
+        "use a control that has the cycle, or another kind of bore"
+        "`CYCLE/BORE` that stops the spindle and goes aside";
+    CycleDepth "cycle-depth" []
+        "The depth of a cycle is missing, said twice, or not below the reference plane."
+        "give one depth, below the reference plane"
+        "sinumerik: `CYCLE81(10,0,2,5)`";
+    CycleExpanded "cycle-expanded" []
+        "A cycle is written as moves, because the control has no block for it."
+        "nothing to do; a control with the block of this cycle writes it itself"
+        "A boring cycle for GRBL";
+    CycleOn "cycle-on" []
+        "A hole cycle is still on where the tool changes."
+        "add CYCLE/OFF behind the last hole"
+        "A second `LOAD/TOOL` without `CYCLE/OFF` behind the last hole";
+    CycleParameter "cycle-parameter" []
+        "A parameter of a cycle is out of range."
+        "correct the parameter; the maker's manual names the range and the order of the parameters"
+        "klartext: `CYCL DEF 200 DRILLING Q200=-5`";
+    CyclePeck "cycle-peck" []
+        "The pecks of a cycle have no end."
+        "give a peck above 0, and less than the depth"
+        "A peck of 0 mm";
+    CycleTap "cycle-tap" []
+        "A tapping cycle has no pitch or no speed."
+        "give the pitch of the thread (feed divided by speed) and a spindle speed"
+        "`CYCLE/TAP` without a pitch, and the spindle off";
+    Data "data" ["nc-data"]
+        "Data of the control are written in a form that is not read."
+        "write offsets and tool data by the forms that docs/controls names, or set them at the control"
+        "fanuc: `G10 L99 P1 X0`";
+    DecimalPoint "decimal-point" ["nc-decimal-point"]
+        "A number has no decimal point, and how the control counts it is not known."
+        "write the decimal point, or say how numbers without it count (`--whole-numbers`)"
+        "fanuc: `G1 X10` for a machine without `whole_numbers`";
+    Definition "definition" []
+        "The definition of a variable is wrong, or stands too late."
+        "correct the definition: type, name and size, before the first block that uses it"
+        "sinumerik: `R1=1`, `DEF REAL A`";
+    Deprecated "deprecated" []
+        "A Gerber file uses a command that the specification has withdrawn."
+        "nothing to do; newer CAD programs write it otherwise"
+        "`G54D10*`";
+    Diameter "diameter" []
+        "The diameter of a tool is not above 0, or is beyond what a tool can have."
+        "give the diameter of the tool, mm"
+        "`T1C0` in a drill file";
+    DocumentSize "document-size" []
+        "A FreeCAD document is larger than is read."
+        "save the job alone, or post from within FreeCAD"
+        "A .FCStd with an entry of 10 GB";
+    Drawing "drawing" []
+        "A picture cannot be made."
+        "save the picture as SVG, or make it smaller"
+        "`--output part.bmp`";
+    Drill "drill" []
+        "A drill of a KiCad pad or via has no size."
+        "drills have a diameter above 0: correct it in KiCad"
+        "`(drill 0)`";
+    DrillDiffers "drill-differs" []
+        "No drill has the diameter of this hole; the nearest is used."
+        "nothing to do, if the difference does not matter; else add the drill"
+        "A hole of 0.85 mm with drills of 0.8 and 1.0 mm";
+    Dwell "dwell" ["nc-dwell"]
+        "A dwell is missing, negative, or stands where none may stand, or it is not that of the source."
+        "give one time, in seconds or turns, not below 0, in a block of its own"
+        "fanuc: `G4`";
+    DwellUnit "dwell-unit" []
+        "What the dwell counts in depends on a setting that is not known."
+        "write G4 X with a decimal point, or state `dwell_p_milliseconds` in [settings] of the machine file"
+        "fanuc: `G4 P500`";
+    DxfBinary "dxf-binary" []
+        "The drawing is a binary DXF file."
+        "save the drawing as ASCII DXF"
+        "A file that begins with `AutoCAD Binary DXF`";
+    DxfCode "dxf-code" []
+        "A DXF file is damaged or cut off."
+        "save the drawing again as ASCII DXF; the file is damaged or cut off"
+        "A line of text where a group code must stand";
+    DxfDoubled "dxf-doubled" []
+        "A drawing holds entities twice, of which one is read."
+        "nothing to do; delete the doubled entities in the drawing to be rid of this"
+        "Two equal lines over each other";
+    DxfEntity "dxf-entity" []
+        "An entity of a drawing lacks a value, or has one that cannot be."
+        "draw it again, or save the drawing again"
+        "A CIRCLE of radius 0";
+    DxfGap "dxf-gap" []
+        "Gaps of the contour were closed."
+        "nothing to do, if the gaps are not meant; close them in the drawing"
+        "Two lines whose ends are 0.0005 mm apart";
+    DxfInsert "dxf-insert" []
+        "A block of a drawing cannot be inserted as it stands."
+        "explode the block in the CAD program"
+        "An INSERT of a block that is not there";
+    DxfLayer "dxf-layer" []
+        "There is no contour on this layer."
+        "name a layer that holds lines or arcs"
+        "`--layer CONTOUR` for a drawing whose lines are on layer 0";
+    DxfLeftOut "dxf-left-out" []
+        "Entities of these kinds are not read."
+        "nothing to do, if they are no part of the contour; else draw it with lines, arcs and polylines"
+        "TEXT and DIMENSION in a drawing";
+    DxfNumber "dxf-number" []
+        "A number of a DXF file is none."
+        "save the drawing again"
+        "`abc` behind group code 10";
+    DxfOptions "dxf-options" []
+        "A setting for reading drawings is out of range."
+        "give a value in the range that is named"
+        "A gap of 100 mm";
+    DxfSize "dxf-size" []
+        "A drawing has too many entities."
+        "choose layers, or divide the drawing"
+        "A drawing of 10 million lines";
+    DxfSlanted "dxf-slanted" []
+        "An entity does not lie in the plane of the drawing."
+        "draw the contour in one plane"
+        "A LINE from Z 0 to Z 5";
+    DxfSpline "dxf-spline" []
+        "A spline of a drawing cannot be read."
+        "save it with control points"
+        "A SPLINE with fit points alone";
+    DxfUnit "dxf-unit" []
+        "The unit of a drawing is not known."
+        "set the unit of the drawing ($INSUNITS) in the CAD program, or give `unit` in Python"
+        "A drawing without $INSUNITS";
+    EmptyContour "empty-contour" []
+        "There is no contour, or it has no length."
+        "choose the layer by `--layer`, or draw a closed contour"
+        "A drawing of texts alone";
+    Encoding "encoding" []
+        "The file is not plain text."
+        "save the file as UTF-8"
+        "A file in UTF-16";
+    EndHeight "end-height" []
+        "The program ends where the tool is not home."
+        "send Z home before the end of the program"
+        "`M30` behind the last cut, with Z at the part";
+    EndPoint "end-point" []
+        "The program leaves its path at a point that the source does not have."
+        "report this with the toolpath: the program differs from it"
+        "The source goes from X0 to X10, the program stops at X5";
+    Endless "endless" ["nc-endless"]
+        "A loop or a chain of calls has no end."
+        "correct the condition that ends the loop; the control follows a limited number of blocks"
+        "sinumerik: `WHILE TRUE`, `R1=1`, `ENDWHILE`";
+    EndsInCut "ends-in-cut" []
+        "The program ends, or stops for good, while the tool is in a cut."
+        "retract the tool before the end of the program"
+        "`M30` behind `G1 Z-5`";
+    Excursion "excursion" []
+        "The tool leaves a cut and comes back, but not along its axis."
+        "report this with the toolpath: the program differs from it"
+        "A retract along Z with a tool that leans";
+    Expression "expression" ["nc-expression", "formula"]
+        "An expression is not written as the control takes it."
+        "correct the expression at the mark"
+        "linuxcnc: `#1=[1+]`";
+    ExtraMotion "extra-motion" []
+        "The program makes a move that the source does not have."
+        "report this with the toolpath: the program differs from it"
+        "A rapid to X100 and back between two cuts";
+    ExtraToolChange "extra-tool-change" []
+        "The program changes the tool where the source does not."
+        "report this with the toolpath: the program differs from it"
+        "Two `M6` for one `LOAD/TOOL`";
+    Feed "feed" ["nc-feed"]
+        "The feed is missing, not above 0, or not that of the source."
+        "give a feed above 0 before the first cut, in a mode that the control knows"
+        "fanuc: `G1 X10 F-5`";
+    FeedApproach "feed-approach" []
+        "The tool goes to its first point by feed."
+        "check where the tool is before it, or add a rapid to the start in the CAM system"
+        "A toolpath whose first record is a cut";
+    FeedGroup "feed-group" []
+        "The feed counts axes that FGROUP does not name, or names that the machine lacks."
+        "add the axes to the feed group (FGROUP), or give the feed of this move in inverse time (G93)"
+        "sinumerik: `FGROUP(Q)`";
+    FeedInverseTime "feed-inverse-time" []
+        "Feeds are written as inverse time."
+        "nothing to do; the block takes the same time as the feed of the toolpath"
+        "A five-axis cut on a control that counts F otherwise";
+    FeedLimited "feed-limited" []
+        "Cuts are slower than the feed of the toolpath, because an axis is at its limit."
+        "nothing to do, if the slower cut suits the part; the limits are those of the axes in the machine file"
+        "A cut near the pole of a table";
+    FeedPerTurn "feed-per-turn" []
+        "Feeds per turn are written in mm/min."
+        "nothing to do; the feed was multiplied by the spindle speed"
+        "`FEDRAT/0.1,MMPR` for a control without G95";
+    FeedRange "feed-range" []
+        "A feed is outside the range of the machine."
+        "give a feed within the range of the machine, or correct its file"
+        "F 20000 on a machine with 10000 mm/min at most";
+    FeedZero "feed-zero" []
+        "A feed is written as 0 with the decimals of the word F."
+        "give a feed above 0 that the decimals of the word F can hold"
+        "0.2 mm/min on a control that writes whole numbers";
+    FileOlder "file-older" []
+        "A program that is there already is older than the new one, and is not written anew."
+        "remove the old file, or write all programs"
+        "`front.nc` of an earlier run beside the new `drill.nc`";
+    FileSize "file-size" []
+        "The file is larger than is read."
+        "divide the file"
+        "A KiCad board of 5 GiB";
+    FileUnused "file-unused" []
+        "A file of the folder was not used."
+        "name the file as the layer that it holds, if it should be cut (see `toolpost pcb --help`)"
+        "A text file beside the Gerber files";
+    Fill "fill" []
+        "A shape of a KiCad board says in an unknown way whether it is filled."
+        "write yes or no"
+        "`(fill maybe)`";
+    FitWithoutMemory "fit-without-memory" []
+        "Points are to be fitted by arcs, and no memory of the control is given to keep to."
+        "give a larger tolerance, or divide the contour"
+        "`--fit` without `--memory`";
+    FlatContour "flat-contour" []
+        "The contour has no heights: it is taken as flat."
+        "nothing to do, if the contour is flat; else give Z in its first block"
+        "A wire program without Z";
+    FloatingTap "floating-tap" []
+        "Taps are not coupled to the feed, so that they need a floating holder."
+        "tap by G33.1 (LinuxCNC) or behind M29 (FANUC), or state `floating_holder = true` in [settings] of the machine file"
+        "linuxcnc: `G98 G84 Z-10 R2 F1000`";
+    Folder "folder" []
+        "A folder cannot be read."
+        "check the name of the folder and the right to read it"
+        "`toolpost pcb no-such-folder`";
+    Format "format" []
+        "A drill file has numbers that its format does not take."
+        "write the format of the numbers, such as METRIC,LZ,000.000"
+        "`X1234567` with the format 2.4";
+    Frame "frame" ["nc-frame"]
+        "A shift, turn, scale or mirror is incomplete, or stands where the control does not take it."
+        "correct the frame: one instruction a block, with axes and values that the control takes"
+        "sinumerik: `ROT RPL=45 X10`";
+    Freecad "freecad" []
+        "A FreeCAD document or job cannot be used."
+        "save the document again in FreeCAD 1.0 or newer, or export the job as G-code and read that by `--from`"
+        "A .FCStd without a job";
+    FreecadDump "freecad-dump" []
+        "A FreeCAD document could not be read whole."
+        "read the document again; where it fails again, report it with the document"
+        "An operation without its commands";
+    FreecadInvalid "freecad-invalid" []
+        "Operations of the job are not valid in FreeCAD."
+        "calculate the job again in FreeCAD"
+        "An operation that is marked as touched or failed";
+    FreecadJob "freecad-job" []
+        "This is no job of FreeCAD, or of another version."
+        "post from FreeCAD, or let FreeCAD write the job again"
+        "A JSON file of something else";
+    FreecadLines "freecad-lines" []
+        "An operation of a job has more commands than are read."
+        "divide the operation"
+        "An operation of 100 million commands";
+    From "from" []
+        "A FROM record is the first position, and how the tool came there is not known."
+        "check that the way there is free"
+        "`FROM/0,0,100`";
+    Gap "gap" []
+        "The ends of a contour are apart."
+        "close the gap, or allow a larger one"
+        "A profile that ends 0.5 mm beside its start";
+    Gear "gear" []
+        "The program chooses a gear of the spindle."
+        "leave it out or write M40; a machine with gears lists the number in `auxiliary`"
+        "sinumerik: `M41`";
+    Group "group" []
+        "A group of a board file has no place of its own, or a name that another has."
+        "give each group another name, and put none within itself"
+        "Two groups called `sensor` in one group";
+    Header "header" []
+        "The header of a program or drill file is wrong."
+        "begin the program with %_N_NAME_MPF, or without a header"
+        "sinumerik: `%_N_PART_XYZ`";
+    HeightMap "height-map" []
+        "A file of measured heights cannot be used."
+        "give a file with X, Y and Z in columns, on a grid of 2 columns and 2 rows or more"
+        "A height map with one row";
+    Heights "heights" []
+        "Measured heights do not go with other settings."
+        "give one of them"
+        "`--heights` with `--on-control`";
+    HelixEndPoint "helix-end-point" []
+        "The end of a helix does not lie on its circle."
+        "give an end point that lies on the circle"
+        "A helix whose end is 0.02 mm off its circle";
+    Hole "hole" []
+        "A hole of the program is not that of the source."
+        "report this with the toolpath: the program differs from it"
+        "A cycle at X 20.1 where the source has X 20";
+    HoleForm "hole-form" []
+        "A layer of holes has something else on it."
+        "draw holes by flashes of round apertures, or slots by lines"
+        "A line on a Gerber drill layer";
+    HoleOutside "hole-outside" []
+        "A hole lies outside the outline of the board."
+        "correct the outline or the hole in the CAD program"
+        "A hole 1 mm outside the edge";
+    HoleTwice "hole-twice" []
+        "A hole is in the files twice, and is drilled once."
+        "nothing to do, if one hole is meant"
+        "The same hole in two drill files";
+    HolesNotThrough "holes-not-through" []
+        "Holes that do not go through the board are not drilled."
+        "drill them elsewhere, or let them go through"
+        "A drill file for layers 1 to 2";
+    Home "home" ["nc-home"]
+        "Axes are sent home in a way that the control or the machine does not take."
+        "retract the tool first; then send axes home by the block `home` of the machine file"
+        "fanuc: `G28`";
+    HomeHeight "home-height" []
+        "The way from home to the first point may meet the part."
+        "send Z home at the start, or set `safe_height` of the machine"
+        "Z not at its upper end when the first rapid begins";
+    IgnoredWord "ignored-word" []
+        "A word of the source is not used."
+        "nothing to do, if the part does not need it"
+        "`CYCLE/DRILL,...,RAPOUT,5`";
+    ImageTransformation "image-transformation" []
+        "A Gerber file moves, turns or inverts the image as a whole."
+        "write the file again without it"
+        "`%SFA2B2*%`";
+    Import "import" []
+        "A post of another system cannot be imported."
+        "begin with a machine of the library instead: `toolpost machines new NAME --from OTHER`"
+        "A file without a block of a program";
+    ImportControl "import-control" []
+        "For an imported post no control of the library fits."
+        "name the control by `--from`"
+        "A post of a lathe";
+    InnerCorner "inner-corner" []
+        "An inside corner is sharper than the wire can cut."
+        "round the corner by the offset of the wire or more"
+        "An inside corner of R 0.05 with a wire of 0.25 mm";
+    InnerLayer "inner-layer" []
+        "Copper of an inner layer is left out."
+        "nothing to do: front and back are milled"
+        "A track on In1.Cu of a KiCad board";
+    Input "input" ["nc-input"]
+        "An input is waited for in a way that the control does not take, or not as the source has it."
+        "give the number of the input and how to wait for it"
+        "linuxcnc: `M66`";
+    Insert "insert" []
+        "INSERT text is passed on as a comment or a stop, not as code."
+        "use the records of cutter-location data for what the machine is to do"
+        "`INSERT/M98 P100`";
+    Internal "internal" []
+        "The program met a state that should not be."
+        "report it, with the input if possible"
+        "A fault of Toolpost itself";
+    Item "item" []
+        "An item of a KiCad board is not read."
+        "remove it from copper and edge"
+        "A dimension on F.Cu";
+    Jump "jump" []
+        "A jump has no target, or more than one."
+        "correct the target of the jump: a label or block number of this program"
+        "sinumerik: `GOTOF NOWHERE`";
+    Kinematics "kinematics" ["nc-kinematics"]
+        "The kinematics of the control are switched where it does not take that, or a block does not fit them."
+        "switch the kinematics at a place where no cycle, compensation or other transformation is active"
+        "linuxcnc: `M428` under `G41`";
+    Label "label" []
+        "A label is not there, stands twice, or cannot be called."
+        "give each label once, and call only labels that are there; a subprogram ends with its own end block"
+        "klartext: `CALL LBL 5`";
+    Layer "layer" []
+        "A layer of a board cannot be used."
+        "correct the layer in the CAD program"
+        "Copper whose contours cross themselves";
+    LayerByName "layer-by-name" []
+        "What a file holds was concluded from its name."
+        "nothing to do, if it is right"
+        "`board-F_Cu.gbr` without attributes";
+    LayerEmpty "layer-empty" []
+        "A file of a board holds nothing."
+        "nothing to do, if nothing is meant to be there"
+        "A solder mask without openings";
+    LayerNegative "layer-negative" []
+        "A layer of copper is drawn as a negative."
+        "plot copper as a positive"
+        "`%TF.FilePolarity,Negative*%`";
+    LayerTwice "layer-twice" []
+        "Two files are the same layer of the board."
+        "give the files of one board"
+        "`front.gbr` and `F_Cu.gbr` in one folder";
+    LayerUnknown "layer-unknown" []
+        "What a file holds is not known."
+        "name the file as the layer that it holds"
+        "`layer1.gbr` without attributes";
+    LayersApart "layers-apart" []
+        "A layer lies outside the board as a whole."
+        "plot all layers with the same origin"
+        "Copper plotted from another origin";
+    LayersShifted "layers-shifted" []
+        "Layers reach farther than the outline."
+        "plot all layers with the same origin"
+        "Copper 3 mm outside the edge";
+    Lead "lead" []
+        "The way to or from a contour has no room, or no length that can be."
+        "give lengths from 0 mm on"
+        "A lead-in of -1 mm";
+    LeaningRetract "leaning-retract" []
+        "The tool goes back along its axis, and Z may not be home behind it."
+        "send Z home in machine coordinates behind it"
+        "`L M140 MB MAX` with a head that leans (HEIDENHAIN)";
+    LeftOn "left-on" []
+        "The program ends and leaves a state on that the next program takes as off."
+        "switch it off before the end of the program"
+        "`M30` with a shift by G92 active";
+    Length "length" []
+        "A length is not above 0, or beyond what can be."
+        "give a length above 0, mm"
+        "A tool of -1 mm";
+    LengthChange "length-change" []
+        "The tool length changes where Z is not home."
+        "send Z home before (`G91 G28 Z0`), or give Z in the same block"
+        "fanuc: `G43 H5`";
+    LengthOffset "length-offset" ["nc-length"]
+        "The length offset is missing, wrong, or not that of the tool in the spindle."
+        "activate the length offset of the tool that is in the spindle"
+        "fanuc: `G43 Z50` without H";
+    LengthPlane "length-plane" []
+        "The tool length is used in G18 or G19, and along which axis it counts is a setting."
+        "write G17, or state `length_along_z = true` in [settings] of the machine file"
+        "fanuc: `G18`, `G43 H1 Z60.`";
+    Levelling "levelling" []
+        "A program cannot be levelled."
+        "choose settings that the message names"
+        "A program with arcs in XZ";
+    LevellingTolerance "levelling-tolerance" []
+        "Heights are to be followed more closely than can be."
+        "give a larger tolerance"
+        "A tolerance of 0 mm";
+    LineEnd "line-end" []
+        "The program ends without a line end behind its last block."
+        "end the last line of the file by a line feed"
+        "sinumerik: a file that ends with `M30` and no line feed";
+    LineLength "line-length" []
+        "A block is longer than the control takes."
+        "shorten the text in the source, or the block in the control's file"
+        "A comment of 300 characters on a control with 80";
+    LineStyle "line-style" []
+        "A dashed line of a KiCad board is read as a whole line."
+        "nothing to do, if whole lines are meant"
+        "`(stroke (width 0.1) (type dash))`";
+    LineTooLong "line-too-long" []
+        "A record is longer than is read."
+        "give cutter-location data in text form"
+        "A binary file given as cutter-location data";
+    Linearisation "linearisation" []
+        "A move would need too many lines to stay within the tolerance."
+        "allow a larger tolerance, or split the move in the source"
+        "A move of 10 m with a turn of 180° and 0.000001 mm";
+    Linearised "linearised" []
+        "Moves with turning axes are split, within the tolerance."
+        "nothing to do, if the tolerance suits the part; `--tolerance` sets it"
+        "A five-axis move of 50 mm by 20°";
+    ListClosed "list-closed" []
+        "A list of a KiCad file ends that was not begun."
+        "the file is damaged: save it again in KiCad"
+        "One `)` too many";
+    ListDepth "list-depth" []
+        "Lists of a KiCad file lie too deep within each other."
+        "the file is damaged: save it again in KiCad"
+        "10,000 opening brackets";
+    ListOpen "list-open" []
+        "A list of a KiCad file has no end."
+        "the file is damaged: save it again in KiCad"
+        "A file that is cut off";
+    Load "load" []
+        "The polarity, mirror, turn or scale of Gerber objects is wrong."
+        "write %LPD*% or %LPC*%, and numbers that can be"
+        "`%LPX*%`";
+    LookAhead "look-ahead" ["nc-look-ahead"]
+        "Look-ahead of the control is on where not every control takes that."
+        "write G5.1 Q0 (G5 P0) in a block of its own before it"
+        "fanuc: `G5.1 Q1`, `M6 T2`";
+    MFunction "m-function" ["nc-m-beside-cut", "nc-many-m"]
+        "An M function is wrong, or stands where the control does not take it."
+        "correct the M function: its words, and where it may stand"
+        "fanuc: `M3 M8`";
+    MachineFile "machine-file" []
+        "A machine or control file is wrong."
+        "correct the file at the mark; `toolpost explain NAME` says what a name takes"
+        "`decimals = \"three\"`";
+    MachineFrame "machine-frame" []
+        "The frame of the machine cannot be drawn for this program."
+        "draw it in the frame of the part, or name the machine by `--from`"
+        "`show --frame machine` of a program with vectors";
+    MachineIncomplete "machine-incomplete" []
+        "A machine file lacks what every machine needs."
+        "add what is missing to the machine file; `toolpost explain` lists names and units"
+        "A file without [axes]";
+    MachineIsControl "machine-is-control" []
+        "The name is that of a control, and a machine is needed."
+        "name a machine of that control (`toolpost machines list`)"
+        "`--machine fanuc`";
+    MachineKind "machine-kind" []
+        "The machine does another kind of work."
+        "choose a machine for this work (`toolpost machines list`)"
+        "A wire machine for a milling program";
+    MachineName "machine-name" []
+        "This cannot be the name of a machine."
+        "use letters, digits, - and _"
+        "`machines new \"my mill\"`";
+    MachinePosition "machine-position" ["nc-machine-position"]
+        "A move in machine coordinates is not as the control takes it, or its position is not known."
+        "add `safe_height` of the machine that the program was written for to its file"
+        "fanuc: `G53 Z0` with `G2` active";
+    MachineReach "machine-reach" []
+        "A machine file may not be read from here."
+        "put the file next to the one that names it"
+        "`extends = \"../secret.toml\"` in a file of somebody else";
+    MachineUnknown "machine-unknown" []
+        "There is no such machine or control in the library."
+        "check the name (`toolpost machines list`)"
+        "`--machine fanuk`";
+    MachineUnreadable "machine-unreadable" []
+        "A machine file cannot be read."
+        "check the name of the file and the right to read it"
+        "`--machine missing.toml`";
+    Macro "macro" ["nc-macro"]
+        "A macro is not written as the control takes it."
+        "correct the macro: each DO has its END, and each GOTO its block"
+        "fanuc: `WHILE [#1 LT 5] DO1`";
+    MacroDivision "macro-division" []
+        "An aperture macro divides by zero."
+        "correct the macro"
+        "`%AMA*1,1,$1/0*%`";
+    MacroExpression "macro-expression" []
+        "An expression of an aperture macro is wrong."
+        "correct the macro"
+        "`$1+`";
+    MacroPrimitive "macro-primitive" []
+        "A primitive of an aperture macro is not there, or has wrong values."
+        "correct the macro; chapter 4.5 of the Gerber specification lists the primitives"
+        "`%AMA*99,1*%`";
+    MacroValue "macro-value" []
+        "A value of an aperture macro is no number that can be."
+        "correct the macro, or the values that %AD gives it"
+        "`1000000x1000000x10`";
+    Malformed "malformed" []
+        "A record is not written as its syntax says."
+        "correct the record, or write the file again from the CAM system"
+        "apt: `GOTO/1,2`";
+    ManyCommands "many-commands" ["nc-many-commands"]
+        "A block has two commands of which the control takes one."
+        "divide the block: the control takes one of these commands a block"
+        "`M3 S1000 M8` for Marlin";
+    Memory "memory" []
+        "The program is larger than the memory of the control."
+        "divide the contour into several programs"
+        "300 KB of points for a control with 256 KB";
+    Missing "missing" []
+        "Something that must be there is missing."
+        "add what the message names"
+        "A source with ten cuts, and a program with nine";
+    MissingAperture "missing-aperture" []
+        "A Gerber file draws with an aperture that it does not define."
+        "define the aperture before it is used"
+        "`D12*` without `%ADD12...*%`";
+    MissingBlock "missing-block" []
+        "The control's file lacks a block that is needed."
+        "add this block to the control's file, or choose a control that has it"
+        "A tapping cycle, and no block `tap`";
+    MissingMacro "missing-macro" []
+        "A Gerber file uses an aperture macro that it does not define."
+        "define the macro before it is used"
+        "`%ADD10NAME*%` without `%AMNAME*%`";
+    MissingTool "missing-tool" []
+        "A drill file uses a tool that it does not define."
+        "define the tool in the header"
+        "`T5` without `T5C0.8`";
+    MissingWord "missing-word" ["nc-no-motion"]
+        "A block lacks a word that it needs."
+        "add the word that is missing to the block"
+        "klartext: `CC X+10`, `C X+0 Y+0`";
+    ModalGroup "modal-group" ["nc-modal-group", "group-conflict"]
+        "A block has two words of one modal group."
+        "divide the block: the two words exclude each other"
+        "fanuc: `G0 G1 X10`";
+    Modes "modes" ["nc-modes"]
+        "Kept modes of the control are switched in a way that it does not take."
+        "switch the mode in a block of its own, where the control permits it"
+        "linuxcnc: `M72`";
+    ModuloPosition "modulo-position" []
+        "A position of a rotary axis is beyond one turn."
+        "give the position within one turn of the axis"
+        "sinumerik: `G0 C=DC(400)` on a machine with C";
+    NarrowCorner "narrow-corner" []
+        "A corner of the board is narrower than the tool."
+        "nothing to do, if the rest may stay; else use a smaller tool"
+        "An inside corner of R 0.5 with a tool of 2 mm";
+    NarrowGap "narrow-gap" []
+        "Gaps between conductors are narrower than the cut."
+        "use a narrower tool, or `--narrow middle` to cut them all the same"
+        "A gap of 0.15 mm with a cut of 0.2 mm";
+    Nesting "nesting" ["call-depth"]
+        "Calls, loops or brackets lie too deep within each other."
+        "use fewer levels within each other"
+        "klartext: `LBL 1`, `CALL LBL 1`, `LBL 0`, `CALL LBL 1`";
+    Net "net" []
+        "A net of a board is not known."
+        "save the board again in KiCad"
+        "`(net 99)` in a board with 10 nets";
+    NetTwice "net-twice" []
+        "Two nets that are joined have different names."
+        "give the nets one name, or separate them"
+        "A track between GND and VCC in a board file";
+    NetsJoined "nets-joined" []
+        "Copper joins two nets."
+        "nothing to do where the nets are tied on purpose; else correct the board"
+        "A track over two pads of different nets";
+    NoBoard "no-board" []
+        "None of the files is a board."
+        "give the Gerber and Excellon files, or the .kicad_pcb file"
+        "A folder of PDF files";
+    NoClearPlane "no-clear-plane" []
+        "A cycle does not say from which height the tool feeds, or its heights are not in order."
+        "correct the heights of the cycle: clearance and retract above the bottom of the hole"
+        "apt: `CYCLE/DRILL,DEPTH,5,MMPM,100`";
+    NoCutter "no-cutter" []
+        "A hole needs to be milled, and there is no cutter for it."
+        "add a cutter that is small enough"
+        "A slot of 0.6 mm with a cutter of 1 mm";
+    NoCycle "no-cycle" ["cycle-missing"]
+        "A hole has no cycle."
+        "give a CYCLE record before the first hole"
+        "A hole of the Python builder without `cycle(...)`";
+    NoDiameter "no-diameter" []
+        "A tool of a drill file has no diameter."
+        "define it in the header, such as T1C0.8"
+        "`T1` in the header without C";
+    NoDrill "no-drill" []
+        "There is no drill for a hole."
+        "add the drill, or a cutter to mill the hole"
+        "A hole of 3.2 mm with drills up to 1 mm";
+    NoEnd "no-end" []
+        "The file or the program has no end."
+        "check that the file is not cut off"
+        "A Gerber file without `M02*`";
+    NoFeed "no-feed" ["missing-feed", "feed-missing"]
+        "A cut comes before the first feed."
+        "give F before the first cut"
+        "sinumerik: `G1 X10` without F";
+    NoFini "no-fini" []
+        "A cutter-location file ends without FINI."
+        "add FINI, or write the file again: it may be cut off"
+        "A file that ends with GOTO";
+    NoFormat "no-format" []
+        "A Gerber file has coordinates before their format."
+        "write %FS...*% before the first coordinate"
+        "`X0Y0D02*` before `%FSLAX46Y46*%`";
+    NoMotion "no-motion" []
+        "Nothing moves in this file."
+        "check that this is the right file, and that the operations were calculated"
+        "A cutter-location file of comments";
+    NoOperation "no-operation" []
+        "A Gerber file has coordinates without an operation."
+        "write D01, D02 or D03 behind the coordinates"
+        "`X0Y0*`";
+    NoOutline "no-outline" []
+        "There is no outline of the board, and it is needed."
+        "draw the edge of the board, or leave its part out"
+        "`--parts outline` for a board without an edge layer";
+    NoPlunge "no-plunge" []
+        "A route of a drill file is not begun by M15."
+        "write M15 where the tool goes down"
+        "`G01X10` behind `G00X0Y0`";
+    NoPoint "no-point" []
+        "Nothing says where a line or a hole is."
+        "give X and Y"
+        "A Gerber file that begins with `D01*`";
+    NoPose "no-pose" []
+        "A pose has a number that is not finite, or a tool axis without length."
+        "give finite numbers, and a direction with a length above 0"
+        "A move of the Python builder to X NaN";
+    NoQuadrant "no-quadrant" []
+        "A Gerber arc comes before G75."
+        "write G75 before the first arc"
+        "`G02X1Y0I1J0D01*` before `G75*`";
+    NoStart "no-start" []
+        "An arc has no known start."
+        "give a move to the start point before the arc"
+        "apt: `CIRCLE/0,0,0,0,0,1,10`, `GOTO/0,10,0` as the first records";
+    NoSuchPart "no-such-part" []
+        "The board has nothing for a program that is asked for."
+        "ask for parts that the board has"
+        "`--parts back` for a board with one side";
+    NoThread "no-thread" []
+        "There is no place to thread the wire."
+        "name the place by `--thread`"
+        "An open contour without a place to thread";
+    NoTool "no-tool" []
+        "A move or a hole has no tool."
+        "call the tool (LOAD/TOOL) before its first move"
+        "A cutter-location file whose first record is a cut";
+    NoUnit "no-unit" []
+        "A length comes before the unit."
+        "write the unit at the start of the file"
+        "A Gerber file without `%MOMM*%`";
+    NoWire "no-wire" ["wire-missing"]
+        "The wire is used before it is threaded."
+        "thread the wire before the first cut"
+        "A cut of the Python builder without `thread_wire()`";
+    NoZeros "no-zeros" []
+        "A drill file does not say which zeros were left out."
+        "write METRIC,LZ or METRIC,TZ"
+        "`X15Y2` with METRIC alone";
+    Node "node" []
+        "A node of a board file is wrong."
+        "give each node another name"
+        "Two nodes with one name";
+    NodeUnknown "node-unknown" []
+        "A board file names a node that is not there."
+        "check the name of the node"
+        "`to = \"led.anode\"` without such a node";
+    NotACut "not-a-cut" []
+        "The source has something that a wire does not cut."
+        "leave it out of the contour"
+        "A drilling cycle in a contour for a wire";
+    NotALength "not-a-length" []
+        "A length of a KiCad board is below 0."
+        "lengths are 0 or greater: save the board again"
+        "`(width -1)`";
+    NotANumber "not-a-number" []
+        "A value of a KiCad board is no number."
+        "save the board again in KiCad"
+        "`(width abc)`";
+    NotAPlace "not-a-place" []
+        "A coordinate of a board is beyond what can be."
+        "check the unit and the format"
+        "X 9999999 mm in a drill file";
+    NotAnEdge "not-an-edge" []
+        "Something on the edge of a KiCad board is no line."
+        "draw the edge with lines, arcs and circles"
+        "A text on Edge.Cuts";
+    NotCarriedOver "not-carried-over" []
+        "Something of an imported post is not in the new machine file."
+        "add this to the new file by hand, where the machine needs it"
+        "A post that calls a script";
+    NotCldata "not-cldata" []
+        "The file is not cutter-location data of a mill."
+        "give a file of cutter-location data; for an NC program add `--from CONTROL`"
+        "An NC program given to `toolpost post` without `--from`";
+    NotKicad "not-kicad" []
+        "The file is no KiCad board."
+        "give a .kicad_pcb file"
+        "A schematic given as a board";
+    NotParted "not-parted" []
+        "A tool is too wide to separate two pieces of the board."
+        "use a smaller tool, or move the pieces apart"
+        "Two boards 1 mm apart with a tool of 2 mm";
+    NotReached "not-reached" []
+        "A tool does not reach all of an area."
+        "nothing to do, if the rest may stay; else add a smaller tool"
+        "Corners of an area that is cleared with 2 mm";
+    NotUpright "not-upright" []
+        "The tool leans or turns in a contour for a wire."
+        "give a contour with the tool upright; `--taper` leans the wire"
+        "`GOTO/0,0,0,0.1,0,1` in a flat contour";
+    Number "number" ["nc-number"]
+        "A number is out of range, or is not written as the control takes it."
+        "give a number in the range that is named"
+        "fanuc: `T1.5`";
+    NumberRange "number-range" []
+        "A value has more digits than the word takes."
+        "move the part nearer to the work zero, or allow more digits for the word in the control's file"
+        "X 12345.678 for a word with 4 digits before the point";
+    OWord "o-word" ["nc-o-word"]
+        "An O word has no partner, or stands in the wrong order."
+        "close each O word in its own order (if with endif, while with endwhile, sub with endsub)"
+        "linuxcnc: `O1 endif`";
+    OffTheCircle "off-the-circle" []
+        "The ends of an arc have different distances from its centre."
+        "correct the arc: start and end must have the same distance from the centre"
+        "apt: `GOTO/10,0,0`, `CIRCLE/0,0,0,0,0,1,10`, `GOTO/0,12,0`";
+    OffsetDivides "offset-divides" []
+        "The wire offset divides the contour."
+        "use a thinner wire, or make the contour wider where it is narrow"
+        "A neck of 0.2 mm with a wire of 0.25 mm";
+    OffsetUnsure "offset-unsure" []
+        "The wire offset cannot be found reliably."
+        "simplify the contour near this line"
+        "Arcs that nearly touch";
+    OffsetVanishes "offset-vanishes" []
+        "The wire offset leaves nothing of the contour."
+        "use a thinner wire, or a larger contour"
+        "A hole of 0.2 mm with a wire of 0.25 mm";
+    OnControl "on-control" []
+        "The control cannot follow heights that it measures."
+        "level with measured heights (`--heights`), or choose another machine"
+        "`--on-control` for GRBL";
+    OneOpening "one-opening" []
+        "The control cuts one opening in a program."
+        "write a program for each opening"
+        "Two contours with one program for each to be";
+    OpenCompensation "open-compensation" []
+        "A contour for a wire begins or ends within its offset."
+        "switch the offset by a straight move before and behind the contour"
+        "`G41` without a straight move before the contour";
+    OpenContour "open-contour" []
+        "A contour for a wire is not closed."
+        "close the contour, or cut it without a side"
+        "A slot of two lines with `--side`";
+    OpenTaper "open-taper" []
+        "A contour for a wire leans by words of the control."
+        "take the contour without it, and lean the wire with `--taper`"
+        "`G51 T2` in the source";
+    OperatorControls "operator-controls" []
+        "The program takes something from the operator: feed hold, override, single block, limits."
+        "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass"
+        "linuxcnc: `M49`";
+    OperatorData "operator-data" []
+        "The program rewrites offsets, tool data or variables that belong to the operator."
+        "leave them to the operator; for one run `--accept operator-data` lets it pass"
+        "fanuc: `G10 L10 P1 R25.`";
+    OperatorOffset "operator-offset" []
+        "An offset of the operator shifts positions, and the program does not reset it."
+        "reset the offset of the operator in the program, or do not read it"
+        "sinumerik: `G0 Z=R1+50` with R1 in `operator_parameters`";
+    OperatorRank "operator-rank" []
+        "Operators stand in an order that reads otherwise than it counts."
+        "put parentheses around the part that comes first"
+        "sinumerik: `IF NOT 1==2`, `ENDIF`";
+    Option "option" []
+        "An option of the machine has a value that it does not take."
+        "give a value of the kind that is named"
+        "`--set tool_length=long`";
+    OptionalStop "optional-stop" []
+        "An optional stop is left out, because the control has none."
+        "add the block `optional_stop` to the control's file where the control has one"
+        "`OPSTOP` for Marlin";
+    Orientation "orientation" []
+        "The orientation of the tool is incomplete, said twice, or stands where the control does not take it."
+        "give the orientation in one way, complete, in a mode that takes it"
+        "sinumerik: `G1 X10 A3=1 C3=1`";
+    OrientationInCut "orientation-in-cut" []
+        "The plane of work changes in a cut."
+        "retract before the plane of work changes, or post for a machine that turns while it cuts"
+        "A five-axis cut on a machine that tilts its plane";
+    OrientationTolerance "orientation-tolerance" []
+        "The control may turn the tool out of its orientation."
+        "set `orientation_tolerance` in [options] of the machine file (degrees), or write no more than that"
+        "`CYCL DEF 32.2 HSC-MODE:0 TA5` where the machine file allows 0.05°";
+    OrientationWay "orientation-way" []
+        "How the tool turns within a block is not said."
+        "write ORIWKS and ORIVECT (SINUMERIK) or PATHCTRL VECTOR (HEIDENHAIN) with vectors, ORIMKS and ORIAXES or M128 with positions"
+        "`TRAORI` without ORIWKS and ORIVECT";
+    Origin "origin" []
+        "A setting that tells how to read the source does not go with this source."
+        "leave it out"
+        "`--from` with cutter-location data";
+    OutOfRange "out-of-range" []
+        "A point is farther away than any machine reaches."
+        "check units and frames of the file: the values lead too far away"
+        "apt: `GOTO/1e9,0,0`";
+    Outline "outline" []
+        "The outline of a board cannot be made of its lines."
+        "check the unit and the arcs"
+        "An outline in mm that was read as inches";
+    OutlineBranch "outline-branch" []
+        "More than two lines of the outline meet in one point."
+        "take out the lines that are too much"
+        "A T of three lines on the edge layer";
+    OutlineCrosses "outline-crosses" []
+        "The outline crosses itself."
+        "draw the outline without crossings"
+        "An eight on the edge layer";
+    OutlineEmpty "outline-empty" []
+        "The outline encloses nothing."
+        "draw a closed outline around the board"
+        "A single line on the edge layer";
+    OutlineFlash "outline-flash" []
+        "The outline has a flash, which is left out."
+        "nothing to do, if it is no part of the edge"
+        "A pad on the edge layer";
+    OutlineGap "outline-gap" []
+        "Gaps of the outline were closed."
+        "nothing to do; let the lines end in one point"
+        "Ends 0.01 mm apart";
+    OutlineMixed "outline-mixed" []
+        "The outline has lines and areas."
+        "draw the edge with lines alone, or fill the board and nothing else"
+        "A filled board and a line on one layer";
+    OutlineOpen "outline-open" []
+        "The outline is not closed."
+        "close the outline"
+        "Three sides of a rectangle";
+    OutlineTangled "outline-tangled" []
+        "Very many ends of the outline lie within one point."
+        "take out what is too much"
+        "1,000 short lines at a corner";
+    Output "output" ["nc-output"]
+        "An output is set in a way that the control does not take, or not as the source has it."
+        "give the number of the output, in the range that the control has"
+        "linuxcnc: `M62`";
+    OutputFile "output-file" ["output"]
+        "A file cannot be saved."
+        "give another name, or allow writing to the file"
+        "`-o` with the name of a folder";
+    OutputFolder "output-folder" []
+        "The folder of a file that is to be saved is not there."
+        "make the folder first"
+        "`-o missing/part.nc`";
+    Overlap "overlap" []
+        "Passes are to overlap by more than can be."
+        "give a part from 0 to below 1, such as 0.4"
+        "`--overlap 1`";
+    Pad "pad" []
+        "A pad of a KiCad board is not read, or has no size."
+        "pads have a width and a height above 0: correct it in KiCad"
+        "`(size 0 0)`";
+    Panel "panel" []
+        "A panel of boards cannot be made."
+        "give 1 or more in each direction, and no more than fit"
+        "0 by 3 boards";
+    Parameter "parameter" ["nc-parameter"]
+        "A parameter or variable is read before it is set, or there is none of that number."
+        "set the parameter before it is read, within the numbers that the control has"
+        "linuxcnc: `#99999=1`";
+    PartHeight "part-height" []
+        "The height of the part is missing for a wire that leans."
+        "give the height between the lower and the upper contour"
+        "`--taper 2` without `--height`";
+    Passes "passes" []
+        "More passes are asked for than can be."
+        "give fewer passes"
+        "1,000 passes around each conductor";
+    Path "path" []
+        "The program leaves the path of the source."
+        "report this with the toolpath: the program differs from it"
+        "X 10.05 where the source goes by X 10";
+    PathMode "path-mode" ["nc-path-mode"]
+        "The path mode is not written as the control takes it, or cuts corners."
+        "check that the part allows this; `path_tolerance` of the machine file says how far the control leaves the path"
+        "linuxcnc: `G64 P-1`";
+    PathTolerance "path-tolerance" []
+        "The control may leave the path by an unknown amount, or by more than the machine file allows."
+        "give the tolerance of the path that the machine file allows"
+        "sinumerik: `G642`, `G1 X10`";
+    Pattern "pattern" ["nc-pattern"]
+        "A pattern of holes or a pocket lacks words, or has too many points."
+        "give the points or the lengths that the pattern needs"
+        "linuxcnc: a pocket (`G12`) whose position is not known";
+    Peck "peck" []
+        "Pecks are smaller than those of the source, or go back to the last depth itself."
+        "nothing to do, if more pecks suit the hole"
+        "Pecks of 2 mm where the source has 5 mm";
+    PeckRetract "peck-retract" []
+        "How far G83 retracts above R is a setting that is not known."
+        "state `retract_above_r` in mm below [settings] (setting 52; 0 as it is delivered)"
+        "haas: `G83 Z-10. R2. Q1. F100.`, `G80`";
+    Pen "pen" []
+        "A Gerber aperture draws no lines of this form."
+        "draw lines and arcs with a circle"
+        "An arc drawn with a rectangle";
+    PieceLoose "piece-loose" []
+        "A milled route closes, and the piece within it comes loose."
+        "hold that piece, or leave gaps in the route"
+        "A closed slot around a piece of the board";
+    Pins "pins" []
+        "There is no place for pins."
+        "give a diameter and a distance above 0"
+        "Pins at a distance of -5 mm";
+    PinsLate "pins-late" []
+        "Pins are drilled behind a program that needs them."
+        "begin with the holes"
+        "The back before the holes of its pins";
+    Pitch "pitch" []
+        "A pitch is given for a cycle that does not tap."
+        "use the kind `tap`, or leave the pitch out"
+        "`drill` of the Python builder with a pitch";
+    Polar "polar" ["nc-polar"]
+        "Polar coordinates are incomplete, or stand where the control does not take them."
+        "give pole, radius and angle in the plane"
+        "linuxcnc: `G18`, `G1 @5 ^30`";
+    PolarityChanges "polarity-changes" []
+        "A Gerber file changes its polarity behind objects."
+        "write it at the start of the file"
+        "`%IPNEG*%` behind the first flash";
+    PoleWay "pole-way" []
+        "A cut goes past the pole, where the rotary axes turn farther than the file allows."
+        "tilt the tool a little more there, or raise `pole` tolerance in the machine file"
+        "A cut within 0.1° of the tool upright";
+    Probe "probe" ["nc-probe"]
+        "A probing move is not as the control takes it."
+        "give the probing move a feed in mm/min, a fixed tool axis, and an end other than its start"
+        "`G38.2 A10 F100`: a probing move of a rotary axis";
+    ProbeInHole "probe-in-hole" []
+        "A place to probe lies in a hole or outside of the copper."
+        "choose another grid"
+        "A grid whose corner is over a mounting hole";
+    Probing "probing" []
+        "A probing program cannot be made."
+        "correct the setting that the message names"
+        "A name of the log with a bracket in it";
+    ProbingGrid "probing-grid" []
+        "A grid of places to probe cannot be made."
+        "give 2 columns and 2 rows or more"
+        "`--probe 1,5`";
+    ProgramEnd "program-end" []
+        "Something is wrong with the end of the program."
+        "add the end of the program; the file may be cut off"
+        "sinumerik: a program without `M30`";
+    ProgramFrame "program-frame" []
+        "BEGIN PGM and END PGM are missing or do not fit."
+        "begin the program with BEGIN PGM and end it with END PGM, both with its name and unit"
+        "klartext: `END PGM OTHER MM`";
+    ProgramLength "program-length" []
+        "The program has more moves than are read."
+        "divide the program"
+        "A loop of 100 million moves";
+    ProgramNumber "program-number" ["nc-program-number"]
+        "A program number is out of range."
+        "give a program number from 1 to 9999 (or 8 digits where the control takes them)"
+        "fanuc: `O12345678901`";
+    ProgramRepeats "program-repeats" []
+        "The program ends with M99, by which it begins again without end."
+        "write M30 where it shall run once"
+        "fanuc: `M99`";
+    RParameter "r-parameter" []
+        "An R parameter is out of range, or set and read in one block."
+        "use R0 to R999, and set a parameter before the block that reads it"
+        "sinumerik: `R2000=1`";
+    RapidFeed "rapid-feed" []
+        "How fast rapids are is not known, or a rapid is written as a cut."
+        "write the `rapid` of the machine, in mm/min, below [axes]; a rapid of the toolpath is a rapid (G0) in the program"
+        "A LinuxCNC file without `rapid` in [axes]";
+    RapidPath "rapid-path" []
+        "A rapid does not stay on the way of the source."
+        "nothing to do; a control that brings all axes to their ends together (`rapid_path = \"linear\"`) needs fewer blocks"
+        "A turn of A by 60° in a rapid next to the part";
+    RapidStop "rapid-stop" []
+        "A rapid ends at a point that the source does not have."
+        "report this with the toolpath: the program differs from it"
+        "A rapid that stops 3 mm above a hole";
+    Reader "reader" []
+        "The machine has no control that reads a program."
+        "name the control that the machine has (`reader`)"
+        "`--from` with a machine file without `reader`";
+    ReferencePlane "reference-plane" []
+        "The retraction plane is not above the reference plane."
+        "put the retraction plane above the reference plane"
+        "sinumerik: `CYCLE81(0,10,2,-5)`";
+    Region "region" []
+        "A Gerber region is not begun or ended."
+        "begin a region with G36, and end it with G37"
+        "`G36*` within a region";
+    RegionCrossesItself "region-crosses-itself" []
+        "A contour of a Gerber region crosses itself."
+        "draw the region without crossings"
+        "An eight between G36 and G37";
+    RegionOpen "region-open" []
+        "A contour of a Gerber region is not closed."
+        "end the contour where it begins"
+        "Three sides between G36 and G37";
+    RegionTooComplex "region-too-complex" []
+        "A contour has too many crossings to be looked through."
+        "divide the region"
+        "A region of a million points in a knot";
+    Register "register" []
+        "The tool has a register of the control that the program does not set."
+        "set the value at the control with the tool, if the program needs this register"
+        "`LOAD/TOOL,1,ADJUST,5`";
+    Repeat "repeat" []
+        "A drill file repeats without a count."
+        "write how often, as in R5X1"
+        "`R`";
+    RepeatedWord "repeated-word" ["nc-repeated-word", "word-twice"]
+        "A word stands twice in a block."
+        "give each word once in a block"
+        "fanuc: `G1 X1 X2`";
+    ReplacementTool "replacement-tool" []
+        "The control changes a tool whose life is over by itself."
+        "leave M101 out, or write M102 before the cut"
+        "`M101` (HEIDENHAIN)";
+    ReportPair "report-pair" []
+        "The report does not belong to this program."
+        "post the program anew for a report of its own, or remove the report"
+        "A program that was edited behind its report";
+    Retract "retract" []
+        "A cycle retracts to a height below the one it feeds from."
+        "give a higher RTRCTO"
+        "`CYCLE/DRILL,RAPTO,5,RTRCTO,2,...`";
+    Rewind "rewind" []
+        "A rotary axis has to be turned back, and the cut is interrupted."
+        "check the marks of the interrupted cut; a machine with more travel, or the part turned, avoids it"
+        "A spiral of 10 turns on an axis with ±180°";
+    RotaryAtZero "rotary-at-zero" []
+        "Rotary axes stand at 0 throughout, and are read as those of a machine without them."
+        "nothing to do, if they are not meant to turn; `--from` with the machine's file tells what they do"
+        "`G0 A0` in a program of which only the control is known";
+    RotaryFeed "rotary-feed" []
+        "How the feed of rotary axes counts is not known."
+        "state `rotary_feed` in [settings] of the machine file (FANUC: parameter 1408#0)"
+        "`G1 A90 F500` of a machine without `rotary_feed`";
+    RotaryWay "rotary-way" []
+        "Which way a rotary axis turns depends on a setting that is not known."
+        "state `modulo` of the axis in the machine file, or write M126 (HEIDENHAIN), DC() (SINUMERIK)"
+        "`G0 C350` from C10, without `modulo` in the machine file";
+    Route "route" []
+        "A route of a drill file is not begun, or not ended."
+        "write G00 to the start of the route, and M15"
+        "`G01X5` behind a hole";
+    SafeHeight "safe-height" []
+        "The safe height of the machine is not known."
+        "write the `safe_height` of the machine, mm in machine coordinates"
+        "`retract = \"G53 G0 Z{{ safe_height }}\"` in a file without `safe_height`";
+    SelfCrossing "self-crossing" []
+        "A contour crosses itself."
+        "give a contour that goes round once"
+        "An eight as a contour for a wire";
+    SetUps "set-ups" []
+        "A file has several set-ups, and all are read as one."
+        "post each set-up by itself"
+        "Two MSYS with different origins in one file";
+    Setting "setting" []
+        "A setting is out of range, or two do not go together."
+        "give a value within the range that is named"
+        "`--tolerance 0`";
+    Shape "shape" []
+        "A shape of a KiCad board cannot be read."
+        "draw it again in KiCad"
+        "A polygon that crosses itself many times";
+    Side "side" []
+        "On which side of the contour the wire runs is not known."
+        "give `--side left` or `--side right`"
+        "An open contour without `--side`";
+    SingleBlock "single-block" []
+        "The operator stops block by block, and a block goes where that is not safe."
+        "report this with the toolpath, or leave `--single-block` out"
+        "A block that turns axes and moves at once, with `single_block` in the machine file";
+    Source "source" []
+        "The source is not known, or cannot be compared."
+        "add `--from` with a machine or a control"
+        "A file of a kind that is not read";
+    SourcePasses "source-passes" []
+        "A contour for a wire has several passes already."
+        "take one pass of it; `--passes` makes more"
+        "A source that cuts the same contour twice";
+    Spindle "spindle" ["nc-spindle"]
+        "The spindle is not on, has no speed, or does not run as in the source."
+        "give a spindle speed above 0 and a direction before the first cut"
+        "fanuc: `S-100`";
+    SpindleDwell "spindle-dwell" []
+        "The tool cuts before the spindle has come to its speed."
+        "report this with the toolpath: the program lacks the dwell"
+        "A cut right behind `M3` with `spindle_dwell` in the machine file";
+    SpindleOff "spindle-off" []
+        "A cut comes while the spindle stands."
+        "start the spindle before the first cut"
+        "A cut before `SPINDL/1000,CLW`";
+    SpindleRange "spindle-range" []
+        "A speed is outside the range of the machine."
+        "give a speed within the range of the machine, or correct its file"
+        "S 20000 on a machine with 12000 rpm at most";
+    SpindleSpeed "spindle-speed" []
+        "A tool of a FreeCAD job has no speed."
+        "give the tool controller its speed and direction"
+        "A tool controller with 0 rpm";
+    Spline "spline" ["nc-spline"]
+        "A spline lacks words, or stands where the control does not take it."
+        "give the words that the spline needs, in the plane that it works in"
+        "linuxcnc: `G18`, `G5.1 X10 Y0 I1 J1`";
+    Step "step" []
+        "A step down is smaller than can be."
+        "give a larger step"
+        "1,000,000 levels of 0.001 mm";
+    StepAndRepeat "step-and-repeat" []
+        "A Gerber step and repeat is wrong."
+        "write counts above 0, and none within another or within a block"
+        "`%SRX0Y2I1J1*%`";
+    Stop "stop" []
+        "The program stops where the source does not, or the other way round."
+        "report this with the toolpath: the program differs from it"
+        "`M0` in the program alone";
+    StopInCut "stop-in-cut" []
+        "The program stops while the tool is in a cut."
+        "retract the tool before the stop"
+        "`M0` behind `G1 Z-5`";
+    StopRetract "stop-retract" []
+        "Where axes go at a stop of the control is not followed."
+        "nothing to do, if the machine may stop where it stands"
+        "sinumerik: `POLF[X]=10`";
+    StopRunning "stop-running" []
+        "The program stops while spindle or coolant may run on."
+        "write M5 and M9 before the stop"
+        "`M0` without `M5` and `M9` before it";
+    Stopped "stopped" []
+        "The work was stopped from outside."
+        "it was cancelled: start it again"
+        "Ctrl-C";
+    StoredPosition "stored-position" []
+        "An axis goes to a position that only the machine knows."
+        "retract by G53 to the safe height of the machine"
+        "linuxcnc: `G30`";
+    Surface "surface" []
+        "What follows a measured surface is not possible here."
+        "level the program with measured heights (`--heights`) instead"
+        "An arc in XZ over a surface";
+    SurfaceSpeed "surface-speed" []
+        "Constant surface speed is asked for, which mills do not have."
+        "give the spindle a speed (G97)"
+        "`SPINDL/100,SMM`";
+    Sweep "sweep" []
+        "Between points the tool leans otherwise than in the source, and points were added."
+        "nothing to do; the tolerance holds; points in the CAM system that are closer make it unnecessary"
+        "Two points 90° of tilt apart";
+    SwivelData "swivel-data" []
+        "The program swivels by another data set than the machine file names."
+        "set `swivel_data` in [options] of the machine file, and name the same in _TC"
+        "`_TC` of CYCLE800 with another name than `swivel_data`";
+    SyncBlocks "sync-blocks" []
+        "Upper and lower contour have different numbers of blocks."
+        "synchronise them by arc length or by given points"
+        "4 lines below and 5 above";
+    SyncClosed "sync-closed" []
+        "One of two contours is closed, the other is not."
+        "close both"
+        "A circle below and a line above";
+    SyncOpenings "sync-openings" []
+        "Upper and lower contours are not the same number."
+        "give one upper contour for each lower one"
+        "2 contours below and 3 above";
+    SyncPoint "sync-point" []
+        "A point that synchronises two contours does not lie on them."
+        "give points of the contours, in the order of travel"
+        "`--sync` with a point 1 mm off the contour";
+    Syntax "syntax" ["nc-syntax"]
+        "A block is not written as the control takes it."
+        "correct the block at the mark, as the control's programming manual has it"
+        "linuxcnc: `G1 *`";
+    Tab "tab" []
+        "A tab needs something that the machine lacks, or has no room."
+        "leave the tab out, or choose another machine"
+        "`--tab 2` on a machine without `stop`";
+    TabCount "tab-count" []
+        "More tabs are asked for than can be."
+        "give a number of tabs that the message names"
+        "`--tabs 0` with a height";
+    TabHeight "tab-height" []
+        "Tabs are higher than the board."
+        "give a part of the thickness"
+        "A tab of 2 mm in a board of 1.6 mm";
+    TableFrame "table-frame" []
+        "In which frame X, Y and Z count behind G43.4 with a turned table is not known."
+        "turn the table to 0 before G43.4, or set `table_frame_at_zero` in [settings]"
+        "`G43.4 H1` with B at 30";
+    TabsBent "tabs-bent" []
+        "Tabs lie on arcs or corners."
+        "nothing to do, if they may be filed off there"
+        "A round board with tabs";
+    TabsLeftOut "tabs-left-out" []
+        "There is no room for all tabs."
+        "give fewer or shorter tabs"
+        "8 tabs on a board of 10 mm";
+    TapHolder "tap-holder" []
+        "Whether taps are held fast or floating is not known from the source."
+        "check the holder of the tap"
+        "`CYCLE/TAP,...,FLOAT` for a control with rigid tapping";
+    TapPitch "tap-pitch" []
+        "The pitch of a tap is not known."
+        "give MMPR,pitch or TPI,threads, or feed and spindle speed"
+        "`CYCLE/TAP` without a pitch, and no feed per turn";
+    Taper "taper" ["nc-taper"]
+        "A taper of the wire is wrong, or not that of the source."
+        "switch the taper in a straight cut"
+        "fanuc-wire: `G51 T95.`";
+    TaperActive "taper-active" []
+        "A record needs the taper off, and it is on."
+        "end the taper before this record"
+        "The wire is cut while `Taper` is on";
+    TaperAngle "taper-angle" []
+        "A taper leans farther than can be."
+        "lean by 60° at most, with a height above 0"
+        "`--taper 70`";
+    TaperCorner "taper-corner" []
+        "A corner cannot be cut with this taper."
+        "lean less, or round the corner"
+        "An inside corner of R 0.2 with 10° over 50 mm";
+    TaperLead "taper-lead" []
+        "The lead-in is too short for the taper."
+        "thread the wire farther from the contour"
+        "A lead-in of 1 mm with 10° over 50 mm";
+    TaperLimit "taper-limit" []
+        "The wire leans farther than the machine allows."
+        "give a smaller angle, or a machine whose wire may lean more"
+        "15° on a machine with 10°";
+    Template "template" []
+        "A template of a machine file uses what templates may not use."
+        "correct the template at the mark: words, `{{ name }}`, `{% if %}`, `{% for %}` and `{% set %}` are there"
+        "`{{ f(x) }}`";
+    TemplateBlock "template-block" []
+        "A template calls a block that is not there."
+        "check the name of the block"
+        "`{{ block(\"retrct\") }}`";
+    TemplateComment "template-comment" []
+        "A template writes a value that may end its comment."
+        "write it by the block `comment`"
+        "`({{ tool.name }})` without the filter that the message names";
+    TemplateName "template-name" []
+        "A template uses a name that is not there."
+        "use a name that `toolpost explain` lists"
+        "`{{ tol.number }}`";
+    TemplateOutput "template-output" []
+        "A template writes too much."
+        "make the template shorter: what it writes is bounded"
+        "A loop of a million lines in a block";
+    TextKnockout "text-knockout" []
+        "A knocked-out text of a KiCad board is left out."
+        "draw the text without knockout"
+        "`(knockout)` on F.Cu";
+    TextLetters "text-letters" []
+        "Letters of a KiCad text were drawn by strokes of our own."
+        "nothing to do, if the form of the letters does not matter"
+        "A text on F.Cu without a stored outline";
+    TextOpen "text-open" []
+        "A text of a KiCad file is not closed."
+        "the file is damaged: save it again in KiCad"
+        "`\"GND`";
+    TextVariable "text-variable" []
+        "A text with variables is left out."
+        "write the text itself"
+        "`${REVISION}` on F.Cu";
+    Thread "thread" ["nc-thread"]
+        "A screw thread, or threading of the wire, is not as the control takes it."
+        "give a pitch above 0, a turning spindle and a straight way"
+        "linuxcnc: `G33 Z-10`";
+    TiltedPlane "tilted-plane" ["nc-tilt", "plane"]
+        "A tilted plane is incomplete, or stands where the control does not take it."
+        "end the tilted plane before this block, or give it the words that the control takes"
+        "fanuc: `G53.1`";
+    TooLarge "too-large" []
+        "The file has more objects than are read."
+        "divide the file"
+        "A drill file of 100 million holes";
+    TooMuch "too-much" []
+        "An area has more to clear than can be worked on."
+        "clear the area in parts, or use a wider tool first"
+        "A board of 1 m cleared with 0.05 mm";
+    TooTangled "too-tangled" []
+        "A drawing has too many lines that meet or cross."
+        "divide the drawing into contours, or choose layers"
+        "100,000 lines over each other";
+    Tool "tool" ["nc-tool"]
+        "A tool is not called, or not the one of the source."
+        "call the tool that the toolpath names, by a number or name that the control takes"
+        "`M6`, and no T has chosen a tool (SINUMERIK)";
+    ToolAxis "tool-axis" []
+        "The tool axis is missing or incomplete."
+        "give all three values of the vector"
+        "A GOTO with a tool axis of two values";
+    ToolCenter "tool-center" []
+        "Tool centre control is switched where the control does not take it."
+        "switch tool centre control on with the tool called, on a machine with rotary axes"
+        "klartext: `M128`";
+    ToolChange "tool-change" []
+        "A motion comes before the first tool is loaded."
+        "add LOAD/TOOL at the start of the operation"
+        "A GOTO before `LOAD/TOOL`";
+    ToolChangeHeight "tool-change-height" []
+        "The tool is changed where Z is not home."
+        "send Z home before M6, or set `tools.retracts` of the machine"
+        "`M6` behind a cut on a machine that does not raise Z itself";
+    ToolChangeTilt "tool-change-tilt" []
+        "The tool is changed while the head leans."
+        "turn the head upright before M6"
+        "`M6` with B at 30";
+    ToolLength "tool-length" []
+        "The length of the tool is needed and not known."
+        "give the tool a length in the source or a tool table (`--tools`)"
+        "A tilted head, and a tool without length";
+    ToolNumber "tool-number" []
+        "The number of a tool is missing or not known."
+        "give the tool its number in a tool table (`--tools`)"
+        "`LOAD/TOOL,MILL10` without a tool table";
+    ToolOffset "tool-offset" []
+        "An offset of a tool is not used."
+        "nothing to do, if the control keeps the length"
+        "`LOAD/TOOL,1,OFFSETL,50`";
+    ToolPosition "tool-position" []
+        "Positions are not those of the tool tip."
+        "let the CAM system write the tool tip"
+        "`TOOL PATH/...` with centre points";
+    ToolRange "tool-range" []
+        "A tool is larger than the machine takes."
+        "choose a tool within the range of the machine, or correct the tool's data"
+        "A tool of 200 mm for a magazine with 120 mm";
+    ToolTable "tool-table" []
+        "A line of the tool table is wrong."
+        "a line is like `T1 P1 Z25 D6 ;end mill`, lengths in mm"
+        "`T1 P1 Z`";
+    ToolTooWide "tool-too-wide" []
+        "A tool is too wide for every gap between conductors."
+        "use a narrower tool"
+        "A tool of 3 mm for a board with gaps of 0.2 mm";
+    ToolTwice "tool-twice" []
+        "Two tools have one number."
+        "give each tool a number of its own in the toolpath, or the same data everywhere where it is one tool"
+        "T1 as a drill of 5 mm and T1 as a mill of 10 mm";
+    ToolWidth "tool-width" []
+        "The width of a tool is missing, or tools are in the wrong order."
+        "name the widest tool first, each once"
+        "1 mm before 2 mm";
+    Topic "topic" []
+        "This is no name of machine and control files, and no rule."
+        "`toolpost explain` lists them all"
+        "`toolpost explain drlil`";
+    Transformation "transformation" []
+        "A transformation is not ended before the next, or is incomplete."
+        "end one transformation before the next begins, and give it the words that the control takes"
+        "`CYCL DEF 247` in a turned frame (HEIDENHAIN)";
+    Travel "travel" []
+        "The board does not fit into the travel of the machine."
+        "turn the board, or choose another machine"
+        "A board of 400 mm on a machine with 300 mm";
+    Truncated "truncated" []
+        "The file is cut off."
+        "write the file again from the CAM system: it may be cut off"
+        "A file that ends within a record";
+    TurnHeight "turn-height" []
+        "Rotary axes turn where the tool may meet the part."
+        "report this with the toolpath, or set `safe_height` of the machine"
+        "A turn of A with the tool 1 mm above the part";
+    TwoTools "two-tools" []
+        "An operation of a FreeCAD job uses another tool than it names."
+        "change the commands of the operation"
+        "`T2 M6` within an operation with tool 1";
+    Type "type" []
+        "A value has the wrong type."
+        "give a value of the type that is needed here"
+        "sinumerik: `R1=\"A\"`";
+    Unit "unit" []
+        "The unit of a board file is wrong."
+        "write MM or IN"
+        "`%MOXX*%`";
+    UnitBlock "unit-block" []
+        "G20 or G21 stands in a block with other words."
+        "write it in a block of its own at the start of the program"
+        "fanuc: `G21 G0 X0`";
+    UnitConcluded "unit-concluded" []
+        "The unit of a drill file was concluded from its numbers."
+        "nothing to do, if it is right"
+        "A drill file without METRIC or INCH";
+    Units "units" ["nc-units"]
+        "The unit is not known, or is switched where the control does not take it."
+        "switch the unit in a block of its own at the start of the program"
+        "fanuc: a program without G20 and G21";
+    UnknownAxis "unknown-axis" ["nc-axis"]
+        "The program moves an axis that is not known."
+        "name the machine that the program was written for: its file says which linear and rotary axes there are"
+        "linuxcnc: `G1 A10`";
+    UnknownBlock "unknown-block" []
+        "A block of the program is not known."
+        "check the spelling of the block, or read the program with the control that it was written for"
+        "klartext: `FOO X+10`";
+    UnknownCommand "unknown-command" []
+        "A command of a board file is not read."
+        "leave it out, or write the file again"
+        "`G99` in a drill file";
+    UnknownM "unknown-m" []
+        "An M function is not known."
+        "check the number, or describe the M function in the machine file"
+        "sinumerik: `M77`";
+    UnknownMachine "unknown-machine" []
+        "There is no such machine in the library."
+        "check the name (`toolpost machines list`)"
+        "`machines show fanuk`";
+    UnknownPosition "unknown-position" ["nc-unknown-position"]
+        "A block needs a position that no block before has given."
+        "move to a known position first, with every axis named in absolute coordinates"
+        "fanuc: `G28 Z50.`, `G91 G1 Z5.`";
+    UnknownShift "unknown-shift" ["nc-unknown-shift"]
+        "A shift of the coordinates is used whose value is not in the program."
+        "set the shift before, or leave it out: its value is not in the program"
+        "linuxcnc: `G92.3`";
+    UnknownStart "unknown-start" []
+        "Where a cut starts is not known."
+        "give a rapid move with X, Y and Z before the first cut"
+        "A program whose first move is `G1`";
+    UnknownUnit "unknown-unit" []
+        "The unit of a cutter-location file is not known."
+        "write UNITS/MM or UNITS/INCHES before the first length"
+        "apt: `UNITS/FEET`";
+    UnknownWord "unknown-word" ["nc-unknown-word"]
+        "A word is not known to the control."
+        "check the spelling, or read the program with the control that it was written for"
+        "fanuc: `G999`";
+    Unproven "unproven" []
+        "The source has something that no virtual control reports yet."
+        "leave it out, or write the program without proof"
+        "A toolpath for a laser";
+    UnreachableOrientation "unreachable-orientation" []
+        "The rotary axes have no position for this orientation."
+        "choose a machine whose axes reach this orientation, or set the part up differently"
+        "A tool that points from below on a table of ±110°";
+    Unreadable "unreadable" []
+        "A file cannot be read."
+        "check the name of the file and the right to read it"
+        "`toolpost post missing.cls`";
+    Unsupported "unsupported" []
+        "This is not supported."
+        "write this in another way; docs/controls and docs/sources list what is read"
+        "apt: `CYCLE/FACE,5`";
+    Unterminated "unterminated" []
+        "A command of a Gerber file has no end."
+        "the file may be cut off: write it again"
+        "`X0Y0D01` without `*`";
+    UnusedLayers "unused-layers" []
+        "Pads of a KiCad board have copper where it is not used."
+        "nothing to do"
+        "A via with `(remove_unused_layers)`";
+    UnusedWord "unused-word" ["nc-unused-word"]
+        "A word of the block is used by nothing."
+        "remove the word: nothing in this block uses it"
+        "linuxcnc: `G0 X1 P5`";
+    UpperPlane "upper-plane" []
+        "The height of the upper plane is not known, and a block gives U and V."
+        "give the height of the upper plane in the machine file or the program"
+        "A point file with U and V for a machine without `height`";
+    Urdf "urdf" []
+        "The description of an arm (URDF) cannot be read."
+        "correct the description: one foot, six revolute joints with limits in a row, a link `tool0` at the flange"
+        "Two joints that have one child";
+    UvLimit "uv-limit" []
+        "The upper end of the wire leaves its travel."
+        "give a smaller taper or a lower part, or choose another machine"
+        "U 30 on a machine with ±25 mm";
+    Variable "variable" []
+        "A variable is read before it has a value."
+        "define the variable before it is read"
+        "`R1=A` before `A` has a value (SINUMERIK)";
+    Version "version" []
+        "A KiCad board is older or newer than is read."
+        "open it in KiCad 6 or newer, and save it"
+        "A board of KiCad 4";
+    Via "via" []
+        "A via of a KiCad board has no copper."
+        "vias have a size above 0: correct it in KiCad"
+        "`(via (size 0))`";
+    Width "width" []
+        "A width of a board file is not above 0."
+        "give a width above 0, mm"
+        "`width = 0`";
+    Wire "wire" ["nc-wire"]
+        "The wire is not threaded or cut as the control or the source has it."
+        "thread the wire before the first cut, and cut it before it is threaded again"
+        "fanuc-wire: `G1 X5. U1. F5.`";
+    WireHeight "wire-height" []
+        "The heights of a wire machine do not fit, or are missing."
+        "give the height of the part by `--height`"
+        "`--height` missing for a wire that leans";
+    WireLeans "wire-leans" []
+        "The wire leans, and the control has no U and V."
+        "choose a control with U and V, or a contour without taper"
+        "A tapered contour for a control without taper";
+    WirePlane "wire-plane" []
+        "A point does not lie in the plane of the wire."
+        "give the contour in the lower plane, Z 0"
+        "Z 5 in a contour of a flat part";
+    WireThreaded "wire-threaded" []
+        "The wire is threaded already."
+        "cut the wire before it is threaded again"
+        "Two `thread_wire()` of the Python builder";
+    WiresCross "wires-cross" []
+        "Two positions of the wire cross each other."
+        "lean less, or synchronise the contours by points"
+        "A short upper contour over a long lower one with 20°";
+    Word "word" []
+        "A word is wrong, or not in the control's file."
+        "add the word or its code below [words] of the control's file; `toolpost explain` lists them"
+        "`X1#` in a drill file";
+    WorkOffset "work-offset" ["nc-work-offset"]
+        "The work offset is not one of the control, or not that of the source."
+        "use the work offset of the toolpath, one that the control has"
+        "fanuc: `G54.1 P999`";
+    ZeroVector "zero-vector" []
+        "A direction has no length."
+        "give a direction with a length above 0"
+        "apt: `MULTAX/ON`, `GOTO/0,0,0,0,0,0`";
+    ZerosConcluded "zeros-concluded" []
+        "Which zeros a drill file leaves out was concluded from its numbers."
+        "nothing to do, if it is right"
+        "A drill file with METRIC alone";
+    ZoneFill "zone-fill" []
+        "A zone of a KiCad board is not filled."
+        "fill all zones in KiCad, and save"
+        "A zone that was drawn and not filled (key B)";
+}
