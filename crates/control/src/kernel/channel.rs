@@ -1,9 +1,9 @@
 //! The way from a control to who asked: its records go out one by one, compensated, and jumps are counted against them.
 
-use super::Fallible;
 use super::budget::Budget;
 use super::compensation::{Compensator, Terms};
 use super::relay;
+use super::source::Fallible;
 use crate::event::{Action, Event};
 use crate::{Settings, Sink};
 use program::{Compensation, Diagnostic};

@@ -108,50 +108,70 @@ pub struct Span {
     pub end: usize,
 }
 
-/// Values and operators of which some wait for what follows them.
+/// A value with the bytes at which it begins and ends.
+#[derive(Clone, Debug)]
+pub struct Operand<V> {
+    /// What it is.
+    pub value: V,
+    /// Where it stands.
+    pub place: [usize; 2],
+}
+
+/// How many values wait without memory of their own: as many as a language has ranks in most formulas.
+const NEAR: usize = 4;
+
+/// Values that wait for what follows them, each with the operator behind it.
 #[derive(Debug)]
 pub struct Stack<V, O> {
-    /// The last value, and where it begins and ends.
-    last: (V, [usize; 2]),
-    /// The values before it, each with the operator behind it.
-    waiting: Vec<(V, [usize; 2], Next<O>)>,
+    near: [Option<(Operand<V>, Next<O>)>; NEAR],
+    far: Vec<(Operand<V>, Next<O>)>,
+    length: usize,
+}
+
+impl<V, O> Default for Stack<V, O> {
+    fn default() -> Stack<V, O> {
+        Stack { near: [const { None }; NEAR], far: Vec::new(), length: 0 }
+    }
 }
 
 impl<V, O: Copy> Stack<V, O> {
-    /// With the first value, and where it begins and ends.
-    pub fn new(first: V, place: [usize; 2]) -> Stack<V, O> {
-        Stack { last: (first, place), waiting: Vec::new() }
-    }
-
-    /// Applies the operators that go before one of rank `next`, or all.
+    /// Applies to `last` the operators that go before one of rank `next`, or all.
     ///
     /// # Errors
     /// Two values have no result.
     pub fn settle<E>(
-        mut self,
+        &mut self,
+        mut last: Operand<V>,
         next: Option<Rank>,
         mut apply: impl FnMut(O, [V; 2], Span) -> Result<V, E>,
-    ) -> Result<Stack<V, O>, E> {
-        let goes = |operator: &Next<O>| next.is_none_or(|next| operator.rank.goes_before(next));
-        while let Some((left, [start, _], by)) = self.waiting.pop_if(|(_, _, by)| goes(by)) {
-            let (right, [_, end]) = self.last;
+    ) -> Result<Operand<V>, E> {
+        let goes = |by: &Next<O>| next.is_none_or(|next| by.rank.goes_before(next));
+        while let Some((left, by)) = self.pop_if(goes) {
+            let ([start, _], [_, end]) = (left.place, last.place);
             let span = Span { start, operator: by.at, end };
-            self.last = (apply(by.operator, [left, right], span)?, [start, end]);
+            let value = apply(by.operator, [left.value, last.value], span)?;
+            last = Operand { value, place: [start, end] };
         }
-        Ok(self)
+        Ok(last)
     }
 
-    /// Puts an operator and its right operand behind what is there.
-    #[must_use]
-    pub fn push(mut self, operator: Next<O>, right: V, place: [usize; 2]) -> Stack<V, O> {
-        let (left, at) = std::mem::replace(&mut self.last, (right, place));
-        self.waiting.push((left, at, operator));
-        self
+    /// A value waits for the right operand of `operator`.
+    pub fn push(&mut self, left: Operand<V>, operator: Next<O>) {
+        match self.near.get_mut(self.length) {
+            Some(free) => *free = Some((left, operator)),
+            None => self.far.push((left, operator)),
+        }
+        self.length += 1;
     }
 
-    /// The last value: the result where all is settled.
-    pub fn value(self) -> V {
-        self.last.0
+    fn pop_if(&mut self, goes: impl Fn(&Next<O>) -> bool) -> Option<(Operand<V>, Next<O>)> {
+        let index = self.length.checked_sub(1)?;
+        let popped = match self.near.get_mut(index) {
+            Some(last) => last.take_if(|(_, by)| goes(by)),
+            None => self.far.pop_if(|(_, by)| goes(by)),
+        };
+        self.length -= usize::from(popped.is_some());
+        popped
     }
 }
 
@@ -160,17 +180,19 @@ impl<V, O: Copy> Stack<V, O> {
 /// # Errors
 /// The first that the grammar finds.
 pub fn evaluate<G: Grammar>(grammar: &mut G) -> Result<G::Value, G::Error> {
-    let start = grammar.start();
-    let first = grammar.operand()?;
-    let mut stack = Stack::new(first, [start, grammar.end()]);
-    while let Some(next) = grammar.operator() {
-        let apply = |operator, values, span| grammar.apply(operator, values, span);
-        stack = stack.settle(Some(next.rank), apply)?;
+    let mut stack = Stack::default();
+    loop {
         let start = grammar.start();
-        let right = grammar.operand()?;
-        stack = stack.push(next, right, [start, grammar.end()]);
+        let value = grammar.operand()?;
+        let operand = Operand { value, place: [start, grammar.end()] };
+        let next = grammar.operator();
+        let apply = |operator, values, span| grammar.apply(operator, values, span);
+        let operand = stack.settle(operand, next.map(|next| next.rank), apply)?;
+        match next {
+            Some(next) => stack.push(operand, next),
+            None => return Ok(operand.value),
+        }
     }
-    Ok(stack.settle(None, |operator, values, span| grammar.apply(operator, values, span))?.value())
 }
 
 #[cfg(test)]

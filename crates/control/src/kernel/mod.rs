@@ -26,7 +26,4 @@ pub(crate) mod way;
 
 pub(crate) use channel::LONG;
 pub use channel::{Channel, run};
-use program::Diagnostic;
-
-/// What a step of a control answers: what is wrong stops the run.
-pub type Fallible<T> = Result<T, Box<Diagnostic>>;
+pub use source::Fallible;

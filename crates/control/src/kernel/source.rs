@@ -3,6 +3,9 @@
 use program::Diagnostic;
 use std::ops::Range;
 
+/// What a step of a control answers: what is wrong stops the run.
+pub type Fallible<T> = Result<T, Box<Diagnostic>>;
+
 /// One block of the program text.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {

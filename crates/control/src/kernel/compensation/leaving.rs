@@ -3,7 +3,7 @@
 use super::plane::Plane;
 use super::{SAME, error};
 use crate::event::Position;
-use crate::kernel::Fallible;
+use crate::kernel::source::Fallible;
 use geom::{Element, Vec2};
 
 /// The end of a contour that the tool has not left yet.

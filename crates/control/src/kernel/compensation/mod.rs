@@ -12,7 +12,7 @@ mod plane;
 mod rules;
 
 use crate::event::{Action, Event, Orientation, Position};
-use crate::kernel::Fallible;
+use crate::kernel::source::Fallible;
 use crate::{Dialect, Settings, Sink, ToolData};
 use geom::Vec3;
 use leaving::Leaving;

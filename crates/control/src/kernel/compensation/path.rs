@@ -6,7 +6,7 @@ use super::rules::{Entry, Outer, Rules};
 use super::{SAME, error, inverse_time, on_arc};
 use crate::Sink;
 use crate::event::{Action, ArcTo, Event, Orientation, Position};
-use crate::kernel::Fallible;
+use crate::kernel::source::Fallible;
 use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
 use program::{Diagnostic, Feed};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};

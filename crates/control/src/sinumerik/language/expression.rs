@@ -14,7 +14,7 @@ use super::system;
 use super::value::Value;
 use super::variables::{Place, Readable};
 use crate::kernel::Fallible;
-use crate::kernel::expression::{Grammar, Next, Rank, Span, Stack};
+use crate::kernel::expression::{self, Grammar, Next, Rank, Span, Stack};
 use program::Diagnostic;
 use std::rc::Rc;
 
@@ -130,34 +130,39 @@ struct Expression<'e, 'a, 's, 't> {
 impl Expression<'_, '_, '_, '_> {
     /// An expression. It is read by the ranks of the control, and where it compares also by the usual ones.
     fn whole(&mut self) -> Fallible<Operand> {
+        let (mut own, mut read) = (Stack::default(), Vec::new());
         let start = self.start();
-        let first = self.operand()?;
-        let mut own = Stack::new(first.clone(), [start, self.end()]);
-        let mut read: Vec<(Next<Operator>, Operand, [usize; 2])> = Vec::new();
-        while let Some(next) = self.operator() {
-            own = own.settle(Some(next.rank), |o, values, span| self.apply(o, values, span))?;
+        let (found, last) = loop {
             let from = self.start();
-            let right = self.operand()?;
-            let place = [from, self.end()];
-            read.push((next, right.clone(), place));
-            own = own.push(next, right, place);
-        }
-        let found = own.settle(None, |o, values, span| self.apply(o, values, span))?.value();
-        let logical = read.iter().filter(|(next, ..)| next.operator.is_logic()).count();
-        if logical < 2 || !read.iter().any(|(next, ..)| next.operator.compares()) {
+            let value = self.operand()?;
+            let right = expression::Operand { value, place: [from, self.end()] };
+            let next = self.operator();
+            let rank = next.map(|next| next.rank);
+            let settled = own.settle(right.clone(), rank, |o, v, span| self.apply(o, v, span))?;
+            match next {
+                Some(next) => {
+                    own.push(settled, next);
+                    read.push((right, next));
+                }
+                None => break (settled.value, right),
+            }
+        };
+        let logical = read.iter().filter(|(_, next)| next.operator.is_logic()).count();
+        if logical < 2 || !read.iter().any(|(_, next)| next.operator.compares()) {
             return Ok(found);
         }
         let usual = (|| {
-            let mut usual = Stack::new(first, [start, start]);
-            for (next, right, place) in read {
+            let mut usual = Stack::default();
+            for (operand, next) in read {
                 let next = Next { rank: Rank::Left(next.operator.usual_rank()), ..next };
-                usual = usual.settle(Some(next.rank), |o, v, span| self.apply(o, v, span))?;
-                usual = usual.push(next, right, place);
+                let apply = |o, v, span| self.apply(o, v, span);
+                let settled = usual.settle(operand, Some(next.rank), apply)?;
+                usual.push(settled, next);
             }
-            usual.settle(None, |o, v, span| self.apply(o, v, span)).map(Stack::value)
+            usual.settle(last, None, |o, v, span| self.apply(o, v, span))
         })();
         match usual {
-            Ok(usual) if usual.value == found.value => Ok(found),
+            Ok(usual) if usual.value.value == found.value => Ok(found),
             _ => Err(rank_in_doubt(self.scanner, start)),
         }
     }
