@@ -126,6 +126,8 @@ fn what_is_no_arm_is_refused_with_its_line() {
         "the axis of joint `j1` has no direction",
     );
     refused("velocity=\"10\"", "", "says no `velocity`");
+    refused("velocity=\"10\"", "velocity=\"6.1e3\"", "hold nothing");
+    refused("xyz=\"0.42 0 0\"", "xyz=\"42 0 0\"", "a description has its lengths in metres");
     refused("<limit lower=\"-3.2\" upper=\"3.2\" velocity=\"5\"/>", "", "joint `j4` has no limit");
     refused("lower=\"-3.2\" upper=\"3.2\"", "lower=\"3.2\" upper=\"3.2\"", "hold nothing");
     refused(

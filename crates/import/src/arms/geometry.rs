@@ -10,6 +10,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Points as near as this are one, mm.
 const SAME: f64 = 0.1;
 
+/// No arm reaches farther, mm.
+const LONGEST: f64 = 1e4;
+
 /// How far the arm may be from the chain at any joints, mm.
 const AGREES: f64 = 0.05;
 
@@ -79,6 +82,10 @@ pub(super) fn find(chain: &Chain) -> Read<Found> {
     let joints: [Joint; 6] = joints.try_into().map_err(|_| refused("an arm has six joints"))?;
     let arm = Arm::new(structure, joints, None, chain.world.translation.z)
         .map_err(|why| refused(why.to_string()))?;
+    if arm.reach() > LONGEST || arm.world_height().abs() > LONGEST {
+        let message = format!("the arm would reach {:.0} mm", arm.reach());
+        return fail(refused(message).help("a description has its lengths in metres"));
+    }
     agrees(&arm, chain)?;
     Ok(Found { arm })
 }

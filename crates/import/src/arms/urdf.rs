@@ -351,7 +351,8 @@ fn revolute(joint: &Joint<'_>, frame: Frame, findings: &mut Vec<Diagnostic>) -> 
         })
     };
     let (min, max, speed) = (number("lower")?, number("upper")?, number("velocity")?);
-    if min >= max || speed <= 0.0 {
+    // A twentieth of a degree, a degree in a minute and 150 revolutions a second are bounds of what a joint does.
+    if max - min < 1e-3 || !(3e-4..=1e3).contains(&speed) {
         let message = format!(
             "the limits of joint `{}` hold nothing: lower {min}, upper {max}, velocity {speed}",
             joint.name
