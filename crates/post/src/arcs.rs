@@ -104,12 +104,12 @@ impl Walk<'_> {
         self.before_cut()?;
         self.settle(&to.end, stop, true)?;
         self.look_ahead_in_cuts()?;
-        let Some(here) = self.here.filter(|_| self.located) else {
+        let Some(here) = self.position.known() else {
             return Err(refuse("arc-start", "an arc from a position that is not known"));
         };
         // The reader holds arcs against its own tolerance; here the ends are what they are.
         let arc = to.circle.arc(here.point(), to.end.point(), f64::MAX).map_err(no_arc)?;
-        self.whole = if self.is_timed() { arc.length() } else { 0.0 };
+        self.position.begin_cut(if self.is_timed() { arc.length() } else { 0.0 });
         let local = Arc {
             start: self.local(arc.start),
             end: self.local(arc.end),
@@ -149,7 +149,7 @@ impl Walk<'_> {
                 Some(block) => {
                     self.followed(&arc, until - from == 1.0, "arcs")?;
                     self.arc_block(&arc, &form, &block)?;
-                    self.here = Some(to.end.at(arc.at(until))?);
+                    self.position.go_to(to.end.at(arc.at(until))?);
                 }
                 // Its ends are too near each other to say where its centre is, or too near the ends of a
                 // diameter for its radius to say that: two halves are better.
@@ -164,7 +164,7 @@ impl Walk<'_> {
             from = until;
             piece += if halves.pop().is_none() { 1 } else { 0 };
         }
-        self.here = Some(to.end);
+        self.position.go_to(to.end);
         Ok(())
     }
 
@@ -210,9 +210,9 @@ impl Walk<'_> {
             self.block(BlockName::ArcThrough)?;
             // The block names its own motion.
             self.writer.forget(bit(WordName::Motion));
-            self.here = Some(to.end.at(arc.at(until))?);
+            self.position.go_to(to.end.at(arc.at(until))?);
         }
-        self.here = Some(to.end);
+        self.position.go_to(to.end);
         Ok(())
     }
 
@@ -221,7 +221,7 @@ impl Walk<'_> {
         // Under tool center point control the plane turns with the tool.
         let upright = match self.place.kind {
             Kind::ToolCenter | Kind::Vectors => {
-                self.here.is_some_and(|here| crate::place::same(here.axis(), Vec3::Z))
+                self.position.pose().is_some_and(|here| crate::place::same(here.axis(), Vec3::Z))
             }
             Kind::Bare | Kind::Plain | Kind::Tilted(..) | Kind::Machine => true,
         };
@@ -385,15 +385,16 @@ impl Walk<'_> {
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
-        self.turned_to = by_angle.then(|| {
+        let turned_to = by_angle.then(|| {
             let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
             let rise = self.writer.rounded(WordName::Rise, block.rise);
             let normal = Vec3::AXES[w];
             let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
             block.center + turned
         });
+        self.position.turn_to(turned_to);
         self.block(name)?;
-        self.follow_arc(self.turned_to.unwrap_or(block.end), block.center, block.sweep)
+        self.follow_arc(turned_to.unwrap_or(block.end), block.center, block.sweep)
     }
 
     /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle
@@ -402,7 +403,7 @@ impl Walk<'_> {
         match END.map(|word| self.writer.active(word)) {
             [Some(x), Some(y), Some(z)] => Vec3::new(x, y, z),
             known => {
-                let begin = self.turned_to.unwrap_or_else(begin);
+                let begin = self.position.turned_to().unwrap_or_else(begin);
                 Vec3::from_array([0, 1, 2].map(|i| known[i].unwrap_or(begin[i])))
             }
         }

@@ -29,10 +29,9 @@ impl Walk<'_> {
             return Err(refuse("stop-in-cut", message).help(help).into());
         }
         self.uncompensated("a stop")?;
-        if self.located && self.here.is_some() {
-            let back = self.here;
+        if let Some(back) = self.position.known() {
             self.leave_part()?;
-            self.comes_back = back;
+            self.position.leave(Some(back));
         }
         self.halt()?;
         self.required(name)
@@ -40,20 +39,20 @@ impl Walk<'_> {
 
     /// Spindle and coolant off, where they are not known to be.
     fn halt(&mut self) -> Done {
-        if self.active_spindle != Some(Spindle::Off) {
+        if !self.sent.has_spindle(Spindle::Off) {
             self.required(BlockName::SpindleOff)?;
-            self.active_spindle = Some(Spindle::Off);
+            self.sent.switch_spindle(Spindle::Off);
         }
-        if self.active_coolant != Some(Coolant::Off) {
+        if !self.sent.has_coolant(Coolant::Off) {
             self.required(BlockName::CoolantOff)?;
-            (self.active_coolant, self.last_coolant) = (Some(Coolant::Off), Coolant::Off);
+            self.sent.switch_coolant(Coolant::Off);
         }
         Ok(())
     }
 
     /// From home behind a stop back to where the tool has been, before a cut that begins there.
     pub(crate) fn come_back(&mut self, stop: Option<&Stop>) -> Done {
-        let back = self.comes_back.take().filter(|_| !self.located);
+        let back = self.position.come_back();
         let (Some(back), Some(stop)) = (back, stop) else { return Ok(()) };
         let held = self.place.degrees().map(|degrees| Step { degrees, rewind: None });
         let held = Stop { step: held.or(stop.step), ..*stop };
@@ -79,7 +78,7 @@ impl Walk<'_> {
 
     /// The source ends, or changes the tool, in the cut: the tool is drawn back along its axis, which nobody has asked for.
     pub(crate) fn warn_of_cut(&mut self, where_to: &str) {
-        if self.wire.is_none() && self.located && self.stands_in_cut() {
+        if self.wire.is_none() && self.position.is_located() && self.stands_in_cut() {
             let message = format!(
                 "the tool is in the cut where the source {where_to}: it goes out along its axis from there"
             );
@@ -93,7 +92,7 @@ impl Walk<'_> {
     pub(crate) fn draw_back(&mut self) -> Done {
         let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
         let tables = self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table);
-        let Some(here) = self.here.filter(|_| keeps_tip && tables && self.located) else {
+        let Some(here) = self.position.known().filter(|_| keeps_tip && tables) else {
             return Ok(());
         };
         if !self.stands_in_cut() {
@@ -108,7 +107,7 @@ impl Walk<'_> {
         let (mode, degrees) = (self.machine.orientation.positioned, self.place.degrees());
         let step = degrees.map(|degrees| Step { degrees, rewind: None });
         self.aim(out, &Stop { mode, turning: false, first: false, step });
-        self.here = Some(*out);
+        self.position.go_to(*out);
         self.check_limits()?;
         self.writer.code(WordName::Motion, motion::RAPID);
         self.keep_compensation();
@@ -149,7 +148,7 @@ impl Walk<'_> {
         if machine.tools.turns_upright || !by_hand {
             return Ok(all_placed);
         }
-        if !self.is_home {
+        if !self.sent.is_home() {
             self.plane_xy()?;
             self.required(BlockName::Retract)?;
             self.writer.forget(LENGTH_OFFSET);

@@ -29,7 +29,7 @@ struct Levels {
 impl Walk<'_> {
     /// One hole of the source.
     pub(crate) fn hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let Some(cycle) = self.cycle else {
+        let Some(cycle) = self.wanted.cycle() else {
             return Err(refuse("cycle-missing", "a hole without a cycle"));
         };
         check(cycle)?;
@@ -43,10 +43,10 @@ impl Walk<'_> {
         }
         self.look_ahead(false)?;
         self.before_cut()?;
-        if self.open_cycle.is_some() && !self.settled(pose, stop, false)? {
+        if self.sent.cycle().is_some() && !self.settled(pose, stop, false)? {
             self.end_cycle()?;
         }
-        if self.open_cycle.is_none() {
+        if self.sent.cycle().is_none() {
             self.settle(pose, stop, false)?;
         }
         let own = self.own_cycle(cycle, pose);
@@ -70,7 +70,7 @@ impl Walk<'_> {
 
     /// The thread of a tap goes into the hole as the spindle turns: counter-clockwise for one that is left-handed.
     fn turns_into(&self, left: bool) -> Done {
-        let (hand, way, help) = match (left, self.spindle) {
+        let (hand, way, help) = match (left, self.wanted.spindle()) {
             (true, Spindle::Clockwise(_)) => ("left", "clockwise", "SPINDL/ with CCLW before it"),
             (false, Spindle::CounterClockwise(_)) => {
                 ("right", "counter-clockwise", "SPINDL/ with CLW before it")
@@ -107,7 +107,7 @@ impl Walk<'_> {
         // A safety distance has no sign.
         let says_clearance =
             cycle.clearance >= 0.0 || !self.templates.places(name, WordName::Safety);
-        let per_minute = !matches!(cycle.feed.or(self.feed), Some(Feed::InverseTime(_)));
+        let per_minute = !matches!(cycle.feed.or(self.wanted.feed()), Some(Feed::InverseTime(_)));
         let along_z = match self.place.kind {
             Kind::Plain | Kind::Tilted(..) | Kind::Machine => self.is_along_z(pose.axis()),
             Kind::Bare | Kind::ToolCenter | Kind::Vectors => false,
@@ -139,7 +139,7 @@ impl Walk<'_> {
             self.say_hole(at, &levels);
             self.block(name)?;
             self.writer.forget(bit(WordName::Motion));
-        } else if self.open_cycle == Some(open) && self.stays_in_cycle(&over, stop) {
+        } else if self.sent.cycle() == Some(open) && self.stays_in_cycle(&over, stop) {
             self.say_hole(at, &levels);
             self.block(BlockName::CycleHole)?;
         } else {
@@ -156,9 +156,9 @@ impl Walk<'_> {
                 self.say_hole(at, &levels);
                 self.block(BlockName::CycleHole)?;
             }
-            self.open_cycle = Some(open);
+            self.sent.define_cycle(open);
         }
-        self.here = Some(over);
+        self.position.go_to(over);
         Ok(())
     }
 
@@ -167,8 +167,8 @@ impl Walk<'_> {
         let above = self.machine.settings.retract_above_r.filter(|_| cycle.kind == CycleKind::Deep);
         let cleared = above.map(|above| cycle.clearance + above);
         for height in [-cycle.depth, cycle.clearance, cycle.retract].into_iter().chain(cleared) {
-            self.tip = pose.lifted(height)?.point();
-            self.said = self.local(self.tip);
+            let tip = pose.lifted(height)?.point();
+            self.position.aim(tip, self.local(tip));
             self.check_limits()?;
         }
         Ok(())
@@ -177,7 +177,7 @@ impl Walk<'_> {
     /// To the retract level over the first hole: up first and then across, or across and then down. A tool that turns on
     /// the way has no corner at which both legs are along its axis or across it: it goes there beyond all cuts, or from home.
     fn go_over(&mut self, over: &Pose, stop: &Stop) -> Done {
-        let (Some(here), true) = (self.here, self.located) else {
+        let Some(here) = self.position.known() else {
             return self.rapid_to_hole(over, stop);
         };
         if !same(here.axis(), over.axis()) {
@@ -201,7 +201,7 @@ impl Walk<'_> {
 
     /// Whether the cycle that is on may go from hole to hole by itself, to `over` at the level where it retracts.
     fn stays_in_cycle(&mut self, over: &Pose, stop: &Stop) -> bool {
-        self.here.is_none_or(|here| self.keeps_to_hole(&here, over, stop))
+        self.position.pose().is_none_or(|here| self.keeps_to_hole(&here, over, stop))
     }
 
     fn say_hole(&mut self, at: Vec3, levels: &Levels) {
@@ -238,11 +238,11 @@ impl Walk<'_> {
                 self.findings.warn(Diagnostic::warning("peck", message).line(self.line));
             }
         }
-        let speed = match self.spindle {
+        let speed = match self.wanted.spindle() {
             Spindle::Off => 0.0,
             Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
         };
-        let mut feed = cycle.feed.or(self.feed);
+        let mut feed = cycle.feed.or(self.wanted.feed());
         if let CycleKind::Tap { pitch, left } = cycle.kind {
             self.writer.set(WordName::Pitch, if left { -pitch } else { pitch });
             self.writer.set(WordName::Lead, pitch);
@@ -251,9 +251,9 @@ impl Walk<'_> {
         }
         self.writer.set(WordName::S, speed);
         self.writer.set(WordName::Speed, speed);
-        let before = std::mem::replace(&mut self.feed, feed);
+        let before = self.wanted.set_feed(feed);
         let said = self.say_feed(0.0, 1, Cut::Straight);
-        self.feed = before;
+        self.wanted.set_feed(before);
         self.writer.set(WordName::Plunge, said?);
         Ok(())
     }
@@ -261,14 +261,14 @@ impl Walk<'_> {
     /// The control's cycle goes off.
     #[inline]
     pub(crate) fn end_cycle(&mut self) -> Done {
-        let Some(open) = self.open_cycle.take() else { return Ok(()) };
+        let Some(open) = self.sent.end_cycle() else { return Ok(()) };
         self.block(BlockName::CycleOff)?;
         // Controls differ in whether the spindle turns after these.
         if matches!(
             open.block,
             BlockName::CycleBore | BlockName::CycleTap | BlockName::CycleTapLeft
         ) {
-            self.active_spindle = None;
+            self.sent.lose_spindle();
         }
         self.writer.forget(bit(WordName::Motion) | bit(WordName::Dwell));
         Ok(())
@@ -276,28 +276,29 @@ impl Walk<'_> {
 
     /// One hole as moves.
     fn expand(&mut self, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
-        let Some(moves) = lowering::hole(cycle, pose, self.spindle) else {
+        let Some(moves) = lowering::hole(cycle, pose, self.wanted.spindle()) else {
             return Err(refuse("cycle-peck", "the pecks of this cycle have no end"));
         };
         self.settle(pose, stop, false)?;
         self.go_over(&pose.lifted(cycle.retract)?, stop)?;
         self.rapid_to_hole(&pose.lifted(cycle.clearance)?, stop)?;
-        let (spindle, feed) = (self.spindle, self.feed);
-        self.feed = cycle.feed.or(feed);
+        let spindle = self.wanted.spindle();
+        let feed = self.wanted.set_feed(cycle.feed.or(self.wanted.feed()));
         // Each move is a cut of its own, and none a piece of the last one.
-        self.whole = 0.0;
+        self.position.begin_cut(0.0);
         let count = moves.len();
         let done = moves.into_iter().try_for_each(|part| match part {
             HoleMove::Rapid(pose) => self.rapid_to_hole(&pose, stop),
             HoleMove::Line(pose) => self.line_to(&pose, stop),
             HoleMove::Dwell(seconds) => self.write_dwell(seconds),
             HoleMove::Spindle(spindle) => {
-                self.spindle = spindle;
+                self.wanted.set_spindle(spindle);
                 // Out of the hole it waits for what needs it.
                 if spindle == Spindle::Off { self.sync_spindle() } else { Ok(()) }
             }
         });
-        (self.spindle, self.feed) = (spindle, feed);
+        self.wanted.set_spindle(spindle);
+        self.wanted.set_feed(feed);
         self.findings.lowered("cycle-expanded", "holes of cycles", self.line, count);
         done
     }

@@ -25,8 +25,10 @@ mod guard;
 mod motion;
 mod number;
 mod place;
+mod position;
 mod promises;
 mod rapid;
+mod sent;
 mod signals;
 mod single;
 mod surface;
@@ -37,6 +39,7 @@ mod tilt;
 mod upright;
 mod vectors;
 mod walk;
+mod wanted;
 mod wire;
 mod writer;
 

@@ -25,13 +25,13 @@ impl Walk<'_> {
         self.before_cut()?;
         self.settle(pose, stop, true)?;
         self.look_ahead_in_cuts()?;
-        if !self.located {
+        if !self.position.is_located() {
             let message =
                 "the first move of the tool is a cut: it starts from wherever the tool is";
             self.findings.warn(Diagnostic::warning("feed-approach", message).line(self.line));
-            self.located = true;
+            self.position.locate();
         }
-        self.whole = self.here.map_or(0.0, |here| here.point().distance(pose.point()));
+        self.position.begin_cut(self.position.distance(pose.point()));
         if let Some(degrees) = stop.step.and_then(|step| step.rewind) {
             self.rewind(degrees, stop)?;
         }
@@ -45,7 +45,7 @@ impl Walk<'_> {
             return Err(refuse("pole-way", message).help(help).into());
         }
         if self.vector_strays(pose.axis())
-            && let Some(here) = self.here
+            && let Some(here) = self.position.pose()
         {
             let degrees = self.vector_start(here.axis(), pose.axis())?;
             let message = "the travel of the rotary axes ends in this cut: the tool is drawn back, turned and brought in again";
@@ -77,7 +77,7 @@ impl Walk<'_> {
 
     /// How far from the pole, degrees, the tool would go past it along a vector to `axis`, where the control does not follow.
     pub(crate) fn vector_past_pole(&self, axis: Vec3) -> Option<f64> {
-        let here = self.here.filter(|_| matches!(self.place.kind, Kind::Vectors))?;
+        let here = self.position.pose().filter(|_| matches!(self.place.kind, Kind::Vectors))?;
         vectors::passes_pole(&self.inverse, here.axis(), axis)
     }
 
@@ -101,14 +101,14 @@ impl Walk<'_> {
     /// Whether the tool points in `pose` as it does here.
     #[inline]
     pub(crate) fn keeps_orientation(&self, pose: &Pose) -> bool {
-        self.here.is_some_and(|here| here.axis() == pose.axis())
+        self.position.pose().is_some_and(|here| here.axis() == pose.axis())
     }
 
     /// A straight cut of the source that goes on from another one: `cut`, where nothing that it asks for can have
     /// changed.
     #[inline]
     pub(crate) fn line_on(&mut self, pose: &Pose) -> Done {
-        self.here = Some(*pose);
+        self.position.go_to(*pose);
         self.writer.repeat();
         self.writer.code(WordName::Motion, motion::LINEAR);
         self.aim_to(pose.point());
@@ -126,7 +126,7 @@ impl Walk<'_> {
     /// The travel of a rotary axis ends in a cut: out along the tool axis, beyond every point of the
     /// source, to where the machine may turn, and in again at the same point.
     fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Done {
-        let Some(here) = self.here else { return Ok(()) };
+        let Some(here) = self.position.pose() else { return Ok(()) };
         let axis = here.axis();
         let way = self.reach(axis) - here.point().dot(axis) + CLEAR;
         let out = here.at(here.point() + axis * way)?;
@@ -141,7 +141,7 @@ impl Walk<'_> {
 
     /// A straight cut in the orientation at hand.
     pub(crate) fn line_to(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let from = self.here.replace(*pose);
+        let from = self.position.go_to(*pose);
         let length = from.map_or(0.0, |from| from.point().distance(pose.point()));
         self.switch_plane(pose.axis())?;
         if let (Kind::ToolCenter | Kind::Machine, Some(from), Some(step), Some(degrees)) =
@@ -214,7 +214,7 @@ impl Walk<'_> {
         for stance in stances {
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
             let degrees = self.place.degrees().unwrap_or(stance.degrees);
-            let there = Turn { linear: self.rounded(self.said), degrees };
+            let there = Turn { linear: self.rounded(self.position.said()), degrees };
             let way = here.to(&there);
             let length = length / count as f64 + owed;
             owed = if way == Turn::default() { length } else { 0.0 };
@@ -264,10 +264,10 @@ impl Walk<'_> {
     #[inline]
     fn can_go_on(&self) -> bool {
         matches!(self.place.kind, Kind::Plain | Kind::Tilted(..))
-            && matches!(self.feed, Some(Feed::PerMinute(_)))
+            && matches!(self.wanted.feed(), Some(Feed::PerMinute(_)))
             && !self.compensation_pending()
             && self.wire.is_none()
-            && self.surface.is_none()
+            && self.wanted.surface().is_none()
     }
 
     /// The block for a straight move in the orientation at hand.
@@ -316,11 +316,11 @@ impl Walk<'_> {
     /// Says in the next block where the tool tip goes.
     #[inline]
     fn aim_to(&mut self, point: Vec3) {
-        self.tip = point;
-        self.said = self.local(point);
-        self.writer.set(WordName::X, self.said.x);
-        self.writer.set(WordName::Y, self.said.y);
-        self.writer.set(WordName::Z, self.said.z);
+        let said = self.local(point);
+        self.position.aim(point, said);
+        self.writer.set(WordName::X, said.x);
+        self.writer.set(WordName::Y, said.y);
+        self.writer.set(WordName::Z, said.z);
     }
 
     /// A point of the work frame as blocks give it at the moment.
@@ -354,24 +354,26 @@ impl Walk<'_> {
         let degrees = self.place.degrees().unwrap_or_default();
         let length = self.tool_length();
         let linear = match self.place.kind {
-            Kind::Tilted(..) => return self.check_in_plane(self.tip),
-            Kind::Bare | Kind::Plain => self.said,
+            Kind::Tilted(..) => return self.check_in_plane(self.position.tip()),
+            Kind::Bare | Kind::Plain => self.position.said(),
             Kind::Machine => match self.machine.unsaid(degrees, length) {
                 Some(unsaid) => return Err(hangs_on(unsaid)),
-                None => self.said,
+                None => self.position.said(),
             },
             // The control knows what its file does not say; the proof reports what was not checked.
             Kind::ToolCenter | Kind::Vectors => {
-                if let Some(from) = self.checked.replace((self.tip, degrees)) {
+                if let Some(from) = self.position.check(degrees) {
                     self.check_way(from, degrees)?;
                 }
                 match self.machine.unsaid(degrees, length) {
                     Some(_) => Vec3::NAN,
-                    None => self.machine.linear_for(self.tip, degrees, length.unwrap_or(0.0)),
+                    None => {
+                        self.machine.linear_for(self.position.tip(), degrees, length.unwrap_or(0.0))
+                    }
                 }
             }
         };
-        for &sway in self.sways(self.tip) {
+        for &sway in self.sways(self.position.tip()) {
             self.limits.position(linear + Vec3::Z * sway, degrees, length, self.line)?;
         }
         Ok(())
@@ -379,7 +381,7 @@ impl Walk<'_> {
 
     /// Says the tool length offset in the next block.
     pub(crate) fn say_length_offset(&mut self) {
-        if let Some(register) = self.length_offset {
+        if let Some(register) = self.sent.length_register() {
             self.writer.code(WordName::Length, 0);
             self.writer.set(WordName::H, register);
         }
@@ -387,7 +389,7 @@ impl Walk<'_> {
 
     /// Length of the tool, mm, where the source says it.
     pub(crate) fn tool_length(&self) -> Option<f64> {
-        self.tool.as_ref().and_then(|tool| tool.length)
+        self.wanted.tool().and_then(|tool| tool.length)
     }
 }
 

@@ -214,7 +214,7 @@ impl Walk<'_> {
             // The axes go along with the moves of this operation.
             return if stop.turning { self.unclamp() } else { Ok(()) };
         }
-        if cut && self.located {
+        if cut && self.position.is_located() {
             let help = "begin the operation with a rapid move in the new orientation";
             let found = refuse("orientation-in-cut", "the plane of work changes in a cut");
             return Err(found.help(help).into());
@@ -311,9 +311,7 @@ impl Walk<'_> {
     pub(crate) fn lose_position(&mut self) {
         let vector = bit(WordName::VX) | bit(WordName::VY) | bit(WordName::VZ);
         self.writer.forget(POSITION | vector | bit(WordName::Motion));
-        self.located = false;
-        self.turned_to = None;
-        self.checked = None;
+        self.position.lose();
     }
 
     /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of
@@ -321,7 +319,7 @@ impl Walk<'_> {
     /// on, and HEIDENHAIN wants `M129` before `M91`.
     pub(crate) fn leave_part(&mut self) -> Done {
         let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
-        if self.located || keeps_tip {
+        if self.position.is_located() || keeps_tip {
             self.uncompensated("a new orientation")?;
             self.look_ahead(false)?;
             self.go_out()?;
@@ -392,8 +390,7 @@ impl Walk<'_> {
 
     /// The clamps close, where they may be open: the axes stand in the cuts that follow.
     fn clamp(&mut self) -> Done {
-        if self.machine.has_clamps() && self.clamped != Some(true) {
-            self.clamped = Some(true);
+        if self.machine.has_clamps() && self.sent.clamp(true) {
             self.required(BlockName::Clamp)?;
         }
         Ok(())
@@ -401,8 +398,7 @@ impl Walk<'_> {
 
     /// The clamps open, where they may be closed.
     pub(crate) fn unclamp(&mut self) -> Done {
-        if self.machine.has_clamps() && self.clamped != Some(false) {
-            self.clamped = Some(false);
+        if self.machine.has_clamps() && self.sent.clamp(false) {
             self.required(BlockName::Unclamp)?;
         }
         Ok(())
@@ -416,7 +412,7 @@ impl Walk<'_> {
 
     /// The clamps close where the program has opened them.
     pub(crate) fn clamp_again(&mut self) -> Done {
-        if self.clamped == Some(false) { self.clamp() } else { Ok(()) }
+        if self.sent.clamps_are_open() { self.clamp() } else { Ok(()) }
     }
 
     /// The tilted plane goes off. The rotary axes stay, unless the block itself turns them to 0.

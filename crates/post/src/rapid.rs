@@ -73,7 +73,7 @@ impl Walk<'_> {
         self.same_taper("a rapid")?;
         self.expect_spindle()?;
         self.settle(pose, stop, false)?;
-        let Some(from) = self.here.filter(|_| self.located) else {
+        let Some(from) = self.position.known() else {
             return self.approach(pose, stop);
         };
         if self.vector_strays(pose.axis()) || self.vector_past_pole(pose.axis()).is_some() {
@@ -93,7 +93,7 @@ impl Walk<'_> {
 
     /// A rapid to a hole or in it: what the cycle of a control would do, axes that turn apart.
     pub(crate) fn rapid_to_hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let Some(from) = self.here.filter(|_| self.located) else {
+        let Some(from) = self.position.known() else {
             return self.approach(pose, stop);
         };
         let at_once = match self.turns(stop) {
@@ -141,7 +141,7 @@ impl Walk<'_> {
     pub(crate) fn rapid_at_once(&mut self, pose: &Pose, stop: &Stop) -> Done {
         self.switch_plane(pose.axis())?;
         self.aim(pose, stop);
-        self.here = Some(*pose);
+        self.position.go_to(*pose);
         self.rapid_block()
     }
 
@@ -202,8 +202,8 @@ impl Walk<'_> {
             }
             self.writer.unset(Words::MAX);
         }
-        self.located = true;
-        self.here = Some(*pose);
+        self.position.locate();
+        self.position.go_to(*pose);
         self.check_limits()
     }
 
@@ -231,7 +231,7 @@ impl Walk<'_> {
     /// Z goes home from here, straight up: a tilted tool first goes out along its axis, until it is beyond all cuts on its
     /// way up until it is above them.
     pub(crate) fn go_out(&mut self) -> Done {
-        let Some(here) = self.here.filter(|_| self.located) else { return Ok(()) };
+        let Some(here) = self.position.known() else { return Ok(()) };
         if self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
             return self.draw_back();
         }
@@ -387,7 +387,7 @@ impl Walk<'_> {
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
             self.rapid_block()?;
         }
-        self.here = Some(*pose);
+        self.position.go_to(*pose);
         let message =
             "rapids while axes turn are written in pieces, so that the tool goes straight";
         self.findings.warn(Diagnostic::warning("rapid-path", message).line(self.line));
@@ -430,10 +430,10 @@ impl Walk<'_> {
         if by_feed.count == 1 {
             by_feed.line = self.line;
         }
-        by_feed.length += self.here.map_or(0.0, |from| from.point().distance(pose.point()));
-        let wanted = self.feed.replace(Feed::PerMinute(feed));
+        by_feed.length += self.position.distance(pose.point());
+        let wanted = self.wanted.set_feed(Some(Feed::PerMinute(feed)));
         let done = self.line_to(pose, stop);
-        self.feed = wanted;
+        self.wanted.set_feed(wanted);
         done
     }
 

@@ -19,7 +19,7 @@ impl Walk<'_> {
         self.before_cut()?;
         self.settle(&thread.end, stop, true)?;
         self.aim(&thread.end, stop);
-        self.here = Some(thread.end);
+        self.position.go_to(thread.end);
         if !self.writer.changes(POSITION) {
             self.writer.unset(Words::MAX);
             return Ok(());
@@ -57,14 +57,14 @@ impl Walk<'_> {
             let help = "another probing move, if the program does not depend on it";
             return Err(refuse("probe", message).help(help).into());
         }
-        let Some(Feed::PerMinute(_)) = self.feed else {
+        let Some(Feed::PerMinute(_)) = self.wanted.feed() else {
             return Err(refuse("probe", "a probing move needs a feed in mm/min"));
         };
         self.sync_spindle()?;
         self.sync_coolant()?;
         let axis = probe.end.axis();
-        let length = self.here.map_or(0.0, |here| here.point().distance(probe.end.point()));
-        if self.here.is_none_or(|here| !same(here.axis(), axis)) {
+        let length = self.position.distance(probe.end.point());
+        if self.position.pose().is_none_or(|here| !same(here.axis(), axis)) {
             return Err(refuse("probe", "the tool axis turns in a probing move"));
         }
         self.aim_at(probe.end.point(), axis, None);
@@ -78,7 +78,7 @@ impl Walk<'_> {
         self.writer.code(WordName::ProbeMode, kind);
         self.block(BlockName::Probe)?;
         self.writer.forget(moved | bit(WordName::Motion));
-        self.here = None;
+        self.position.probe();
         probe.place.map_or(Ok(()), |place| self.keep_height(place))
     }
 
@@ -89,7 +89,8 @@ impl Walk<'_> {
         if !self.templates.has(block) {
             return self.required(block);
         }
-        if !self.located || !matches!(self.place.kind, Kind::Plain | Kind::Tilted(..)) {
+        if !self.position.is_located() || !matches!(self.place.kind, Kind::Plain | Kind::Tilted(..))
+        {
             let message =
                 format!("{what} from a place, or with a tool axis, that blocks do not say");
             let help = "a rapid to its start before it";
@@ -106,7 +107,7 @@ impl Walk<'_> {
 
     /// Where a probe has answered, only the machine knows: a rapid leads away from there.
     pub(crate) fn not_from_probe(&self, what: &str) -> Done {
-        if self.located && self.here.is_none() {
+        if self.position.is_probed() {
             let message = format!("{what} from where the probe has answered, which is not known");
             return Err(refuse("probe", message).help("a rapid before it").into());
         }

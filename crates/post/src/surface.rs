@@ -27,10 +27,10 @@ impl<'a> Walk<'a> {
             "the control keeps no heights that a probe finds"
         } else if !self.machine.rotary.is_empty() {
             "a machine with rotary axes follows no surface that it finds itself"
-        } else if self.surface.is_some() {
+        } else if self.wanted.surface().is_some() {
             "a second surface"
         } else {
-            self.surface = Some(surface);
+            self.wanted.set_surface(surface);
             return Ok(());
         };
         Err(refuse("surface", message).help(LEVEL_FIRST).into())
@@ -39,7 +39,7 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// `what` is not done over a surface.
     pub(crate) fn not_over_surface(&self, what: &str) -> Done {
-        match self.surface {
+        match self.wanted.surface() {
             None => Ok(()),
             Some(_) => {
                 Err(refuse("surface", format!("{what} over a surface that the control finds")))
@@ -54,7 +54,7 @@ impl<'a> Walk<'a> {
 
     /// The surface from which a pose at this point counts.
     fn over(&self, point: Vec3) -> Option<&'a Surface> {
-        self.surface.filter(|surface| point.z < surface.clear())
+        self.wanted.surface().filter(|surface| point.z < surface.clear())
     }
 
     /// Says in the next block, besides Z, what the surface adds to it at `point`.

@@ -174,7 +174,7 @@ impl Walk<'_> {
             let part = f64::from(i) / f64::from(samples);
             let degrees = [0, 1, 2].map(|k| from.1[k] + (degrees[k] - from.1[k]) * part);
             if machine.unsaid(degrees, length).is_none() {
-                let tip = from.0.lerp(self.tip, part);
+                let tip = from.0.lerp(self.position.tip(), part);
                 let linear = machine.linear_for(tip, degrees, length.unwrap_or(0.0));
                 self.limits.position(linear, degrees, length, self.line)?;
             }

@@ -27,8 +27,7 @@ impl Walk<'_> {
         {
             self.leave_register_out("radius", register);
         }
-        self.compensation = compensation;
-        self.compensation_line = self.line;
+        self.wanted.set_compensation(compensation, self.line);
         Ok(())
     }
 
@@ -95,9 +94,9 @@ impl Walk<'_> {
         let in_plane = bit(WordName::X) | bit(WordName::Y);
         if self.compensation_pending() && self.writer.changes(in_plane) {
             self.turn_contour()?;
-            self.active_compensation = self.compensation;
-            let tool = self.tool.as_ref().map(|tool| tool.number);
-            match self.compensation {
+            self.sent.switch_compensation(self.wanted.compensation());
+            let tool = self.wanted.tool().map(|tool| tool.number);
+            match self.wanted.compensation() {
                 Compensation::Left(register) | Compensation::Right(register) => {
                     if let Some(register) = register.or(tool) {
                         self.writer.set(WordName::D, f64::from(register));
@@ -112,8 +111,8 @@ impl Walk<'_> {
 
     /// The next block begins a contour, or ends one.
     fn turn_contour(&mut self) -> Done {
-        let (contour, to) = (self.contour.take(), self.in_plane(self.said));
-        let side = match self.compensation {
+        let (contour, to) = (self.contour.take(), self.in_plane(self.position.said()));
+        let side = match self.wanted.compensation() {
             Compensation::Off => return contour.map_or(Ok(()), |contour| contour.leave(to)),
             Compensation::Left(_) => 1.0,
             Compensation::Right(_) => -1.0,
@@ -124,7 +123,7 @@ impl Walk<'_> {
             return Err(refuse("compensation-change", message).help(help).into());
         }
         let from = [WordName::X, WordName::Y].map(|word| self.writer.active(word));
-        let from = match (from, self.turned_to) {
+        let from = match (from, self.position.turned_to()) {
             (_, Some(at)) => Some(at.truncate()),
             ([Some(x), Some(y)], None) => Some(Vec2::new(x, y)),
             _ => None,
@@ -140,11 +139,11 @@ impl Walk<'_> {
     /// # Errors
     /// The source names the register of another tool.
     fn contour_radius(&self) -> Result<Option<f64>, Box<Diagnostic>> {
-        let Some(tool) = self.tool.as_ref().filter(|_| self.wire.is_none()) else {
+        let Some(tool) = self.wanted.tool().filter(|_| self.wire.is_none()) else {
             return Ok(None);
         };
         let Some(radius) = tool.cutting_radius() else { return Ok(None) };
-        let named = match self.compensation {
+        let named = match self.wanted.compensation() {
             Compensation::Left(register) | Compensation::Right(register) => register,
             Compensation::Off => None,
         };
@@ -183,7 +182,7 @@ impl Walk<'_> {
     #[inline]
     pub(crate) fn follow(&mut self, rapid: bool) -> Done {
         match self.contour {
-            Some(_) => self.follow_to(self.in_plane(self.said), None, rapid),
+            Some(_) => self.follow_to(self.in_plane(self.position.said()), None, rapid),
             None => Ok(()),
         }
     }
@@ -207,12 +206,12 @@ impl Walk<'_> {
 
     /// Whether the control offsets the next move, or may.
     pub(super) fn offsets(&self) -> bool {
-        self.is_compensating() || self.compensation != Compensation::Off
+        self.is_compensating() || self.wanted.compensation() != Compensation::Off
     }
 
     /// Says in the next block the compensation that is active.
     pub(crate) fn keep_compensation(&mut self) {
-        self.writer.code(WordName::Compensation, compensation_code(self.active_compensation));
+        self.writer.code(WordName::Compensation, compensation_code(self.sent.compensation()));
     }
 
     /// Compensation has to be off before `what`.
@@ -231,7 +230,7 @@ impl Walk<'_> {
         if !self.compensation_pending() {
             return Ok(());
         }
-        if self.compensation != Compensation::Off && !self.is_along_z(axis) {
+        if self.wanted.compensation() != Compensation::Off && !self.is_along_z(axis) {
             let message = "cutter compensation is switched on for a tool that does not stand along Z of the control's coordinates";
             let help = "work in the plane of a set-up (`positioned = \"tilted-plane\"` in the machine file), or give the path of \
                         the tool's centre";
@@ -242,12 +241,12 @@ impl Walk<'_> {
 
     /// Whether cutter compensation is on.
     pub(crate) fn is_compensating(&self) -> bool {
-        self.active_compensation != Compensation::Off
+        self.sent.compensation() != Compensation::Off
     }
 
     /// Whether the next straight move in the plane switches the compensation.
     pub(crate) fn compensation_pending(&self) -> bool {
-        self.compensation != self.active_compensation
+        self.wanted.compensation() != self.sent.compensation()
     }
 }
 

@@ -9,12 +9,15 @@ use crate::catalogue::{BlockName, WordName};
 use crate::contour::Contour;
 use crate::findings::Findings;
 use crate::place::{Place, Route, Stop};
+use crate::position::ToolPosition;
+use crate::sent::Sent;
 use crate::template::{
     ORIENTATION, POSITION, Scope, Templates, Words, bit, coolant_value, map, program_value,
     spindle_value,
 };
 use crate::text::printed;
 use crate::vectors::Followed;
+use crate::wanted::Wanted;
 use crate::wire::Wire;
 use crate::writer::Writer;
 use compensation::compensation_code;
@@ -24,8 +27,8 @@ use machine::{Inverse, Machine};
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
-    Compensation, Coolant, CutBox, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle,
-    Surface, Tool, WorkOffset, WorkOffsetData,
+    Compensation, Coolant, CutBox, Diagnostic, Feed, Op, Program, Record, Spindle, Tool,
+    WorkOffset, WorkOffsetData,
 };
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
@@ -92,67 +95,25 @@ pub(crate) struct Walk<'a> {
     pub(crate) index: usize,
     /// Source line of the record at hand.
     pub(crate) line: u32,
-    pub(crate) tool: Option<Tool>,
-    /// The register of its length offset, where the control wants one.
-    pub(crate) length_offset: Option<f64>,
-    /// What the source wants, and what the control has been told.
-    pub(crate) spindle: Spindle,
-    pub(crate) active_spindle: Option<Spindle>,
-    /// Whether its speed was another than the one before when it was last switched.
-    speed_changed: bool,
+    /// What the source wants, what the control has been sent, and where the tool is.
+    pub(crate) wanted: Wanted<'a>,
+    pub(crate) sent: Sent,
+    pub(crate) position: ToolPosition,
     /// Up to which record no cut needs the spindle.
     idle_until: usize,
-    coolant: Coolant,
-    pub(crate) active_coolant: Option<Coolant>,
-    /// The coolant that has been switched last: after a stop nobody knows whether it runs.
-    pub(crate) last_coolant: Coolant,
-    pub(crate) feed: Option<Feed>,
-    compensation: Compensation,
-    active_compensation: Compensation,
-    compensation_line: u32,
     /// The contour at hand, where the control offsets it and the radius of the tool is known.
     contour: Option<Box<Contour>>,
-    pub(crate) cycle: Option<&'a Cycle>,
-    /// The definition that the control has, where a cycle is on.
-    pub(crate) open_cycle: Option<crate::cycles::Open>,
-    /// Length of the way of the tip in the cut of the source at hand, mm.
-    pub(crate) whole: f64,
-    /// The last pose of the source.
-    pub(crate) here: Option<Pose>,
-    /// Whether the control stands where the last pose says.
-    pub(crate) located: bool,
     /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
     /// from that in where it goes alone.
     pub(crate) goes_on: bool,
-    /// Where the tool has been before it went home for a stop, until something moves.
-    pub(crate) comes_back: Option<Pose>,
-    /// Whether Z is home: since a retract, or a tool change.
-    pub(crate) is_home: bool,
-    /// Whether the control looks ahead.
-    pub(crate) looks_ahead: bool,
-    /// Whether the clamps of the rotary axes are closed; `None` where the program has not said it.
-    pub(crate) clamped: Option<bool>,
     pub(crate) place: Place,
     /// The wire, where the machine has one.
     pub(crate) wire: Option<Wire>,
-    /// The surface that moves count from, where the control finds it.
-    pub(crate) surface: Option<&'a Surface>,
-    /// Where the next block brings the tool tip, mm, work frame.
-    pub(crate) tip: Vec3,
-    /// The same in the coordinates of the block, mm.
-    pub(crate) said: Vec3,
-    /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
-    pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
-    /// Tip and degrees of A, B, C of the position that was checked last, where the control moves the linear axes along with
-    /// the rotary axes.
-    pub(crate) checked: Option<(Vec3, [f64; 3])>,
     /// The way along a vector that was asked for last.
     pub(crate) followed: Cell<Option<Followed>>,
     /// Smallest step of a linear axis, mm.
     pub(crate) resolution: f64,
-    /// Entry of the code word `work_offset` that is active.
-    work_offset: usize,
     /// Rapids say their feed, in whose place the next cut says its own.
     feeds_rapids: bool,
     ended: bool,
@@ -195,41 +156,17 @@ impl<'a> Walk<'a> {
             radii: OnceCell::new(),
             index: 0,
             line: 0,
-            tool: None,
-            length_offset: None,
-            spindle: Spindle::Off,
-            active_spindle: Some(Spindle::Off),
-            speed_changed: true,
+            wanted: Wanted::nothing(),
+            sent: Sent::at_start(),
+            position: ToolPosition::default(),
             idle_until: 0,
-            coolant: Coolant::Off,
-            active_coolant: Some(Coolant::Off),
-            last_coolant: Coolant::Off,
-            feed: None,
-            compensation: Compensation::Off,
-            active_compensation: Compensation::Off,
-            compensation_line: 0,
             contour: None,
-            cycle: None,
-            open_cycle: None,
-            whole: 0.0,
-            here: None,
-            located: false,
             goes_on: false,
-            comes_back: None,
-            is_home: false,
-            looks_ahead: false,
-            clamped: None,
             place: Place::start(machine),
             wire: Wire::of(machine, program),
-            surface: None,
-            tip: Vec3::ZERO,
-            said: Vec3::ZERO,
-            turned_to: None,
             limits: Limits::new(machine),
-            checked: None,
             followed: Cell::new(None),
             resolution: machine.resolution(),
-            work_offset: 0,
             ended: false,
         })
     }
@@ -255,7 +192,7 @@ impl<'a> Walk<'a> {
         self.block(BlockName::ProgramStart)?;
         while self.index < self.source.records.len() {
             let rest = &self.source.records[self.index..];
-            let route = Route::of(self.machine, rest, self.here, self.place.degrees());
+            let route = Route::of(self.machine, rest, self.position.pose(), self.place.degrees());
             let route = match route {
                 Ok(route) => route,
                 // Without an orientation for each pose the operation cannot be written at all.
@@ -339,18 +276,18 @@ impl<'a> Walk<'a> {
             }
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
-                self.cycle = Some(cycle);
+                self.wanted.set_cycle(Some(cycle));
                 Ok(())
             }
             Op::CycleOff => {
-                self.cycle = None;
+                self.wanted.set_cycle(None);
                 self.end_cycle()
             }
             // What changes while a cycle is on holds from the next hole on, which defines it anew: a
             // block without a position would drill once more (SINUMERIK's MCALL), or not be heard.
             Op::Feed(feed) => {
                 self.end_cycle()?;
-                self.feed = Some(*feed);
+                self.wanted.set_feed(Some(*feed));
                 Ok(())
             }
             Op::Spindle(spindle) => {
@@ -364,7 +301,7 @@ impl<'a> Walk<'a> {
             }
             Op::Coolant(coolant) => {
                 self.end_cycle()?;
-                self.coolant = *coolant;
+                self.wanted.set_coolant(*coolant);
                 if *coolant == Coolant::Off { self.sync_coolant() } else { Ok(()) }
             }
             Op::Tool(tool) => self.change_tool(tool),
@@ -389,12 +326,12 @@ impl<'a> Walk<'a> {
             Op::OptionalStop => self.stop(BlockName::OptionalStop),
             Op::Operation(name) => {
                 // What was switched on before it does not belong to it.
-                if self.tool.is_some() {
+                if self.wanted.tool().is_some() {
                     self.expect_spindle()?;
                 }
                 if self.machine.format.fresh_operations {
                     self.writer.forget(POSITION | ORIENTATION | MOTION);
-                    self.turned_to = None;
+                    self.position.turn_to(None);
                 }
                 self.scope.operation = map([("name", Value::from(printed(self.machine, name)))]);
                 self.block(BlockName::OperationStart)
@@ -439,7 +376,7 @@ impl<'a> Walk<'a> {
     /// A motion, by a tool that has been called. What it cuts straight on its way has a feed or an end of its own.
     #[inline]
     fn motion(&mut self, stop: Option<Stop>, go: impl FnOnce(&mut Self, &Stop) -> Done) -> Done {
-        if self.tool.is_none() && self.wire.is_none() {
+        if self.wanted.tool().is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
         let done = stop.map_or(Ok(()), |stop| go(self, &stop));
@@ -465,8 +402,8 @@ impl<'a> Walk<'a> {
         self.leave_part()?;
         self.leave_place()?;
         self.plane_origin(Vec3::ZERO)?;
-        self.comes_back = None;
-        self.work_offset = index;
+        self.position.leave(None);
+        self.sent.select_work_offset(index);
         self.required(BlockName::WorkOffsetSelect)?;
         self.lose_position();
         Ok(())
@@ -481,7 +418,7 @@ impl<'a> Walk<'a> {
             self.findings.warn(found.line(self.line));
             return Ok(());
         }
-        if self.located {
+        if self.position.is_located() {
             let message = "a work offset is written while the tool is over the part: where it then stands is not known";
             let help = "G10 before the first move of the tool";
             return Err(refuse("operator-data", message).help(help).into());
@@ -536,23 +473,23 @@ impl<'a> Walk<'a> {
 
     /// Writes a block, where the machine has it.
     pub(crate) fn block(&mut self, name: BlockName) -> Done {
-        self.writer.code(WordName::WorkOffset, self.work_offset);
+        self.writer.code(WordName::WorkOffset, self.sent.work_offset());
         let lines = self.writer.lines();
         match self.templates.lines(name) {
             Some(lines) => self.writer.block(lines)?,
             None => {
                 // What runs before the first tool change, nobody knows.
-                let known = self.tool.is_some();
-                let spindle_stopped = known && self.active_spindle == Some(Spindle::Off);
-                let clockwise = !matches!(self.spindle, Spindle::CounterClockwise(_));
+                let known = self.wanted.tool().is_some();
+                let spindle_stopped = known && self.sent.has_spindle(Spindle::Off);
+                let clockwise = !matches!(self.wanted.spindle(), Spindle::CounterClockwise(_));
                 let scope = Scope {
                     set: self.writer.set_words(),
-                    spindle: spindle_value(self.speed_changed, clockwise, spindle_stopped),
+                    spindle: spindle_value(self.sent.speed_changed(), clockwise, spindle_stopped),
                     coolant: coolant_value(
-                        known && self.active_coolant == Some(Coolant::Off),
-                        self.last_coolant == Coolant::Through,
+                        known && self.sent.has_coolant(Coolant::Off),
+                        self.sent.last_coolant() == Coolant::Through,
                     ),
-                    place: self.place.value(self.is_home),
+                    place: self.place.value(self.sent.is_home()),
                     ..self.scope.clone()
                 };
                 self.writer.block(&self.templates.render(name, scope)?)?;
@@ -574,11 +511,13 @@ impl<'a> Walk<'a> {
     fn note_home(&mut self, name: BlockName) {
         use BlockName as B;
         if [B::Rapid, B::RapidVector, B::Linear, B::LinearVector].contains(&name) {
-            (self.is_home, self.place.just_off) = (false, [false; 2]);
+            self.sent.set_home(false);
+            self.place.just_off = [false; 2];
         } else if name == B::ToolChange {
-            (self.is_home, self.place.just_off) = (true, [false; 2]);
-        } else {
-            self.is_home |= name == B::Retract;
+            self.sent.set_home(true);
+            self.place.just_off = [false; 2];
+        } else if name == B::Retract {
+            self.sent.set_home(true);
         }
     }
 
@@ -606,10 +545,10 @@ impl<'a> Walk<'a> {
         self.look_ahead(false)?;
         self.warn_of_cut("ends");
         self.leave_place()?;
-        if self.compensation != self.active_compensation {
+        if self.compensation_pending() {
             let message = "cutter compensation is switched here, and no move in the plane follows";
             let found = Diagnostic::warning("compensation-pending", message);
-            self.findings.warn(found.line(self.compensation_line));
+            self.findings.warn(found.line(self.wanted.compensation_line()));
         }
         self.plane_origin(Vec3::ZERO)?;
         self.place.turned = self.say_unturned(BlockName::ProgramEnd);

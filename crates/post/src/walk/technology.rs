@@ -85,11 +85,11 @@ impl Walk<'_> {
         if let Some(register) = tool.offset.filter(|_| edge) {
             self.leave_register_out("length", register);
         }
-        self.length_offset = match self.machine.capabilities.length_offset {
+        self.sent.set_length_register(match self.machine.capabilities.length_offset {
             LengthOffset::Implicit => None,
             LengthOffset::One => Some(1.0),
             LengthOffset::ToolNumber => Some(tool.offset.map_or(number, f64::from)),
-        };
+        });
         let stands_upright = self.upright_for_tool()?;
         // The plane may say along which axis the length counts.
         self.plane_xy()?;
@@ -99,12 +99,12 @@ impl Walk<'_> {
         if let Some(speed) = self.coming_speed() {
             self.writer.set(WordName::S, speed);
         }
-        self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
+        self.scope.tool = tool_value(self.machine, tool, self.wanted.tool().is_none());
         let upright = self.upright();
         self.place.turned = self.say_unturned(BlockName::ToolChange);
         self.required(BlockName::ToolChange)?;
-        self.tool = Some(tool.clone());
-        self.comes_back = None;
+        self.wanted.call_tool(tool.clone());
+        self.position.leave(None);
         self.writer.forget(POSITION | MOTION | bit(WordName::D));
         if stands_upright {
             self.place.turn_to(upright);
@@ -115,9 +115,8 @@ impl Walk<'_> {
             // M6 makes the first edge active (SINUMERIK MD20270, as it is delivered).
             self.writer.is_at(WordName::H, 1.0);
         }
-        self.turned_to = None;
-        self.located = false;
-        (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
+        self.position.change_tool();
+        self.sent.change_tool();
         Ok(())
     }
 
@@ -136,7 +135,7 @@ impl Walk<'_> {
             .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
         let next = until_cut
             .find_map(|op| if let Op::Spindle(spindle) = op { speed(*spindle) } else { None });
-        next.or(speed(self.spindle))
+        next.or(speed(self.wanted.spindle()))
     }
 
     /// The source calls no tool: the machine file may say which one that means.
@@ -157,7 +156,7 @@ impl Walk<'_> {
     }
 
     pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Done {
-        self.spindle = spindle;
+        self.wanted.set_spindle(spindle);
         match speed(spindle) {
             None => self.sync_spindle(),
             Some(speed) if self.writer.rounded(WordName::S, speed) > 0.0 => {
@@ -173,7 +172,7 @@ impl Walk<'_> {
 
     /// Switches the spindle as the source wants it, where something needs it before it stops again.
     pub(crate) fn expect_spindle(&mut self) -> Done {
-        if self.spindle == Spindle::Off || self.is_spindle_needed() {
+        if self.wanted.spindle() == Spindle::Off || self.is_spindle_needed() {
             return self.sync_spindle();
         }
         Ok(())
@@ -209,56 +208,46 @@ impl Walk<'_> {
 
     /// Switches the spindle as the source wants it.
     pub(crate) fn sync_spindle(&mut self) -> Done {
-        if self.active_spindle == Some(self.spindle) {
+        let spindle = self.wanted.spindle();
+        if self.sent.has_spindle(spindle) {
             return Ok(());
         }
-        if let Some(speed) = speed(self.spindle) {
+        if let Some(speed) = speed(spindle) {
             self.writer.set(WordName::S, speed);
         }
-        self.speed_changed = speed(self.spindle) != self.writer.active(WordName::S);
-        self.required(match self.spindle {
+        self.sent.say_speed_change(speed(spindle) != self.writer.active(WordName::S));
+        self.required(match spindle {
             Spindle::Off => BlockName::SpindleOff,
             Spindle::Clockwise(_) => BlockName::SpindleCw,
             Spindle::CounterClockwise(_) => BlockName::SpindleCcw,
         })?;
-        let before = self.active_spindle.replace(self.spindle);
-        let goes_on = matches!(
-            (before, self.spindle),
-            (_, Spindle::Off)
-                | (Some(Spindle::Clockwise(_)), Spindle::Clockwise(_))
-                | (Some(Spindle::CounterClockwise(_)), Spindle::CounterClockwise(_))
-        );
+        let runs_up = self.sent.switch_spindle(spindle);
         let dwell = self.machine.spindle.dwell;
-        if goes_on || dwell == 0.0 { Ok(()) } else { self.write_dwell(dwell) }
+        if runs_up && dwell != 0.0 { self.write_dwell(dwell) } else { Ok(()) }
     }
 
     pub(crate) fn sync_coolant(&mut self) -> Done {
-        if self.active_coolant == Some(self.coolant) {
+        let coolant = self.wanted.coolant();
+        if self.sent.has_coolant(coolant) {
             return Ok(());
         }
-        // Where another one may still run, some controls let both run (LinuxCNC), and others leave it to the builder (FANUC).
-        let stays = match (self.last_coolant, self.coolant) {
-            (Coolant::Off, _) | (_, Coolant::Off) => true,
-            (Coolant::Flood | Coolant::Mist, Coolant::FloodAndMist) => true,
-            (last, next) => last == next,
-        };
-        if !stays && self.active_coolant != Some(Coolant::Off) {
+        if self.sent.mixes_coolant(coolant) {
             self.required(BlockName::CoolantOff)?;
         }
-        self.coolant_block(match self.coolant {
+        self.coolant_block(match coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
             Coolant::FloodAndMist => BlockName::CoolantFloodAndMist,
             Coolant::Through => BlockName::CoolantThrough,
         })?;
-        (self.active_coolant, self.last_coolant) = (Some(self.coolant), self.coolant);
+        self.sent.switch_coolant(coolant);
         Ok(())
     }
 
     /// Coolant that the control does nothing for is none.
     fn coolant_block(&mut self, name: BlockName) -> Done {
-        if self.coolant != Coolant::Off && self.machine.leaves_out(name.name()) {
+        if self.wanted.coolant() != Coolant::Off && self.machine.leaves_out(name.name()) {
             let message =
                 format!("the control has no coolant of this kind: `{}` is empty", name.name());
             let help = "another coolant in the toolpath, or the block in a file of your own";
@@ -271,7 +260,7 @@ impl Walk<'_> {
     #[inline]
     pub(crate) fn before_cut(&mut self) -> Done {
         self.wire_for(true, "a cut")?;
-        if self.spindle == Spindle::Off && self.wire.is_none() {
+        if self.wanted.spindle() == Spindle::Off && self.wire.is_none() {
             let help = "SPINDL/ with a speed before the first cut";
             return Err(Box::new(
                 refuse("spindle-off", "a cut while the spindle stands").help(help),
@@ -284,10 +273,9 @@ impl Walk<'_> {
     /// Look-ahead goes on or off, where the machine's file has the blocks for it.
     #[inline]
     pub(crate) fn look_ahead(&mut self, on: bool) -> Done {
-        if self.looks_ahead == on {
+        if !self.sent.look_ahead(on) {
             return Ok(());
         }
-        self.looks_ahead = on;
         let name = if on { BlockName::LookAheadOn } else { BlockName::LookAheadOff };
         if self.templates.has(name) { self.block(name) } else { Ok(()) }
     }
@@ -295,14 +283,14 @@ impl Walk<'_> {
     /// Look-ahead goes on before a cut, unless the control compensates already: then it follows with the next contour.
     #[inline]
     pub(crate) fn look_ahead_in_cuts(&mut self) -> Done {
-        let compensates = self.active_compensation != Compensation::Off;
+        let compensates = self.sent.compensation() != Compensation::Off;
         if compensates { Ok(()) } else { self.look_ahead(true) }
     }
 
     /// Whether the feed is in inverse time: then the length of a cut counts.
     #[inline]
     pub(crate) fn is_timed(&self) -> bool {
-        matches!(self.feed, Some(Feed::InverseTime(_)))
+        matches!(self.wanted.feed(), Some(Feed::InverseTime(_)))
     }
 
     /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. Answers the feed as it
@@ -314,25 +302,26 @@ impl Walk<'_> {
         pieces: usize,
         cut: Cut,
     ) -> Result<f64, Box<Diagnostic>> {
-        let Some(mut feed) = self.feed else {
+        let Some(mut feed) = self.wanted.feed() else {
             // The generator of a wire machine holds the gap, and finds the feed by it.
             if self.wire.is_some() {
                 return Ok(0.0);
             }
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
-        self.limits.feed(feed, self.spindle, self.line)?;
+        self.limits.feed(feed, self.wanted.spindle(), self.line)?;
         if let Feed::InverseTime(rate) = &mut feed {
             // A piece has its part of the time.
-            let within = self.whole > 0.0 && length > 0.0;
-            *rate *= if within { self.whole / length } else { pieces as f64 };
+            let whole = self.position.cut_length();
+            let within = whole > 0.0 && length > 0.0;
+            *rate *= if within { whole / length } else { pieces as f64 };
         }
         let can = &self.machine.capabilities;
         // Around the corners of a contour the control adds moves, whose time nobody gives.
         let timed = can.inverse_time
             && (cut != Cut::Arc || can.inverse_time_arcs)
             && !(self.wire.is_none() && self.offsets());
-        let speed = speed(self.spindle).unwrap_or_default();
+        let speed = speed(self.wanted.spindle()).unwrap_or_default();
         let per_minute = || lowering::feed_per_minute(feed, length, speed);
         let (mode, value) = match (feed, cut) {
             (_, Cut::Turning(turn)) => self.feed_of_turn(feed, length, &turn)?,
@@ -383,7 +372,7 @@ impl Walk<'_> {
         length: f64,
         turn: &Turn,
     ) -> Result<(usize, f64), Box<Diagnostic>> {
-        let speed = speed(self.spindle).unwrap_or_default();
+        let speed = speed(self.wanted.spindle()).unwrap_or_default();
         let inverse = self.machine.capabilities.inverse_time;
         let wanted = match feed {
             Feed::InverseTime(rate) => 1.0 / rate,
