@@ -1,4 +1,4 @@
-//! Any bytes as ISO code, the flavour by the first byte: no panic, and what runs makes sense.
+//! Any bytes as ISO code, the dialect by the first byte: no panic, and what runs makes sense.
 #![no_main]
 
 use control::{Action, Dialect, Orientation, Settings, Setup, Wire, read};

@@ -1,5 +1,5 @@
-//! Random legal ISO programs in the flavours that write them alike, written by the small writer of this
-//! file, and random words in all flavours.
+//! Random legal ISO programs in the dialects that write them alike, written by the small writer of this
+//! file, and random words in all dialects.
 
 mod common;
 
@@ -7,7 +7,7 @@ use geom::Vec3;
 use proptest::prelude::*;
 use toolpost_control::{Action, Dialect, Event, Settings, Setup, WholeNumbers, read};
 
-const FLAVORS: [Dialect; 5] =
+const DIALECTS: [Dialect; 5] =
     [Dialect::Fanuc, Dialect::Haas, Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl];
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Event>, Box<program::Diagnostic>> {
@@ -178,7 +178,7 @@ proptest! {
     #[test]
     fn a_program_goes_where_its_writer_reckoned(blocks in blocks()) {
         let (text, expected) = write(&blocks);
-        for dialect in FLAVORS {
+        for dialect in DIALECTS {
             check(dialect, &format!("G21\n{text}"), &expected, 1.0);
             check(dialect, &format!("G20\n{text}"), &expected, 25.4);
         }
@@ -202,7 +202,7 @@ proptest! {
         };
         let text: String = blocks.iter().map(|words| line(words) + "\n").collect();
         let setup = Setup { start: known.then_some(Vec3::ZERO), ..Setup::default() };
-        for dialect in FLAVORS.into_iter().chain([Dialect::Marlin]) {
+        for dialect in DIALECTS.into_iter().chain([Dialect::Marlin]) {
             let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
             if let Err(error) = read(&settings, "t.nc", text.as_bytes(), &mut |_| Ok(())) {
                 prop_assert!(error.line > 0 && !error.message.is_empty());
@@ -217,9 +217,9 @@ proptest! {
     ) {
         let text = format!("G21\nG90\nS100 M3\nF100\nG0 X1. Y2. Z30.\n{}\n", blocks.join("\n"));
         let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
-        for dialect in FLAVORS.into_iter().chain([Dialect::Marlin]) {
+        for dialect in DIALECTS.into_iter().chain([Dialect::Marlin]) {
             let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
-            // What a flavour does not know is left out, so that the rest is tried.
+            // What a dialect does not know is left out, so that the rest is tried.
             let mut kept: Vec<&str> = text.lines().collect();
             while let Err(error) = read(&settings, "t.nc", kept.join("\n").as_bytes(), &mut sound) {
                 let line = error.line as usize;
@@ -266,7 +266,7 @@ proptest! {
         let text = format!("G21\nG90\nS100 M3\nG0 X1. Y2. Z30.\nG1 F100\n{}\n", blocks.join("\n"));
         let start = known.then_some(Vec3::ZERO);
         let setup = Setup { start, whole_numbers: whole, ..Setup::default() };
-        for dialect in FLAVORS.into_iter().chain([Dialect::FreeCad, Dialect::FanucWire]) {
+        for dialect in DIALECTS.into_iter().chain([Dialect::FreeCad, Dialect::FanucWire]) {
             let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
             let run = |lines: &[&str], parted: bool| {
                 let text = lines.join("\n");
@@ -312,7 +312,7 @@ fn sound(record: Event) -> Result<(), Box<program::Diagnostic>> {
 /// What a word may begin with.
 const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ/(;%#@^$[";
 
-/// Blocks that mean something to one flavour or another.
+/// Blocks that mean something to one dialect or another.
 const BLOCKS: &[&str] = &[
     "G1 X5. Y6.",
     "G0 Z-3.",
