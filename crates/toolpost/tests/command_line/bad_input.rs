@@ -550,3 +550,103 @@ fn no_message_says_a_number_of_300_digits() {
         }
     }
 }
+
+/// A change of T1 against T1 is none: the first of the two tools goes on. Wherever a source gives tools sizes, two under one number are
+/// refused, and nothing is saved; boards count their tools themselves.
+#[test]
+fn two_tools_of_one_number_are_refused_in_every_source_that_gives_them_sizes() {
+    let cut = |name: &str| {
+        format!(
+            "{name}\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,20\nFEDRAT/100\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,20\n"
+        )
+    };
+    let cl = |second: u32| {
+        let tool = |diameter: u32| cut(&format!("LOADTL/1\nCUTTER/{diameter}"));
+        format!("PARTNO/T\nUNITS/MM\n{}{}FINI\n", tool(10), tool(second))
+    };
+    let klartext = |second: u32| {
+        let tool = |radius: u32| {
+            format!(
+                "TOOL DEF 1 L+50 R+{radius}\nTOOL CALL 1 Z S900\nL X+0 Y+0 Z+20 R0 FMAX M3\nL Z-1 F100\nL Z+20 FMAX\n"
+            )
+        };
+        format!("BEGIN PGM T MM\n{}{}M30\nEND PGM T MM\n", tool(5), tool(second))
+    };
+    let job = |second: u32| {
+        let tool = |diameter: u32| {
+            format!("{{\"number\": 1, \"name\": \"M\", \"diameter\": {diameter}.0}}")
+        };
+        let example = String::from_utf8(text_of("../../examples/bracket.json")).unwrap();
+        let at = example.find("\"tools\": [").unwrap() + 10;
+        format!("{}{}, {},{}", &example[..at], tool(6), tool(second), &example[at..])
+    };
+    let table = |second: u32| format!("T1 P1 Z25 D6 ;one\nT{second} P2 Z30 D10 ;two\n");
+    let fanuc = ["-m", "generic-3axis-fanuc", "-o", "out.nc"];
+    for (name, twice, rule, words) in [
+        ("in.cls", cl(6), "tool-twice", &["post", "in.cls"][..]),
+        ("in.h", klartext(3), "tool-twice", &["post", "in.h", "--from", "heidenhain-tnc640"]),
+        ("in.json", job(8), "two-tools", &["post", "in.json"]),
+        (
+            "in.tbl",
+            table(1),
+            "tool-table",
+            &["post", "flange.nc", "--from", "fanuc-31i", "--tools", "in.tbl"],
+        ),
+    ] {
+        let folder = Folder::new();
+        folder.write("flange.nc", text_of("../../examples/flange.nc"));
+        folder.write(name, &twice);
+        let said = folder.run(&[words, &fanuc].concat());
+        assert!(said.code != 0 && said.err.contains(&format!("error[{rule}]")), "{name}: {said:?}");
+        assert!(!folder.names().contains(&"out.nc".to_owned()), "{name}");
+    }
+    for (name, once, words) in [
+        ("in.cls", cl(10), &["post", "in.cls"][..]),
+        ("in.h", klartext(5), &["post", "in.h", "--from", "heidenhain-tnc640"]),
+        ("in.tbl", table(2), &["post", "flange.nc", "--from", "fanuc-31i", "--tools", "in.tbl"]),
+    ] {
+        let folder = Folder::new();
+        folder.write("flange.nc", text_of("../../examples/flange.nc"));
+        folder.write(name, &once);
+        let said = folder.run(&[words, &fanuc].concat());
+        assert_eq!(said.code, 0, "{name}: {said:?}");
+    }
+    // A program that calls T1 for both is not proven either.
+    let folder = Folder::new();
+    folder.write("once.cls", cl(10));
+    folder.write("twice.cls", cl(6));
+    assert_eq!(folder.run(&[&["post", "once.cls"][..], &fanuc].concat()).code, 0);
+    let said =
+        folder.run(&["prove", "out.nc", "--against", "twice.cls", "-m", "generic-3axis-fanuc"]);
+    assert!(said.code == 1 && said.err.contains("error[tool-twice]"), "{said:?}");
+}
+
+/// What an operator who is new is told: the way out as he needs it.
+#[test]
+fn the_ways_out_that_a_newcomer_missed_are_there() {
+    let folder = Folder::new();
+    for name in ["plate.cls", "dome.cls"] {
+        folder.write(name, text_of(&format!("../../examples/{name}")));
+    }
+    folder.write("whole.nc", "%\nO1\nG21\nG90 G94\nT1 M6\nS900 M3\nG0 X0 Y0 Z5\nM30\n%\n");
+    for (words, told) in [
+        // M5
+        ("post dome.cls -m generic-3axis-fanuc -o a.nc", "five-axis toolpath, three-axis machine"),
+        (
+            "post dome.cls -m generic-3axis-fanuc -o a.nc",
+            "choose a machine with rotary axes, such as `fanuc-table-bc`",
+        ),
+        ("post plate.cls -m generic-3axis-grbl -o a.nc", "moves cannot tap"),
+        (
+            "post plate.cls -m generic-3axis-grbl -o a.nc",
+            "tap by hand or mill the thread, or take a machine whose control has a tapping cycle",
+        ),
+        // M6
+        ("post plate.cls -m grbl-3018 -o a.nc", "lower the clearance planes in the CAM system"),
+        // M16
+        ("show whole.nc --from fanuc-31i", "`--whole-numbers units` where X10 is 10 mm"),
+    ] {
+        let said = folder.run(&words.split(' ').collect::<Vec<_>>());
+        assert!(said.code != 0 && said.err.contains(told), "{words}: {told}\n{}", said.err);
+    }
+}

@@ -102,6 +102,13 @@ impl Control<'_, '_> {
             let message = format!("tool {number} is another one in the tool table");
             return Err(s.error_block("tool", message));
         }
+        let other = |tool: &ToolData| tool.radius != radius || tool.length != length;
+        if self.defined_tools.get(&number).is_some_and(other) {
+            let message = format!(
+                "tool {number} has been defined with another L or R before: two tools have one number"
+            );
+            return Err(s.error_block("tool-twice", message));
+        }
         self.emit(Action::Risk(Risk::OPERATOR_DATA.into()))?;
         self.defined_tools.insert(number, ToolData { number, name: String::new(), radius, length });
         Ok(())
