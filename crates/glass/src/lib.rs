@@ -3,6 +3,11 @@
 //! Lengths are mm and points whole µm, times s, angles radians, unless a name says otherwise. The block's frame has its origin in a lower
 //! corner of the block; Z points up, against the beam. The same input gives the same result on any number of threads.
 //!
+//! A body ([`mesh`]) or a list of points is placed in a block and becomes a cloud ([`sample`], [`weld`]), whose minimum distance
+//! [`cloud`] proves. [`order`] puts it in an order that shadows no point and takes few laser ticks ([`clock`], [`profile`]),
+//! [`optics`] corrects for refraction, [`post`] writes the program. [`control`] reads it back, and [`proof`] compares its pulses
+//! with the cloud: those two share nothing with the writer but the [`machine`]'s description. [`job`] does all of it.
+//!
 //! ```
 //! use toolpost_glass::clock::Clock;
 //! use toolpost_glass::profile::{Limits, Profile};
@@ -16,8 +21,18 @@
 pub mod clock;
 pub mod cloud;
 pub mod comparison;
+pub mod control;
+pub mod job;
+pub mod list;
+pub mod machine;
+pub mod material;
 pub mod mesh;
+pub mod optics;
+pub mod order;
 pub mod polar;
+pub mod post;
 pub mod profile;
+pub mod proof;
 pub mod sample;
 pub mod source;
+pub mod weld;

@@ -3,13 +3,13 @@
 //!
 //! Darts are thrown into cells of the surface, triangles at most three quarters of a spacing long. A dart that hits nothing
 //! within a spacing becomes a point, which then covers its cell. Where it hits something, the cell is halved, unless a point covers
-//! it whole. A cell of at most [`FINEST`] spacings is given up: its dart lies within a spacing of a point, so all of it lies
+//! it whole. A cell of at most `FINEST` spacings is given up: its dart lies within a spacing of a point, so all of it lies
 //! within 1 + `FINEST` spacings. That is the bound of the largest gap.
 //!
-//! **Border rule of tiles.** Space is divided into cubes of [`TILE`] spacings. A cell belongs to the cube that holds its centroid.
+//! **Border rule of tiles.** Space is divided into cubes of `TILE` spacings. A cell belongs to the cube that holds its centroid.
 //! Cubes are worked on in eight turns, by whether their three numbers are odd or even: two cubes of a turn are a whole cube
 //! apart, farther than a spacing and two halves of a cell, so neither sees the other's points; a cube sees the points of all earlier
-//! turns. The result hangs on neither the threads nor who works on which cube.
+//! turns. The result depends on neither the threads nor who works on which cube.
 
 use crate::cloud::Point;
 use crate::mesh::Mesh;
@@ -130,9 +130,10 @@ struct Room {
     /// The tile's own box, µm.
     tile: (DVec3, DVec3),
     number: [i32; 3],
-    /// The last point of each cube, and of each point the one before it in its cube; 0 is none, 1 the first point.
-    last: Vec<u32>,
-    before: Vec<u32>,
+    /// The last point of each cube, and of each point the one before it in its cube; 0 is none, 1 the first point. At their
+    /// distance no more than 11,000 points are in a room of 20 spacings.
+    last: Vec<u16>,
+    before: Vec<u16>,
     points: Vec<[f64; 3]>,
 }
 
@@ -178,7 +179,7 @@ impl Room {
         if let Some(cube) = self.cube(place) {
             self.points.push(place.to_array());
             self.before.push(self.last[cube]);
-            self.last[cube] = self.points.len() as u32;
+            self.last[cube] = self.points.len() as u16;
         }
     }
 
@@ -274,7 +275,10 @@ enum Hit {
 }
 
 /// Numbers that look like chance and are the same in every run (splitmix64).
-pub(crate) struct Dice(pub u64);
+pub struct Dice(
+    /// Where the numbers begin.
+    pub u64,
+);
 
 /// One step of splitmix64.
 fn mixed(seed: u64) -> u64 {
@@ -285,19 +289,20 @@ fn mixed(seed: u64) -> u64 {
 }
 
 impl Dice {
-    pub(crate) fn roll(&mut self) -> u64 {
+    /// Any number.
+    pub fn roll(&mut self) -> u64 {
         let rolled = mixed(self.0);
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         rolled
     }
 
     /// From 0 to 1, 1 left out.
-    pub(crate) fn part(&mut self) -> f64 {
+    pub fn part(&mut self) -> f64 {
         (self.roll() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// From 0 to `count` (1 at least), `count` left out.
-    pub(crate) fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         ((u128::from(self.roll()) * count as u128) >> 64) as usize
     }
 

@@ -1,19 +1,242 @@
 //! `toolpost glass`: engraving inside glass.
 
-use crate::answer::Answer;
-use crate::args::glass::{Glass, GlassCommand};
-use app::Stop;
+use crate::answer::{Answer, not_saved};
+use crate::args::glass::{Engrave, Glass, GlassCommand, Sorting};
+use crate::progress::Progress;
+use ::glass::job::{self, Made, Order, Placing, Settings};
+use ::glass::list::Columns;
+use ::glass::machine::{LIBRARY, Machine};
+use ::glass::mesh::{self, Form, Shape};
+use ::glass::order::Effort;
+use ::glass::{cloud, material, source};
+use app::files::{self, Target};
+use app::{Account, Stop, Verdict, Watch};
+use program::Diagnostic;
 use serde_json::json;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// Obeys the command.
-pub fn run(args: &Glass) -> Result<Answer, Stop> {
-    match args.command {
-        GlassCommand::Tables => Ok(tables()),
+pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
+    match args {
+        Glass::Engrave(engraving) => engrave(engraving, silent),
+        Glass::Command(GlassCommand::Tables) => Ok(tables()),
+        Glass::Command(GlassCommand::Show { name }) => show(name),
+        Glass::Command(GlassCommand::Check { points, spacing, columns }) => {
+            check(points, *spacing, *columns)
+        }
     }
 }
 
 /// The tables of the source next to ours.
 fn tables() -> Answer {
-    let data = json!({ "series": ::glass::source::series(), "checks": ::glass::source::checks() });
-    Answer::product(::glass::source::report(), data)
+    let data = json!({ "series": source::series(), "checks": source::checks() });
+    Answer::product(source::report(), data)
+}
+
+/// A file of the library.
+fn show(name: &str) -> Result<Answer, Stop> {
+    let text = if name == "materials" { material::TABLE } else { library(name)? };
+    Ok(Answer::product(text, json!({ "name": name, "text": text })))
+}
+
+/// The text of a machine of the library.
+fn library(name: &str) -> Result<&'static str, Stop> {
+    ::glass::machine::library(name).ok_or_else(|| {
+        let names = LIBRARY.map(|(name, _)| name).join(", ");
+        let found = Diagnostic::error("machine", format!("there is no glass engraver `{name}`"));
+        found.help(format!("there are: {names}; or give a file ending in .toml")).into()
+    })
+}
+
+/// The form of a file, by its ending.
+fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match ending.as_str() {
+        "stl" => Ok(Form::Stl),
+        "obj" => Ok(Form::Obj),
+        "ply" => Ok(Form::Ply),
+        "xyz" | "txt" | "csv" | "cft" | "asc" | "pts" => Ok(Form::List(columns)),
+        _ => {
+            let found =
+                Diagnostic::error("form", format!("`.{ending}` is no form of bodies or points"));
+            let help = "give .stl, .obj or .ply, or a list of points in .xyz, .txt, .csv or .cft";
+            Err(found.file(files::name(path)).help(help).into())
+        }
+    }
+}
+
+fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
+    let form = form(path, columns)?;
+    Ok(mesh::read(&files::read(path)?, form, &files::name(path))?)
+}
+
+/// The text of a file that must be UTF-8.
+fn text(path: &Path) -> Result<String, Stop> {
+    String::from_utf8(files::text(path)?).map_err(|_| {
+        let found = Diagnostic::error("encoding", "is not UTF-8").file(files::name(path));
+        found.help("save it as UTF-8").into()
+    })
+}
+
+/// Checks the distances of a list of points.
+fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
+    let places = match shape(path, columns)? {
+        Shape::Points(places) => places,
+        Shape::Mesh(mesh) => mesh.vertices,
+    };
+    let points: Option<Vec<_>> = places.iter().map(|place| cloud::point(*place)).collect();
+    let points = points.ok_or_else(|| {
+        let found =
+            Diagnostic::error("coordinate", "a point is beyond 2 m").file(files::name(path));
+        Stop::from(found.help("lengths are mm"))
+    })?;
+    let found = cloud::distances(&points, (spacing * 1e3).ceil() as i64);
+    let mut rows = vec![("points", points.len().to_string())];
+    rows.push(("nearest", nearest(&found, &points)));
+    rows.push((
+        "too close",
+        format!("{} pairs under {spacing} mm, {} points", found.too_close, found.crowded),
+    ));
+    let data = json!({ "points": points.len(), "spacing": spacing, "distances": found });
+    let verdict = if found.too_close == 0 { Verdict::Done } else { Verdict::Failed };
+    Ok(Answer::summary(verdict, app::summary::rows(&rows), data))
+}
+
+/// The nearest two points of a cloud.
+fn nearest(found: &cloud::Distances, points: &[cloud::Point]) -> String {
+    match found.nearest {
+        Some(cloud::Pair { points: [a, b], distance }) => {
+            let show = |i: u32| {
+                let place = cloud::place(points[i as usize]);
+                format!("{:.3} {:.3} {:.3}", place.x, place.y, place.z)
+            };
+            format!("{distance:.4} mm: {} and {}", show(a), show(b))
+        }
+        None => String::from("no two points within twice the spacing"),
+    }
+}
+
+fn settings(args: &Engrave, begun: Instant) -> Settings {
+    let ordering = &args.ordering;
+    let placing = Placing {
+        block: args.block,
+        margin: args.placing.margin,
+        scale: args.placing.scale,
+        fit: args.placing.fit,
+        turn: args.placing.turn,
+        mirror: [0, 1, 2].map(|axis| args.placing.mirror.contains(&axis)),
+        shift: args.placing.r#move,
+    };
+    let order = match ordering.order {
+        Sorting::Fastest => Order::Fastest,
+        Sorting::Kdz => Order::Kdz(ordering.slopes[0], ordering.slopes[1]),
+        Sorting::Layers => Order::Layers(ordering.layer),
+    };
+    let until =
+        ordering.seconds.and_then(|s| begun.checked_add(Duration::try_from_secs_f64(s).ok()?));
+    Settings {
+        placing,
+        focal: args.lens,
+        spacing: args.spacing,
+        ray: args.ray,
+        order,
+        effort: Effort { rounds: ordering.rounds, until, ..Effort::default() },
+        seed: args.seed,
+        accept_shadowed: !args.accept.is_empty(),
+    }
+}
+
+/// Makes a program, proves it, and only then saves it with its report.
+fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
+    let begun = Instant::now();
+    let mut inputs: Vec<&Path> = args.bodies.iter().map(|path| path.as_path()).collect();
+    inputs.push(Path::new(&args.machine));
+    inputs.extend(args.materials.as_deref());
+    let report_path = files::report_of(&args.output);
+    let target = Target::new(&args.output, &inputs)?;
+    let report_target = Target::new(&report_path, &inputs)?;
+    let progress = Progress::new(3, silent);
+    progress.step("reading");
+    let machine = match Path::new(&args.machine) {
+        path if path.extension().is_some_and(|ending| ending == "toml") => {
+            Machine::read(&text(path)?, &files::name(path))?
+        }
+        _ => Machine::read(library(&args.machine)?, &args.machine)?,
+    };
+    let (table, file) = match &args.materials {
+        Some(path) => (text(path)?, files::name(path)),
+        None => (material::TABLE.to_owned(), String::from("materials.toml")),
+    };
+    let material = material::find(&table, &file, &args.material, machine.laser.wavelength)?;
+    let shapes =
+        args.bodies.iter().map(|path| shape(path, args.columns)).collect::<Result<Vec<_>, _>>()?;
+    progress.step("engraving");
+    let made = job::make(shapes, &material, &machine, &settings(args, begun))?;
+    let mut account = account(&made, &machine, &material);
+    if account.verdict != Verdict::Done {
+        return Ok(not_saved(account));
+    }
+    progress.step("saving");
+    files::save(&[(&report_target, account.report().as_bytes()), (&target, &made.text)])?;
+    account.rows.push(("saved", args.output.display().to_string()));
+    account.rows.push(("", report_path.display().to_string()));
+    Ok(account.into())
+}
+
+/// What is reported of a job.
+fn account(made: &Made, machine: &Machine, material: &material::Material) -> Account {
+    let Made { report, cloud, findings, .. } = made;
+    let proof = &report.proof;
+    let three = |at: [f64; 3]| format!("{:.3} {:.3} {:.3}", at[0], at[1], at[2]);
+    let mut rows = vec![("machine", machine.title.clone())];
+    rows.push((
+        "material",
+        format!("{}, index {} at {} nm", material.title, material.index, material.wavelength),
+    ));
+    rows.push((
+        "points",
+        format!("{} from {} to {} mm", report.points, three(report.from), three(report.to)),
+    ));
+    if report.welded > 0 {
+        rows.push((
+            "left out",
+            format!("{} points nearer than {} mm to another one", report.welded, report.spacing),
+        ));
+    }
+    rows.push(("nearest", nearest(&report.distances, cloud)));
+    rows.push((
+        "refraction",
+        format!(
+            "focus by the {} ray; the other one is {:.3} mm of drive away at the deepest point",
+            match report.ray {
+                ::glass::optics::Ray::Marginal => "marginal",
+                ::glass::optics::Ray::Paraxial => "paraxial",
+            },
+            report.rays_apart
+        ),
+    ));
+    rows.push((
+        "time",
+        format!(
+            "{:.2} s, {} ticks at {} Hz; {:.2} % of the pulses are used",
+            proof.seconds,
+            proof.ticks,
+            machine.laser.rate,
+            100.0 * proof.used
+        ),
+    ));
+    rows.push(("proof", match made.proven {
+        true => format!(
+            "passed: {} pulses, each within {:.4} mm across and {:.4} mm along the beam of its point; {} points shadowed",
+            proof.pulses, proof.across, proof.along, proof.shadowed
+        ),
+        false => String::from("FAILED"),
+    }));
+    Account {
+        verdict: if made.proven { Verdict::Done } else { Verdict::Failed },
+        rows,
+        data: json!({ "machine": machine.title, "material": material.title, "glass": report }),
+        findings: findings.clone(),
+    }
 }

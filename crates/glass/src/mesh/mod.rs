@@ -1,6 +1,14 @@
 //! Bodies as triangles: their readers, and what is wrong with them.
 
+mod obj;
+mod ply;
+mod stl;
+
+use crate::list::{self, Columns};
 use glam::DVec3;
+use program::{Diagnostic, encoding};
+use serde::Serialize;
+use std::collections::HashMap;
 
 /// Triangles in space, mm.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +19,134 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// What a file holds.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A body.
+    Mesh(Mesh),
+    /// Points without faces, mm.
+    Points(Vec<DVec3>),
+}
+
+/// The form of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// STL, either kind.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+    /// PLY, ASCII or binary.
+    Ply,
+    /// Points, one a line, with X, Y and Z in these columns.
+    List(Columns),
+}
+
+/// What is unusual about a body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Health {
+    /// Triangles without area.
+    pub flat: u64,
+    /// Edges that only one triangle has: the body is open there.
+    pub open: u64,
+    /// Edges that more than two triangles have.
+    pub crowded: u64,
+    /// The middle of the first open edge, mm.
+    pub first_open: Option<[f64; 3]>,
+    /// The volume, mm³: less than 0 where the body is inside out.
+    pub volume: f64,
+}
+
+/// The most vertices that a body may have.
+const MOST: usize = u32::MAX as usize / 4;
+
+/// The largest coordinate of a body, mm: what is larger is not engraved but a mistake, and exact sums need room.
+const LARGEST: f64 = 1e6;
+
+/// Reads the bytes of the file `file` as `form`.
+///
+/// # Errors
+/// What is wrong with it, with the line where there are lines.
+pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnostic>> {
+    // The title of a binary file is no text.
+    let bytes = if form == Form::Stl && stl::is_binary(bytes) {
+        bytes
+    } else if encoding::is_utf_16(bytes) {
+        return Err(encoding::utf_16().file(file).into());
+    } else {
+        encoding::without_mark(bytes)
+    };
+    let read = match form {
+        Form::Stl => stl::read(bytes).map(Shape::Mesh),
+        Form::Obj => obj::read(bytes).map(Shape::Mesh),
+        Form::Ply => ply::read(bytes),
+        Form::List(columns) => list::read(bytes, columns).map(Shape::Points),
+    };
+    let shape = read.map_err(|fault| fault.diagnostic(file))?;
+    let (places, empty) = match &shape {
+        Shape::Mesh(mesh) => (&mesh.vertices, mesh.triangles.is_empty()),
+        Shape::Points(points) => (points, points.is_empty()),
+    };
+    if empty {
+        return Err(Fault::new("empty", "has no triangle and no point").diagnostic(file));
+    }
+    if let Some(at) =
+        places.iter().position(|place| !place.is_finite() || place.abs().max_element() > LARGEST)
+    {
+        let message = format!("point {} is {}: not a number, or beyond 1 km", at + 1, places[at]);
+        return Err(Fault::new("coordinate", message).diagnostic(file));
+    }
+    Ok(shape)
+}
+
+/// What is wrong with a file.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    rule: &'static str,
+    message: String,
+    line: u32,
+}
+
+impl Fault {
+    pub(crate) fn new(rule: &'static str, message: impl Into<String>) -> Fault {
+        Fault { rule, message: message.into(), line: 0 }
+    }
+
+    /// On this line, from 1.
+    pub(crate) fn line(self, line: usize) -> Fault {
+        Fault { line: u32::try_from(line).unwrap_or(u32::MAX), ..self }
+    }
+
+    pub(crate) fn diagnostic(self, file: &str) -> Box<Diagnostic> {
+        let found = Diagnostic::error(self.rule, self.message).file(file).line(self.line);
+        found.help("export the body again; docs/sources/glass.md says what is read").into()
+    }
+}
+
+/// The number that a word is.
+pub(crate) fn number(word: Option<&str>, line: usize) -> Result<f64, Fault> {
+    let word = word.unwrap_or("");
+    let value = word.parse::<f64>().ok().filter(|value| value.is_finite());
+    value
+        .ok_or_else(|| Fault::new("number", format!("a number is needed, not `{word}`")).line(line))
+}
+
+/// The text of a file, line by line with their numbers from 1. Bytes that are not UTF-8 are replaced: they are in no number.
+pub(crate) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
+    let lines = bytes.split(|byte| *byte == b'\n' || *byte == b'\r');
+    // Of CR LF the LF ends an empty line: numbers count LF, or CR where there is no LF.
+    let feeds = bytes.contains(&b'\n');
+    let mut number = 1;
+    let mut at = 0;
+    lines.map(move |line| {
+        let here = number;
+        at += line.len() + 1;
+        if bytes.get(at - 1).is_some_and(|end| (*end == b'\n') == feeds) {
+            number += 1;
+        }
+        (here, String::from_utf8_lossy(line))
+    })
+}
+
 impl Mesh {
     /// The corners of the triangle of this number.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
@@ -19,9 +155,7 @@ impl Mesh {
 
     /// The smallest box around all corners; `None` where there are none.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let first = *self.vertices.first()?;
-        let grow = |(low, high): (DVec3, DVec3), &at: &DVec3| (low.min(at), high.max(at));
-        Some(self.vertices.iter().fold((first, first), grow))
+        bounds(&self.vertices)
     }
 
     /// Its surface, mm².
@@ -32,4 +166,58 @@ impl Mesh {
         };
         (0..self.triangles.len() as u32).map(area).sum()
     }
+
+    /// Takes another body in.
+    pub fn join(&mut self, other: Mesh) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices);
+        self.triangles
+            .extend(other.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+    }
+
+    /// What is unusual about it. Corners at the same place are one corner.
+    pub fn health(&self) -> Health {
+        let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.vertices.len());
+        let same: Vec<u32> = (0..self.vertices.len() as u32)
+            .map(|i| {
+                // + 0 makes one of both zeros.
+                let bits = (self.vertices[i as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+                *places.entry(bits).or_insert(i)
+            })
+            .collect();
+        drop(places);
+        let mut edges: HashMap<(u32, u32), u32> = HashMap::new();
+        let (mut flat, mut volume) = (0, 0.0);
+        for triangle in 0..self.triangles.len() as u32 {
+            let [a, b, c] = self.corners(triangle);
+            let corners = self.triangles[triangle as usize].map(|corner| same[corner as usize]);
+            volume += a.dot(b.cross(c)) / 6.0;
+            if (b - a).cross(c - a) == DVec3::ZERO {
+                flat += 1;
+                continue;
+            }
+            for i in 0..3 {
+                let (from, to) = (corners[i], corners[(i + 1) % 3]);
+                *edges.entry((from.min(to), from.max(to))).or_default() += 1;
+            }
+        }
+        let open = edges.iter().filter(|(_, count)| **count == 1).map(|(edge, _)| *edge);
+        let first = open.clone().min();
+        let middle =
+            |(a, b): (u32, u32)| 0.5 * (self.vertices[a as usize] + self.vertices[b as usize]);
+        Health {
+            flat,
+            open: open.count() as u64,
+            crowded: edges.values().filter(|count| **count > 2).count() as u64,
+            first_open: first.map(|edge| middle(edge).to_array()),
+            volume,
+        }
+    }
+}
+
+/// The smallest box around places; `None` where there are none.
+pub fn bounds(places: &[DVec3]) -> Option<(DVec3, DVec3)> {
+    let first = *places.first()?;
+    let grow = |(low, high): (DVec3, DVec3), &at: &DVec3| (low.min(at), high.max(at));
+    Some(places.iter().fold((first, first), grow))
 }

@@ -43,7 +43,7 @@ pub struct Row {
     pub time: f64,
     /// Points per second as printed.
     pub rate: f64,
-    /// Time by the surrogate, s; `None` where the row hangs on the lost cloud.
+    /// Time by the surrogate, s; `None` where the row depends on the lost cloud.
     pub ours: Option<f64>,
 }
 

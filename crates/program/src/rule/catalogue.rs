@@ -139,6 +139,10 @@ rules! {
         "A cut needs a turn of an axis by half a turn, and which way it would go is not known."
         "split the cut, or tilt the tool a little there"
         "A cut over the pole of a table";
+    BeamCut "beam-cut" []
+        "Side faces of a block of glass cut off part of the beam of some points."
+        "take the margin that the finding names, or a larger block"
+        "A point 1 mm from a side, 79 mm deep, at f = 70 mm";
     Blank "blank" []
         "The corners of the blank are missing, or not in order."
         "give two corners, the second above the first in X, Y and Z, or leave both out"
@@ -331,6 +335,10 @@ rules! {
         "Coolant is switched in a way that the control does not take, or not as the source has it."
         "give one M function of coolant a block, and one that the control knows"
         "The source switches flood on, and the program does not";
+    Coordinate "coordinate" []
+        "A coordinate of a body or a point is no number, is missing, or is beyond what can be engraved."
+        "export the body again, in mm"
+        "A vertex of a PLY file without z";
     CopperOutside "copper-outside" []
         "Copper lies outside the outline of the board."
         "correct the outline or the copper in the CAD program; only copper within the outline is cut around"
@@ -423,6 +431,10 @@ rules! {
         "A FreeCAD document is larger than is read."
         "save the job alone, or post from within FreeCAD"
         "A .FCStd with an entry of 10 GB";
+    DoesNotFit "does-not-fit" []
+        "A body does not fit into its block within the margins."
+        "scale it, fit it, or move it"
+        "A body of 60 mm in a block of 20 mm";
     Drawing "drawing" []
         "A picture cannot be made."
         "save the picture as SVG, or make it smaller"
@@ -499,6 +511,10 @@ rules! {
         "The unit of a drawing is not known."
         "set the unit of the drawing ($INSUNITS) in the CAD program, or give `unit` in Python"
         "A drawing without $INSUNITS";
+    Empty "empty" []
+        "A file has no triangle and no point."
+        "give a body or points"
+        "An STL file of `solid x` and `endsolid x`";
     EmptyContour "empty-contour" []
         "There is no contour, or it has no length."
         "choose the layer by `--layer`, or draw a closed contour"
@@ -539,6 +555,14 @@ rules! {
         "The program changes the tool where the source does not."
         "report this with the toolpath: the program differs from it"
         "Two `M6` for one `LOAD/TOOL`";
+    Face "face" []
+        "A face names a vertex that is not there, or has fewer than three corners."
+        "export the body again"
+        "OBJ: `f 1 2 9` after three vertices";
+    Facet "facet" []
+        "A facet of an STL file does not have three vertices."
+        "export the body again"
+        "An STL facet with two vertices";
     Feed "feed" ["nc-feed"]
         "The feed is missing, not above 0, or not that of the source."
         "give a feed above 0 before the first cut, in a mode that the control knows"
@@ -603,6 +627,10 @@ rules! {
         "A folder cannot be read."
         "check the name of the folder and the right to read it"
         "`toolpost pcb no-such-folder`";
+    Form "form" []
+        "The ending of a file names no form of bodies or points that is read."
+        "give .stl, .obj or .ply, or a list of points"
+        "`roof.step`";
     Format "format" []
         "A drill file has numbers that its format does not take."
         "write the format of the numbers, such as METRIC,LZ,000.000"
@@ -647,6 +675,10 @@ rules! {
         "A group of a board file has no place of its own, or a name that another has."
         "give each group another name, and put none within itself"
         "Two groups called `sensor` in one group";
+    Head "head" []
+        "The head of a PLY file is wrong."
+        "export the body again"
+        "A PLY file that does not begin with `ply`";
     Header "header" []
         "The header of a program or drill file is wrong."
         "begin the program with %_N_NAME_MPF, or without a header"
@@ -707,6 +739,10 @@ rules! {
         "For an imported post no control of the library fits."
         "name the control by `--from`"
         "A post of a lathe";
+    Index "index" []
+        "An index of refraction is below 1 or above 4."
+        "correct the index in the table of materials"
+        "`index = 0.9`";
     InnerCorner "inner-corner" []
         "An inside corner is sharper than the wire can cut."
         "round the corner by the offset of the wire or more"
@@ -803,6 +839,10 @@ rules! {
         "The tool length is used in G18 or G19, and along which axis it counts is a setting."
         "write G17, or state `length_along_z = true` in [settings] of the machine file"
         "fanuc: `G18`, `G43 H1 Z60.`";
+    Lens "lens" []
+        "The machine has no lens of that focal length."
+        "take one of the lenses that the finding names"
+        "f = 50 mm on a machine with f = 43 and 70 mm";
     Levelling "levelling" []
         "A program cannot be levelled."
         "choose settings that the message names"
@@ -835,6 +875,10 @@ rules! {
         "Moves with turning axes are split, within the tolerance."
         "nothing to do, if the tolerance suits the part; `--tolerance` sets it"
         "A five-axis move of 50 mm by 20°";
+    List "list" []
+        "A list of a PLY file has a length that cannot be."
+        "export the body again"
+        "A face of -1 corners";
     ListClosed "list-closed" []
         "A list of a KiCad file ends that was not begun."
         "the file is damaged: save it again in KiCad"
@@ -855,10 +899,18 @@ rules! {
         "Look-ahead of the control is on where not every control takes that."
         "write G5.1 Q0 (G5 P0) in a block of its own before it"
         "fanuc: `G5.1 Q1`, `M6 T2`";
+    Lost "lost" []
+        "Points get no pulse."
+        "write the program again"
+        "A glass program from which a line was deleted";
     MFunction "m-function" ["nc-m-beside-cut", "nc-many-m"]
         "An M function is wrong, or stands where the control does not take it."
         "correct the M function: its words, and where it may stand"
         "fanuc: `M3 M8`";
+    Machine "machine" []
+        "There is no machine of that name."
+        "take one of the names that the finding lists, or a file ending in .toml"
+        "`--machine glass-xyz-300hz`";
     MachineFile "machine-file" []
         "A machine or control file is wrong."
         "correct the file at the mark; `toolpost explain NAME` says what a name takes"
@@ -927,10 +979,22 @@ rules! {
         "A block has two commands of which the control takes one."
         "divide the block: the control takes one of these commands a block"
         "`M3 S1000 M8` for Marlin";
+    Material "material" []
+        "The table of materials does not have that material."
+        "take one of the names that the finding lists, or add it"
+        "`--material wood`";
+    Materials "materials" []
+        "A file is no table of materials."
+        "start from `toolpost glass show materials`"
+        "`index = one`";
     Memory "memory" []
         "The program is larger than the memory of the control."
         "divide the contour into several programs"
         "300 KB of points for a control with 256 KB";
+    Mesh "mesh" []
+        "A body has open edges or triangles without area."
+        "close it in the program that made it if holes are not wanted"
+        "An STL file of three faces of a tetrahedron";
     Missing "missing" []
         "Something that must be there is missing."
         "add what the message names"
@@ -1351,6 +1415,10 @@ rules! {
         "A pitch is given for a cycle that does not tap."
         "use the kind `tap`, or leave the pitch out"
         "`drill` of the Python builder with a pitch";
+    Points "points" []
+        "There are more points than the controller holds or than can be made."
+        "take a larger spacing or a smaller scale"
+        "3 million points on a controller for 2 million";
     Polar "polar" ["nc-polar"]
         "Polar coordinates are incomplete, or stand where the control does not take them."
         "give pole, radius and angle in the plane"
@@ -1379,6 +1447,10 @@ rules! {
         "A grid of places to probe cannot be made."
         "give 2 columns and 2 rows or more"
         "`--probe 1,5`";
+    Program "program" []
+        "A line of a glass program is none that the machine takes, or the program is cut off."
+        "write the program again"
+        "`N2 PULS X1 Y1 Z1`";
     ProgramEnd "program-end" []
         "Something is wrong with the end of the program."
         "add the end of the program; the file may be cut off"
@@ -1499,6 +1571,10 @@ rules! {
         "A setting is out of range, or two do not go together."
         "give a value within the range that is named"
         "`--tolerance 0`";
+    Shadowed "shadowed" []
+        "Points are made below finished points that scatter their beam."
+        "order by `--order fastest`"
+        "A wall that is engraved from above";
     Shape "shape" []
         "A shape of a KiCad board cannot be read."
         "draw it again in KiCad"
@@ -1511,6 +1587,10 @@ rules! {
         "The operator stops block by block, and a block goes where that is not safe."
         "report this with the toolpath, or leave `--single-block` out"
         "A block that turns axes and moves at once, with `single_block` in the machine file";
+    Small "small" []
+        "A body is so small in its block that its unit may be wrong."
+        "scale it by 25.4 if its file is in inches"
+        "A body of 0.4 mm in a block of 20 mm";
     Source "source" []
         "The source is not known, or cannot be compared."
         "add `--from` with a machine or a control"
@@ -1519,6 +1599,10 @@ rules! {
         "A contour for a wire has several passes already."
         "take one pass of it; `--passes` makes more"
         "A source that cuts the same contour twice";
+    Spacing "spacing" []
+        "The smallest distance of points is less than the cracks of the lens need, or no distance."
+        "take a larger spacing, or a lens of a shorter focal length"
+        "0.05 mm at f = 70 mm";
     Spindle "spindle" ["nc-spindle"]
         "The spindle is not on, has no speed, or does not run as in the source."
         "give a spindle speed above 0 and a direction before the first cut"
@@ -1575,6 +1659,10 @@ rules! {
         "An axis goes to a position that only the machine knows."
         "retract by G53 to the safe height of the machine"
         "linuxcnc: `G30`";
+    Stray "stray" []
+        "A pulse lies in the crack of no point."
+        "write the program again"
+        "A glass program with a changed coordinate";
     Surface "surface" []
         "What follows a measured surface is not possible here."
         "level the program with measured heights (`--heights`) instead"
@@ -1707,6 +1795,10 @@ rules! {
         "A screw thread, or threading of the wire, is not as the control takes it."
         "give a pitch above 0, a turning spindle and a straight way"
         "linuxcnc: `G33 Z-10`";
+    Ticks "ticks" []
+        "A program takes other laser ticks than were planned."
+        "report it with the body"
+        "None is known";
     TiltedPlane "tilted-plane" ["nc-tilt", "plane"]
         "A tilted plane is incomplete, or stands where the control does not take it."
         "end the tilted plane before this block, or give it the words that the control takes"
@@ -1803,6 +1895,10 @@ rules! {
         "Rotary axes turn where the tool may meet the part."
         "report this with the toolpath, or set `safe_height` of the machine"
         "A turn of A with the tool 1 mm above the part";
+    Twice "twice" []
+        "A point gets two pulses."
+        "write the program again"
+        "A glass program with a repeated line";
     TwoTools "two-tools" []
         "An operation of a FreeCAD job uses another tool than it names."
         "change the commands of the operation"
@@ -1919,6 +2015,10 @@ rules! {
         "A via of a KiCad board has no copper."
         "vias have a size above 0: correct it in KiCad"
         "`(via (size 0))`";
+    Wavelength "wavelength" []
+        "The index of a material belongs to another wavelength than that of the laser."
+        "add the material with its index at the wavelength of the laser"
+        "K9 at 532 nm for a laser of 1064 nm";
     Width "width" []
         "A width of a board file is not above 0."
         "give a width above 0, mm"

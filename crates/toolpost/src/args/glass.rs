@@ -1,13 +1,47 @@
-//! What can be typed after `glass`.
+//! What can be typed after `toolpost glass`.
 
-use clap::{Args, Subcommand};
+use super::{Choice, choice, length, lengths, point};
+use ::glass::list::Columns;
+use ::glass::optics::Ray;
+use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use std::path::PathBuf;
 
-/// Arguments of `glass`.
-#[derive(Debug, Args)]
-pub struct Glass {
-    /// What to do.
-    #[command(subcommand)]
-    pub command: GlassCommand,
+/// What `glass` is to do. Written by hand: clap does not derive arguments that a subcommand takes the place of.
+#[derive(Debug)]
+pub enum Glass {
+    /// Write a program.
+    Engrave(Box<Engrave>),
+    /// Something else.
+    Command(GlassCommand),
+}
+
+impl FromArgMatches for Glass {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Glass, clap::Error> {
+        Ok(match matches.subcommand_name() {
+            Some(_) => Glass::Command(GlassCommand::from_arg_matches(matches)?),
+            None => Glass::Engrave(Box::new(Engrave::from_arg_matches(matches)?)),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Glass::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Glass {
+    fn augment_args(command: Command) -> Command {
+        let command = GlassCommand::augment_subcommands(Engrave::augment_args(command));
+        command
+            .args_conflicts_with_subcommands(true)
+            .subcommand_negates_reqs(true)
+            .subcommand_required(false)
+            .arg_required_else_help(false)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Glass::augment_args(command)
+    }
 }
 
 /// Commands of `glass`.
@@ -15,4 +49,159 @@ pub struct Glass {
 pub enum GlassCommand {
     /// Print the tables of the source of the models next to ours, its test vectors, and its known slips.
     Tables,
+    /// Print a machine of the library, or `materials`, ready to be copied.
+    Show {
+        /// Name of a machine, or `materials`.
+        name: String,
+    },
+    /// Check the smallest distance of the points of a list or a cloud, and name the nearest two.
+    Check {
+        /// The points (.xyz, .txt, .csv, .cft, .ply).
+        points: PathBuf,
+        /// The smallest distance that they must have, mm.
+        #[arg(long, value_name = "MM", value_parser = length)]
+        spacing: f64,
+        /// In which columns of a list X, Y and Z stand, from 1.
+        #[arg(long, value_name = "N,N,N", value_parser = columns, default_value = "1,2,3")]
+        columns: Columns,
+    },
+}
+
+/// Arguments of an engraving.
+#[derive(Debug, Args)]
+pub struct Engrave {
+    /// Bodies (.stl, .obj, .ply) and lists of points (.xyz, .txt, .csv, .cft), all in one block and in one frame; mm.
+    #[arg(value_name = "BODY", required = true)]
+    pub bodies: Vec<PathBuf>,
+    /// Sides of the block along X, Y and Z.
+    #[arg(long, value_name = "XxYxZ", value_parser = block)]
+    pub block: [f64; 3],
+    /// What the block is made of: a name of the table of materials.
+    #[arg(long, value_name = "NAME")]
+    pub material: String,
+    /// Table of materials instead of that of Toolpost (`toolpost glass show materials`).
+    #[arg(long, value_name = "FILE")]
+    pub materials: Option<PathBuf>,
+    /// Focal length of the lens.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub lens: f64,
+    /// Name in the library, or a file ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: String,
+    /// Where to save the program; the report goes next to it.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Smallest distance of two points [default: that of the lens].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub spacing: Option<f64>,
+    /// In which columns of a list X, Y and Z stand, from 1.
+    #[arg(long, value_name = "N,N,N", value_parser = columns, default_value = "1,2,3")]
+    pub columns: Columns,
+    #[command(flatten)]
+    pub placing: Placing,
+    #[command(flatten)]
+    pub ordering: Ordering,
+    /// By which ray of the beam the focus is found.
+    #[arg(long, value_name = "RAY", default_value = "marginal", value_parser = choice(&RAYS))]
+    pub ray: Ray,
+    /// Take another cloud that is as good.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
+    /// Let a rule pass in this run; the report names it.
+    #[arg(long, value_name = "RULE", value_parser = ["shadowed"])]
+    pub accept: Vec<String>,
+}
+
+/// How bodies lie in the block.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Place in the block")]
+pub struct Placing {
+    /// How far all points stay from the faces.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "2")]
+    pub margin: f64,
+    /// Factor by which the bodies are scaled.
+    #[arg(long, value_name = "FACTOR", value_parser = length, conflicts_with = "fit")]
+    pub scale: Option<f64>,
+    /// Scale the bodies to the largest size that fits.
+    #[arg(long)]
+    pub fit: bool,
+    /// Turn them about X, then Y, then Z, degrees.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, default_value = "0,0,0")]
+    pub turn: [f64; 3],
+    /// Mirror them along these axes, before they are turned.
+    #[arg(long, value_name = "AXIS,...", value_delimiter = ',', value_parser = choice(&AXES))]
+    pub mirror: Vec<usize>,
+    /// Move them from the middle of the block.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, default_value = "0,0,0")]
+    pub r#move: [f64; 3],
+}
+
+/// The order of the points.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Order of the points")]
+pub struct Ordering {
+    /// How points are ordered.
+    #[arg(long, value_name = "HOW", default_value = "fastest", value_parser = choice(&ORDERS))]
+    pub order: Sorting,
+    /// K for points above and for points below, of `kdz`.
+    #[arg(long, value_name = "K,K", value_parser = slopes, default_value = "0.58,0.58")]
+    pub slopes: [f64; 2],
+    /// Height of a layer, of `layers` [default: the spacing].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub layer: Option<f64>,
+    /// How often the order is improved, of `fastest`.
+    #[arg(long, value_name = "NUMBER", default_value_t = 4)]
+    pub rounds: u32,
+    /// Stop improving after this time, with the best order so far: the program then depends on the speed of this computer.
+    #[arg(long, value_name = "S", value_parser = length)]
+    pub seconds: Option<f64>,
+}
+
+/// How points are ordered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sorting {
+    /// Ours.
+    Fastest,
+    /// `Sort Kdz` of the source.
+    Kdz,
+    /// `Sort by layers` of the source.
+    Layers,
+}
+
+const ORDERS: [Choice<Sorting>; 3] = [
+    ("fastest", "In the fewest laser ticks, without shadowing a point", Sorting::Fastest),
+    ("kdz", "From the lowest point to that of least max(dx, dy) + K dz", Sorting::Kdz),
+    ("layers", "Layer by layer from below, in each to the nearest point", Sorting::Layers),
+];
+
+const RAYS: [Choice<Ray>; 2] = [
+    ("marginal", "The outermost ray of the cone", Ray::Marginal),
+    ("paraxial", "Rays next to the axis: depth divided by the index", Ray::Paraxial),
+];
+
+const AXES: [Choice<usize>; 3] =
+    [("x", "Left and right", 0), ("y", "Front and back", 1), ("z", "Up and down", 2)];
+
+/// The sides of a block.
+fn block(text: &str) -> Result<[f64; 3], String> {
+    let sides: Option<[f64; 3]> = lengths(&text.replace(['x', 'X'], ","));
+    let sides = sides.filter(|sides| sides.iter().all(|side| *side > 0.0 && *side <= 1000.0));
+    sides.ok_or_else(|| String::from("three sides in mm are needed, up to 1000, such as 50x50x80"))
+}
+
+/// Two slopes.
+fn slopes(text: &str) -> Result<[f64; 2], String> {
+    let slopes: Option<[f64; 2]> = lengths(text);
+    let slopes = slopes.filter(|slopes| slopes.iter().all(|slope| *slope >= 0.0));
+    slopes.ok_or_else(|| String::from("two numbers are needed, 0 or more, such as 0.58,0.58"))
+}
+
+/// Three columns, from 1.
+fn columns(text: &str) -> Result<Columns, String> {
+    let column = |word: &str| word.trim().parse::<usize>().ok()?.checked_sub(1);
+    let columns: Option<Vec<usize>> = text.split(',').map(column).collect();
+    let columns = columns.and_then(|columns| columns.try_into().ok());
+    columns
+        .map(Columns)
+        .ok_or_else(|| String::from("three columns from 1 are needed, such as 1,2,3"))
 }

@@ -50,7 +50,8 @@ pub enum Command {
     /// Write the programs that isolate, drill and cut out a printed circuit board, prove them, and save them
     /// with a picture of each and a report.
     Pcb(Box<pcb::Pcb>),
-    /// Engrave inside glass.
+    /// Write the program that engraves bodies and points inside a block of glass, prove it, and save both program
+    /// and report.
     Glass(Box<glass::Glass>),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),

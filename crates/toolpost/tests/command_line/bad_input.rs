@@ -367,6 +367,21 @@ const READERS: &[(&str, &str, &str)] = &[
         "in.txt",
         "pcb board.toml -m grbl-3018 -o out --only front --heights in.txt",
     ),
+    (
+        "CLOUD",
+        "in.xyz",
+        "glass in.xyz --block 9x9x9 --material k9 --lens 70 -m glass-xyz-100hz -o out.prg",
+    ),
+    (
+        "../../crates/glass/machines/glass-xyz-100hz.toml",
+        "in.toml",
+        "glass cloud.xyz --block 9x9x9 --material k9 --lens 70 -m in.toml -o out.prg",
+    ),
+    (
+        "../../crates/glass/data/materials.toml",
+        "in.toml",
+        "glass cloud.xyz --block 9x9x9 --material k9 --materials in.toml --lens 70 -m glass-xyz-50hz -o out.prg",
+    ),
     ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
     ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
     ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),
@@ -395,6 +410,7 @@ const READERS: &[(&str, &str, &str)] = &[
 fn text_of(seed: &str) -> Vec<u8> {
     match seed {
         "CALLED" => b"%\nO0100\nG1 X40. F200.\nM99\n%\n".to_vec(),
+        "CLOUD" => b"0 0 0\n1 0 0\n".to_vec(),
         "MACHINE" => b"extends = \"generic-3axis-fanuc\"\n".to_vec(),
         "WIRE" => b"extends = \"fanuc-wire\"\n".to_vec(),
         file => std::fs::read(seeds().join(file)).unwrap_or_else(|e| panic!("{file}: {e}")),
@@ -417,6 +433,7 @@ fn reads(name: &str, bytes: &[u8], command: &str) -> Said {
     folder.write("calls.nc", CALLS);
     folder.write("extends.toml", "extends = \"in.toml\"\n");
     folder.write("part.cls", SOURCE);
+    folder.write("cloud.xyz", text_of("CLOUD"));
     std::fs::create_dir(folder.path().join("plots")).unwrap();
     folder.write(name, bytes);
     folder.run(&command.split(' ').collect::<Vec<_>>())

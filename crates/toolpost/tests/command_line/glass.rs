@@ -1,6 +1,28 @@
 //! `toolpost glass`.
 
-use crate::folder::Folder;
+use crate::folder::{Folder, Said};
+
+/// A closed roof of 3 mm, as a text STL.
+fn body() -> String {
+    let [a, b, c, d] = ["0 0 0", "3 0 0", "0 3 0", "0 0 3"];
+    let mut text = String::from("solid roof\n");
+    for [p, q, r] in [[a, c, b], [a, b, d], [a, d, c], [b, c, d]] {
+        text.push_str(&format!(
+            "facet normal 0 0 0\nouter loop\nvertex {p}\nvertex {q}\nvertex {r}\nendloop\nendfacet\n"
+        ));
+    }
+    text + "endsolid roof\n"
+}
+
+fn engrave(folder: &Folder, more: &[&str]) -> Said {
+    let mut words = vec!["glass", "roof.stl", "--block", "20x20x30", "--material", "k9"];
+    words.extend(["--lens", "70", "--rounds", "1", "-o", "roof.prg"]);
+    if !more.contains(&"--machine") {
+        words.extend(["--machine", "glass-xyz-100hz"]);
+    }
+    words.extend(more);
+    folder.run(&words)
+}
 
 #[test]
 fn the_tables_of_the_glass_engraver_agree_and_name_the_slips() {
@@ -10,4 +32,79 @@ fn the_tables_of_the_glass_engraver_agree_and_name_the_slips() {
     assert!(said.out.contains("(24, 30)") && said.out.contains("<- not its point"), "{said:?}");
     assert!(said.out.contains("Slips of the source"), "{said:?}");
     assert!(!said.out.contains("<- differs"), "{said:?}");
+}
+
+#[test]
+fn a_body_becomes_a_proven_program_and_a_report() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    let said = engrave(&folder, &[]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.out.contains("proof       passed") && said.err.is_empty(), "{said:?}");
+    let first = folder.read("roof.prg");
+    assert!(first.starts_with("N1 BEGIN BLOCK X20.000 Y20.000 Z30.000 POINTS "), "{first:.100}");
+    let report: serde_json::Value =
+        serde_json::from_str(&folder.read("roof.prg.report.json")).unwrap();
+    let proof = &report["glass"]["proof"];
+    assert_eq!(proof["pulses"].as_u64(), Some(first.lines().count() as u64 - 2));
+    assert_eq!(
+        (proof["shadowed"].as_u64(), proof["ticks"].as_u64()),
+        (Some(0), report["glass"]["planned_ticks"].as_u64())
+    );
+    // The same words give the same program.
+    assert_eq!(engrave(&folder, &["--json"]).json()["status"], "done");
+    assert_eq!(folder.read("roof.prg"), first);
+
+    // A machine and a material of one's own.
+    let shown = folder.run(&["glass", "show", "glass-xyz-100hz"]);
+    folder.write(
+        "mine.toml",
+        shown.out.replace("\"numbered\"   #", "\"gcode\"\nfire = \"M64 P0\" #"),
+    );
+    let table = folder.run(&["glass", "show", "materials"]).out;
+    folder.write(
+        "table.toml",
+        table.replace("[k9]", "[lead]\ntitle = \"SF6\"\nindex = 1.8126\nwavelength = 532\n\n[k9]"),
+    );
+    let own = ["--machine", "mine.toml", "--materials", "table.toml", "--material", "lead"];
+    let words: Vec<&str> =
+        vec!["glass", "roof.stl", "--block", "20x20x30", "--lens", "70", "-o", "own.ngc"];
+    let said = folder.run(&[&words[..], &own[..]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(folder.read("own.ngc").contains("G21 G90\nG0 X"), "{said:?}");
+}
+
+#[test]
+fn what_cannot_be_engraved_is_refused_and_saves_nothing() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    let refused = |more: &[&str], code: i32, what: &str| {
+        let said = engrave(&folder, more);
+        assert_eq!(said.code, code, "{more:?}: {said:?}");
+        assert!(said.err.contains(what), "{more:?}: {said:?}");
+        assert_eq!(folder.names(), ["roof.stl"], "{more:?}");
+    };
+    refused(&["--order", "kdz", "--slopes", "0.1,0.1"], 1, "error[shadowed]");
+    refused(&["--scale", "10"], 2, "error[does-not-fit]");
+    refused(&["--spacing", "0.05"], 2, "error[spacing]");
+    refused(&["--machine", "glass-xyz-300hz"], 2, "there are: glass-xyz-50hz");
+    refused(&["roof.step"], 2, "error[form]");
+    let said = folder.run(&["glass", "roof.stl", "--block", "20x20"]);
+    assert!(said.code == 2 && said.err.contains("three sides in mm are needed"), "{said:?}");
+    folder.write("roof.stl", &body()[..200]);
+    refused(&[], 2, "roof.stl");
+}
+
+#[test]
+fn a_list_of_points_is_checked_for_its_smallest_distance() {
+    let folder = Folder::empty();
+    folder.write("cloud.csv", "x;y;z;n\n0;0;0;7\n0;0;0.129;8\n1;1;1;9\n");
+    let said = folder.run(&["glass", "check", "cloud.csv", "--spacing", "0.13"]);
+    assert_eq!(said.code, 1, "{said:?}");
+    assert!(said.out.contains("0.1290 mm: 0.000 0.000 0.000 and 0.000 0.000 0.129"), "{said:?}");
+    assert!(said.out.contains("1 pairs under 0.13 mm, 2 points"), "{said:?}");
+    assert_eq!(folder.run(&["glass", "check", "cloud.csv", "--spacing", "0.129"]).code, 0);
+    let said =
+        folder.run(&["glass", "check", "cloud.csv", "--spacing", "0.13", "--columns", "1,2,4"]);
+    assert_eq!(said.code, 0, "{said:?}");
 }

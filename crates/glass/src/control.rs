@@ -1,0 +1,199 @@
+//! Virtual machines: a program in, the pulses that it makes out. Nothing here knows how programs are written.
+//!
+//! A line that is not understood ends the reading with an error, and a coordinate that no line has stated is not zero.
+
+use crate::machine::{Format, Machine};
+use program::Diagnostic;
+
+/// A pulse of the laser.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulse {
+    /// The line of the program, from 1.
+    pub line: u32,
+    /// Where the axes stand, mm.
+    pub at: [f64; 3],
+}
+
+/// Runs the program `text` on `machine`.
+///
+/// # Errors
+/// The first line that the machine would not take, or that the program ends too early.
+pub fn read(text: &[u8], machine: &Machine) -> Result<Vec<Pulse>, Vec<Diagnostic>> {
+    let read = match machine.program.format {
+        Format::Numbered => numbered(text),
+        Format::Points => points(text),
+        Format::Gcode => gcode(text, machine.program.fire.as_deref().unwrap_or_default()),
+    };
+    let pulses = read.map_err(|(line, message)| {
+        let number = u32::try_from(line).unwrap_or(u32::MAX);
+        let shown =
+            text.split(|byte| *byte == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
+        let found = Diagnostic::error("program", message).on(number, shown);
+        vec![found.help("write the program anew; docs/sources/glass.md says what a program is")]
+    })?;
+    if pulses.len() as u64 > machine.program.points {
+        let message = format!(
+            "{} pulses are more than the {} that the controller holds",
+            pulses.len(),
+            machine.program.points
+        );
+        return Err(vec![Diagnostic::error("points", message).help("take fewer points")]);
+    }
+    Ok(pulses)
+}
+
+/// A line, from 1, and what is wrong with it.
+type Wrong = (usize, String);
+
+/// The lines of a program with their numbers, as words. Every line ends with a line feed.
+fn lines(text: &[u8]) -> Result<impl Iterator<Item = (usize, &str)>, Wrong> {
+    let text = std::str::from_utf8(text).map_err(|error| {
+        let before = &text[..error.valid_up_to()];
+        (1 + before.iter().filter(|byte| **byte == b'\n').count(), String::from("is not UTF-8"))
+    })?;
+    if !text.is_empty() && !text.ends_with('\n') {
+        return Err((
+            text.lines().count(),
+            String::from("the last line has no end: the program is cut off"),
+        ));
+    }
+    Ok(text.lines().enumerate().map(|(i, line)| (i + 1, line)))
+}
+
+/// A plain decimal number: sign, digits, point, digits.
+fn decimal(word: &str) -> Option<f64> {
+    let digits = word.strip_prefix('-').unwrap_or(word);
+    let plain = digits.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    let number = plain && digits.bytes().any(|byte| byte.is_ascii_digit());
+    number.then(|| word.parse().ok()).flatten().filter(|value: &f64| value.is_finite())
+}
+
+/// Reads `X… Y… Z…`, all three in this order.
+fn place<'w>(words: &mut impl Iterator<Item = &'w str>) -> Result<[f64; 3], String> {
+    let mut at = [0.0; 3];
+    for (value, name) in at.iter_mut().zip(["X", "Y", "Z"]) {
+        let word = words.next().and_then(|word| word.strip_prefix(name));
+        *value =
+            word.and_then(decimal).ok_or_else(|| format!("{name} and a number are needed here"))?;
+    }
+    Ok(at)
+}
+
+fn numbered(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
+    let mut pulses = Vec::new();
+    let mut promised: Option<u64> = None;
+    let mut ended = false;
+    let mut last = 0;
+    for (at, line) in lines(text)? {
+        last = at;
+        let wrong = |message: &str| Err((at, String::from(message)));
+        if ended {
+            return wrong("nothing may follow END");
+        }
+        let mut words = line.split(' ');
+        let number = words.next().and_then(|word| word.strip_prefix('N'));
+        if number.and_then(|number| number.parse().ok()) != Some(at) {
+            return Err((at, format!("the line must have the number N{at}")));
+        }
+        match (words.next(), promised) {
+            (Some("BEGIN"), None) => {
+                if words.next() != Some("BLOCK") {
+                    return wrong("BEGIN needs BLOCK and its sides");
+                }
+                place(&mut words).map_err(|message| (at, message))?;
+                let count = (words.next() == Some("POINTS")).then(|| words.next()).flatten();
+                promised = count.and_then(|count| count.parse().ok());
+                if promised.is_none() {
+                    return wrong("BEGIN needs POINTS and their number");
+                }
+            }
+            (Some("PULSE"), Some(_)) => {
+                let place = place(&mut words).map_err(|message| (at, message))?;
+                pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
+            }
+            (Some("END"), Some(count)) => {
+                if pulses.len() as u64 != count {
+                    return Err((
+                        at,
+                        format!("{} pulses where BEGIN states {count}", pulses.len()),
+                    ));
+                }
+                ended = true;
+            }
+            (_, None) => return wrong("a program begins with BEGIN"),
+            (_, Some(_)) => return wrong("PULSE or END is needed here"),
+        }
+        if words.next().is_some() {
+            return wrong("the command has a word too many");
+        }
+    }
+    if ended { Ok(pulses) } else { Err((last, String::from("the program has no END"))) }
+}
+
+fn points(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
+    let mut pulses = Vec::new();
+    for (at, line) in lines(text)? {
+        if line.starts_with('#') {
+            continue;
+        }
+        let values: Option<Vec<f64>> = line.split(' ').map(decimal).collect();
+        let Some(Ok(place)) = values.map(<[f64; 3]>::try_from) else {
+            return Err((at, String::from("three numbers are needed: X Y Z")));
+        };
+        pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
+    }
+    Ok(pulses)
+}
+
+/// The G-code of LinuxCNC and GRBL, as far as an engraver needs it: G21, G90, G0 and G1 with X, Y and Z, the word that fires, and M2
+/// or M30.
+fn gcode(text: &[u8], fire: &str) -> Result<Vec<Pulse>, Wrong> {
+    let mut pulses = Vec::new();
+    let (mut metric, mut absolute, mut motion, mut ended) = (false, false, false, false);
+    let mut at: [Option<f64>; 3] = [None; 3];
+    let mut last = 0;
+    for (number, line) in lines(text)? {
+        last = number;
+        let wrong = |message: String| Err((number, message));
+        let line = line.trim();
+        if line.is_empty()
+            || line.starts_with(';')
+            || (line.starts_with('(') && line.ends_with(')'))
+        {
+            continue;
+        }
+        if ended {
+            return wrong(String::from("nothing may follow the end of the program"));
+        }
+        if line == fire {
+            let [Some(x), Some(y), Some(z)] = at else {
+                return wrong(String::from(
+                    "a pulse where not every axis has been sent to a place",
+                ));
+            };
+            pulses.push(Pulse { line: u32::try_from(number).unwrap_or(u32::MAX), at: [x, y, z] });
+            continue;
+        }
+        for word in line.split_whitespace() {
+            match word {
+                "G21" => metric = true,
+                "G90" => absolute = true,
+                "G0" | "G1" => motion = true,
+                "M2" | "M30" => ended = true,
+                _ => {
+                    let axis = ["X", "Y", "Z"].iter().position(|name| word.starts_with(name));
+                    let (Some(axis), Some(value)) = (axis, word.get(1..).and_then(decimal)) else {
+                        return wrong(format!("`{word}` is no word of this machine"));
+                    };
+                    if !(metric && absolute && motion) {
+                        return wrong(String::from(
+                            "an axis moves before G21, G90 and G0 or G1 are set",
+                        ));
+                    }
+                    at[axis] = Some(value);
+                }
+            }
+        }
+    }
+    if ended { Ok(pulses) } else { Err((last, String::from("the program has no end (M2)"))) }
+}

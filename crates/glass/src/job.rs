@@ -1,0 +1,461 @@
+//! A job: bodies and points placed in a block, made into a cloud, ordered, written, read back and proven.
+
+use crate::cloud::{self, Distances, Point};
+use crate::machine::{Lens, Machine};
+use crate::material::Material;
+use crate::mesh::{self, Health, Mesh, Shape};
+use crate::optics::{self, Beam, Cut, Ray};
+use crate::order::{self, Effort, Shadow};
+use crate::proof::{self, Proof};
+use crate::{control, post, sample, weld};
+use glam::{DMat3, DVec3};
+use program::Diagnostic;
+use serde::Serialize;
+
+/// In which order points are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Order {
+    /// Legal, in the fewest ticks that are found.
+    Fastest,
+    /// `Sort Kdz` of the source, with K for points above and below.
+    Kdz(f64, f64),
+    /// `Sort by layers` of the source, with the height of a layer, mm; without, the spacing.
+    Layers(Option<f64>),
+}
+
+/// How a body lies in its block.
+#[derive(Clone, Copy, Debug)]
+pub struct Placing {
+    /// The block's sides along X, Y and Z, mm.
+    pub block: [f64; 3],
+    /// How far all points stay from its faces, mm.
+    pub margin: f64,
+    /// By how much it is scaled; without, as large as fits within the margins where `fit` is set, else as it is.
+    pub scale: Option<f64>,
+    /// Whether it is scaled to fit.
+    pub fit: bool,
+    /// Turned about X, then Y, then Z, degrees.
+    pub turn: [f64; 3],
+    /// Mirrored along these axes, first of all.
+    pub mirror: [bool; 3],
+    /// Moved from the middle of the block, last of all, mm.
+    pub shift: [f64; 3],
+}
+
+/// What a job takes besides its bodies.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// How they lie.
+    pub placing: Placing,
+    /// Focal length of the lens, mm.
+    pub focal: f64,
+    /// Smallest distance of points, mm; without, that of the lens.
+    pub spacing: Option<f64>,
+    /// By which ray the focus is found.
+    pub ray: Ray,
+    /// The order.
+    pub order: Order,
+    /// How much is tried for it.
+    pub effort: Effort,
+    /// Chooses among clouds that are as good.
+    pub seed: u64,
+    /// Whether a program that shadows points passes.
+    pub accept_shadowed: bool,
+}
+
+/// What is reported of a job.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Points of the cloud.
+    pub points: u64,
+    /// Points of lists that were too close to others and left out.
+    pub welded: u64,
+    /// Where the cloud lies, mm.
+    pub from: [f64; 3],
+    /// To where.
+    pub to: [f64; 3],
+    /// By how much the body was scaled.
+    pub scale: f64,
+    /// Smallest distance asked for, mm.
+    pub spacing: f64,
+    /// What it is.
+    pub distances: Distances,
+    /// What is unusual about the body; of points nothing.
+    pub health: Option<Health>,
+    /// Index of refraction.
+    pub index: f64,
+    /// The ray by which the focus is found.
+    pub ray: Ray,
+    /// How far the two rays are apart at the deepest point, mm of drive.
+    pub rays_apart: f64,
+    /// Where side faces cut the beam.
+    pub cut: Cut,
+    /// Ticks as planned.
+    pub planned_ticks: u64,
+    /// What the proof found.
+    pub proof: Proof,
+}
+
+/// A job that is done.
+#[derive(Debug)]
+pub struct Made {
+    /// The program.
+    pub text: Vec<u8>,
+    /// The cloud in the frame of the block, in the order of the program, µm.
+    pub cloud: Vec<Point>,
+    /// The report.
+    pub report: Report,
+    /// Whether it is proven.
+    pub proven: bool,
+    /// What is worth knowing, and what is wrong.
+    pub findings: Vec<Diagnostic>,
+}
+
+fn error(rule: &'static str, message: String, help: &str) -> Vec<Diagnostic> {
+    vec![Diagnostic::error(rule, message).help(help)]
+}
+
+/// Makes the program of `shapes` in one block of `material` for `machine`.
+///
+/// # Errors
+/// Where the settings cannot be, the body does not fit, or the machine cannot hold or reach the points.
+pub fn make(
+    shapes: Vec<Shape>,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+) -> Result<Made, Vec<Diagnostic>> {
+    let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
+    check(&settings.placing, &lens)?;
+    let spacing = settings.spacing.unwrap_or(lens.spacing);
+    let micrometres = spacing_in_micrometres(spacing, &lens)?;
+    let mut findings = Vec::new();
+
+    let (mesh, points) = parted(shapes);
+    let health = (!mesh.triangles.is_empty()).then(|| mesh.health());
+    findings.extend(health.and_then(unhealthy));
+    let (mesh, points, scale) = place(mesh, points, &settings.placing)?;
+    let (cloud, welded) = discretise(&mesh, &points, micrometres, settings.seed)?;
+    let distances = cloud::distances(&cloud, i64::from(micrometres));
+    if distances.too_close > 0 {
+        let message =
+            format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
+        return Err(error(
+            "spacing",
+            message,
+            "this is a mistake in Toolpost: report it with the body",
+        ));
+    }
+    if cloud.len() as u64 > machine.program.points {
+        let message = format!(
+            "{} points are more than the {} that {} holds",
+            cloud.len(),
+            machine.program.points,
+            machine.title
+        );
+        return Err(error("points", message, "take a larger --spacing or a smaller --scale"));
+    }
+
+    let beam = Beam::new(&lens, machine.laser.beam, material.index);
+    let planned = Plan { cloud, lens, beam, machine, settings };
+    let cut = optics::cut(&planned.cloud, settings.placing.block, beam.slope_in_glass());
+    findings.extend(cut_off(cut, settings.placing.margin));
+    let (cloud, axes) = planned.ordered();
+    let order: Vec<u32> = (0..axes.len() as u32).collect();
+    let planned_ticks = 1 + order::ticks(&axes, &order, &machine.clock());
+    let text = post::write(&axes, machine, settings.placing.block);
+
+    let task = proof::Task {
+        cloud: &cloud,
+        machine,
+        lens: &lens,
+        index: material.index,
+        block: settings.placing.block,
+        accept_shadowed: settings.accept_shadowed,
+    };
+    let judged = control::read(&text, machine).and_then(|pulses| proof::prove(&pulses, &task));
+    let (proof, found) = judged?;
+    findings.extend(found);
+    if proof.ticks != planned_ticks {
+        let message =
+            format!("the program takes {} ticks, planned were {planned_ticks}", proof.ticks);
+        findings.extend(error(
+            "ticks",
+            message,
+            "this is a mistake in Toolpost: report it with the body",
+        ));
+    }
+    let (low, high) = cloud::bounds(&cloud).unwrap_or_default();
+    findings.extend(small(cloud::place(low), cloud::place(high), &settings.placing));
+    let deepest = settings.placing.block[2] - f64::from(low[2]) * 1e-3;
+    let report = Report {
+        points: cloud.len() as u64,
+        welded,
+        from: low.map(|value| f64::from(value) / 1e3),
+        to: high.map(|value| f64::from(value) / 1e3),
+        scale,
+        spacing,
+        distances,
+        health,
+        index: material.index,
+        ray: settings.ray,
+        rays_apart: deepest * (beam.drive(Ray::Paraxial) - beam.drive(Ray::Marginal)),
+        cut,
+        planned_ticks,
+        proof,
+    };
+    let proven = !findings.iter().any(Diagnostic::is_error);
+    Ok(Made { text, cloud, report, proven, findings })
+}
+
+/// What is needed to order a cloud.
+struct Plan<'m> {
+    cloud: Vec<Point>,
+    lens: Lens,
+    beam: Beam,
+    machine: &'m Machine,
+    settings: &'m Settings,
+}
+
+/// mm in an inch.
+const INCH: f64 = 25.4;
+
+/// A body that takes less than this part of the room is pointed out.
+const SMALL: f64 = 0.04;
+
+/// Points out a body that is so small that its file is likely in inches.
+fn small(low: DVec3, high: DVec3, placing: &Placing) -> Option<Diagnostic> {
+    let room = DVec3::from_array(placing.block) - 2.0 * placing.margin;
+    let part = ((high - low) / room).max_element();
+    let message = format!(
+        "the body is only {:.3} mm large, {:.1} % of the room",
+        (high - low).max_element(),
+        100.0 * part
+    );
+    let found = Diagnostic::warning("small", message);
+    (part < SMALL).then(|| {
+        found
+            .help(format!("if its file is in inches, --scale {INCH}; --fit takes the largest size"))
+    })
+}
+
+/// The cone that the planning keeps is wider by this part than the rule's, so that rounding breaks nothing.
+const WIDER: f64 = 1.0 + 1e-9;
+
+impl Plan<'_> {
+    /// The cloud in its order, and where the axes stand at each point, µm.
+    fn ordered(self) -> (Vec<Point>, Vec<Point>) {
+        let Plan { cloud, lens, beam, machine, settings } = self;
+        let top = settings.placing.block[2] * 1e3;
+        let drive = beam.drive(settings.ray);
+        let at = |point: &Point| {
+            [point[0], point[1], ((f64::from(point[2]) - top) * drive).round() as i32]
+        };
+        let axes: Vec<Point> = cloud.iter().map(at).collect();
+        let shadow = Shadow {
+            slope: beam.slope_in_glass() * WIDER,
+            radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
+        };
+        let order = match settings.order {
+            Order::Fastest => {
+                order::fastest(&cloud, &axes, shadow, &machine.clock(), settings.effort)
+            }
+            Order::Kdz(up, down) => order::kdz(&cloud, up, down),
+            Order::Layers(height) => {
+                let height = height.or(settings.spacing).unwrap_or(lens.spacing);
+                order::layers(&cloud, (height * 1e3).round().max(1.0) as u32)
+            }
+        };
+        let own = |all: &[Point]| order.iter().map(|&i| all[i as usize]).collect();
+        (own(&cloud), own(&axes))
+    }
+}
+
+fn check(placing: &Placing, lens: &Lens) -> Result<(), Vec<Diagnostic>> {
+    let Placing { block, margin, .. } = *placing;
+    if block[2] > lens.block {
+        let message = format!(
+            "the block is {} mm high; f = {} mm is for {} mm at most",
+            block[2], lens.focal, lens.block
+        );
+        return Err(error("block", message, "take a lens of a longer focal length"));
+    }
+    if block.iter().any(|side| *side <= 2.0 * margin) {
+        let message = format!("a margin of {margin} mm leaves nothing of a block of {block:?} mm");
+        return Err(error("block", message, "take a smaller --margin"));
+    }
+    Ok(())
+}
+
+fn spacing_in_micrometres(spacing: f64, lens: &Lens) -> Result<u32, Vec<Diagnostic>> {
+    // A spacing that is no whole number of µm counts as the next larger one.
+    let micrometres = (spacing * 1e3 - 1e-6).ceil();
+    if spacing < lens.spacing - 1e-9 || spacing.is_nan() {
+        let message = format!(
+            "{spacing} mm are less than the {} mm that cracks of f = {} mm need",
+            lens.spacing, lens.focal
+        );
+        return Err(error(
+            "spacing",
+            message,
+            "nearer cracks join and break the glass: take a larger --spacing, or a shorter lens",
+        ));
+    }
+    if micrometres > 1e5 {
+        let message = format!("a spacing of {spacing} mm is more than 100 mm");
+        return Err(error("spacing", message, "lengths are mm"));
+    }
+    Ok(micrometres as u32)
+}
+
+/// All bodies as one, and all points.
+fn parted(shapes: Vec<Shape>) -> (Mesh, Vec<DVec3>) {
+    let (mut mesh, mut points) = (Mesh::default(), Vec::new());
+    for shape in shapes {
+        match shape {
+            Shape::Mesh(body) => mesh.join(body),
+            Shape::Points(more) => points.extend(more),
+        }
+    }
+    (mesh, points)
+}
+
+fn unhealthy(health: Health) -> Option<Diagnostic> {
+    let Health { open, first_open, flat, .. } = health;
+    let mut parts = Vec::new();
+    if let (true, Some([x, y, z])) = (open > 0, first_open) {
+        parts.push(format!("{open} open edges, one of them at {x:.3} {y:.3} {z:.3}"));
+    }
+    if flat > 0 {
+        parts.push(format!("{flat} triangles without area"));
+    }
+    let found = Diagnostic::warning("mesh", format!("the body has {}", parts.join("; ")));
+    (!parts.is_empty()).then(|| found.help("its surface is engraved as it is; close it in the program that made it if holes are not wanted"))
+}
+
+fn cut_off(cut: Cut, margin: f64) -> Option<Diagnostic> {
+    let message = format!(
+        "the side faces cut off part of the beam of {} points: they get less energy. A margin of {:.2} mm would do",
+        cut.points,
+        margin + cut.more
+    );
+    let found = Diagnostic::warning("beam-cut", message);
+    (cut.points > 0).then(|| {
+        found.help("take that --margin, a larger block, or keep the sides clean and polished")
+    })
+}
+
+/// Moves bodies and points to their place in the block; answers the scale as well.
+fn place(
+    mut mesh: Mesh,
+    mut points: Vec<DVec3>,
+    placing: &Placing,
+) -> Result<(Mesh, Vec<DVec3>, f64), Vec<Diagnostic>> {
+    let [x, y, z] = placing.turn.map(f64::to_radians);
+    let mirror =
+        DVec3::from_array(placing.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 }));
+    let turn = DMat3::from_rotation_z(z)
+        * DMat3::from_rotation_y(y)
+        * DMat3::from_rotation_x(x)
+        * DMat3::from_diagonal(mirror);
+    let mut each = |change: &dyn Fn(DVec3) -> DVec3| {
+        mesh.vertices.iter_mut().chain(&mut points).for_each(|place| *place = change(*place));
+        let both = [mesh::bounds(&mesh.vertices), mesh::bounds(&points)];
+        both.into_iter().flatten().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    };
+    let Some((low, high)) = each(&|place| turn * place) else {
+        return Err(error(
+            "empty",
+            String::from("there is no point to engrave"),
+            "give a body or points",
+        ));
+    };
+    let size = high - low;
+    let room = DVec3::from_array(placing.block) - 2.0 * placing.margin;
+    let fitting = (room / size.max(DVec3::splat(1e-12))).min_element();
+    let scale = placing.scale.unwrap_or(if placing.fit { fitting } else { 1.0 });
+    let (middle, target) = (
+        0.5 * (low + high),
+        0.5 * DVec3::from_array(placing.block) + DVec3::from_array(placing.shift),
+    );
+    let Some((low, high)) = each(&|place| (place - middle) * scale + target) else {
+        return Ok((mesh, points, scale));
+    };
+    // Points are rounded to whole µm: half of one beyond the margin is no matter.
+    let slack = 1e-3;
+    let (least, most) = (
+        DVec3::splat(placing.margin - slack),
+        DVec3::from_array(placing.block) - placing.margin + slack,
+    );
+    if low.cmplt(least).any() || high.cmpgt(most).any() {
+        let size = high - low;
+        let message = format!(
+            "the body is {:.3} x {:.3} x {:.3} mm, from {:.3} {:.3} {:.3}: it does not fit into {} x {} x {} mm with margins of {} mm",
+            size.x,
+            size.y,
+            size.z,
+            low.x,
+            low.y,
+            low.z,
+            placing.block[0],
+            placing.block[1],
+            placing.block[2],
+            placing.margin
+        );
+        // A factor of 25.4 is the usual mistake; half the size is not.
+        let help = match fitting / scale {
+            part if part < 0.5 && part * INCH >= 1.0 => {
+                format!(
+                    "--scale {fitting:.4} or --fit makes it fit; if it was exported {INCH} times too large, --scale {:.6}",
+                    scale / INCH
+                )
+            }
+            part if part < 1.0 => format!("--scale {fitting:.4} or --fit makes it fit"),
+            _ => String::from("it is small enough: take another --move"),
+        };
+        return Err(error("does-not-fit", message, &help));
+    }
+    Ok((mesh, points, scale))
+}
+
+/// The cloud of bodies and points, and how many points of lists were too close to others.
+fn discretise(
+    mesh: &Mesh,
+    points: &[DVec3],
+    spacing: u32,
+    seed: u64,
+) -> Result<(Vec<Point>, u64), Vec<Diagnostic>> {
+    // A saturated packing has 0.6966 points in a square of the spacing; some more where it is curved.
+    let expected = mesh.area() * 1e6 / f64::from(spacing).powi(2);
+    if expected > MOST_POINTS {
+        let message =
+            format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
+        return Err(error("points", message, "take a larger --spacing or a smaller --scale"));
+    }
+    let mut cloud = sample::surface(mesh, spacing, seed);
+    let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
+    let Some(given) = given else {
+        return Err(error(
+            "coordinate",
+            String::from("a point is beyond 2 m"),
+            "lengths are mm: take a --scale",
+        ));
+    };
+    let asked = cloud.len() + given.len();
+    if !given.is_empty() {
+        cloud.extend(given);
+        cloud = weld::welded(&cloud, spacing);
+    }
+    if cloud.is_empty() {
+        return Err(error(
+            "empty",
+            String::from("there is no point to engrave"),
+            "give a body or points",
+        ));
+    }
+    let left_out = (asked - cloud.len()) as u64;
+    Ok((cloud, left_out))
+}
+
+/// Squares of the spacing on a surface beyond which no cloud is begun: 200 million points.
+const MOST_POINTS: f64 = 3e8;

@@ -1,0 +1,39 @@
+//! Lists of points as text: one point a line, its coordinates in columns that blanks, commas or semicolons part.
+
+use crate::mesh::{Fault, lines, number};
+use glam::DVec3;
+
+/// In which columns the coordinates stand, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Columns(pub [usize; 3]);
+
+impl Default for Columns {
+    fn default() -> Columns {
+        Columns([0, 1, 2])
+    }
+}
+
+/// Reads the points (mm). Lines that begin with `#`, `;` or `//` are comments; a first line without a number is a head.
+pub(crate) fn read(bytes: &[u8], columns: Columns) -> Result<Vec<DVec3>, Fault> {
+    let mut points = Vec::new();
+    let mut head = true;
+    for (at, line) in lines(bytes) {
+        let line = line.trim();
+        if line.is_empty() || ["#", ";", "//"].iter().any(|mark| line.starts_with(mark)) {
+            continue;
+        }
+        let words: Vec<&str> = line
+            .split(|c: char| c.is_whitespace() || c == ',' || c == ';')
+            .filter(|word| !word.is_empty())
+            .collect();
+        if std::mem::take(&mut head) && words.iter().all(|word| word.parse::<f64>().is_err()) {
+            continue;
+        }
+        let mut place = DVec3::ZERO;
+        for (axis, &column) in columns.0.iter().enumerate() {
+            place[axis] = number(words.get(column).copied(), at)?;
+        }
+        points.push(place);
+    }
+    Ok(points)
+}

@@ -1,0 +1,259 @@
+//! The judge: pulses of a program compared with the cloud that they are to make.
+//!
+//! Every pulse lies within the crack of its point, no point is lost and none gets two pulses, the axes stay within their travels, and no
+//! finished point shadows one below it. The focus is traced by Snell's law, and the shadow is looked for in a tree of boxes: neither is shared with the
+//! planning. The cloud is that of the job; its minimum distance is proven by [`crate::cloud::distances`].
+
+use crate::cloud::{Grid, Point};
+use crate::control::Pulse;
+use crate::machine::{Lens, Machine};
+use program::{Diagnostic, Findings};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// What a program is to make.
+#[derive(Clone, Copy, Debug)]
+pub struct Task<'t> {
+    /// The cloud in the frame of the block, µm, in any order.
+    pub cloud: &'t [Point],
+    /// The machine.
+    pub machine: &'t Machine,
+    /// Its lens.
+    pub lens: &'t Lens,
+    /// Index of refraction of the block.
+    pub index: f64,
+    /// Sides of the block, mm.
+    pub block: [f64; 3],
+    /// Whether shadowed points pass.
+    pub accept_shadowed: bool,
+}
+
+/// What was found of a program.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Proof {
+    /// Pulses.
+    pub pulses: u64,
+    /// The largest distance of a pulse from its point across the beam, mm.
+    pub across: f64,
+    /// And along it, mm.
+    pub along: f64,
+    /// Points that a point finished before them shadows.
+    pub shadowed: u64,
+    /// Ticks of the laser.
+    pub ticks: u64,
+    /// Time, s.
+    pub seconds: f64,
+    /// Part of the pulses of the laser that are used.
+    pub used: f64,
+}
+
+/// The focus by the outermost ray: how deep it is in the glass for each mm that it is driven below the top face.
+fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
+    let in_air = (0.5 * beam / lens.focal).atan();
+    let in_glass = (in_air.sin() / index).asin();
+    (in_air.tan() / in_glass.tan(), in_glass.tan())
+}
+
+/// Compares `pulses` with `task`.
+///
+/// # Errors
+/// Where there are no pulses.
+pub fn prove(pulses: &[Pulse], task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Diagnostic>> {
+    if pulses.is_empty() {
+        let found = Diagnostic::error("lost", "the program makes no pulse");
+        return Err(vec![found.help("write the program anew")]);
+    }
+    let mut findings = Findings::default();
+    travels(pulses, task, &mut findings);
+    let (deeper, slope) = depth(task.lens, task.machine.laser.beam, task.index);
+    let in_glass = |pulse: &Pulse| [pulse.at[0], pulse.at[1], task.block[2] + pulse.at[2] * deeper];
+    let (order, across, along) = matched(pulses, task, in_glass, &mut findings);
+    let shadowed = shadows(&order, task.cloud, slope, 500.0 * task.lens.crack[0]);
+    let pair = shadowed.iter().min();
+    if let (Some(&(below, above)), false) = (pair, task.accept_shadowed) {
+        let show = |i: u32| {
+            let [x, y, z] = task.cloud[i as usize].map(|value| f64::from(value) * 1e-3);
+            format!("{x:.3} {y:.3} {z:.3}")
+        };
+        let message = format!(
+            "{} points are made below a finished point that scatters their beam; the first one at {} mm, below {} mm",
+            shadowed.len(),
+            show(order[below as usize]),
+            show(order[above as usize])
+        );
+        findings.push(
+            Diagnostic::error("shadowed", message).line(pulses[below as usize].line).help(
+                "order by `--order fastest`, which keeps the rule, or add `--accept shadowed`",
+            ),
+        );
+    }
+    let clock = task.machine.clock();
+    let micrometres = |pulse: &Pulse| pulse.at.map(|value| (value * 1e3).round() as i32);
+    let step = |pair: &[Pulse]| u64::from(clock.step(micrometres(&pair[0]), micrometres(&pair[1])));
+    let ticks = 1 + pulses.par_windows(2).map(step).sum::<u64>();
+    let proof = Proof {
+        pulses: pulses.len() as u64,
+        across,
+        along,
+        shadowed: shadowed.len() as u64,
+        ticks,
+        seconds: ticks as f64 / task.machine.laser.rate,
+        used: pulses.len() as f64 / ticks as f64,
+    };
+    Ok((proof, findings.finish()))
+}
+
+/// Every axis stays within its travel.
+fn travels(pulses: &[Pulse], task: &Task, findings: &mut Findings) {
+    for (i, (name, axis)) in task.machine.axes.named().into_iter().enumerate() {
+        let [low, high] = axis.travel;
+        for pulse in pulses.iter().filter(|pulse| !(low..=high).contains(&pulse.at[i])) {
+            let message =
+                format!("{name}{:.3} is beyond the travel from {low} to {high} mm", pulse.at[i]);
+            let found = Diagnostic::error("travel", message).line(pulse.line);
+            findings.push(found.help("take a smaller block, or move the body"));
+        }
+    }
+}
+
+/// No number of a point.
+const NONE: u32 = u32::MAX;
+
+/// Gives each pulse the nearest point: the points in the order of their pulses, and the largest distances across and along the beam, mm.
+fn matched(
+    pulses: &[Pulse],
+    task: &Task,
+    in_glass: impl Fn(&Pulse) -> [f64; 3] + Sync,
+    findings: &mut Findings,
+) -> (Vec<u32>, f64, f64) {
+    let [radius, height] = task.lens.crack.map(|size| 500.0 * size);
+    let grid = Grid::new(task.cloud, radius.max(height).ceil() as i64);
+    let nearest = |pulse: &Pulse| {
+        let place = in_glass(pulse).map(|value| value * 1e3);
+        let rounded = place.map(|value| value.round() as i32);
+        let way = |j: u32| {
+            let point = task.cloud[j as usize].map(f64::from);
+            let (x, y, z) = (place[0] - point[0], place[1] - point[1], place[2] - point[2]);
+            (x.hypot(y), z.abs())
+        };
+        let inside = grid.near(rounded).map(|j| (way(j), j)).filter(|((across, along), _)| {
+            (across / radius).powi(2) + (along / height).powi(2) <= 1.0
+        });
+        let far = |((across, along), j): &((f64, f64), u32)| (across * across + along * along, *j);
+        inside.min_by(|a, b| far(a).0.total_cmp(&far(b).0).then(a.1.cmp(&b.1)))
+    };
+    let found: Vec<_> = pulses.par_iter().map(nearest).collect();
+    let mut by: Vec<u32> = vec![NONE; task.cloud.len()];
+    let mut order = Vec::with_capacity(pulses.len());
+    let (mut most_across, mut most_along) = (0.0f64, 0.0f64);
+    for (i, (pulse, found)) in pulses.iter().zip(found).enumerate() {
+        let Some(((across, along), j)) = found else {
+            let [x, y, z] = in_glass(pulse);
+            let message =
+                format!("the pulse at {x:.3} {y:.3} {z:.3} mm lies in the crack of no point");
+            findings.push(
+                Diagnostic::error("stray", message).line(pulse.line).help("write the program anew"),
+            );
+            continue;
+        };
+        (most_across, most_along) = (most_across.max(across), most_along.max(along));
+        if by[j as usize] != NONE {
+            let first = pulses[by[j as usize] as usize].line;
+            let message = format!("the point of this pulse was made on line {first} already");
+            findings.push(
+                Diagnostic::error("twice", message).line(pulse.line).help("write the program anew"),
+            );
+            continue;
+        }
+        by[j as usize] = i as u32;
+        order.push(j);
+    }
+    let lost = by.iter().filter(|by| **by == NONE).count();
+    if let Some(first) = by.iter().position(|by| *by == NONE) {
+        let [x, y, z] = task.cloud[first].map(|value| f64::from(value) * 1e-3);
+        let message = format!("{lost} points get no pulse, one of them at {x:.3} {y:.3} {z:.3} mm");
+        findings.push(Diagnostic::error("lost", message).help("write the program anew"));
+    }
+    (order, most_across * 1e-3, most_along * 1e-3)
+}
+
+/// A box of points, and when the first of them is made.
+struct Node {
+    low: [f64; 2],
+    high: [f64; 2],
+    top: f64,
+    first: u32,
+    /// The points of a leaf, or both halves.
+    parts: Parts,
+}
+
+enum Parts {
+    Leaf(Vec<(Point, u32)>),
+    Halves(Box<(Node, Node)>),
+}
+
+/// Most points of a leaf.
+const LEAF: usize = 16;
+
+impl Node {
+    /// Of points with their places in the order; at least one.
+    fn new(points: &mut [(Point, u32)]) -> Node {
+        let axis = |axis: usize| points.iter().map(move |(point, _)| f64::from(point[axis]));
+        let span = |a: usize| (axis(a).fold(f64::MAX, f64::min), axis(a).fold(f64::MIN, f64::max));
+        let spans = [span(0), span(1), span(2)];
+        let first = points.iter().map(|(_, when)| *when).min().unwrap_or(NONE);
+        let parts = if points.len() <= LEAF {
+            Parts::Leaf(points.to_vec())
+        } else {
+            let wide = |i: &usize| spans[*i].1 - spans[*i].0;
+            let longest = (0..3).max_by(|a, b| wide(a).total_cmp(&wide(b))).unwrap_or(0);
+            let middle = points.len() / 2;
+            points.select_nth_unstable_by_key(middle, |(point, when)| (point[longest], *when));
+            let (left, right) = points.split_at_mut(middle);
+            Parts::Halves(Box::new(rayon::join(|| Node::new(left), || Node::new(right))))
+        };
+        let [x, y, z] = spans;
+        Node { low: [x.0, y.0], high: [x.1, y.1], top: z.1, first, parts }
+    }
+
+    /// The earliest point made before `when` that shadows `point`: its place in the order.
+    fn shadower(&self, point: Point, when: u32, slope: f64, radius: f64) -> Option<u32> {
+        let [x, y, z] = point.map(f64::from);
+        let reach = radius + slope * (self.top - z);
+        if self.first >= when || self.top <= z {
+            return None;
+        }
+        let off = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
+        if off(x, self.low[0], self.high[0]).hypot(off(y, self.low[1], self.high[1])) >= reach {
+            return None;
+        }
+        match &self.parts {
+            Parts::Leaf(points) => {
+                let hides = |(above, made): &&(Point, u32)| {
+                    let [a, b, c] = above.map(f64::from);
+                    *made < when && c > z && (a - x).hypot(b - y) < radius + slope * (c - z)
+                };
+                points.iter().filter(hides).map(|(_, made)| *made).min()
+            }
+            Parts::Halves(halves) => {
+                let both = [&halves.0, &halves.1];
+                both.into_iter().filter_map(|half| half.shadower(point, when, slope, radius)).min()
+            }
+        }
+    }
+}
+
+/// The places in the order of points that are shadowed, each with that of the first point that shadows it.
+fn shadows(order: &[u32], cloud: &[Point], slope: f64, radius: f64) -> Vec<(u32, u32)> {
+    let mut points: Vec<(Point, u32)> =
+        order.iter().enumerate().map(|(when, &i)| (cloud[i as usize], when as u32)).collect();
+    if points.is_empty() {
+        return Vec::new();
+    }
+    let tree = Node::new(&mut points);
+    let shadower = |(when, &i): (usize, &u32)| {
+        let by = tree.shadower(cloud[i as usize], when as u32, slope, radius)?;
+        Some((when as u32, by))
+    };
+    order.par_iter().enumerate().filter_map(shadower).collect()
+}

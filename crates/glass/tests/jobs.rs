@@ -1,0 +1,339 @@
+//! From a body to a proven program, and programs that are wrong and refused.
+
+mod bodies;
+
+use bodies::sphere;
+use toolpost_glass::cloud::{Point, distances};
+use toolpost_glass::control::read;
+use toolpost_glass::job::{Made, Order, Placing, Settings, make};
+use toolpost_glass::machine::{Machine, library};
+use toolpost_glass::material::{Material, TABLE, find};
+use toolpost_glass::mesh::{Mesh, Shape};
+use toolpost_glass::optics::Ray;
+use toolpost_glass::order::Effort;
+use toolpost_glass::proof::{Proof, Task, prove};
+
+fn machine(format: &str) -> Machine {
+    let text = library("glass-xyz-100hz").unwrap();
+    let fire = if format == "gcode" { "\nfire = \"M64 P0\"" } else { "" };
+    Machine::read(
+        &text.replace("format = \"numbered\"", &format!("format = \"{format}\"{fire}")),
+        "",
+    )
+    .unwrap()
+}
+
+fn k9() -> Material {
+    find(TABLE, "", "k9", 532.0).unwrap()
+}
+
+fn settings() -> Settings {
+    let placing = Placing {
+        block: [20.0, 20.0, 30.0],
+        margin: 2.0,
+        scale: None,
+        fit: false,
+        turn: [0.0; 3],
+        mirror: [false; 3],
+        shift: [0.0; 3],
+    };
+    let effort = Effort { rounds: 1, tries: 500, until: None };
+    let (order, ray) = (Order::Fastest, Ray::Marginal);
+    Settings {
+        placing,
+        focal: 70.0,
+        spacing: None,
+        ray,
+        order,
+        effort,
+        seed: 1,
+        accept_shadowed: false,
+    }
+}
+
+fn made(shape: Shape, format: &str, settings: &Settings) -> Made {
+    make(vec![shape], &k9(), &machine(format), settings).unwrap_or_else(|found| panic!("{found:?}"))
+}
+
+fn body() -> Shape {
+    Shape::Mesh(sphere(1.5, 30))
+}
+
+fn refusals(shape: Shape, settings: &Settings) -> Vec<&'static str> {
+    let found = make(vec![shape], &k9(), &machine("numbered"), settings).unwrap_err();
+    assert!(found.iter().all(|finding| !finding.help.is_empty()));
+    found.iter().map(|finding| finding.rule.name()).collect()
+}
+
+#[test]
+fn a_body_becomes_a_proven_program_in_every_form() {
+    for format in ["numbered", "points", "gcode"] {
+        for ray in [Ray::Marginal, Ray::Paraxial] {
+            let settings = Settings { ray, ..settings() };
+            let made = made(body(), format, &settings);
+            let report = &made.report;
+            assert!(made.proven && made.findings.is_empty(), "{format}: {:?}", made.findings);
+            let Proof { pulses, across, along, shadowed, ticks, seconds, used } = report.proof;
+            assert_eq!((pulses, shadowed, ticks), (report.points, 0, report.planned_ticks));
+            assert_eq!((across, seconds), (0.0, ticks as f64 / 100.0));
+            // Whole µm of drive are 0.76 µm of depth; 15 mm deep the paraxial focus lies 0.0054 mm off the marginal one.
+            let most = if ray == Ray::Marginal { 0.000_77 } else { 0.007 };
+            assert!(along <= most && used > 0.96, "{format} {along} {used}");
+            assert_eq!(distances(&made.cloud, 130).too_close, 0);
+        }
+    }
+}
+
+#[test]
+fn the_first_pulse_of_a_program_lies_where_a_hand_calculation_puts_it() {
+    // One point, in the middle of the block: 15 mm deep, driven 15 * 0.657873 mm (Snell's law at f = 70 mm).
+    let made = made(Shape::Points(vec![glam::DVec3::ZERO]), "numbered", &settings());
+    let text = String::from_utf8(made.text).unwrap();
+    assert_eq!(
+        text,
+        "N1 BEGIN BLOCK X20.000 Y20.000 Z30.000 POINTS 1\nN2 PULSE X10.000 Y10.000 Z-9.868\nN3 END\n"
+    );
+}
+
+/// Reads a program back and proves it: the rules that it breaks.
+fn judged(text: &[u8], cloud: &[Point], format: &str) -> Vec<&'static str> {
+    let machine = machine(format);
+    let lens = machine.lens(70.0).unwrap();
+    let block = [20.0, 20.0, 30.0];
+    let task = Task {
+        cloud,
+        machine: &machine,
+        lens: &lens,
+        index: 1.5195,
+        block,
+        accept_shadowed: false,
+    };
+    let found = match read(text, &machine).and_then(|pulses| prove(&pulses, &task)) {
+        Ok((_, found)) | Err(found) => found,
+    };
+    assert!(found.iter().all(|finding| !finding.help.is_empty()), "{found:?}");
+    found.iter().map(|finding| finding.rule.name()).collect()
+}
+
+#[test]
+fn programs_that_lose_repeat_move_or_exchange_pulses_are_refused() {
+    let made = made(body(), "points", &settings());
+    let cloud = &made.cloud;
+    let text = String::from_utf8(made.text).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let joined = |lines: &[&str]| lines.join("\n") + "\n";
+    assert!(judged(text.as_bytes(), cloud, "points").is_empty());
+
+    let mut less = lines.clone();
+    less.remove(100);
+    assert_eq!(judged(joined(&less).as_bytes(), cloud, "points"), ["lost"]);
+    let mut twice = lines.clone();
+    twice.push(lines[100]);
+    assert_eq!(judged(joined(&twice).as_bytes(), cloud, "points"), ["twice"]);
+    // Farther than the radius of a crack.
+    let moved = |axis: usize, by: f64| {
+        let mut lines: Vec<String> = lines.iter().map(|line| line.to_string()).collect();
+        let mut values: Vec<f64> =
+            lines[100].split(' ').map(|word| word.parse().unwrap()).collect();
+        values[axis] += by;
+        lines[100] = format!("{:.3} {:.3} {:.3}", values[0], values[1], values[2]);
+        lines.join("\n") + "\n"
+    };
+    assert!(judged(moved(0, 5.0).as_bytes(), cloud, "points").contains(&"stray"));
+    assert!(judged(moved(2, 5.0).as_bytes(), cloud, "points").contains(&"stray"));
+    assert!(judged(moved(1, 200.0).as_bytes(), cloud, "points").contains(&"travel"));
+    // From above: nearly every point is shadowed.
+    let mut turned = lines.clone();
+    turned[1..].reverse();
+    assert_eq!(judged(joined(&turned).as_bytes(), cloud, "points"), ["shadowed"]);
+    // An index that the block does not have: 3 % of 15 mm.
+    let wrong = text.replace(" -9.", " -9.3").replace(" -10.", " -10.3");
+    assert!(judged(wrong.as_bytes(), cloud, "points").contains(&"lost"));
+    assert_eq!(judged(b"# nothing\n", cloud, "points"), ["lost"]);
+}
+
+#[test]
+fn programs_that_a_controller_would_not_take_are_refused() {
+    let cloud = [[10_000, 10_000, 15_000]];
+    let refused = |text: &str, format| {
+        assert_eq!(judged(text.as_bytes(), &cloud, format), ["program"], "{text}")
+    };
+    let good = "N1 BEGIN BLOCK X20.000 Y20.000 Z30.000 POINTS 1\nN2 PULSE X10.000 Y10.000 Z-9.868\nN3 END\n";
+    assert!(judged(good.as_bytes(), &cloud, "numbered").is_empty());
+    for (from, to) in [
+        ("N2", "N3"),
+        ("N2 PULSE", "PULSE"),
+        ("PULSE", "PULS"),
+        (" Z-9.868", ""),
+        ("Y10.000", "Y1e1"),
+        ("Y10.000", "Y10.0.0"),
+        ("Y10.000", "Y"),
+        ("Z-9.868", "Z-9.868 X1"),
+        ("POINTS 1", "POINTS 2"),
+        ("POINTS 1", ""),
+        ("N3 END\n", ""),
+        ("N3 END\n", "N3 END"),
+        ("N3 END\n", "N3 END\nN4 PULSE X1 Y1 Z1\n"),
+        ("BEGIN", "PULSE"),
+    ] {
+        refused(&good.replacen(from, to, 1), "numbered");
+    }
+    let good = "(one)\nG21 G90\nG0 X10.000 Y10.000 Z-9.868\nM64 P0\nM2\n";
+    assert!(judged(good.as_bytes(), &cloud, "gcode").is_empty());
+    for (from, to) in [
+        ("G21 ", ""),
+        (" G90", ""),
+        (" G90", " G91"),
+        ("G21", "G20"),
+        (" Z-9.868", ""),
+        ("M2\n", ""),
+        ("M2\n", "M2\nM64 P0\n"),
+        ("M64 P0", "M64 P1"),
+        ("G0 X", "G2 X"),
+    ] {
+        refused(&good.replacen(from, to, 1), "gcode");
+    }
+    for text in ["1 2\n", "1 2 3 4\n", "1 2 x\n", "1 2 3", "1 2 \u{b2}\n"] {
+        refused(text, "points");
+    }
+    assert_eq!(judged(&[b'1', 0xff, b'\n'], &cloud, "points"), ["program"]);
+}
+
+#[test]
+fn bodies_that_cannot_be_engraved_are_refused_with_a_way_out() {
+    let large = Shape::Mesh(sphere(30.0, 10));
+    let found = make(vec![large], &k9(), &machine("numbered"), &settings()).unwrap_err();
+    assert_eq!(found[0].rule, "does-not-fit");
+    // 60 mm into 16 mm.
+    assert!(
+        found[0].help.contains("--scale 0.2667") && found[0].help.contains("0.039370"),
+        "{}",
+        found[0].help
+    );
+    let with = |change: &dyn Fn(&mut Settings)| {
+        let mut settings = settings();
+        change(&mut settings);
+        settings
+    };
+    assert_eq!(refusals(body(), &with(&|s| s.placing.shift = [8.0, 0.0, 0.0])), ["does-not-fit"]);
+    assert_eq!(refusals(body(), &with(&|s| s.placing.margin = 10.0)), ["block"]);
+    assert_eq!(refusals(body(), &with(&|s| s.placing.block[2] = 101.0)), ["block"]);
+    assert_eq!(refusals(body(), &with(&|s| s.focal = 50.0)), ["lens"]);
+    assert_eq!(refusals(body(), &with(&|s| s.spacing = Some(0.1))), ["spacing"]);
+    assert_eq!(refusals(body(), &with(&|s| s.spacing = Some(0.0))), ["spacing"]);
+    assert_eq!(refusals(body(), &with(&|s| s.spacing = Some(f64::NAN))), ["spacing"]);
+    assert_eq!(refusals(Shape::Mesh(Mesh::default()), &settings()), ["empty"]);
+    assert_eq!(
+        refusals(Shape::Mesh(sphere(900.0, 4)), &with(&|s| s.placing.block = [2e6, 2e6, 90.0])),
+        ["does-not-fit"]
+    );
+    let few = library("glass-xyz-100hz").unwrap().replace("points = 2000000", "points = 100");
+    let few = Machine::read(&few, "").unwrap();
+    assert_eq!(make(vec![body()], &k9(), &few, &settings()).unwrap_err()[0].rule, "points");
+}
+
+#[test]
+fn small_and_open_bodies_and_cut_beams_are_pointed_out() {
+    let rules = |shape, settings: &Settings| -> Vec<_> {
+        made(shape, "numbered", settings).findings.iter().map(|found| found.rule.name()).collect()
+    };
+    assert_eq!(rules(Shape::Mesh(sphere(0.2, 10)), &settings()), ["small"]);
+    let mut open = sphere(1.5, 10);
+    open.triangles.truncate(200);
+    assert!(rules(Shape::Mesh(open), &settings()).contains(&"mesh"));
+    // A ball of 16 mm at the bottom of a block of 90 mm: 1 mm from its sides the cone has up to 2 mm.
+    let mut deep = settings();
+    deep.placing = Placing {
+        block: [18.0, 18.0, 90.0],
+        margin: 1.0,
+        shift: [0.0, 0.0, -36.0],
+        ..deep.placing
+    };
+    deep.spacing = Some(0.5);
+    assert_eq!(rules(Shape::Mesh(sphere(8.0, 20)), &deep), ["beam-cut"]);
+}
+
+#[test]
+fn points_of_a_list_that_are_too_close_are_left_out_and_counted() {
+    let at = |x: f64| glam::DVec3::new(x, 0.0, 0.0);
+    let made = made(
+        Shape::Points(vec![at(0.0), at(0.1), at(0.2), at(1.0), at(1.0)]),
+        "numbered",
+        &settings(),
+    );
+    assert_eq!((made.report.points, made.report.welded), (3, 2));
+    assert!(made.proven);
+}
+
+#[test]
+fn the_orders_of_the_source_shadow_points_and_pass_only_where_that_is_accepted() {
+    let kdz = Settings { order: Order::Kdz(0.36, 0.36), ..settings() };
+    let found = made(body(), "numbered", &kdz);
+    assert!(!found.proven && found.findings.iter().any(|found| found.rule == "shadowed"));
+    let accepted = made(body(), "numbered", &Settings { accept_shadowed: true, ..kdz });
+    assert!(accepted.proven && accepted.report.proof.shadowed > 0);
+}
+
+#[test]
+fn bodies_are_turned_mirrored_scaled_and_moved() {
+    let corner = |x: f64, y: f64, z: f64| glam::DVec3::new(x, y, z);
+    let points =
+        || Shape::Points(vec![corner(0.0, 0.0, 0.0), corner(4.0, 0.0, 0.0), corner(0.0, 2.0, 0.0)]);
+    let cloud = |change: &dyn Fn(&mut Placing)| {
+        let mut settings = settings();
+        change(&mut settings.placing);
+        let mut cloud = made(points(), "numbered", &settings).cloud;
+        cloud.sort_unstable();
+        cloud
+    };
+    // Centred in 20 x 20 x 30 mm.
+    assert_eq!(
+        cloud(&|_| ()),
+        [[8_000, 9_000, 15_000], [8_000, 11_000, 15_000], [12_000, 9_000, 15_000]]
+    );
+    assert_eq!(
+        cloud(&|p| p.mirror[0] = true),
+        [[8_000, 9_000, 15_000], [12_000, 9_000, 15_000], [12_000, 11_000, 15_000]]
+    );
+    // About Z by 90°: X goes to Y, Y to -X.
+    assert_eq!(
+        cloud(&|p| p.turn[2] = 90.0),
+        [[9_000, 8_000, 15_000], [11_000, 8_000, 15_000], [11_000, 12_000, 15_000]]
+    );
+    assert_eq!(
+        cloud(&|p| (p.scale, p.shift) = (Some(0.5), [1.0, -1.0, 2.0])),
+        [[10_000, 8_500, 17_000], [10_000, 9_500, 17_000], [12_000, 8_500, 17_000]]
+    );
+    // 16 mm of room for 4 mm.
+    assert_eq!(
+        cloud(&|p| p.fit = true),
+        [[2_000, 6_000, 15_000], [2_000, 14_000, 15_000], [18_000, 6_000, 15_000]]
+    );
+}
+
+#[test]
+fn the_writer_and_the_judge_share_nothing_but_the_machine() {
+    let source = |file: &str| {
+        std::fs::read_to_string(format!("{}/src/{file}.rs", env!("CARGO_MANIFEST_DIR"))).unwrap()
+    };
+    let uses = |file: &str, other: &str| source(file).contains(&format!("crate::{other}"));
+    for judge in ["control", "proof"] {
+        for planner in ["post", "optics", "order", "job", "sample", "weld"] {
+            assert!(!uses(judge, planner), "{judge} uses {planner}");
+        }
+    }
+    for planner in [
+        "post",
+        "optics",
+        "order/mod",
+        "order/greedy",
+        "order/shadow",
+        "order/window",
+        "sample",
+        "weld",
+    ] {
+        for judge in ["control", "proof"] {
+            assert!(!uses(planner, judge), "{planner} uses {judge}");
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Machine files.
+
+use toolpost_glass::machine::{LIBRARY, Machine, library};
+
+#[test]
+fn every_machine_of_the_library_is_one_and_says_its_rate_in_its_name() {
+    for (name, text) in LIBRARY {
+        let machine = Machine::read(text, name).unwrap();
+        assert_eq!(name, format!("glass-xyz-{}hz", machine.laser.rate));
+        assert!(machine.title.contains(&format!("{} Hz", machine.laser.rate)), "{name}");
+        // What the comment says of the reach in a tick.
+        let stated =
+            text.split("a triangle reaches ").nth(1).and_then(|rest| rest.split(' ').next());
+        let stated: f64 = stated.unwrap().parse().unwrap();
+        assert_eq!((stated * 1e3).floor() as i64, machine.clock().reach(1)[0], "{name}");
+    }
+}
+
+#[test]
+fn a_machine_file_that_cannot_be_is_refused_with_its_line() {
+    let good = library("glass-xyz-100hz").unwrap();
+    let refused = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        let found = Machine::read(&good.replacen(from, to, 1), "mine.toml").unwrap_err();
+        assert!(
+            found.rule == "machine-file" && found.file == "mine.toml" && !found.help.is_empty(),
+            "{found}"
+        );
+        (found.line, found.message)
+    };
+    let line = |text: &str| 1 + good[..good.find(text).unwrap()].lines().count() as u32;
+    assert_eq!(refused("rate = 100", "rate = fast").0, line("rate = 100"));
+    assert_eq!(refused("beam = 5", "bean = 5").0, line("beam = 5"));
+    assert!(refused("rate = 100", "rate = 0").1.contains("laser.rate"));
+    assert!(refused("travel = [0, 170]", "travel = [170, 0]").1.contains("travel"));
+    assert!(refused("spacing = 0.09", "spacing = nan").1.contains("spacing"));
+    assert!(refused("focal = 43", "focal = 4").1.contains("shorter than its beam"));
+    assert!(refused("\"numbered\"", "\"gcode\"").1.contains("program.fire"));
+    assert!(refused("\"triangle\"", "\"square\"").1.contains("square"));
+}
