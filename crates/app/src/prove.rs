@@ -69,7 +69,7 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
     }
     let compared = &proof.compared;
     let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
-    rows.push(("proof", format!("all {moves} moves are those of the toolpath")));
+    rows.push(("proof", format!("passed: {moves} moves match the toolpath")));
     if compared.contours > 0 {
         let text = format!("{}, each with the tool on the right side of it", compared.contours);
         rows.push(("contours", text));
@@ -79,15 +79,15 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
         format!("{} {unit} at most{place}; {} allowed", number(value, 5), number(allowed, 5))
     };
     let (tip, axis) = (worst.tip_mm, worst.axis_degrees);
-    rows.push(("tip off by", deviation(tip.value, allowed.tip_mm, "mm", tip.program_line)));
+    rows.push(("tip deviation", deviation(tip.value, allowed.tip_mm, "mm", tip.program_line)));
     if axis.value > 0.0 {
         let text = deviation(axis.value, allowed.axis_degrees, "degrees", axis.program_line);
-        rows.push(("axis off by", text));
+        rows.push(("axis deviation", text));
     }
     let rapid = worst.rapid_mm;
     if rapid.value > allowed.tip_mm {
         let corridor = machine.capabilities.rapid_corridor;
-        rows.push(("rapids off by", deviation(rapid.value, corridor, "mm", rapid.program_line)));
+        rows.push(("rapid deviation", deviation(rapid.value, corridor, "mm", rapid.program_line)));
     }
     let speed = worst.tip_speed_percent;
     if speed.value > 0.0 {
@@ -126,7 +126,7 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
 pub(crate) fn failed(proof: &Report, source: &Toolpath, program: &str) -> Account {
     let mut rows = vec![
         ("proof", String::from("FAILED")),
-        ("program", String::from("it makes another motion")),
+        ("program", String::from("the motion differs from the source")),
     ];
     if let Some(first) = &proof.first_mismatch {
         let (place, text) = source.location(first.source_line);
