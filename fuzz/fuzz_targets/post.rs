@@ -43,7 +43,7 @@ fuzz_target!(|data: &[u8]| {
                     String::from_utf8_lossy(&output.text)
                 );
             }
-            // A program that is cut off is held against the same toolpath: no panic.
+            // A program that is cut off is compared with the same toolpath: no panic.
             let _ = proven(&output.text[..output.text.len() / 2]);
         }
         Err(findings) => {

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Write the program of a machine, and prove it: what is not proven is not given out.
 ///
-/// The program is read back by a virtual control of its own, and its motion held against ``program``.
+/// The program is read back by a virtual control of its own, and its motion compared with ``program``.
 ///
 /// Parameters
 /// ----------

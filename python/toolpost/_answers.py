@@ -89,7 +89,7 @@ class Error(Exception):
 
 
 class Report:
-    """What was found when a program was held against its toolpath; a table in a notebook.
+    """The result of comparing a program with its toolpath; a table in a notebook.
 
     Attributes
     ----------

@@ -43,7 +43,7 @@ pub struct Machine {
     /// table towards the part. At most two.
     pub rotary: Vec<RotaryAxis>,
     /// Work zero (`G54`) in machine coordinates, mm, where it is known. Limits are then checked in
-    /// machine coordinates; otherwise only the extent is held against the travel.
+    /// machine coordinates; otherwise only the stroke is compared with the travel.
     pub work_zero: Option<Vec3>,
     /// The least Z of the gauge line in machine coordinates, mm, at which every tool is clear of every part, where
     /// it is known. Retracts in machine coordinates go there.

@@ -1,4 +1,4 @@
-//! What a user sets, held against what makes sense.
+//! Settings of a user, checked against their ranges.
 
 use crate::report::{Outcome, fault};
 use crate::{Cutter, Tool};

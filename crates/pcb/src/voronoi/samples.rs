@@ -39,7 +39,7 @@ pub(super) struct Sample {
     pub(super) at: Vec2,
     /// What it is on; `None` for the frame.
     piece: Option<u32>,
-    /// Whether another conductor is too near to be told apart by points.
+    /// Whether another conductor is too near to be distinguished by points.
     pub(super) touches: bool,
 }
 
