@@ -1,6 +1,6 @@
 0 BEGIN PGM SAMPLE MM
-1 BLK FORM 0.1 Z X-30 Y+0 Z-4.142
-2 BLK FORM 0.2 X+43.66 Y+20 Z+10.2
+1 BLK FORM 0.1 Z X-35 Y-5 Z-7.678
+2 BLK FORM 0.2 X+47.99 Y+24.33 Z+13.536
 3 ; The blank is as large as the cuts reach, it is not the stock
 4 ; T1 MILL_10 D10
 5 ; T2 BALL_6 D6
@@ -9,8 +9,8 @@
 8 CYCL DEF 32.0 TOLERANCE
 9 CYCL DEF 32.1 T0.01
 10 CYCL DEF 32.2 HSC-MODE:0 TA0.05
-11 ; What machines with five axes can make: a face with the tool upright  a slope with the tool at 45
-12 ; degrees  a ridge over which the tool turns while it cuts. The programs beside it are what the
+11 ; What machines with five axes can make: a face with the tool upright, a slope with the tool at 45
+12 ; degrees, a ridge over which the tool turns while it cuts. The programs beside it are what the
 13 ; machines of the library run for it.
 14 ; FACE
 15 L Z+400 R0 FMAX M91

@@ -2,8 +2,8 @@
 (T1 MILL_6 D6)
 (T2 DRILL_3.3 D3.3)
 G21 G17 G40 G49 G90 G94 G54
-(What every machine with three axes can make: a)
-(holes. The programs beside it are what the mac)
+(What every machine with three axes can...)
+(holes. The programs beside it are what the...)
 (SLOT)
 G53 G0 Z-1
 M5

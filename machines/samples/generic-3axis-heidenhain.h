@@ -1,12 +1,12 @@
 0 BEGIN PGM SAMPLE MM
-1 BLK FORM 0.1 Z X+10 Y+10 Z-12
-2 BLK FORM 0.2 X+50 Y+30 Z+1
+1 BLK FORM 0.1 Z X+7 Y+7 Z-12
+2 BLK FORM 0.2 X+53 Y+33 Z+1
 3 ; The blank is as large as the cuts reach, it is not the stock
 4 ; T1 MILL_6 D6
 5 ; T2 DRILL_3.3 D3.3
 6 CYCL DEF 32.0 TOLERANCE
 7 CYCL DEF 32.1 T0.01
-8 ; What every machine with three axes can make: a slot with a round end  a helix into a ring  two
+8 ; What every machine with three axes can make: a slot with a round end, a helix into a ring, two
 9 ; holes. The programs beside it are what the machines of the library run for it.
 10 ; SLOT
 11 L Z+0 R0 FMAX M91

@@ -5,8 +5,8 @@ G21
 G90
 G17
 G54
-; What every machine with three axes can make: a slot with a round end  a
-; holes. The programs beside it are what the machines of the library run 
+; What every machine with three axes can make: a slot with a round end...
+; holes. The programs beside it are what the machines of the library...
 ; SLOT
 G53 G0 Z0 F6000
 M5

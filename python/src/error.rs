@@ -57,7 +57,8 @@ pub fn findings<'py>(py: Python<'py>, found: &[Diagnostic]) -> PyResult<Bound<'p
         .finish()
         .iter()
         .map(|found| {
-            let Diagnostic { rule, message, help, file, line, column, excerpt, count, .. } = found;
+            let rule = found.rule.name();
+            let Diagnostic { message, help, file, line, column, excerpt, count, .. } = found;
             let severity = if found.is_error() { "error" } else { "warning" };
             let shown = found.to_string();
             finding

@@ -404,6 +404,9 @@ pub enum Plane {
 /// `LOGOPEN,` of LinuxCNC) is not among them.
 pub const HARMLESS_SIGNS: &str = " .:+-*/=_<>&@#";
 
+/// Harmless too, but on controls that take what stands before it in a comment as a command (`MSG,` of LinuxCNC).
+pub const COMMA: char = ',';
+
 /// How text is put together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Format {

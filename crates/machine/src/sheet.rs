@@ -138,7 +138,7 @@ sheet!(merged FormatSheet "format" {
     comment_start: String, "", "What opens a comment.";
     comment_end: String, "", "What closes a comment; empty where the end of the line does.";
     fresh_operations: bool, "", "Whether each operation says position, kind of motion and feed anew, as if the control had forgotten them.";
-    comment_signs: String, "", "The signs that a comment may hold, in addition to letters and digits of ASCII: some of ` .:+-*/=_<>&@#`, without it all of them. What is none of them is spelt with letters (`é` as e) or left blank.";
+    comment_signs: String, "", "The signs that a comment may hold, in addition to letters and digits of ASCII: some of ` .:+-*/=_<>&@#,`, without it all of them but the comma, behind which LinuxCNC takes `MSG` for a command. What is none of them is spelt with letters (`é` as e) or left blank.";
     comment_length: usize, "", "Most characters of a comment; the length of a line less 24 where it is missing.";
 });
 

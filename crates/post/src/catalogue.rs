@@ -171,6 +171,7 @@ names! {
         F Word "F", "mm/min", "Feed of the move.";
         FeedPerTurn Word "F_per_turn", "mm", "How {{F}} is written while the feed is per turn of the spindle.";
         FeedInverse Word "F_inverse_time", "1/min", "How {{F}} is written while the feed is inverse time.";
+        Tolerance Word "TOLERANCE", "mm", "How far the control may leave the path: as the source says for its cuts, at the most `path_tolerance`. `look_ahead_on` may place it; without `look_ahead_off` that is written only where it changes.";
         S Word "S", "1/min", "Speed of the spindle.";
         T Word "T", "", "Number of the tool.";
         H Word "H", "", "Register of the tool length offset, 1 or the tool's as `length_offset` says: at the tool change, when tool center point control goes on, and with each straight move that says Z.";
@@ -189,7 +190,7 @@ names! {
         Euler2 Word "E2", "degrees", "Turn about the new X, second.";
         Euler3 Word "E3", "degrees", "Turn about the new Z, third.";
         Direction Word "DIR", "", "Which of the two solutions for a tilted plane the control takes: 1 the one with the higher position of the axis that `swivel_direction` names, -1 the one with the lower. -1 where that makes no difference.";
-        LowX Word "LOW_X", "mm", "Smallest X of the blank, in `program_start`, where `program.blank`: of the stock, or of the tool tip in all cuts.";
+        LowX Word "LOW_X", "mm", "Smallest X of the blank, in `program_start`, where `program.blank`: of the stock, or of the edges of the tools in all cuts.";
         LowY Word "LOW_Y", "mm", "Smallest Y of the blank.";
         LowZ Word "LOW_Z", "mm", "Smallest Z of the blank.";
         HighX Word "HIGH_X", "mm", "Largest X of the blank.";
@@ -246,7 +247,7 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     variable(
         "program.number",
         "",
-        "Number of the program, where its name is one: 1 to 8999, with or without an O before it; otherwise undefined.",
+        "Number of the program, without zeros before it: `program_number` of the options, else its name where that is 1 to 7999, with or without an O before it; otherwise undefined.",
     ),
     variable("program.tools", "", "The tools in the order of their first use, each as `tool`."),
     variable(
@@ -285,6 +286,11 @@ pub(crate) const VARIABLES: &[Parameter] = &[
         "",
         "Name of the tool where it can call the tool: letters, digits, `_`, `.` and `-` only, at most 32; otherwise undefined.",
     ),
+    variable(
+        "tool.next",
+        "",
+        "In `tool_change`: the number of the tool that is called next, behind the last that of the first; undefined where the program has one tool.",
+    ),
     variable("tool.diameter", "mm", "Cutting diameter; undefined where the source is silent."),
     variable("tool.corner_radius", "mm", "Corner radius; undefined where the source is silent."),
     variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),
@@ -310,6 +316,7 @@ pub(crate) const VARIABLES: &[Parameter] = &[
         "",
         "In `tool_change` and `program_end`: whether a rotary axis whose word the block places has to turn to 0, or on an axis without an end to the nearest whole turn.",
     ),
+    variable("place.tilted", "", "Whether a tilted plane or tool center point control is on."),
     variable(
         "place.tool_center_off",
         "",

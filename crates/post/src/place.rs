@@ -63,8 +63,8 @@ impl Place {
 
     /// The place as templates see it; `home` where Z is home.
     pub(crate) fn value(&self, home: bool) -> Value {
-        let [tool_center_off, plane_off] = self.just_off;
-        place_value(home, self.turned, tool_center_off, plane_off)
+        let tilted = matches!(self.kind, Kind::Tilted(..) | Kind::ToolCenter | Kind::Vectors);
+        place_value(home, self.turned, tilted, self.just_off)
     }
 
     pub(crate) fn degrees(&self) -> Option<[f64; 3]> {

@@ -3,7 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
-use machine::{CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
+use machine::{COMMA, CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
 use program::{Diagnostic, Findings, nearest};
 
 /// The first parameter that can keep a height: those below are a subroutine's own (LinuxCNC, "Numbered Parameters": #1 to
@@ -87,11 +87,12 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
         }
     }
-    if let Some(sign) = machine.format.comment_signs.chars().find(|c| !HARMLESS_SIGNS.contains(*c))
+    if let Some(sign) =
+        machine.format.comment_signs.chars().find(|c| !HARMLESS_SIGNS.contains(*c) && *c != COMMA)
     {
         let message =
             format!("`{sign}` in `comment_signs` may end a comment or be a command in it");
-        let help = format!("signs that no control misreads are `{HARMLESS_SIGNS}`");
+        let help = format!("signs that no control misreads are `{HARMLESS_SIGNS}{COMMA}`");
         errors.push(file(Diagnostic::error("comment-signs", message).help(help)));
     }
     for (block, why) in promised(machine) {

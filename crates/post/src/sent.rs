@@ -14,6 +14,7 @@ pub(crate) struct Sent {
     compensation: Compensation,
     cycle: Option<Open>,
     looks_ahead: bool,
+    path_tolerance: f64,
     clamps_closed: Option<bool>,
     length_register: Option<f64>,
     work_offset: usize,
@@ -21,8 +22,8 @@ pub(crate) struct Sent {
 }
 
 impl Sent {
-    /// Behind `program_start`.
-    pub(crate) fn at_start() -> Sent {
+    /// Behind `program_start`, which lets the control leave the path by `path_tolerance`, mm.
+    pub(crate) fn at_start(path_tolerance: f64) -> Sent {
         Sent {
             spindle: Some(Spindle::Off),
             speed_changed: true,
@@ -31,6 +32,7 @@ impl Sent {
             compensation: Compensation::Off,
             cycle: None,
             looks_ahead: false,
+            path_tolerance,
             clamps_closed: None,
             length_register: None,
             work_offset: 0,
@@ -146,6 +148,17 @@ impl Sent {
         std::mem::replace(&mut self.looks_ahead, on) != on
     }
 
+    /// How far the control may leave the path by the block that said so last, mm.
+    #[inline]
+    pub(crate) fn path_tolerance(&self) -> f64 {
+        self.path_tolerance
+    }
+
+    /// The next block says how far the control may leave the path, mm.
+    pub(crate) fn set_path_tolerance(&mut self, tolerance: f64) {
+        self.path_tolerance = tolerance;
+    }
+
     /// The clamps of the rotary axes close, or open. Whether that is a change, or may be one.
     pub(crate) fn clamp(&mut self, closed: bool) -> bool {
         self.clamps_closed.replace(closed) != Some(closed)
@@ -185,7 +198,7 @@ mod tests {
 
     #[test]
     fn the_spindle_runs_up_from_a_stand_and_the_other_way_round() {
-        let mut sent = Sent::at_start();
+        let mut sent = Sent::at_start(0.01);
         assert!(sent.switch_spindle(Spindle::Clockwise(1000.0)));
         assert!(!sent.switch_spindle(Spindle::Clockwise(2000.0)));
         assert!(sent.switch_spindle(Spindle::CounterClockwise(2000.0)));
@@ -200,7 +213,7 @@ mod tests {
 
     #[test]
     fn coolant_goes_off_before_another_that_it_would_run_with() {
-        let mut sent = Sent::at_start();
+        let mut sent = Sent::at_start(0.01);
         assert!(!sent.mixes_coolant(Coolant::Flood));
         sent.switch_coolant(Coolant::Flood);
         assert!(!sent.mixes_coolant(Coolant::FloodAndMist) && !sent.mixes_coolant(Coolant::Off));
@@ -211,7 +224,7 @@ mod tests {
 
     #[test]
     fn clamps_that_no_block_has_moved_may_stand_either_way() {
-        let mut sent = Sent::at_start();
+        let mut sent = Sent::at_start(0.01);
         assert!(!sent.clamps_are_open());
         assert!(sent.clamp(false) && !sent.clamp(false) && sent.clamps_are_open());
         assert!(sent.clamp(true) && !sent.clamps_are_open());

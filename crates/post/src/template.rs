@@ -270,12 +270,18 @@ impl Scope {
         let blank = [("blank", true), ("stock", first)];
         Scope {
             set: if first { Words::MAX } else { 0 },
-            program: program_value(machine, &program.name, &program.records, blank),
+            program: program_value(
+                machine,
+                "SAMPLE".into(),
+                &program.records,
+                first.then(|| "1".into()),
+                blank,
+            ),
             operation: map([("name", Value::from(operation))]),
-            tool: tool_value(machine, &tool, first),
+            tool: tool_value(machine, &tool, first, first.then_some(2)),
             spindle: spindle_value(first, first, !first),
             coolant: coolant_value(!first, !first),
-            place: place_value(!first, first, !first, !first),
+            place: place_value(!first, first, !first, [!first; 2]),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -306,10 +312,10 @@ impl Scope {
             machine: map(names.into_iter().chain(modes)),
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
-            tool: tool_value(machine, &Tool::default(), true),
+            tool: tool_value(machine, &Tool::default(), true, None),
             spindle: spindle_value(true, true, false),
             coolant: coolant_value(false, false),
-            place: place_value(false, false, false, false),
+            place: place_value(false, false, false, [false; 2]),
             text: Value::from(""),
         }
     }
@@ -341,20 +347,21 @@ pub(crate) fn coolant_value(stopped: bool, through: bool) -> Value {
 pub(crate) fn place_value(
     home: bool,
     turned: bool,
-    tool_center_off: bool,
-    plane_off: bool,
+    tilted: bool,
+    [tool_center_off, plane_off]: [bool; 2],
 ) -> Value {
     let members = [
         ("home", home),
         ("turned", turned),
+        ("tilted", tilted),
         ("tool_center_off", tool_center_off),
         ("plane_off", plane_off),
     ];
     map(members.map(|(key, value)| (key, Value::from(value))))
 }
 
-/// A tool as templates see it; `first` where none has been called before.
-pub(crate) fn tool_value(machine: &Machine, tool: &Tool, first: bool) -> Value {
+/// A tool as templates see it; `first` where none has been called before, `next` the one that is called behind it.
+pub(crate) fn tool_value(machine: &Machine, tool: &Tool, first: bool, next: Option<u32>) -> Value {
     let sizes = [
         ("diameter", tool.diameter),
         ("corner_radius", tool.corner_radius),
@@ -367,7 +374,8 @@ pub(crate) fn tool_value(machine: &Machine, tool: &Tool, first: bool) -> Value {
         ("first", Value::from(first)),
     ];
     let identifier = identifies(&tool.name).then(|| ("identifier", Value::from(&tool.name)));
-    map(named.into_iter().chain(identifier).chain(sizes))
+    let next = next.map(|number| ("next", Value::from(number)));
+    map(named.into_iter().chain(identifier).chain(sizes).chain(next))
 }
 
 /// Whether a control can call a tool by this name: what is longer (SINUMERIK: 32 characters) or has
@@ -382,39 +390,67 @@ fn identifies(name: &str) -> bool {
 /// `records` call; `blank` says whether there is a blank, and whether that is the stock.
 pub(crate) fn program_value(
     machine: &Machine,
-    name: &str,
+    name: String,
     records: &[Record],
+    number: Option<String>,
     blank: [(&'static str, bool); 2],
 ) -> Value {
-    let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
-    let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
-    let mut name: String = deunicode(name).chars().filter(kept).take(24).collect();
-    if name.is_empty() {
-        name = "PROGRAM".into();
-    }
     let mut seen = Vec::new();
     let mut tools = Vec::new();
     for record in records {
         if let Op::Tool(tool) = &record.op
             && !seen.contains(&tool.number)
         {
-            tools.push(tool_value(machine, tool, seen.is_empty()));
+            tools.push(tool_value(machine, tool, seen.is_empty(), None));
             seen.push(tool.number);
         }
     }
-    let number = number_of(&name).map(|number| ("number", Value::from(number)));
-    let members = [("name", Value::from(name.as_str())), ("tools", Value::from(tools))];
+    let number = number.map(|number| ("number", Value::from(number)));
+    let members = [("name", Value::from(name)), ("tools", Value::from(tools))];
     let blank = blank.map(|(key, value)| (key, Value::from(value)));
     map(members.into_iter().chain(blank).chain(number))
 }
 
-/// The digits of a name that is the number of a program. From 9000 on they are those of the machine's builder.
+/// The name of a program as a file on the control has it: the last part of a path without its extension.
+pub(crate) fn file_name(name: &str) -> String {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    let name: String = deunicode(name).chars().filter(kept).take(24).collect();
+    if name.is_empty() { "PROGRAM".into() } else { name }
+}
+
+/// The number of a program: the one that `program_number` says, else its name, where that is one.
+///
+/// # Errors
+/// `program_number` says none that is free for everybody. FANUC can keep 8000 to 8999 from being edited (parameter 3202#0), and 9000
+/// and above are the builder's, there and at Haas.
+pub(crate) fn program_number(
+    machine: &Machine,
+    name: &str,
+) -> Result<Option<String>, Box<Diagnostic>> {
+    let said = match machine.options.get("program_number") {
+        Some(OptionValue::Text(text)) if !text.trim().is_empty() => text.trim().to_owned(),
+        Some(OptionValue::Number(number)) => number.to_string(),
+        _ => return Ok(number_of(name).filter(|_| name.len() <= 5)),
+    };
+    if let Some(number) = number_of(&said) {
+        return Ok(Some(number));
+    }
+    let message = format!(
+        "`program_number` is {said}: numbers of programs that everybody may use are 1 to 7999"
+    );
+    let help = "write `program_number = \"O1234\"`, or leave it out";
+    let found = Diagnostic::error("program-number", message).help(help);
+    Err(Box::new(found.file(machine.file.clone())))
+}
+
+/// The number that `name` says, with or without an O.
 fn number_of(name: &str) -> Option<String> {
     let digits = name.strip_prefix(['O', 'o']).unwrap_or(name);
-    let plain = (1..=4).contains(&digits.len()) && digits.bytes().all(|c| c.is_ascii_digit());
+    let plain = (1..=8).contains(&digits.len()) && digits.bytes().all(|c| c.is_ascii_digit());
     let number: u32 = digits.parse().ok().filter(|_| plain)?;
-    (1..9000).contains(&number).then(|| digits.to_owned())
+    (1..8000).contains(&number).then(|| number.to_string())
 }
 
 /// All blocks of a machine.

@@ -13,11 +13,12 @@ pub(crate) struct Wanted<'a> {
     compensation_line: u32,
     cycle: Option<&'a Cycle>,
     surface: Option<&'a Surface>,
+    path_tolerance: f64,
 }
 
 impl<'a> Wanted<'a> {
-    /// Before the first record.
-    pub(crate) fn nothing() -> Wanted<'a> {
+    /// Before the first record; the control may leave the path by `path_tolerance`, mm.
+    pub(crate) fn nothing(path_tolerance: f64) -> Wanted<'a> {
         Wanted {
             tool: None,
             spindle: Spindle::Off,
@@ -27,7 +28,19 @@ impl<'a> Wanted<'a> {
             compensation_line: 0,
             cycle: None,
             surface: None,
+            path_tolerance,
         }
+    }
+
+    /// How far the control may leave the path in the cuts to come, mm.
+    #[inline]
+    pub(crate) fn path_tolerance(&self) -> f64 {
+        self.path_tolerance
+    }
+
+    /// The control may leave the path by so much from the next cut on, mm.
+    pub(crate) fn set_path_tolerance(&mut self, tolerance: f64) {
+        self.path_tolerance = tolerance;
     }
 
     /// The tool that was called last.

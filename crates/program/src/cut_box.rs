@@ -1,6 +1,6 @@
 //! How far the cuts of a program reach.
 
-use crate::{Cycle, Op, Pose, Program};
+use crate::{Cycle, Op, Pose, Program, Tool};
 use geom::Vec3;
 
 /// The smallest box, its sides parallel to the axes of the work frame, that holds everything that a program cuts.
@@ -18,6 +18,18 @@ impl CutBox {
     /// The box of `program`, whose poses are in the work frame. A cut along the tool axis cuts at its lower end:
     /// the tool comes to it through the air, or leaves it through what it has cut.
     pub fn of(program: &Program) -> CutBox {
+        CutBox::around(program, |_| 0.0)
+    }
+
+    /// The box of what the edges of the tools reach, each as far around the tip as the source says its radius; of a tool whose radius
+    /// it does not say, the tip.
+    pub fn swept(program: &Program) -> CutBox {
+        CutBox::around(program, |tool| tool.diameter.unwrap_or(0.0) / 2.0)
+    }
+
+    /// The box of discs across the tool axis, as large as `radius` says of the tool, mm.
+    fn around(program: &Program, radius: impl Fn(&Tool) -> f64) -> CutBox {
+        let (mut edge, mut margin) = (0.0, Vec3::ZERO);
         let mut all = CutBox { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
         let mut here: Option<Pose> = None;
         let mut cycle: Option<&Cycle> = None;
@@ -25,33 +37,36 @@ impl CutBox {
             let from = here;
             if let Some(pose) = record.op.pose() {
                 here = Some(*pose);
+                margin = disc(edge, pose.axis())
+                    .max(from.map_or(margin, |from| disc(edge, from.axis())));
             }
             match &record.op {
-                Op::Line(to) => all.line(from, to),
-                Op::Thread(thread) => all.line(from, &thread.end),
-                Op::Probe(probe) => all.line(from, &probe.end),
+                Op::Line(to) => all.line(from, to, margin),
+                Op::Thread(thread) => all.line(from, &thread.end, margin),
+                Op::Probe(probe) => all.line(from, &probe.end, margin),
                 Op::Arc(to) => {
                     let start = from.map_or(to.end.point(), |from| from.point());
-                    all.add(start);
-                    all.add(to.end.point());
+                    all.add(start, margin);
+                    all.add(to.end.point(), margin);
                     if let Ok(arc) = to.circle.arc(start, to.end.point(), f64::MAX) {
                         let (low, high) = arc.extents();
-                        all.add(low);
-                        all.add(high);
+                        all.add(low, margin);
+                        all.add(high, margin);
                     }
                 }
                 Op::Hole(pose) => {
                     let depth = cycle.map_or(0.0, |cycle| cycle.depth);
-                    all.add(pose.point());
-                    all.add(pose.point() - pose.axis() * depth);
+                    all.add(pose.point(), margin);
+                    all.add(pose.point() - pose.axis() * depth, margin);
                     let retract = cycle.map_or(0.0, |cycle| cycle.retract);
                     here = pose.at(pose.point() + pose.axis() * retract).ok();
                 }
+                Op::Tool(tool) => edge = radius(tool),
                 Op::Cycle(new) => cycle = Some(new),
                 Op::CycleOff => cycle = None,
                 Op::Oriented(to) => {
                     let end = to.end.pose();
-                    all.line(from, end);
+                    all.line(from, end, margin);
                     here = Some(*end);
                 }
                 // Where the tool then stands is not known.
@@ -64,7 +79,6 @@ impl CutBox {
                 | Op::Coolant(_)
                 | Op::Beam(_)
                 | Op::Pulses(_)
-                | Op::Tool(_)
                 | Op::Preselect(_)
                 | Op::Compensation(_)
                 | Op::Frame(_)
@@ -103,24 +117,29 @@ impl CutBox {
         (self.low.x <= self.high.x).then_some([self.low, self.high])
     }
 
-    fn add(&mut self, point: Vec3) {
-        self.low = self.low.min(point);
-        self.high = self.high.max(point);
+    fn add(&mut self, point: Vec3, margin: Vec3) {
+        self.low = self.low.min(point - margin);
+        self.high = self.high.max(point + margin);
     }
 
-    fn line(&mut self, from: Option<Pose>, to: &Pose) {
-        let Some(from) = from else { return self.add(to.point()) };
+    fn line(&mut self, from: Option<Pose>, to: &Pose, margin: Vec3) {
+        let Some(from) = from else { return self.add(to.point(), margin) };
         let way = to.point() - from.point();
         let rise = way.dot(to.axis());
         // Along the axis, but for the rounding of its numbers.
         let along = from.axis() == to.axis() && rise.abs() >= way.length() * (1.0 - 1e-9);
         if !along || rise >= 0.0 {
-            self.add(from.point());
+            self.add(from.point(), margin);
         }
         if !along || rise <= 0.0 {
-            self.add(to.point());
+            self.add(to.point(), margin);
         }
     }
+}
+
+/// How far a disc of this radius across `axis` reaches along X, Y and Z.
+fn disc(radius: f64, axis: Vec3) -> Vec3 {
+    (Vec3::ONE - axis * axis).max(Vec3::ZERO).map(f64::sqrt) * radius
 }
 
 #[cfg(test)]
@@ -152,6 +171,26 @@ mod tests {
             (cut.reach(Vec3::Z), cut.reach(Vec3::X), cut.reach(Vec3::NEG_Z)),
             (-1.0, 10.0, 2.0)
         );
+    }
+
+    /// By hand: upright 5 mm in X and Y and none in Z; at 45 degrees in the plane XZ 5 mm in Y and 5/sqrt(2) in X and Z.
+    #[test]
+    fn the_edge_of_a_tool_reaches_its_radius_across_its_axis() {
+        let tool = Tool { number: 1, diameter: Some(10.0), ..Tool::default() };
+        let swept = |end: Pose| {
+            let mut program = Program::new("t");
+            program.push(1, Op::Tool(Box::new(tool.clone())));
+            program.push(2, Op::Line(end));
+            CutBox::swept(&program).corners().unwrap()
+        };
+        assert_eq!(
+            swept(at(1.0, 2.0, 3.0)),
+            [Vec3::new(-4.0, -3.0, 3.0), Vec3::new(6.0, 7.0, 3.0)]
+        );
+        let leaning = Pose::new(Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0).normalize()).unwrap();
+        let across = 12.5_f64.sqrt();
+        let [_, high] = swept(leaning);
+        assert!(high.distance(Vec3::new(across, 5.0, across)) < 1e-9, "{high}");
     }
 
     #[test]

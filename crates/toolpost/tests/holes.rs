@@ -155,7 +155,7 @@ fn linuxcnc_and_mach3() {
     }
     // Rigid tapping: in, and with the spindle reversed out to where it began.
     for kind in [TAP, LEFT_TAP] {
-        stands("generic-3axis-linuxcnc", kind, 0.0, &["Z3", "G33.1 Z-12 K1.25", "G0 Z20"]);
+        stands("generic-3axis-linuxcnc", kind, 0.0, &["G0 Z3", "G33.1 Z-12 K1.25", "G0 Z20"]);
     }
     assert_eq!(posted("generic-3axis-linuxcnc", cycle(TAP, 0.5)), Err("cycle-tap"));
 }

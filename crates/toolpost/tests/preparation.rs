@@ -241,3 +241,79 @@ fn spindle_and_coolant_are_stopped_once() {
         }
     }
 }
+
+/// The source's tolerance is how far its path may lie inside and outside of the part together. What is less than the machine's figure is
+/// said before the next cut, and behind it that figure is said again.
+#[test]
+fn a_control_follows_the_path_as_closely_as_the_source_says() {
+    let with = |words: &str| read(&UPRIGHT.replacen("RAPID\n", &format!("{words}\nRAPID\n"), 1));
+    let finer = with("INTOL/0.001\nOUTTOL/0.004");
+    let heidenhain = load("generic-3axis-heidenhain").unwrap();
+    stands(
+        &proven(&finer, &heidenhain),
+        &["L Z+2 R0 FMAX", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T0.005", "L Z-3 R0 F100"],
+    );
+    for words in ["INTOL/0.05", "TOLER/0.01", "INTOL/0"] {
+        assert_eq!(proven(&with(words), &heidenhain).matches("TOLERANCE").count(), 1, "{words}");
+    }
+    let second = UPRIGHT.replacen("RAPID\n", "TOLER/0.005\nRAPID\n", 1);
+    let second = read(&second.replacen("LOADTL/7", "TOLER/0.02\nLOADTL/7", 1));
+    let text = proven(&second, &heidenhain);
+    let said: Vec<_> =
+        text.lines().filter_map(|line| line.split_once("32.1 ")).map(|(_, t)| t).collect();
+    assert_eq!(said, ["T0.01", "T0.005", "T0.01"]);
+    let haas = blocks(&proven(&finer, &load("generic-3axis-haas").unwrap()));
+    assert_eq!(
+        haas.iter().filter(|block| block.starts_with("G187")).collect::<Vec<_>>(),
+        ["G187 E0.01", "G187 E0.005"]
+    );
+    // A control without a word for it says that it is not so close.
+    let linuxcnc = post::write(&finer, &load("generic-3axis-linuxcnc").unwrap()).unwrap();
+    assert!(
+        linuxcnc.warnings.iter().any(|found| found.rule.name() == "path-mode"),
+        "{:#?}",
+        linuxcnc.warnings
+    );
+}
+
+#[test]
+fn a_sinumerik_cuts_under_cycle832_and_drills_without_it() {
+    let sinumerik = load("generic-3axis-sinumerik").unwrap();
+    let text = proven(&read(UPRIGHT), &sinumerik);
+    stands(&text, &["Z2", "CYCLE832(0.01,_FINISH,1)", "G1 Z-3 F100"]);
+    stands(&text, &["CYCLE832(0,_OFF,1)", "G17 G54"]);
+    let finer = read(&UPRIGHT.replacen("RAPID\n", "TOLER/0.004\nRAPID\n", 1));
+    let rough =
+        machine("extends = \"generic-3axis-sinumerik\"\n[options]\nmachining = \"ROUGH\"\n");
+    stands(&proven(&finer, &rough), &["CYCLE832(0.004,_ROUGH,1)", "G1 Z-3 F100"]);
+    let holes = std::fs::read_to_string(files::root().join("examples/plate.cls")).unwrap();
+    let text = proven(&read(&holes), &sinumerik);
+    let mut on = false;
+    for block in blocks(&text) {
+        on = if block.starts_with("CYCLE832") { !block.contains("_OFF") } else { on };
+        assert!(
+            !(on && (block.starts_with("MCALL") || block == "M6" || block == "M30")),
+            "{block} in\n{text}"
+        );
+    }
+    let unsaid = machine("extends = \"generic-3axis-sinumerik\"\n[options]\npath_tolerance = 0\n");
+    assert!(!proven(&read(UPRIGHT), &unsaid).contains("CYCLE832"));
+}
+
+#[test]
+fn a_machine_may_activate_the_preset_of_its_work_offset() {
+    let datum = machine("extends = \"generic-3axis-heidenhain\"\n[options]\ndatum = true\n");
+    let text = proven(&read(UPRIGHT), &datum);
+    assert!(text.contains(" CYCL DEF 247 DATUM SETTING ~\nQ339=+1 ;DATUM NUMBER\n"), "{text}");
+    assert!(!proven(&read(UPRIGHT), &load("generic-3axis-heidenhain").unwrap()).contains("247"));
+}
+
+/// The cutter of 40 mm reaches 20 mm further than its tip, and not further down.
+#[test]
+fn the_blank_holds_what_the_tools_sweep() {
+    let wide = read(&UPRIGHT.replacen("LOADTL/4,LENGTH,80", "CUTTER/40\nLOADTL/4,LENGTH,80", 1));
+    stands(
+        &proven(&wide, &load("generic-3axis-heidenhain").unwrap()),
+        &["BLK FORM 0.1 Z X-20 Y-20 Z-3", "BLK FORM 0.2 X+60 Y+40 Z+0"],
+    );
+}

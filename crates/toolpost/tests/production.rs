@@ -40,14 +40,17 @@ fn written(source: &Program, machine: &Machine) -> String {
 fn a_program_whose_name_is_a_number_has_that_number() {
     for (name, options, expected) in [
         ("O1234", "", "O1234 (O1234)"),
-        ("o77", "", "O77 (o77)"),
-        ("42", "", "O42 (42)"),
+        ("o77", "", "O0077 (o77)"),
+        ("42", "", "O0042 (42)"),
         // Of the builder's numbers, of none, and of too many digits it is none.
         ("O9001", "", "O0001 (O9001)"),
+        ("O8000", "", "O0001 (O8000)"),
         ("O0", "", "O0001 (O0)"),
         ("12345", "", "O0001 (12345)"),
         ("BRACKET", "", "O0001 (BRACKET)"),
         ("O1234", "program_number = \"O0007\"", "O0007 (O1234)"),
+        ("O1234", "program_number = 1235", "O1235 (O1234)"),
+        ("O1234", "program_number = \"01236\"", "O1236 (O1234)"),
     ] {
         let machine =
             machine(&format!("extends = \"generic-3axis-fanuc\"\n[options]\n{options}\n"));
@@ -130,9 +133,6 @@ fn a_fanuc_retracts_by_g53_where_its_file_says_so() {
     let unsaid = "extends = \"generic-3axis-fanuc\"\n[options]\nretract_by_g53 = true\n";
     let unsaid = machine::load_text("own.toml", unsaid).unwrap();
     assert_eq!(post::check(&unsaid).unwrap_err()[0].rule.name(), "safe-height");
-    // In a tilted plane G53 is an alarm: such a machine keeps G28.
-    let machine = machine("extends = \"fanuc-table-bc\"\n[options]\nretract_by_g53 = true\n");
-    assert!(!written(&sample("five-axes"), &machine).contains("G53 "));
 }
 
 #[test]
@@ -213,4 +213,89 @@ fn a_haas_clears_chips_above_r_as_far_as_setting_52_says() {
     assert!(
         report.proven && report.warnings.iter().any(|found| found.rule.name() == "peck-retract")
     );
+}
+
+#[test]
+fn a_haas_pads_the_number_of_a_program_to_five_digits() {
+    for (options, expected) in [("", "O00042 (42)"), ("program_number = 1234", "O01234 (42)")] {
+        let machine = machine(&format!("extends = \"generic-3axis-haas\"\n[options]\n{options}\n"));
+        let source = Program { name: "42".into(), ..sample("three-axes") };
+        assert_eq!(written(&source, &machine).lines().nth(1), Some(expected));
+    }
+}
+
+/// FANUC 3202#0 keeps 8000 to 8999 from being edited, and 9000 and above are the builder's.
+#[test]
+fn a_number_of_a_program_that_not_everybody_may_use_is_refused_before_writing() {
+    for number in ["\"O9012\"", "8000", "0", "12.5", "-3", "\"PART\"", "\"123456789\""] {
+        for name in ["generic-3axis-fanuc", "generic-3axis-haas"] {
+            let text = format!("extends = \"{name}\"\n[options]\nprogram_number = {number}\n");
+            let own = machine::load_text("own.toml", &text).unwrap();
+            let refused = post::check(&own).unwrap_err();
+            let rules: Vec<&str> = refused.iter().map(|found| found.rule.name()).collect();
+            assert_eq!(rules, ["program-number"], "{number} on {name}");
+        }
+    }
+}
+
+#[test]
+fn the_tools_of_a_program_stand_at_its_head() {
+    for (name, first) in [
+        ("generic-3axis-fanuc", "(T1 MILL_6 D6)"),
+        ("generic-3axis-haas", "(T1 MILL_6 D6)"),
+        ("generic-3axis-linuxcnc", "(T1 MILL_6 D6)"),
+    ] {
+        let text = written(&sample("three-axes"), &machine(&format!("extends = \"{name}\"\n")));
+        let head = text.find("G21").unwrap();
+        let list = text.find(&format!("{first}\n(T2 DRILL_3.3 D3.3)\n"));
+        assert!(list.is_some_and(|at| at < head || name.contains("haas")), "{name}: {text}");
+    }
+}
+
+/// Behind the last tool the first is made ready, for the next part.
+#[test]
+fn a_machine_may_make_the_next_tool_ready_behind_each_change() {
+    for (name, one, two, block) in [
+        ("generic-3axis-fanuc", "T1 M6\nT2\n", "T2 M6\nT1\n", "T2"),
+        ("generic-3axis-haas", "T1 M6\nT2\n", "T2 M6\nT1\n", "T2"),
+        ("haas-umc-750", "T1 M6\nT2\n", "T2 M6\nT1\n", "T2"),
+        ("generic-3axis-linuxcnc", "T1 M6\nT2\n", "T2 M6\nT1\n", "T2"),
+        ("generic-3axis-heidenhain", "TOOL DEF 2\n", "TOOL DEF 1\n", "TOOL DEF 2"),
+    ] {
+        let ready = format!("extends = \"{name}\"\n[options]\npreselect_tools = true\n");
+        let text = written(&sample("three-axes"), &machine(&ready));
+        assert!(text.contains(one) && text.contains(two), "{name}: {text}");
+        let plain = written(&sample("three-axes"), &machine(&format!("extends = \"{name}\"\n")));
+        assert!(
+            !plain.lines().any(|line| line.ends_with(block) && line.len() < 16),
+            "{name}: {plain}"
+        );
+    }
+}
+
+#[test]
+fn a_tool_that_the_source_makes_ready_and_calls_at_once_is_not_made_ready() {
+    let with = |op: Op| {
+        let mut source = sample("three-axes");
+        let at = source.records.iter().position(|record| matches!(record.op, Op::Tool(_))).unwrap();
+        let line = source.records[at].line;
+        source.records.insert(at, program::Record { line, op });
+        written(&source, &machine("extends = \"generic-3axis-fanuc\"\n"))
+    };
+    assert!(!with(Op::Preselect(1)).contains("\nT1\n"));
+    assert!(with(Op::Preselect(2)).contains("\nT2\n"));
+}
+
+/// `G53` is an alarm in a tilted plane: there Z goes home by `G28`, everywhere else by `G53`.
+#[test]
+fn z_goes_home_by_g53_wherever_no_plane_is_tilted() {
+    let by_g53 =
+        "extends = \"fanuc-table-bc\"\nsafe_height = 0\n[options]\nretract_by_g53 = true\n";
+    let text = written(&sample("five-axes"), &machine(by_g53));
+    assert!(text.contains("G53 G0 Z0.\nM5\n"), "{text}");
+    assert!(text.contains("G91 G28 Z0\nG90\nG49\nG69\n"), "{text}");
+    // Without a height to go to it is refused.
+    let nowhere = "extends = \"fanuc-table-bc\"\n[options]\nretract_by_g53 = true\n";
+    let nowhere = machine::load_text("own.toml", nowhere).unwrap();
+    assert_eq!(post::check(&nowhere).unwrap_err()[0].rule.name(), "safe-height");
 }

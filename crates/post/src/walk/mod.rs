@@ -12,8 +12,8 @@ use crate::place::{Place, Route, Stop};
 use crate::position::ToolPosition;
 use crate::sent::Sent;
 use crate::template::{
-    ORIENTATION, POSITION, Scope, Templates, Words, bit, coolant_value, map, program_value,
-    spindle_value,
+    ORIENTATION, POSITION, Scope, Templates, Words, bit, coolant_value, file_name, map,
+    program_number, program_value, spindle_value,
 };
 use crate::text::printed;
 use crate::vectors::Followed;
@@ -130,7 +130,9 @@ impl<'a> Walk<'a> {
         let reach = if reach { blank(program) } else { None };
         let is_stock = reach.is_some() && program.stock.is_some();
         let blank = [("blank", reach.is_some()), ("stock", is_stock)];
-        scope.program = program_value(machine, &program.name, tools, blank);
+        let name = file_name(&program.name);
+        let number = program_number(machine, &name).map_err(|found| vec![*found])?;
+        scope.program = program_value(machine, name, tools, number, blank);
         for (word, value) in EXTENTS.into_iter().zip(reach.into_iter().flatten()) {
             writer.set(word, value);
         }
@@ -156,8 +158,8 @@ impl<'a> Walk<'a> {
             radii: OnceCell::new(),
             index: 0,
             line: 0,
-            wanted: Wanted::nothing(),
-            sent: Sent::at_start(),
+            wanted: Wanted::nothing(machine.path_tolerance()),
+            sent: Sent::at_start(machine.path_tolerance()),
             position: ToolPosition::default(),
             idle_until: 0,
             contour: None,
@@ -305,6 +307,7 @@ impl<'a> Walk<'a> {
                 if *coolant == Coolant::Off { self.sync_coolant() } else { Ok(()) }
             }
             Op::Tool(tool) => self.change_tool(tool),
+            Op::Preselect(number) if self.calls_next(*number) => Ok(()),
             Op::Preselect(number) => {
                 self.limits.tool(&Tool { number: *number, ..Tool::default() }, self.line)?;
                 self.writer.set(WordName::T, f64::from(*number));
@@ -603,7 +606,7 @@ fn blank(program: &Program) -> Option<[f64; 6]> {
         }
         moves |= record.op.pose().is_some();
     }
-    let [low, high] = program.stock.or_else(|| CutBox::of(program).corners())?;
+    let [low, high] = program.stock.or_else(|| CutBox::swept(program).corners())?;
     let is_body = (high - low).min_element() > THIN;
     is_body.then_some([low.x, low.y, low.z, high.x, high.y, high.z])
 }

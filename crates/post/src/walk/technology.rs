@@ -55,10 +55,15 @@ impl Turn {
 const STANDS: f64 = 1e-6;
 
 impl Walk<'_> {
-    /// How the source wants corners to be taken. The machine's file says how its control takes them, and what is less
-    /// than the source asks for is told.
+    /// How the source wants corners to be taken. The machine's file says how far its control leaves them at the most; a control that
+    /// can be given less is given what the source asks for, and where it cannot, a warning says so.
     pub(crate) fn path_mode(&mut self, mode: PathMode) {
-        let allowed = self.machine.path_tolerance();
+        let most = self.machine.path_tolerance();
+        let asked = if let PathMode::Blend(asked) = mode { asked.min(most) } else { most };
+        let is_said = self.templates.places(BlockName::LookAheadOn, WordName::Tolerance)
+            && self.writer.rounded(WordName::Tolerance, asked) > 0.0;
+        let allowed = if is_said { asked } else { most };
+        self.wanted.set_path_tolerance(allowed);
         let less = match mode {
             PathMode::AsSetUp => return,
             PathMode::ExactStop => "the source stops at each corner".to_owned(),
@@ -99,7 +104,12 @@ impl Walk<'_> {
         if let Some(speed) = self.coming_speed() {
             self.writer.set(WordName::S, speed);
         }
-        self.scope.tool = tool_value(self.machine, tool, self.wanted.tool().is_none());
+        self.scope.tool = tool_value(
+            self.machine,
+            tool,
+            self.wanted.tool().is_none(),
+            self.next_tool(tool.number),
+        );
         let upright = self.upright();
         self.place.turned = self.say_unturned(BlockName::ToolChange);
         self.required(BlockName::ToolChange)?;
@@ -118,6 +128,25 @@ impl Walk<'_> {
         self.position.change_tool();
         self.sent.change_tool();
         Ok(())
+    }
+
+    /// The tool that is called behind tool `number`, which is called here: behind the last the first, for the next part.
+    fn next_tool(&self, number: u32) -> Option<u32> {
+        let called = |record: &program::Record| {
+            let Op::Tool(tool) = &record.op else { return None };
+            Some(tool.number).filter(|other| *other != number)
+        };
+        let records = &self.source.records;
+        let coming = records[self.index..].iter().find_map(called);
+        coming.or_else(|| records[..self.index].iter().find_map(called))
+    }
+
+    /// Whether the source calls tool `number` before it moves again: made ready, it would be called at once.
+    pub(super) fn calls_next(&self, number: u32) -> bool {
+        let coming = self.source.records[self.index..].iter().map(|record| &record.op);
+        let mut still = coming.take_while(|op| op.pose().is_none());
+        still.find_map(|op| if let Op::Tool(tool) = op { Some(tool.number) } else { None })
+            == Some(number)
     }
 
     /// The control has no word for the register that the source names for the `what` of the tool.
@@ -273,11 +302,27 @@ impl Walk<'_> {
     /// Look-ahead goes on or off, where the machine's file has the blocks for it.
     #[inline]
     pub(crate) fn look_ahead(&mut self, on: bool) -> Done {
-        if !self.sent.look_ahead(on) {
+        let tolerance = self.wanted.path_tolerance();
+        let differs = on && self.sent.path_tolerance() != tolerance;
+        if !self.sent.look_ahead(on) && !differs {
             return Ok(());
         }
-        let name = if on { BlockName::LookAheadOn } else { BlockName::LookAheadOff };
-        if self.templates.has(name) { self.block(name) } else { Ok(()) }
+        if !on {
+            let ends = self.templates.has(BlockName::LookAheadOff);
+            return if ends { self.block(BlockName::LookAheadOff) } else { Ok(()) };
+        }
+        self.sent.set_path_tolerance(tolerance);
+        if !self.templates.has(BlockName::LookAheadOn) {
+            return Ok(());
+        }
+        if self.templates.places(BlockName::LookAheadOn, WordName::Tolerance) {
+            // What `program_start` has said, or this block before, still holds where nothing takes it back.
+            if !differs && !self.templates.has(BlockName::LookAheadOff) {
+                return Ok(());
+            }
+            self.writer.set(WordName::Tolerance, tolerance);
+        }
+        self.block(BlockName::LookAheadOn)
     }
 
     /// Look-ahead goes on before a cut, unless the control compensates already: then it follows with the next contour.

@@ -192,6 +192,10 @@ struct Reader {
     inside_goto: bool,
     /// Whether there is an arc of a `CIRCLE`, whose direction is a habit.
     circles: bool,
+    /// How far the path may lie inside and outside of the part, in the unit of the file: `INTOL`, `OUTTOL`.
+    tolerances: [f64; 2],
+    /// Whether the program says so already.
+    says_tolerance: bool,
     feed: Option<Feed>,
     feed_unit: FeedUnit,
     spindle: Spindle,
@@ -261,6 +265,8 @@ impl Reader {
             last_arc: None,
             inside_goto: false,
             circles: false,
+            tolerances: [0.0; 2],
+            says_tolerance: true,
             feed: None,
             feed_unit: FeedUnit::PerMinute,
             spindle: Spindle::Off,

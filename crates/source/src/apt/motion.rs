@@ -219,6 +219,7 @@ impl Reader {
                 self.unit_used.set(record.line);
             }
         }
+        self.say_tolerance(record.line);
         self.settle_tool(record, cut)?;
         if let Some((line, pose)) = self.from.take()
             && cut

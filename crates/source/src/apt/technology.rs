@@ -5,7 +5,9 @@ use super::report::{Fault, Outcome};
 use super::text::decode;
 use super::{Reader, Ready};
 use geom::INCH;
-use program::{Auxiliary, Compensation, Coolant, Feed, Op, Record as Step, Spindle, Tool};
+use program::{
+    Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record as Step, Spindle, Tool,
+};
 use std::f64::consts::PI;
 
 /// The largest number of a tool or an offset.
@@ -483,6 +485,37 @@ impl Reader {
         let name = decode(record.body.0);
         self.describe_tool(record, |tool| tool.name = name);
         Ok(())
+    }
+
+    /// `INTOL/t`, `OUTTOL/t`, `TOLER/t`: how far the path may lie inside and outside of the part; `TOLER` is both together. With
+    /// one for each surface the least holds.
+    pub(super) fn tolerance(&mut self, record: &Record) -> Outcome {
+        if let Some(i) = record.fields.iter().position(|field| matches!(field, Field::Word(..))) {
+            return Err(Fault::new("malformed", "a tolerance is a number").fields(i, 1));
+        }
+        let given = record.fields.iter().filter_map(|field| match field {
+            Field::Number(value) => Some(*value),
+            Field::Word(..) | Field::Blank => None,
+        });
+        let Some(least) = given.reduce(f64::min) else { return Ok(()) };
+        if least < 0.0 {
+            return Err(Fault::new("malformed", "a tolerance has no sign"));
+        }
+        match () {
+            () if record.major.eq_ignore_ascii_case(b"INTOL") => self.tolerances[0] = least,
+            () if record.major.eq_ignore_ascii_case(b"OUTTOL") => self.tolerances[1] = least,
+            () => self.tolerances = [0.0, least],
+        }
+        (self.says_tolerance, self.ready) = (false, Ready::No);
+        Ok(())
+    }
+
+    /// Before the next motion: how far the path may be left. Nothing where both are 0: that is no tolerance to go by.
+    pub(super) fn say_tolerance(&mut self, line: u32) {
+        let tolerance = self.mm(self.tolerances.iter().sum());
+        if !std::mem::replace(&mut self.says_tolerance, true) && tolerance > 0.0 {
+            self.push(line, Op::PathMode(PathMode::Blend(tolerance)));
+        }
     }
 
     /// `DELAY/t`, `DELAY/t,SEC`, `DELAY/n,REV`, and the other way round: dwell in seconds or turns of

@@ -294,7 +294,7 @@ fn a_rapid_before_the_first_load_is_made_with_that_tool_and_a_cut_is_refused() {
     let cut = text.replace("RAPID\nGOTO/0", "FEDRAT/9,MMPM\nGOTO/0");
     let second = text.replace("CUTTER/10,2", "FEDRAT/9,MMPM\nGOTO/0,0,99");
     let other = text.replace("RAPID\nGOTO/0", "CUTTER/8\nRAPID\nGOTO/0");
-    let none = format!("{}{}", change.replace("LOADTL/5\n", "INTOL/1,$\nLOADTL,5\n"), "FINI");
+    let none = format!("{}{}", change.replace("LOADTL/5\n", "LINTOL/1,$\nLOADTL,5\n"), "FINI");
     for (text, line, named) in
         [(cut, 4, "line 8)"), (second, 6, "line 9)"), (other, 9, "line 5 "), (none, 10, "line 9 ")]
     {

@@ -105,6 +105,6 @@ fn words_that_are_not_known_are_one_warning_each() {
     let many = |n: u8| -> String { (0..n).map(|i| format!("W{i}\n")).collect() };
     assert_eq!(warnings(&format!("{}{}GOTO/1,2,3", many(20), many(20))).len(), 20);
     assert_eq!(error(&format!("{}GOTO/1,2,3", many(21))), "not-cldata");
-    let silent = "PAINT/COLOR,1\nDISPLY/ON\nINTOL/0.01\nCSI_ANY/X\nMACHIN/ANY, 3\nREWIND/0";
+    let silent = "PAINT/COLOR,1\nDISPLY/ON\nLINTOL/0.01\nCSI_ANY/X\nMACHIN/ANY, 3\nREWIND/0";
     assert_eq!(ops(&format!("{silent}\nGOTO/1,2,3")), [Op::Line(at(1., 2., 3.))]);
 }
