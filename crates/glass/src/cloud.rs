@@ -102,7 +102,7 @@ impl Grid {
 /// Two points of a cloud, and their distance.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Pair {
-    /// Numbers of the points, from 0.
+    /// Numbers of the points, from 0; of a job in the order of its pulses.
     pub points: [u32; 2],
     /// Their distance, mm.
     pub distance: f64,

@@ -136,16 +136,6 @@ pub fn make(
     findings.extend(health.and_then(unhealthy));
     let (mesh, points, scale) = place(mesh, points, &settings.placing)?;
     let (cloud, welded) = discretise(&mesh, &points, micrometres, settings.seed)?;
-    let distances = cloud::distances(&cloud, i64::from(micrometres));
-    if distances.too_close > 0 {
-        let message =
-            format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
-        return Err(error(
-            "spacing",
-            message,
-            "this is a mistake in Toolpost: report it with the body",
-        ));
-    }
     if cloud.len() as u64 > machine.program.points {
         let message = format!(
             "{} points are more than the {} that {} holds",
@@ -161,6 +151,16 @@ pub fn make(
     let cut = optics::cut(&planned.cloud, settings.placing.block, beam.slope_in_glass());
     findings.extend(cut_off(cut, settings.placing.margin));
     let (cloud, axes) = planned.ordered();
+    let distances = cloud::distances(&cloud, i64::from(micrometres));
+    if distances.too_close > 0 {
+        let message =
+            format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
+        return Err(error(
+            "spacing",
+            message,
+            "this is a mistake in Toolpost: report it with the body",
+        ));
+    }
     let order: Vec<u32> = (0..axes.len() as u32).collect();
     let planned_ticks = 1 + order::ticks(&axes, &order, &machine.clock());
     let text = post::write(&axes, machine, settings.placing.block);

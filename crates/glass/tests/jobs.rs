@@ -80,6 +80,10 @@ fn a_body_becomes_a_proven_program_in_every_form() {
             let most = if ray == Ray::Marginal { 0.000_77 } else { 0.007 };
             assert!(along <= most && used > 0.96, "{format} {along} {used}");
             assert_eq!(distances(&made.cloud, 130).too_close, 0);
+            let pair = made.report.distances.nearest.unwrap();
+            let [from, to] = pair.points.map(|i| made.cloud[i as usize].map(f64::from));
+            let apart = from.iter().zip(to).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            assert!((apart / 1e3 - pair.distance).abs() < 1e-9, "{apart} µm, {pair:?}");
         }
     }
 }

@@ -91,13 +91,8 @@ fn every_figure_of_an_arm_is_that_of_its_source() {
         for (i, joint) in arm.joints().iter().enumerate() {
             let near =
                 |ours: f64, theirs: &Value| (ours.to_degrees() - number(theirs)).abs() < 1e-4;
-            // The source halves the elbow of Universal Robots for planning.
-            let halved = i == 2 && source["maker"] == "ur";
             let limits = &source["limits_deg"][i];
-            assert!(
-                halved || near(joint.min, &limits[0]) && near(joint.max, &limits[1]),
-                "{name} {i}"
-            );
+            assert!(near(joint.min, &limits[0]) && near(joint.max, &limits[1]), "{name} {i}");
             assert!(near(joint.speed, &source["velocity_deg_s"][i]), "{name} {i}");
             let published = source.get("acceleration_deg_s2").map(|table| &table["values"][i]);
             assert_eq!(joint.acceleration.is_some(), published.is_some(), "{name} {i}");

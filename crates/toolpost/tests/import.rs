@@ -236,7 +236,7 @@ begin FOOTER
 #[test]
 fn centres_may_be_absolute_and_a_radius_may_stand_for_them() {
     let head = "POST_NAME = \"Mach3 arcs (mm)\"\n";
-    let places = "begin HEADER\n\"G91 G28 Z0\"\n\"G90\"\n\"G90.1\"\nbegin TOOLCHANGE\n\"M6 T[T]\"\nbegin FOOTER\n\"M30\"\n";
+    let places = "begin HEADER\n\"G91 G28 Z0\"\n\"G90\"\n\"G90.1\"\nbegin TOOLCHANGE\n\"M6 T[T]\"\nbegin FOOTER\n\"G91.1\"\n\"M30\"\n";
     let post = [head, WORDS, places, MOVES].concat();
     let (_, machine) = imported("a.pp", &(post.clone() + &arcs("[X][Y][IA][JA]")), None);
     blocks(&machine, &[("arc_cw", "G2{{X}}{{Y}}{{CX}}{{CY}}{{F}}")]);

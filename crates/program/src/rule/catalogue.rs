@@ -80,9 +80,9 @@ rules! {
         "give the calibration of this very arm, and compare the difference that the message names"
         "A calibration of a UR10e given with a UR5e";
     ArmCoupling "arm-coupling" []
-        "Two joints of the wrist of an arm may be coupled."
-        "look in the manual of the arm for a coupling, and write it into the new file"
-        "An arm whose joint 6 turns when joint 5 does";
+        "What the controller shows for joint 3 may count from joint 2, and the file that is imported does not say it."
+        "look in the manual of the arm what joint 3 counts from, and write `coupling` into the new file"
+        "An ABB arm with a parallel rod";
     ArmExtends "arm-extends" []
         "Which arm a calibration is for is missing, or given where it is not needed."
         "give the arm by `--extends`, for a calibration alone"
@@ -92,9 +92,9 @@ rules! {
         "import an arm of six revolute joints whose wrist meets in a point, or that is offset as a UR is"
         "Seven revolute joints in a row";
     ArmKinematics "arm-kinematics" []
-        "The program moves joints, and the machine is no arm whose kinematics are known."
-        "name a machine whose file has the kinematics"
-        "An arm without its kinematics given by `--from`";
+        "Of this arm the kinematics are known, but no program can be written or read for it yet."
+        "name a machine that has a control"
+        "`post` with `kuka-kr6-r900`";
     ArmReach "arm-reach" []
         "The reach of an arm is missing, is not that of its kinematics, or is given where it is not needed."
         "give the reach of the data sheet by `--reach`"
@@ -240,8 +240,8 @@ rules! {
         "leave the sign out; letters, digits and blanks harm no control"
         "`comment_signs = \")\"`";
     CompensatedPath "compensated-path" []
-        "Whether the points of the toolpath are the centre of the tool or the contour is not known, or does not fit the machine."
-        "leave `--cutcom` out, or give what the points of the toolpath are (`centre` or `contour`)"
+        "The points of the toolpath are the centre of the tool where the machine wants the contour, or the other way round, or it is not known which."
+        "give what the points of the toolpath are by `--cutcom` (`centre` or `contour`), and what the tool table keeps by `tool_radius` of the machine file"
         "`CUTCOM/LEFT` in a file whose points may be either";
     Compensation "compensation" ["nc-compensation"]
         "Cutter compensation is switched where the control does not take it."
@@ -292,9 +292,9 @@ rules! {
         "switch the compensation off (G40) before this block"
         "`M6` under G41";
     CompensationOpen "compensation-open" []
-        "Cutter compensation is on at the end of the program."
-        "switch the compensation off (G40) before the end of the program"
-        "`M30` under G41";
+        "Where compensation leads the tool's centre is not compared: the radius that the control takes, or how it joins the contour, is not known."
+        "give the diameters of the tools in a tool table (`--tools`), or try the contour on the machine"
+        "A contour with `G41` and no tool table";
     CompensationOrientation "compensation-orientation" []
         "A rotary axis moves while compensation is on."
         "switch the compensation off before a rotary axis moves"
@@ -388,8 +388,8 @@ rules! {
         "give one depth, below the reference plane"
         "sinumerik: `CYCLE81(10,0,2,5)`";
     CycleExpanded "cycle-expanded" []
-        "A cycle is written as moves, because the control has no block for it."
-        "nothing to do; a control with the block of this cycle writes it itself"
+        "A cycle is written as moves: the control has no block for it, or what its words count is not stated."
+        "state what P of a dwell counts (`dwell_p_milliseconds`), if the control has the cycle; otherwise there is nothing to do"
         "A boring cycle for GRBL";
     CycleOn "cycle-on" []
         "A hole cycle is still on where the tool changes."
@@ -1373,7 +1373,7 @@ rules! {
         "1,000 passes around each conductor";
     Path "path" []
         "The program leaves the path of the source."
-        "report this with the toolpath: the program differs from it"
+        "correct the block of an edited program; report a program that `post` has just made, with its toolpath"
         "X 10.05 where the source goes by X 10";
     PathMode "path-mode" ["nc-path-mode"]
         "The path mode is not written as the control takes it, or cuts corners."
@@ -1480,8 +1480,8 @@ rules! {
         "write the `rapid` of the machine, in mm/min, below [axes]; a rapid of the toolpath is a rapid (G0) in the program"
         "A LinuxCNC file without `rapid` in [axes]";
     RapidPath "rapid-path" []
-        "A rapid does not stay on the way of the source."
-        "nothing to do; a control that brings all axes to their ends together (`rapid_path = \"linear\"`) needs fewer blocks"
+        "The tool would leave the straight line of a rapid, or the rapid is written in pieces or at a feed so that it does not."
+        "nothing to do where it is a warning; a control that brings all axes to their ends together (`rapid_path = \"linear\"`) needs fewer blocks"
         "A turn of A by 60° in a rapid next to the part";
     RapidStop "rapid-stop" []
         "A rapid ends at a point that the source does not have."
@@ -1512,7 +1512,7 @@ rules! {
         "divide the region"
         "A region of a million points in a knot";
     Register "register" []
-        "The tool has a register of the control that the program does not set."
+        "The source names a register for the length or the radius of a tool, and the control takes both with the tool."
         "set the value at the control with the tool, if the program needs this register"
         "`LOAD/TOOL,1,ADJUST,5`";
     Repeat "repeat" []
@@ -1844,8 +1844,8 @@ rules! {
         "give the tool a length in the source or a tool table (`--tools`)"
         "A tilted head, and a tool without length";
     ToolNumber "tool-number" []
-        "The number of a tool is missing or not known."
-        "give the tool its number in a tool table (`--tools`)"
+        "A tool that is needed is not called, or has no number."
+        "call the tool with its number in the toolpath, or give it one in a tool table (`--tools`)"
         "`LOAD/TOOL,MILL10` without a tool table";
     ToolOffset "tool-offset" []
         "An offset of a tool is not used."
@@ -1884,8 +1884,8 @@ rules! {
         "end one transformation before the next begins, and give it the words that the control takes"
         "`CYCL DEF 247` in a turned frame (HEIDENHAIN)";
     Travel "travel" []
-        "The board does not fit into the travel of the machine."
-        "turn the board, or choose another machine"
+        "A position of the program, or a whole board, is beyond the travel of the machine."
+        "move or turn the work, or choose another machine"
         "A board of 400 mm on a machine with 300 mm";
     Truncated "truncated" []
         "The file is cut off."

@@ -158,7 +158,7 @@ fn a_limit_broken_by_a_micrometre() {
     let said = folder.run(&["post", "part.cls", "-m", machine, "-o", "out.mpf"]);
     assert_eq!(said.code, 0, "{said:?}");
     assert!(
-        said.out.contains("travel      only stroke lengths checked; set work_zero"),
+        said.out.contains("travel         only stroke lengths checked; set work_zero"),
         "{said:?}"
     );
     refused(with_line(12, "GOTO/850.001,0,-2"), machine, 1, 12, "axis-limit");
@@ -181,7 +181,7 @@ fn a_limit_in_machine_coordinates_broken_by_a_micrometre() {
     folder.write("part.cls", with_line(12, "GOTO/100,0,-2"));
     let said = folder.run(&post);
     assert_eq!(said.code, 0, "{said:?}");
-    assert!(said.out.contains("travel      positions checked"), "{said:?}");
+    assert!(said.out.contains("travel         positions checked"), "{said:?}");
 }
 
 /// Checks and posts with a machine that extends [`MACHINE`] by `text`; both must refuse it at `place`.

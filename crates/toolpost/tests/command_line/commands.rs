@@ -9,14 +9,14 @@ fn a_summary_tells_tools_lengths_extents_and_proof() {
     assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
     // Cut: 7 mm down, 40 mm, 30 mm; rapid: 45 mm down, 52 mm up.
     for line in [
-        "toolpath    part.cls (ISO 4343)",
-        "tools       T1  cuts 77.0 mm",
-        "moves       3 lines, 0 arcs, 0 holes, 3 rapids",
-        "rapid       97.0 mm",
-        "X           0 ... 40 mm (40)",
-        "Z           -2 ... 50 mm (52)",
-        "travel      not checked: the machine file gives no travel",
-        "saved       out.mpf",
+        "toolpath       part.cls (ISO 4343)",
+        "tools          T1  cuts 77.0 mm",
+        "moves          3 lines, 0 arcs, 0 holes, 3 rapids",
+        "rapid          97.0 mm",
+        "X              0 ... 40 mm (40)",
+        "Z              -2 ... 50 mm (52)",
+        "travel         not checked: the machine file gives no travel",
+        "saved          out.mpf",
     ] {
         assert!(said.out.contains(line), "{line} is missing in\n{}", said.out);
     }

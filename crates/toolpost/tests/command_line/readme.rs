@@ -37,6 +37,16 @@ fn commands(text: &str) -> Vec<Vec<&str>> {
     blocks(text).0.iter().flat_map(|block| block.lines().filter_map(words)).collect()
 }
 
+/// What stands below a command in its block: `...` for lines that are left out.
+fn output<'a>(text: &'a str, command: &'a [&str]) -> impl Iterator<Item = &'a str> {
+    let here =
+        move |block: &&str| block.lines().any(|line| words(line).as_deref() == Some(command));
+    let block = blocks(text).0.into_iter().find(here).unwrap_or("");
+    let below =
+        block.lines().skip_while(move |line| words(line).as_deref() != Some(command)).skip(1);
+    below.take_while(|line| words(line).is_none())
+}
+
 /// A folder with the examples in it.
 fn with_examples() -> Folder {
     let folder = Folder::empty();
@@ -59,14 +69,18 @@ fn every_command_of_the_readme_does_what_it_says() {
     for words in &commands {
         let proves = words[0] == "prove";
         if proves {
-            // The mistyped Y of the page: in block N360.
+            // The mistyped Y of the page: in block N390.
             let program = folder.read(words[1]);
-            assert!(text.contains("    | N360 G1 Y-42."));
-            assert!(program.contains("N360 G1 Y-24."), "{program}");
-            folder.write(words[1], program.replace("N360 G1 Y-24.", "N360 G1 Y-42."));
+            assert!(text.contains("    | N390 G1 Y-42."));
+            assert!(program.contains("N390 G1 Y-24."), "{program}");
+            folder.write(words[1], program.replace("N390 G1 Y-24.", "N390 G1 Y-42."));
         }
         let said = folder.run(words);
         assert_eq!(said.code, i32::from(proves), "{words:?}: {said:?}");
+        let printed: BTreeSet<&str> = said.out.lines().chain(said.err.lines()).collect();
+        for line in output(&text, words).filter(|line| *line != "...") {
+            assert!(printed.contains(line), "{line} is not what {words:?} prints: {said:?}");
+        }
         if let Some(at) = words.iter().position(|word| *word == "-o") {
             assert!(folder.path().join(words[at + 1]).exists(), "{words:?}");
         }

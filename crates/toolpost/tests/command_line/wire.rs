@@ -63,7 +63,7 @@ fn the_sector_has_the_points_errors_and_time_of_the_specification() {
         let last = report["instructions"].as_array().unwrap().last().unwrap();
         assert_eq!((&last["line"], &last["first_point"]), (&8.into(), &(points + 3).into()));
         assert_eq!(report["proof"]["proven"], true);
-        assert!(said.out.contains("time         21 min 38 s"), "{}", said.out);
+        assert!(said.out.contains("time           21 min 38 s"), "{}", said.out);
     }
     assert!(folder.read("part.pts").starts_with("0.000 0.000\n40.000 0.000\n39.988 1.000\n"));
 }
