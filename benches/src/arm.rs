@@ -4,7 +4,7 @@
 use crate::fastest;
 use ::arm::{Arm, Coupling, Frame, Joint, Joints, Mat3, Spherical, Structure, Vec3};
 use armpath::{Cell, Point, Settings, choose};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose};
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
 use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
@@ -28,7 +28,7 @@ const LENGTHS: Spherical = Spherical {
 /// # Errors
 /// None comes; the figures are those of other stages.
 pub fn measure(poses: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
-    let misfit = |why: ::arm::Misfit| vec![Diagnostic::error("arm", why.to_string())];
+    let misfit = |why: ::arm::Misfit| vec![Diagnostic::error(Rule::Internal, why.to_string())];
     let joint = Joint { min: -3.0, max: 3.0, speed: 6.0, acceleration: None };
     let structure = Structure::Spherical(LENGTHS);
     let arm = Arm::new(structure, [joint; 6], Some(Coupling::None), 0.0).map_err(misfit)?;
@@ -83,7 +83,8 @@ fn path(count: usize, rounds: usize, arm: &Arm) -> Result<(), Vec<Diagnostic>> {
     let mut sections = 0;
     let ours = fastest(rounds.min(2), &mut || {
         let choice = choose(arm, &cell, &points, &settings);
-        let blocked = |why: armpath::Blocked| vec![Diagnostic::error("arm", why.to_string())];
+        let blocked =
+            |why: armpath::Blocked| vec![Diagnostic::error(Rule::Internal, why.to_string())];
         sections = choice.map_err(blocked)?.sections.len();
         Ok(())
     })?;

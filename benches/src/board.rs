@@ -3,7 +3,7 @@
 
 use crate::clock::{self, Taken};
 use crate::memory;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde_json::Value;
 use std::path::Path;
 
@@ -87,7 +87,10 @@ fn fastest(board: &Path, more: &[&str], rounds: usize) -> Result<Made, Vec<Diagn
         let _ = std::fs::remove_dir_all(&folder);
         let report: Value = serde_json::from_slice(&report).unwrap_or_default();
         let programs = report["programs"].as_array().filter(|_| code == 0).ok_or_else(|| {
-            vec![Diagnostic::error("bench", format!("{source} is refused: exit code {code}"))]
+            vec![Diagnostic::error(
+                Rule::Internal,
+                format!("{source} is refused: exit code {code}"),
+            )]
         })?;
         let sum = |of: &dyn Fn(&Value) -> Option<f64>| programs.iter().filter_map(of).sum::<f64>();
         let measure = |program: &Value, what: &str| program["source"]["measures"][what].as_f64();

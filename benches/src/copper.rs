@@ -8,7 +8,7 @@ use clipper2_rust::offset::{EndType, JoinType};
 use clipper2_rust::{inflate_paths_d, union_subjects_d};
 use geom::region::{Cap, Region, RegionError};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// How far the middle of a chord of the other library's polygons is from its arc, mm: as far as in `region`.
 const CHORD_ERROR: f64 = 0.0009;
@@ -86,7 +86,7 @@ fn row(what: &str, ours: &Measured, theirs: &Measured) {
 }
 
 fn refused(error: RegionError) -> Vec<Diagnostic> {
-    vec![Diagnostic::error("board", error.to_string())]
+    vec![Diagnostic::error(Rule::Board, error.to_string())]
 }
 
 /// Eight directions.

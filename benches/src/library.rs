@@ -4,7 +4,7 @@ use crate::clock::{self, Taken};
 use crate::floor;
 use machine::Machine;
 use machine::library::{MACHINES, names};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::path::{Path, PathBuf};
 
 /// Prints what all `files` take on all machines, compared with the floor for as many bytes.
@@ -20,7 +20,7 @@ pub fn measure(files: &[PathBuf], rounds: usize) -> Result<(), Vec<Diagnostic>> 
         .iter()
         .map(|path| Ok((path.as_path(), std::fs::read(path)?)))
         .collect::<std::io::Result<_>>()
-        .map_err(|error| vec![Diagnostic::error("unreadable", error.to_string())])?;
+        .map_err(|error| vec![Diagnostic::error(Rule::Unreadable, error.to_string())])?;
     let mut machines: Vec<Machine> = names(MACHINES)
         .map(machine::load)
         .collect::<Result<_, _>>()

@@ -3,7 +3,7 @@
 
 use crate::clock::{Taken, time, time_children};
 use crate::{path, programs, read_write_prove};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::env;
 use std::ffi::OsString;
 use std::fs;
@@ -118,7 +118,7 @@ fn verdict(name: &str, here: Taken, there: Taken) -> Result<(), Vec<Diagnostic>>
          {asked}, so no figure of this run can be trusted",
         percent(part)
     );
-    Err(vec![Diagnostic::error("clock", message)])
+    Err(vec![Diagnostic::error(Rule::Internal, message)])
 }
 
 /// What the whole command `toolpost` with these words takes as a process of its own, start-up and files included: the
@@ -141,7 +141,10 @@ fn alone(words: &[OsString], rounds: usize) -> Result<Taken, Vec<Diagnostic>> {
         let (status, taken) = time_children(|| command.status());
         let status = status.map_err(|error| failed(&error))?;
         if !status.success() {
-            return Err(vec![Diagnostic::error("bench", format!("{words:?} alone: {status}"))]);
+            return Err(vec![Diagnostic::error(
+                Rule::Internal,
+                format!("{words:?} alone: {status}"),
+            )]);
         }
         best = best.faster(taken);
     }
@@ -178,13 +181,13 @@ fn stage(words: &[OsString]) -> Result<(), Vec<Diagnostic>> {
             let machine = machine::load(name).map_err(|finding| vec![*finding])?;
             read_write_prove(&read(file)?, &machine)
         }
-        _ => Err(vec![Diagnostic::error("bench", format!("no stage: {words:?}"))]),
+        _ => Err(vec![Diagnostic::error(Rule::Internal, format!("no stage: {words:?}"))]),
     }
 }
 
 /// What the system refuses.
 pub fn failed(error: &std::io::Error) -> Vec<Diagnostic> {
-    vec![Diagnostic::error("bench", error.to_string())]
+    vec![Diagnostic::error(Rule::Internal, error.to_string())]
 }
 
 #[cfg(test)]
@@ -209,7 +212,7 @@ mod tests {
     fn a_system_that_accounts_nothing_is_refused() {
         for here in [0, 1] {
             let found = verdict("a stage", taken(here), taken(0)).unwrap_err();
-            assert_eq!(found[0].rule, "clock");
+            assert_eq!(found[0].rule, Rule::Internal);
         }
     }
 }

@@ -4,7 +4,7 @@
 use control::{Action, Dialect, Orientation, Settings, Setup, Wire, read};
 use geom::Vec3;
 use libfuzzer_sys::fuzz_target;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// By the first byte: `0` is FANUC, `1` LinuxCNC and so on.
 const DIALECTS: [Dialect; 10] = [
@@ -39,7 +39,7 @@ fuzz_target!(|data: &[u8]| {
             assert!(event.line > 0 && event.line as usize <= lines);
             records += 1;
             if records > MOST_RECORDS {
-                return Err(Diagnostic::error("enough", "a loop that moves")
+                return Err(Diagnostic::error(Rule::Stopped, "a loop that moves")
                     .at(1, b" ", 0, 1)
                     .into());
             }

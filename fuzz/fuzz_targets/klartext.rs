@@ -3,7 +3,7 @@
 
 use control::{Action, Dialect, Orientation, Settings, read};
 use libfuzzer_sys::fuzz_target;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 fuzz_target!(|data: &[u8]| {
     for rotary in [[false; 3], [false, true, true]] {
@@ -16,7 +16,7 @@ fuzz_target!(|data: &[u8]| {
             records += 1;
             // A loop may make as many as it likes.
             if records > 50_000 {
-                return Err(Diagnostic::error("enough", "").at(1, b"", 0, 0).into());
+                return Err(Diagnostic::error(Rule::Stopped, "").at(1, b"", 0, 0).into());
             }
             if let Action::Arc(arc) = &event.action {
                 assert!(arc.end.point.is_finite() && arc.center.is_finite());

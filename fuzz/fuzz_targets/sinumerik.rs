@@ -3,7 +3,7 @@
 
 use control::{Action, Dialect, Orientation, Settings, read};
 use libfuzzer_sys::fuzz_target;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// After so many records a program is left: loops may go round for long.
 const MOST_RECORDS: u32 = 10_000;
@@ -23,7 +23,7 @@ fuzz_target!(|data: &[u8]| {
             ended = event.action == Action::End;
             records += 1;
             if records > MOST_RECORDS {
-                return Err(Diagnostic::error("enough", "a loop that moves")
+                return Err(Diagnostic::error(Rule::Stopped, "a loop that moves")
                     .line(event.line)
                     .into());
             }

@@ -4,7 +4,7 @@ use crate::error::{refused, released};
 use app::Stop;
 use freecad::Job;
 use numpy::{AllowTypeChange, PyArrayLike2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyUnicodeEncodeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
@@ -62,7 +62,7 @@ fn json(any: &Bound<'_, PyAny>, key: &str, deepest: u32) -> PyResult<Value> {
     let py = any.py();
     let wrong = |message: String| {
         let help = "text of whole characters, numbers, True, False, None, lists and dictionaries";
-        refused(py, Diagnostic::error("argument", message).help(help))
+        refused(py, Diagnostic::error(Rule::Argument, message).help(help))
     };
     let Some(deeper) = deepest.checked_sub(1) else {
         return Err(wrong(format!("`{key}` is in too many lists and dictionaries")));
@@ -123,7 +123,7 @@ where
 pub fn number(py: Python<'_>, what: &str, value: f64) -> PyResult<f64> {
     match value.is_finite() {
         true => Ok(value),
-        false => Err(refused(py, Diagnostic::error("number", format!("{what} is {value}")))),
+        false => Err(refused(py, Diagnostic::error(Rule::Number, format!("{what} is {value}")))),
     }
 }
 
@@ -132,7 +132,7 @@ pub fn positive(py: Python<'_>, what: &str, value: f64) -> PyResult<f64> {
     match number(py, what, value)? > 0.0 {
         true => Ok(value),
         false => {
-            let found = Diagnostic::error("number", format!("{what} is {value}"));
+            let found = Diagnostic::error(Rule::Number, format!("{what} is {value}"));
             Err(refused(py, found.help("it must be greater than 0")))
         }
     }
@@ -143,7 +143,7 @@ pub fn word<T: Copy>(py: Python<'_>, what: &str, given: &str, all: &[(&str, T)])
     let found = all.iter().find(|(word, _)| *word == given);
     found.map(|(_, meaning)| *meaning).ok_or_else(|| {
         let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
-        let found = Diagnostic::error("argument", format!("{what} is `{given}`"));
+        let found = Diagnostic::error(Rule::Argument, format!("{what} is `{given}`"));
         refused(py, found.help(format!("it is one of {}", words.join(", "))))
     })
 }
@@ -158,7 +158,7 @@ pub fn rows(
     let array = array.as_array();
     if array.ncols() != columns {
         let message = format!("{what} has {} columns where {columns} are needed", array.ncols());
-        return Err(refused(py, Diagnostic::error("array-shape", message)));
+        return Err(refused(py, Diagnostic::error(Rule::ArrayShape, message)));
     }
     let rows = array.rows().into_iter().map(|row| {
         let mut all = [0.0; 3];

@@ -4,7 +4,7 @@ use crate::arguments::number;
 use crate::error::{findings, raised, refused};
 use crate::posting::save;
 use pcb::model;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use serde_json::{Map, Value, json};
@@ -106,7 +106,7 @@ impl BoardBuilder {
         let position = place(py, position)?;
         let nodes = slf.sheet.entry("nodes").or_insert_with(|| json!({}));
         if nodes.as_object().is_some_and(|nodes| nodes.contains_key(name)) {
-            let found = Diagnostic::error("node", format!("there is a node `{name}` already"));
+            let found = Diagnostic::error(Rule::Node, format!("there is a node `{name}` already"));
             return Err(refused(py, found.help("give each node a name of its own")));
         }
         let length = name.len() + position.to_string().len();
@@ -214,11 +214,11 @@ impl BoardBuilder {
         let (depth, length) = (group.depth + 1, slf.length + group.length);
         if depth > model::DEEPEST {
             let message = format!("groups lie more than {} deep in each other", model::DEEPEST);
-            return refuse("group", message, "put groups next to each other");
+            return refuse(Rule::Group, message, "put groups next to each other");
         }
         if length > model::LONGEST {
             let message = format!("{length} bytes are no board; {} are the most", model::LONGEST);
-            return refuse("board-file", message, "take fewer copies");
+            return refuse(Rule::BoardFile, message, "take fewer copies");
         }
         let mut sheet = group.sheet.clone();
         sheet.insert("name".into(), name.into());

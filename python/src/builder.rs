@@ -7,7 +7,7 @@ use crate::record::{COOLANTS, FEED_UNITS};
 use app::toolpath::Toolpath;
 use geom::Vec3;
 use program::{
-    CompensatedPath, Compensation, Cycle, CycleKind, Diagnostic, Feed, Output, OutputValue,
+    CompensatedPath, Compensation, Cycle, CycleKind, Diagnostic, Feed, Output, OutputValue, Rule,
     Spindle, Tool, Withdrawal, WorkOffset,
 };
 use pyo3::prelude::*;
@@ -159,10 +159,10 @@ impl Builder {
         ];
         let kind = word(py, "kind", kind, &kinds)?;
         if matches!(kind, CycleKind::Tap { .. }) != pitch.is_some() {
-            return no("pitch", "`tap`, and no other, takes a pitch");
+            return no(Rule::Pitch, "`tap`, and no other, takes a pitch");
         }
         if kind.withdrawal().is_some() != aside.is_some_and(|aside| aside != [0.0; 3]) {
-            return no("aside", "`fine-bore` and `back-bore`, and no other, go aside");
+            return no(Rule::Aside, "`fine-bore` and `back-bore`, and no other, go aside");
         }
         let cycle = Cycle {
             kind,
@@ -261,7 +261,8 @@ impl Builder {
     /// Work offset from here on: 54 is the first that the control can set (``G54``), 55 the second.
     fn work_offset<'py>(mut slf: PyRefMut<'py, Self>, number: u32) -> Built<'py> {
         let Some(offset) = WorkOffset::numbered(number) else {
-            let found = Diagnostic::error("number", format!("there is no work offset {number}"));
+            let found =
+                Diagnostic::error(Rule::Number, format!("there is no work offset {number}"));
             return Err(refused(slf.py(), found.help("54 is the first")));
         };
         slf.built.work_offset(offset);

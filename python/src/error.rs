@@ -1,7 +1,7 @@
 //! What goes wrong, as a `toolpost.Error`.
 
 use app::Stop;
-use program::{Diagnostic, Findings};
+use program::{Diagnostic, Findings, Rule};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
@@ -31,7 +31,7 @@ pub fn released<T: Send, E: Into<Stop> + Send>(
         Err(said) => {
             let message = format!("this is a mistake in Toolpost: {said}");
             let help = "please report it, with what was given to it";
-            Err(refused(py, Diagnostic::error("internal", message).help(help)))
+            Err(refused(py, Diagnostic::error(Rule::Internal, message).help(help)))
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use geom::{Vec3, direction};
 use machine::Machine;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// Two tables, row after row.
 type Tables = (Vec<f64>, Vec<f64>);
@@ -24,11 +24,11 @@ pub fn inverse(
     for (index, (point, axis)) in points.iter().zip(axes).enumerate() {
         let [point, axis] = [finite(index, point)?, finite(index, axis)?];
         let axis = direction(axis)
-            .ok_or_else(|| row("zero-vector", index, "the tool axis has no direction"))?;
+            .ok_or_else(|| row(Rule::ZeroVector, index, "the tool axis has no direction"))?;
         let solutions = machine.inverse(axis).map_err(|far| {
             let away = far.deviation.to_degrees();
             let message = format!("the nearest tool axis in reach is {away:.4} degrees away");
-            row("unreachable-orientation", index, message)
+            row(Rule::UnreachableOrientation, index, message)
         })?;
         let degrees = solutions.degrees[0];
         linear.extend(machine.linear_for(point, degrees, tool_length).to_array());
@@ -69,7 +69,7 @@ fn same_length(a: usize, b: usize) -> Result<(), Box<Diagnostic>> {
         true => Ok(()),
         false => {
             let message = format!("{a} rows in one array, {b} in the other");
-            Err(Diagnostic::error("array-shape", message).into())
+            Err(Diagnostic::error(Rule::ArrayShape, message).into())
         }
     }
 }
@@ -78,11 +78,11 @@ fn finite(index: usize, [x, y, z]: &[f64; 3]) -> Result<Vec3, Box<Diagnostic>> {
     let values = Vec3::new(*x, *y, *z);
     match values.is_finite() {
         true => Ok(values),
-        false => Err(row("number", index, format!("({x}, {y}, {z}) is not finite"))),
+        false => Err(row(Rule::Number, index, format!("({x}, {y}, {z}) is not finite"))),
     }
 }
 
 /// What is wrong with row `index` (from 0) of an array.
-fn row(rule: &'static str, index: usize, message: impl std::fmt::Display) -> Box<Diagnostic> {
+fn row(rule: Rule, index: usize, message: impl std::fmt::Display) -> Box<Diagnostic> {
     Diagnostic::error(rule, format!("row {index}: {message}")).into()
 }

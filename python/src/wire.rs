@@ -12,7 +12,7 @@ use ::wire::{Lead, LeadShape};
 use app::wire::{Settings, Sync, make};
 use app::{Origin, Source, Verdict};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::{Path, PathBuf};
@@ -162,7 +162,7 @@ pub fn wire<'py>(
         (None, None, true) => Some(Step::Fit),
         _ => {
             let message = "more than one of `step`, `chord_error` and `fit` is given";
-            return Err(refused(py, Diagnostic::error("argument", message).help("give one")));
+            return Err(refused(py, Diagnostic::error(Rule::Argument, message).help("give one")));
         }
     };
     let settings = Settings {

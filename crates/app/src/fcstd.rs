@@ -4,7 +4,7 @@ mod inflate;
 
 use crate::files;
 use crate::input::Source;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::fs::{self, File};
 use std::io;
 use std::path::Path;
@@ -34,7 +34,7 @@ pub fn is(path: &Path) -> bool {
 /// # Errors
 /// There is no FreeCAD, it takes too long, or the document has no job.
 pub fn job(source: &Source) -> Result<Vec<u8>, Box<Diagnostic>> {
-    let about = |message: String| Diagnostic::error("freecad", message).file(source.name());
+    let about = |message: String| Diagnostic::error(Rule::Freecad, message).file(source.name());
     let bytes = source.read()?;
     inflate::check(&bytes).map_err(|found| Box::new((*found).file(source.name())))?;
     let no_room = |error| about(format!("there is no room to work in: {error}"));

@@ -5,7 +5,7 @@
 //! opens the lock of a process that is killed; what such a process left is removed by the next one that is to save there,
 //! when it begins, whatever comes of it.
 
-use program::{Diagnostic, encoding};
+use program::{Diagnostic, Rule, encoding};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -22,7 +22,7 @@ const LARGEST: u64 = 4 << 30;
 /// Where it cannot be opened, is no file (a folder, a device), or is larger than the memory or 4 GiB.
 pub fn read(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     let unreadable = |why: String| {
-        let found = about(path, "unreadable", format!("cannot be read: {why}"));
+        let found = about(path, Rule::Unreadable, format!("cannot be read: {why}"));
         found.help("give the name of a file that is there and may be read")
     };
     // Looked at before it is opened: opening a pipe would wait for ever.
@@ -97,21 +97,21 @@ impl Target {
             Err(about(path, rule, format!("cannot be saved: {why}")).help(way_out).into())
         };
         if path.file_name().is_none() {
-            return refused("output", "it names no file", "give a file name");
+            return refused(Rule::Output, "it names no file", "give a file name");
         }
         let existing = fs::metadata(path);
         let linked = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink());
         let resolved = match &existing {
             Ok(metadata) if !metadata.is_file() => {
-                return refused("output", "it is not a file", "give the name of a file");
+                return refused(Rule::Output, "it is not a file", "give the name of a file");
             }
             Ok(metadata) if metadata.permissions().readonly() => {
                 let way_out = "allow writing to it, or give another name";
-                return refused("output", "it is there already, and read-only", way_out);
+                return refused(Rule::Output, "it is there already, and read-only", way_out);
             }
             Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
             Err(_) if linked => {
-                return refused("output", "it is a link to nothing", "remove the link");
+                return refused(Rule::Output, "it is a link to nothing", "remove the link");
             }
             Err(_) => path.to_owned(),
         };
@@ -121,7 +121,7 @@ impl Target {
         };
         if !folder.is_dir() {
             let why = format!("there is no folder {}", folder.display());
-            return refused("output-folder", &why, "make the folder first");
+            return refused(Rule::OutputFolder, &why, "make the folder first");
         }
         let target = Target { given: path.to_owned(), path: resolved, folder };
         target.spare(inputs)?;
@@ -137,14 +137,14 @@ impl Target {
         match inputs.iter().find(|input| same_file(&self.path, input.as_ref())) {
             Some(input) => {
                 let message = format!("cannot be saved: it is the input {}", name(input.as_ref()));
-                Err(about(&self.given, "output", message).help("give another name").into())
+                Err(about(&self.given, Rule::Output, message).help("give another name").into())
             }
             None => Ok(()),
         }
     }
 
     fn full(&self, error: &io::Error) -> Diagnostic {
-        about(&self.given, "output", format!("cannot be saved: {error}"))
+        about(&self.given, Rule::Output, format!("cannot be saved: {error}"))
             .help("nothing was changed; make room or give another folder")
     }
 
@@ -170,7 +170,7 @@ impl Target {
 pub fn check_folder(path: &Path) -> Result<(), Box<Diagnostic>> {
     let refused = |why: String, help: &str| {
         let message = format!("cannot be the folder of the output: {why}");
-        Err(about(path, "output-folder", message).help(help).into())
+        Err(about(path, Rule::OutputFolder, message).help(help).into())
     };
     if path.is_dir() {
         return Ok(());
@@ -204,7 +204,7 @@ pub fn folder(path: &Path) -> Result<Folder, Box<Diagnostic>> {
     }
     fs::create_dir(path).map_err(|error| {
         let message = format!("the folder cannot be made: {error}");
-        about(path, "output-folder", message).help("give another folder")
+        about(path, Rule::OutputFolder, message).help("give another folder")
     })?;
     Ok(Folder { new: Some(path.to_owned()) })
 }
@@ -380,7 +380,7 @@ pub fn save_in(
 }
 
 /// A finding about a file as a whole.
-fn about(path: &Path, rule: &'static str, message: String) -> Diagnostic {
+fn about(path: &Path, rule: Rule, message: String) -> Diagnostic {
     Diagnostic::error(rule, message).file(path.display().to_string())
 }
 

@@ -61,7 +61,7 @@ pub fn proven(
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
         let help = "`toolpost wire` writes for it";
-        return Err(Diagnostic::error("machine-kind", message).help(help).into());
+        return Err(Diagnostic::error(Rule::MachineKind, message).help(help).into());
     }
     let mut warnings = toolpath.warnings.clone();
     watch.begin("writing")?;
@@ -104,7 +104,7 @@ pub fn proven(
 
 /// The program with the rules that are let pass in its head, where there are some.
 fn headed(program: &Program, tolerances: &Tolerances) -> Option<Program> {
-    let names: Vec<&str> = tolerances.accepted.names().collect();
+    let names: Vec<&str> = tolerances.accepted.rules().map(Rule::name).collect();
     if names.is_empty() {
         return None;
     }

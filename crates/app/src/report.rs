@@ -3,7 +3,7 @@
 use crate::files;
 use crate::toolpath::Toolpath;
 use machine::Machine;
-use program::{Diagnostic, Digest};
+use program::{Diagnostic, Digest, Rule};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -62,7 +62,7 @@ pub fn pair(path: &Path, now: impl FnOnce() -> Digests) -> Result<Option<String>
     let name = files::name(&report);
     let other = |message: String| {
         let help = "post the program anew for a report of its own, or remove the report";
-        let found = Diagnostic::warning("report-pair", message);
+        let found = Diagnostic::warning(Rule::ReportPair, message);
         Err(found.help(help).file(name.clone()).into())
     };
     let Ok(metadata) = std::fs::metadata(&report) else { return Ok(None) };

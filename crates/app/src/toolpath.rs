@@ -115,7 +115,7 @@ pub fn read(
     if origin.has_set_up() {
         let message = "a job of FreeCAD's runs on no control that somebody has set up";
         let help = "leave out the tool table, units and the like: the job says them itself";
-        return Err(Diagnostic::error("origin", message).help(help).file(file).into());
+        return Err(Diagnostic::error(Rule::Origin, message).help(help).file(file).into());
     }
     let named = origin.from.as_deref().map(|from| origin.reach.load_origin(from)).transpose()?;
     let digest = Some(Digest::of([&bytes[..]]));
@@ -283,13 +283,13 @@ fn flat(
             "this cut is at Z {}, and one before it at a height that no block says",
             number(z, 4)
         );
-        let found = Diagnostic::error("flat-contour", message).file(file);
+        let found = Diagnostic::error(Rule::FlatContour, message).file(file);
         let help = "give Z in the first block, or leave it out of all: then the contour is flat";
         let text = line_of(bytes, line);
         return Err(found.help(help).at(line, text, 0, text.trim_ascii_end().len()).into());
     }
     let message = "the program cuts before a block says Z: it is read as a flat contour, at Z 0";
-    reading.warnings.push(Diagnostic::warning("flat-contour", message));
+    reading.warnings.push(Diagnostic::warning(Rule::FlatContour, message));
     Ok(Some(reading))
 }
 
@@ -314,13 +314,13 @@ pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagno
 /// What refuses `--csys` for a source that cannot have the record.
 pub(crate) fn without_csys(file: &str) -> Diagnostic {
     let message = "--csys is for cutter-location data with CSYS records, which this is not";
-    Diagnostic::error("origin", message).help("leave it out").file(file)
+    Diagnostic::error(Rule::Origin, message).help("leave it out").file(file)
 }
 
 /// What refuses `--cutcom` for a source that cannot have the record.
 pub(crate) fn without_cutcom(file: &str) -> Diagnostic {
     let message = "--cutcom is for cutter-location data with CUTCOM records, which this is not";
-    Diagnostic::error("origin", message).help("leave it out").file(file)
+    Diagnostic::error(Rule::Origin, message).help("leave it out").file(file)
 }
 
 /// Which path the coordinates behind `CUTCOM` are, and what says so.
@@ -377,7 +377,7 @@ fn is_nc(path: &Path) -> bool {
 fn without_origin(file: &str) -> Stop {
     let controls = library::names(library::CONTROLS).collect::<Vec<_>>();
     let message = "this is no cutter-location data, and as an NC program it has no control named";
-    Diagnostic::error("source", message)
+    Diagnostic::error(Rule::Source, message)
         .help(format!("--from with a machine or one of {}", controls.join(", ")))
         .file(file)
         .into()
@@ -625,7 +625,7 @@ fn checked(machine: Machine) -> Result<Machine, Stop> {
         );
         let help =
             format!("`toolpost machines check {}` prints its reach and its joints", machine.name);
-        return Err(Diagnostic::error("arm-kinematics", message)
+        return Err(Diagnostic::error(Rule::ArmKinematics, message)
             .help(help)
             .file(&machine.file)
             .into());
@@ -634,7 +634,10 @@ fn checked(machine: Machine) -> Result<Machine, Stop> {
     if settings.dialect == Dialect::FreeCad {
         let message = "no machine reads FreeCAD's commands: they are a source alone";
         let place = &machine.reader_place;
-        return Err(Diagnostic::error("reader", message).file(&place.file).line(place.line).into());
+        return Err(Diagnostic::error(Rule::Reader, message)
+            .file(&place.file)
+            .line(place.line)
+            .into());
     }
     Ok(machine)
 }

@@ -10,7 +10,7 @@ use crate::kernel::decimal;
 use crate::kernel::source::Source;
 use crate::kernel::{Channel, Fallible};
 use geom::{Vec3, direction};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// The most numbers of a line.
 const MOST: usize = 4;
@@ -28,7 +28,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fa
         let count = line.read(&mut values)?;
         if index > 0 && count != width {
             let message = format!("{count} numbers, where the first line has {width}");
-            return Err(line.error("nc-syntax", (0, bytes.len()), message).into());
+            return Err(line.error(Rule::Syntax, (0, bytes.len()), message).into());
         }
         (width, last) = (count, number);
         let pose = line.pose(values, count, settings.wire.height)?;
@@ -60,26 +60,26 @@ impl Line<'_> {
             let Some((number, value)) = number.zip(values.get_mut(count)) else {
                 let found = self.0.text.get(at).map_or(' ', |&b| char::from(b));
                 let message = format!("`{found}` where a number or the end of the line is needed");
-                return Err(self.error("nc-syntax", (at, at + 1), message).into());
+                return Err(self.error(Rule::Syntax, (at, at + 1), message).into());
             };
             let end = at + number.len;
             if !number.value.is_finite() {
                 let message = "a number beyond all numbers";
-                return Err(self.error("nc-number", (at, end), message).into());
+                return Err(self.error(Rule::Number, (at, end), message).into());
             }
             *value = number.value;
             count += 1;
             at = blanks(end);
             if at == end && at < self.0.text.len() {
                 let message = "a blank is needed between two numbers";
-                return Err(self.error("nc-syntax", (at, at + 1), message).into());
+                return Err(self.error(Rule::Syntax, (at, at + 1), message).into());
             }
         }
         if matches!(count, 2 | 4) {
             return Ok(count);
         }
         let message = format!("{count} numbers: a point is X Y, or X Y U V");
-        Err(self.error("nc-syntax", (0, self.0.text.len()), message).into())
+        Err(self.error(Rule::Syntax, (0, self.0.text.len()), message).into())
     }
 
     fn pose(
@@ -94,19 +94,19 @@ impl Line<'_> {
         }
         let Some(height) = height else {
             let message = "U and V, and the height of the upper plane is not known";
-            let found = self.error("upper-plane", (0, self.0.text.len()), message);
+            let found = self.error(Rule::UpperPlane, (0, self.0.text.len()), message);
             return Err(found.help("`height` in the [wire] table of the machine").into());
         };
         let Some(axis) = direction(Vec3::new(u, v, height)) else {
             let message = "U and V lie so far out that the wire has no direction";
-            return Err(self.error("nc-number", (0, self.0.text.len()), message).into());
+            return Err(self.error(Rule::Number, (0, self.0.text.len()), message).into());
         };
         Ok(Position::new(lower, axis))
     }
 
     fn error(
         &self,
-        rule: &'static str,
+        rule: Rule,
         (start, end): (usize, usize),
         message: impl Into<String>,
     ) -> Diagnostic {

@@ -7,7 +7,7 @@
 
 use crate::ToolData;
 use crate::kernel::decimal;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// Offsets along and about the axes other than Z: a tool that has one is no mill on the spindle's axis.
 const ASIDE: &[u8] = b"XYABCUVW";
@@ -86,7 +86,7 @@ impl Line<'_> {
     }
 
     fn error(&self, at: usize, message: impl Into<String>) -> Box<Diagnostic> {
-        Diagnostic::error("tool-table", message)
+        Diagnostic::error(Rule::ToolTable, message)
             .help("a line is like `T1 P1 Z25 D6 ;end mill`, lengths in mm")
             .at(self.number, self.text, at, at + 1)
             .into()

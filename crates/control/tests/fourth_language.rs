@@ -2,7 +2,7 @@
 //! subprograms, formulas by rank, and arcs by a point between their ends (the tests below show them).
 
 use geom::Vec3;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 use toolpost_control::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
 use toolpost_control::kernel::flow::{Calls, Labels, Place, Structures, line, lines};
@@ -40,7 +40,7 @@ impl Block<'_, '_> {
     }
 
     fn wrong(&self, message: impl Into<String>) -> Box<Diagnostic> {
-        self.source.error("syntax", self.at..self.at + 1, message)
+        self.source.error(Rule::Syntax, self.at..self.at + 1, message)
     }
 
     fn number(&mut self) -> Fallible<f64> {
@@ -127,7 +127,7 @@ impl Grammar for Block<'_, '_> {
             b'*' => a * b,
             _ if b == 0.0 => {
                 return Err(self.source.error(
-                    "arithmetic",
+                    Rule::Arithmetic,
                     span.start..span.end,
                     "a division by 0",
                 ));
@@ -169,7 +169,7 @@ fn run(text: &[u8], channel: &mut Channel) -> Fallible<()> {
         let begun = structures.unclosed().next_back().map(|[first, _]| structures[first].word);
         if !begins && begun != Some(ends) {
             return Err(
-                source.block_error("control-structure", format!("no {ends} belongs to this"))
+                source.block_error(Rule::ControlStructure, format!("no {ends} belongs to this"))
             );
         }
         if name == "SUB" {
@@ -189,11 +189,11 @@ impl Run<'_, '_, '_> {
             let Some(to) = self.block(source, place, after)? else { return Ok(()) };
             if to != after {
                 let counted = self.channel.budget.again(place.at.saturating_sub(to.at));
-                counted.map_err(|message| source.block_error("endless", message))?;
+                counted.map_err(|message| source.block_error(Rule::Endless, message))?;
             }
             place = to;
         }
-        Err(Diagnostic::error("end", "the program has no END").line(place.line).into())
+        Err(Diagnostic::error(Rule::NoEnd, "the program has no END").line(place.line).into())
     }
 
     /// Carries out a block; which comes next, if any does.
@@ -202,7 +202,7 @@ impl Run<'_, '_, '_> {
         let first = block.name();
         let name = if block.take(b':') { block.name() } else { first };
         let partner = || self.structures.partner(here.at);
-        let whole = |message: &str| source.block_error("control-structure", message);
+        let whole = |message: &str| source.block_error(Rule::ControlStructure, message);
         let mut to = Some(after);
         match name.as_str() {
             "" => {}
@@ -216,7 +216,9 @@ impl Run<'_, '_, '_> {
             "CIRC" => {
                 let [point, end] = block.points()?;
                 let Some((center, normal)) = arc::through(self.at, point, end) else {
-                    return Err(source.block_error("arc", "the points of the arc lie on a line"));
+                    return Err(
+                        source.block_error(Rule::Arc, "the points of the arc lie on a line")
+                    );
                 };
                 let arc = ArcTo { end: Position::new(end, Vec3::Z), center, normal, turns: 0 };
                 self.channel.report(here.line, Action::Arc(arc.into()))?;

@@ -4,7 +4,7 @@ mod common;
 
 use common::linuxcnc::difference;
 use geom::Vec3;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use toolpost_control::{Action, Dialect, Settings, Setup, read};
@@ -583,7 +583,7 @@ proptest! {
             records += 1;
             match records < 1000 {
                 true => Ok(()),
-                false => Err(Diagnostic::error("enough", "").at(1, b" ", 0, 1).into()),
+                false => Err(Diagnostic::error(Rule::Stopped, "").at(1, b" ", 0, 1).into()),
             }
         });
         if let Err(error) = ran {

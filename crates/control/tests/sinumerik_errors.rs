@@ -3,7 +3,7 @@
 mod common;
 
 use common::sinumerik::{blocks, error, run, settings};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use toolpost_control::{Action, FeedPath, read};
 
 #[test]
@@ -230,7 +230,7 @@ fn brackets_and_signs_nest_so_deep_and_no_deeper() {
 
 #[test]
 fn what_the_sink_answers_stops_the_program_unchanged() {
-    let answer = Diagnostic::error("stop", "enough");
+    let answer = Diagnostic::error(Rule::Stop, "enough");
     let mut count = 0;
     let error = read(&settings(), "p.mpf", b"G0 X1\nG0 X2\nM30\n", &mut |record| {
         count += 1;

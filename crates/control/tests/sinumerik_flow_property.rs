@@ -4,6 +4,7 @@
 mod common;
 
 use common::sinumerik::settings;
+use program::Rule;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -432,7 +433,7 @@ proptest! {
         let mut most = 5000;
         let result = read(&settings, "p.mpf", text.as_bytes(), &mut |_| {
             most -= 1;
-            if most == 0 { Err(program::Diagnostic::error("enough", "").into()) } else { Ok(()) }
+            if most == 0 { Err(program::Diagnostic::error(Rule::Stopped, "").into()) } else { Ok(()) }
         });
         if let Err(error) = result {
             prop_assert!(error.is_error() && error.line as usize <= text.lines().count());

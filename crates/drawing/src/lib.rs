@@ -41,7 +41,7 @@ pub use tool_path::tool_path;
 pub use walk::{Segment, walk};
 pub use wire_path::{WirePicture, WireSegment, wire_path};
 
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::path::Path;
 
 /// How a picture is saved.
@@ -63,7 +63,7 @@ impl Format {
         match ending.as_str() {
             "png" => Ok(Format::Png),
             "svg" => Ok(Format::Svg),
-            _ => Err(Diagnostic::error("drawing", format!("cannot draw {}", file.display()))
+            _ => Err(Diagnostic::error(Rule::Drawing, format!("cannot draw {}", file.display()))
                 .help("a drawing is a .svg or a .png")
                 .into()),
         }

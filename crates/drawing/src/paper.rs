@@ -5,7 +5,7 @@ use crate::trace::Trace;
 use crate::view::View;
 use geom::Vec3;
 use glam::DVec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::fmt::Write as _;
 
 /// Size of the picture, pixels.
@@ -46,7 +46,8 @@ pub fn begin(what: &str) -> String {
 /// Where the drawing is too large for the memory.
 pub fn png(svg: &str) -> Result<Vec<u8>, Box<Diagnostic>> {
     use resvg::{tiny_skia, usvg};
-    let failed = |why: String| Diagnostic::error("drawing", format!("no PNG can be made: {why}"));
+    let failed =
+        |why: String| Diagnostic::error(Rule::Drawing, format!("no PNG can be made: {why}"));
     let tree = usvg::Tree::from_str(svg, &usvg::Options::default())
         .map_err(|error| failed(error.to_string()))?;
     let (width, height) = (SIZE.x as u32 * 2, SIZE.y as u32 * 2);

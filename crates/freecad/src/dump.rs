@@ -1,7 +1,7 @@
 //! FreeCAD's dump of a job: what its post-processor `dumper` shows.
 
 use crate::job::{Job, Operation, Tool};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::fmt::Write;
 
 /// How the lines of a dump begin.
@@ -65,7 +65,7 @@ pub(crate) fn read(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
 }
 
 fn wrong(message: &str, line: &str, number: u32) -> Diagnostic {
-    Diagnostic::error("freecad-dump", message).on(number, line.as_bytes())
+    Diagnostic::error(Rule::FreecadDump, message).on(number, line.as_bytes())
 }
 
 /// Adds `NAME [ LETTER:NUMBER ... ]` to `commands` as it stands in a program; the number of the tool

@@ -1,7 +1,7 @@
 //! A job: its tools, and its operations with their commands as text.
 
 use crate::dump;
-use program::{Coolant, Diagnostic};
+use program::{Coolant, Diagnostic, Rule};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -151,7 +151,7 @@ fn from_json(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
 }
 
 fn no_job(message: &str) -> Diagnostic {
-    Diagnostic::error("freecad-job", format!("this is no job of FreeCAD: {message}"))
+    Diagnostic::error(Rule::FreecadJob, format!("this is no job of FreeCAD: {message}"))
         .help("post from FreeCAD, or let FreeCAD write the job anew")
 }
 
@@ -160,14 +160,14 @@ fn from_sheet(sheet: Sheet) -> Result<Job, Box<Diagnostic>> {
         let (head, version) = (sheet.toolpost, sheet.version);
         let message = format!("`{head}`, version {version}: `{HEAD}`, version {VERSION} is read");
         let help = "the part of Toolpost in FreeCAD and this one have to be of one version";
-        return Err(Diagnostic::error("freecad-job", message).help(help).into());
+        return Err(Diagnostic::error(Rule::FreecadJob, message).help(help).into());
     }
     let active = || sheet.operations.iter().filter(|operation| operation.active);
     if let Some(invalid) = active().find(|operation| operation.invalid) {
         let message =
             format!("{}: FreeCAD could not recompute this operation (Invalid)", invalid.label);
         let help = "mend it and recompute, or switch it off (Active)";
-        return Err(Diagnostic::error("freecad-invalid", message).help(help).into());
+        return Err(Diagnostic::error(Rule::FreecadInvalid, message).help(help).into());
     }
     let active = sheet.operations.into_iter().filter(|operation| operation.active);
     let operations = active.map(|operation| Operation {

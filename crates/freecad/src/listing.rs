@@ -1,7 +1,7 @@
 //! The commands of a job as one text, and which operation each of its lines comes from.
 
 use crate::job::Job;
-use program::{Coolant, Diagnostic};
+use program::{Coolant, Diagnostic, Rule};
 use std::mem;
 
 /// Bytes that are looked at at once.
@@ -77,7 +77,7 @@ impl Listing {
                 let label = &operation.label;
                 let message = format!("operation `{label}` has {count} commands on {lines} lines");
                 let help = "no name of a command may have a line break: make the operation anew";
-                let found = Diagnostic::error("freecad-lines", message).help(help);
+                let found = Diagnostic::error(Rule::FreecadLines, message).help(help);
                 return Err(found.file(file).into());
             }
         }

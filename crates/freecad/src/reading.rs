@@ -36,7 +36,7 @@ pub fn read(
     if let Some((number, what)) = two_tools(&job) {
         let message = format!("two tools of different {what} have the number {number}");
         let help = "give one of the tool controllers another number";
-        return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
+        return Err(Diagnostic::error(Rule::TwoTools, message).help(help).file(file_name).into());
     }
     let unfed = without_feed(&job)
         .filter(|_| purpose.asks_technology())
@@ -64,7 +64,7 @@ pub fn read(
              at the vertical one"
         );
         let help = "give the tool controller a horizontal feed, and recompute";
-        return Err(Diagnostic::error("nc-feed", message).help(help).file(file_name).into());
+        return Err(Diagnostic::error(Rule::Feed, message).help(help).file(file_name).into());
     }
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
     let stock = job.stock.map(|stock| [stock.low, stock.high].map(Vec3::from));
@@ -212,7 +212,7 @@ impl<'a> Collector<'a> {
         if !self.moves.contains(&true) {
             let message = "no operation of the job moves the tool";
             let help = "give the job operations, make them active, and recompute";
-            return Err(Diagnostic::error("no-motion", message).help(help).into());
+            return Err(Diagnostic::error(Rule::NoMotion, message).help(help).into());
         }
         self.add_waiting(records);
         if let Some(refused) = self.refused {
@@ -284,7 +284,7 @@ impl<'a> Collector<'a> {
                 if *speed <= 0.0 {
                     let message = format!("the spindle turns at {speed} 1/min");
                     let help = "give the tool controller its speed, and recompute";
-                    return Err(Diagnostic::error("spindle-speed", message)
+                    return Err(Diagnostic::error(Rule::SpindleSpeed, message)
                         .help(help)
                         .line(line)
                         .into());
@@ -317,20 +317,24 @@ impl<'a> Collector<'a> {
         match (number, asked) {
             (None, _) => {
                 let message = String::from("the operation moves, and no tool has been called");
-                refused("no-tool", message, "give the operation a tool controller of the job")
+                refused(Rule::NoTool, message, "give the operation a tool controller of the job")
             }
             (Some(number), Some(asked)) if number != asked => {
                 let message = format!("the operation is made for T{asked}, and T{number} is in");
                 let help =
                     "post it together with its tool controller: order the job by operation or tool";
-                refused("tool-number", message, help)
+                refused(Rule::ToolNumber, message, help)
             }
             _ if self.asks_spindle
                 && !self.turns
                 && matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)) =>
             {
                 let message = String::from("a cut while the spindle stands");
-                refused("spindle-off", message, "give the tool controller its speed and direction")
+                refused(
+                    Rule::SpindleOff,
+                    message,
+                    "give the tool controller its speed and direction",
+                )
             }
             _ => Ok(()),
         }

@@ -3,7 +3,7 @@
 //! A line that is not understood ends the reading with an error, and a coordinate that no line has stated is not zero.
 
 use crate::machine::{Format, Machine};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// A pulse of the laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Vec<Pulse>, Vec<Diagnostic
         let number = u32::try_from(line).unwrap_or(u32::MAX);
         let shown =
             text.split(|byte| *byte == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-        let found = Diagnostic::error("program", message).on(number, shown);
+        let found = Diagnostic::error(Rule::Program, message).on(number, shown);
         vec![found.help("write the program anew; docs/sources/glass.md says what a program is")]
     })?;
     if pulses.len() as u64 > machine.program.points {
@@ -37,7 +37,7 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Vec<Pulse>, Vec<Diagnostic
             pulses.len(),
             machine.program.points
         );
-        return Err(vec![Diagnostic::error("points", message).help("take fewer points")]);
+        return Err(vec![Diagnostic::error(Rule::Points, message).help("take fewer points")]);
     }
     Ok(pulses)
 }

@@ -9,7 +9,7 @@ use crate::order::{self, Effort, Shadow};
 use crate::proof::{self, Proof};
 use crate::{control, post, sample, weld};
 use glam::{DMat3, DVec3};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde::Serialize;
 
 /// In which order points are made.
@@ -111,7 +111,7 @@ pub struct Made {
     pub findings: Vec<Diagnostic>,
 }
 
-fn error(rule: &'static str, message: String, help: &str) -> Vec<Diagnostic> {
+fn error(rule: Rule, message: String, help: &str) -> Vec<Diagnostic> {
     vec![Diagnostic::error(rule, message).help(help)]
 }
 
@@ -143,7 +143,7 @@ pub fn make(
             machine.program.points,
             machine.title
         );
-        return Err(error("points", message, "take a larger --spacing or a smaller --scale"));
+        return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
 
     let beam = Beam::new(&lens, machine.laser.beam, material.index);
@@ -156,7 +156,7 @@ pub fn make(
         let message =
             format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
         return Err(error(
-            "spacing",
+            Rule::Spacing,
             message,
             "this is a mistake in Toolpost: report it with the body",
         ));
@@ -180,7 +180,7 @@ pub fn make(
         let message =
             format!("the program takes {} ticks, planned were {planned_ticks}", proof.ticks);
         findings.extend(error(
-            "ticks",
+            Rule::Ticks,
             message,
             "this is a mistake in Toolpost: report it with the body",
         ));
@@ -232,7 +232,7 @@ fn small(low: DVec3, high: DVec3, placing: &Placing) -> Option<Diagnostic> {
         (high - low).max_element(),
         100.0 * part
     );
-    let found = Diagnostic::warning("small", message);
+    let found = Diagnostic::warning(Rule::Small, message);
     (part < SMALL).then(|| {
         found
             .help(format!("if its file is in inches, --scale {INCH}; --fit takes the largest size"))
@@ -278,11 +278,11 @@ fn check(placing: &Placing, lens: &Lens) -> Result<(), Vec<Diagnostic>> {
             "the block is {} mm high; f = {} mm is for {} mm at most",
             block[2], lens.focal, lens.block
         );
-        return Err(error("block", message, "take a lens of a longer focal length"));
+        return Err(error(Rule::Block, message, "take a lens of a longer focal length"));
     }
     if block.iter().any(|side| *side <= 2.0 * margin) {
         let message = format!("a margin of {margin} mm leaves nothing of a block of {block:?} mm");
-        return Err(error("block", message, "take a smaller --margin"));
+        return Err(error(Rule::Block, message, "take a smaller --margin"));
     }
     Ok(())
 }
@@ -296,14 +296,14 @@ fn spacing_in_micrometres(spacing: f64, lens: &Lens) -> Result<u32, Vec<Diagnost
             lens.spacing, lens.focal
         );
         return Err(error(
-            "spacing",
+            Rule::Spacing,
             message,
             "nearer cracks join and break the glass: take a larger --spacing, or a shorter lens",
         ));
     }
     if micrometres > 1e5 {
         let message = format!("a spacing of {spacing} mm is more than 100 mm");
-        return Err(error("spacing", message, "lengths are mm"));
+        return Err(error(Rule::Spacing, message, "lengths are mm"));
     }
     Ok(micrometres as u32)
 }
@@ -329,7 +329,7 @@ fn unhealthy(health: Health) -> Option<Diagnostic> {
     if flat > 0 {
         parts.push(format!("{flat} triangles without area"));
     }
-    let found = Diagnostic::warning("mesh", format!("the body has {}", parts.join("; ")));
+    let found = Diagnostic::warning(Rule::Mesh, format!("the body has {}", parts.join("; ")));
     (!parts.is_empty()).then(|| found.help("its surface is engraved as it is; close it in the program that made it if holes are not wanted"))
 }
 
@@ -339,7 +339,7 @@ fn cut_off(cut: Cut, margin: f64) -> Option<Diagnostic> {
         cut.points,
         margin + cut.more
     );
-    let found = Diagnostic::warning("beam-cut", message);
+    let found = Diagnostic::warning(Rule::BeamCut, message);
     (cut.points > 0).then(|| {
         found.help("take that --margin, a larger block, or keep the sides clean and polished")
     })
@@ -365,7 +365,7 @@ fn place(
     };
     let Some((low, high)) = each(&|place| turn * place) else {
         return Err(error(
-            "empty",
+            Rule::Empty,
             String::from("there is no point to engrave"),
             "give a body or points",
         ));
@@ -413,7 +413,7 @@ fn place(
             part if part < 1.0 => format!("--scale {fitting:.4} or --fit makes it fit"),
             _ => String::from("it is small enough: take another --move"),
         };
-        return Err(error("does-not-fit", message, &help));
+        return Err(error(Rule::DoesNotFit, message, &help));
     }
     Ok((mesh, points, scale))
 }
@@ -430,13 +430,13 @@ fn discretise(
     if expected > MOST_POINTS {
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
-        return Err(error("points", message, "take a larger --spacing or a smaller --scale"));
+        return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
     let mut cloud = sample::surface(mesh, spacing, seed);
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
     let Some(given) = given else {
         return Err(error(
-            "coordinate",
+            Rule::Coordinate,
             String::from("a point is beyond 2 m"),
             "lengths are mm: take a --scale",
         ));
@@ -448,7 +448,7 @@ fn discretise(
     }
     if cloud.is_empty() {
         return Err(error(
-            "empty",
+            Rule::Empty,
             String::from("there is no point to engrave"),
             "give a body or points",
         ));

@@ -4,7 +4,7 @@
 
 use crate::clock::Clock;
 use crate::profile::{Limits, Profile};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde::Deserialize;
 
 /// The machines that come with Toolpost: name and text.
@@ -140,14 +140,14 @@ impl Machine {
     pub fn read(text: &str, file: &str) -> Result<Machine, Box<Diagnostic>> {
         let machine: Machine = toml::from_str(text).map_err(|error| {
             let found =
-                Diagnostic::error("machine-file", format!("is no machine: {}", error.message()));
+                Diagnostic::error(Rule::MachineFile, format!("is no machine: {}", error.message()));
             found
                 .file(file)
                 .line(line_of(text, &error))
                 .help("`toolpost glass show glass-xyz-100hz` prints one that is")
         })?;
         machine.check().map_err(|message| {
-            let found = Diagnostic::error("machine-file", message).file(file);
+            let found = Diagnostic::error(Rule::MachineFile, message).file(file);
             Box::new(found.help("`toolpost glass show glass-xyz-100hz` prints a machine"))
         })?;
         Ok(machine)
@@ -205,8 +205,10 @@ impl Machine {
         let found = self.lenses.iter().copied().find(|lens| (lens.focal - focal).abs() < 1e-6);
         found.ok_or_else(|| {
             let all: Vec<String> = self.lenses.iter().map(|lens| lens.focal.to_string()).collect();
-            let found =
-                Diagnostic::error("lens", format!("{} has no lens of f = {focal} mm", self.title));
+            let found = Diagnostic::error(
+                Rule::Lens,
+                format!("{} has no lens of f = {focal} mm", self.title),
+            );
             found.help(format!("it has f = {} mm", all.join(", "))).into()
         })
     }

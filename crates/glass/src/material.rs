@@ -1,7 +1,7 @@
 //! What blocks are made of: a table that users edit.
 
 use crate::machine::line_of;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -35,7 +35,7 @@ pub fn find(
 ) -> Result<Material, Box<Diagnostic>> {
     let mut table: BTreeMap<String, Material> = toml::from_str(text).map_err(|error| {
         let found = Diagnostic::error(
-            "materials",
+            Rule::Materials,
             format!("is no table of materials: {}", error.message()),
         );
         found
@@ -45,14 +45,14 @@ pub fn find(
     })?;
     let names = table.keys().cloned().collect::<Vec<_>>().join(", ");
     let Some(material) = table.remove(name) else {
-        let found = Diagnostic::error("material", format!("has no material `{name}`"));
+        let found = Diagnostic::error(Rule::Material, format!("has no material `{name}`"));
         return Err(found.file(file).help(format!("it has: {names}")).into());
     };
     let Material { index, wavelength: own, .. } = material;
     // Diamond has 2.4; NaN fails.
     if !(1.0..=4.0).contains(&index) {
         let found = Diagnostic::error(
-            "index",
+            Rule::Index,
             format!("{name}: the index of refraction {index} is not from 1 to 4"),
         );
         return Err(found.file(file).help("glass has 1.4 to 1.9").into());
@@ -60,7 +60,7 @@ pub fn find(
     if (own - wavelength).abs() > SAME_WAVELENGTH || own.is_nan() {
         let message =
             format!("{name}: the index is that of {own} nm, the laser has {wavelength} nm");
-        let found = Diagnostic::error("wavelength", message).file(file);
+        let found = Diagnostic::error(Rule::Wavelength, message).file(file);
         return Err(found
             .help("add the material with its index at the wavelength of the laser")
             .into());

@@ -7,7 +7,7 @@
 use crate::cloud::{Grid, Point};
 use crate::control::Pulse;
 use crate::machine::{Lens, Machine};
-use program::{Diagnostic, Findings};
+use program::{Diagnostic, Findings, Rule};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -60,7 +60,7 @@ fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
 /// Where there are no pulses.
 pub fn prove(pulses: &[Pulse], task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Diagnostic>> {
     if pulses.is_empty() {
-        let found = Diagnostic::error("lost", "the program makes no pulse");
+        let found = Diagnostic::error(Rule::Lost, "the program makes no pulse");
         return Err(vec![found.help("write the program anew")]);
     }
     let mut findings = Findings::default();
@@ -82,7 +82,7 @@ pub fn prove(pulses: &[Pulse], task: &Task) -> Result<(Proof, Vec<Diagnostic>), 
             show(order[above as usize])
         );
         findings.push(
-            Diagnostic::error("shadowed", message).line(pulses[below as usize].line).help(
+            Diagnostic::error(Rule::Shadowed, message).line(pulses[below as usize].line).help(
                 "order by `--order fastest`, which keeps the rule, or add `--accept shadowed`",
             ),
         );
@@ -110,7 +110,7 @@ fn travels(pulses: &[Pulse], task: &Task, findings: &mut Findings) {
         for pulse in pulses.iter().filter(|pulse| !(low..=high).contains(&pulse.at[i])) {
             let message =
                 format!("{name}{:.3} is beyond the travel from {low} to {high} mm", pulse.at[i]);
-            let found = Diagnostic::error("travel", message).line(pulse.line);
+            let found = Diagnostic::error(Rule::Travel, message).line(pulse.line);
             findings.push(found.help("take a smaller block, or move the body"));
         }
     }
@@ -152,7 +152,9 @@ fn matched(
             let message =
                 format!("the pulse at {x:.3} {y:.3} {z:.3} mm lies in the crack of no point");
             findings.push(
-                Diagnostic::error("stray", message).line(pulse.line).help("write the program anew"),
+                Diagnostic::error(Rule::Stray, message)
+                    .line(pulse.line)
+                    .help("write the program anew"),
             );
             continue;
         };
@@ -161,7 +163,9 @@ fn matched(
             let first = pulses[by[j as usize] as usize].line;
             let message = format!("the point of this pulse was made on line {first} already");
             findings.push(
-                Diagnostic::error("twice", message).line(pulse.line).help("write the program anew"),
+                Diagnostic::error(Rule::Twice, message)
+                    .line(pulse.line)
+                    .help("write the program anew"),
             );
             continue;
         }
@@ -172,7 +176,7 @@ fn matched(
     if let Some(first) = by.iter().position(|by| *by == NONE) {
         let [x, y, z] = task.cloud[first].map(|value| f64::from(value) * 1e-3);
         let message = format!("{lost} points get no pulse, one of them at {x:.3} {y:.3} {z:.3} mm");
-        findings.push(Diagnostic::error("lost", message).help("write the program anew"));
+        findings.push(Diagnostic::error(Rule::Lost, message).help("write the program anew"));
     }
     (order, most_across * 1e-3, most_along * 1e-3)
 }

@@ -37,7 +37,7 @@ mod write;
 pub use arms::{import_calibration, import_urdf};
 
 use machine::{is_path, load_origin};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::path::Path;
 
 /// The largest file that is taken for a post, bytes.
@@ -72,7 +72,7 @@ pub fn import(
     let refused = |rule, message: String| Diagnostic::error(rule, message).file(file);
     if bytes.len() > LARGEST {
         let message = format!("{} bytes are more than any post has: {LARGEST}", bytes.len());
-        return Err(vec![refused("import", message)]);
+        return Err(vec![refused(Rule::Import, message)]);
     }
     let source = String::from_utf8_lossy(bytes);
     let source = source.trim_start_matches('\u{feff}');
@@ -84,7 +84,7 @@ pub fn import(
         let help = "a post of VCarve or Aspire (.pp), or templates with fields such as `[engraving: linear move]`";
         findings
             .list
-            .push(refused("import", "no block of a program is in it".to_owned()).help(help));
+            .push(refused(Rule::Import, "no block of a program is in it".to_owned()).help(help));
     }
     if findings.failed() {
         return Err(findings.listed());
@@ -94,14 +94,14 @@ pub fn import(
         None => {
             let help = "say which with --extends, such as grbl, linuxcnc, mach3, marlin, fanuc-31i";
             let message = "it does not say for which control it is".to_owned();
-            return Err(vec![refused("import-control", message).help(help)]);
+            return Err(vec![refused(Rule::ImportControl, message).help(help)]);
         }
     };
     let base = load_origin(&name).map_err(|why| vec![*why])?;
     let name = match is_path(&name) {
         true => way(folder, Path::new(&name)).ok_or_else(|| {
             let message = format!("there is no way from {} to `{name}`", folder.display());
-            vec![refused("import-control", message).help("save it in the folder of that file")]
+            vec![refused(Rule::ImportControl, message).help("save it in the folder of that file")]
         })?,
         false => name,
     };
@@ -161,21 +161,21 @@ struct Findings {
 impl Findings {
     /// What makes the file unreadable.
     fn error(&mut self, line: u32, message: impl Into<String>) {
-        self.add(Diagnostic::error("import", message), line);
+        self.add(Diagnostic::error(Rule::Import, message), line);
     }
 
     /// What is not imported.
     fn lost(&mut self, line: u32, message: impl Into<String>) {
-        self.add(Diagnostic::warning("not-carried-over", message), line);
+        self.add(Diagnostic::warning(Rule::NotCarriedOver, message), line);
     }
 
     /// What stands otherwise than in the post.
     fn otherwise(&mut self, line: u32, message: impl Into<String>) {
-        self.add(Diagnostic::warning("carried-otherwise", message), line);
+        self.add(Diagnostic::warning(Rule::CarriedOtherwise, message), line);
     }
 
     /// What no post says, and a machine must.
-    fn assumed(&mut self, rule: &'static str, message: String) {
+    fn assumed(&mut self, rule: Rule, message: String) {
         self.add(Diagnostic::warning(rule, message), 0);
     }
 
@@ -195,7 +195,7 @@ impl Findings {
         self.list.sort_by_key(|found| found.line);
         if self.more > 0 {
             let message = format!("{} more findings are not shown", self.more);
-            self.list.push(Diagnostic::warning("not-carried-over", message).file(self.file));
+            self.list.push(Diagnostic::warning(Rule::NotCarriedOver, message).file(self.file));
         }
         self.list
     }

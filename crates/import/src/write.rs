@@ -7,6 +7,7 @@ use crate::items::codes;
 use crate::text::{quoted, short};
 use machine::library::{MACHINES, names};
 use machine::{Machine, Word, load};
+use program::Rule;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -65,7 +66,7 @@ impl Writing<'_> {
                 "no post says where Z is at its top in machine coordinates: `safe_height = {height}` \
                  is written, as of any mill with this control; write that of the machine"
             );
-            self.findings.assumed("safe-height", message);
+            self.findings.assumed(Rule::SafeHeight, message);
         }
         if let Some(ending) = post.extension.as_ref().filter(|e| plain(e) && !e.is_empty()) {
             let _ = writeln!(out, "extension = {}", quoted(&short(ending)));
@@ -120,7 +121,7 @@ impl Writing<'_> {
         }
         let message = "no post says how fast rapids are that go at an F: the `rapid` of any mill with this control is \
                        written; write that of the machine";
-        self.findings.assumed("rapid-feed", message.into());
+        self.findings.assumed(Rule::RapidFeed, message.into());
     }
 
     /// The safe height of any mill of the library with the same control.

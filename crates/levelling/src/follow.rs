@@ -4,7 +4,7 @@ use crate::grid::{Grid, Probing};
 use crate::ground::Ground;
 use crate::level::{Allowed, levelled, refused};
 use geom::Vec3;
-use program::{Diagnostic, Op, Program, Record, Spindle, Surface, lowering};
+use program::{Diagnostic, Op, Program, Record, Rule, Spindle, Surface, lowering};
 
 /// The program that probes the surface with its first tool before that cuts, and then has the surface where
 /// `program` has Z 0, as [`crate::level()`] has it of a map: [`Op::Surface`] says so. It stops before the probing and
@@ -25,7 +25,7 @@ pub fn follow(
     if !(steepness > 0.0 && steepness <= 1.0) {
         let message = format!("a surface that rises by {steepness} mm a mm");
         let help = "more than 0, and 1 at most";
-        return Err(Diagnostic::error("levelling-tolerance", message).help(help).into());
+        return Err(Diagnostic::error(Rule::LevellingTolerance, message).help(help).into());
     }
     let [columns, rows] = grid.lines();
     let wide = columns.len();

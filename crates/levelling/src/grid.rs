@@ -2,7 +2,7 @@
 
 use crate::heights::APART;
 use geom::{Vec2, Vec3};
-use program::{Diagnostic, Feed, Op, Pose, Probe, Program};
+use program::{Diagnostic, Feed, Op, Pose, Probe, Program, Rule};
 
 /// The most points that a grid has: a probe takes seconds for each.
 const MOST_PLACES: usize = 10_000;
@@ -31,7 +31,7 @@ impl Grid {
     /// area.
     pub fn new(from: Vec2, to: Vec2, columns: usize, rows: usize) -> Result<Grid, Box<Diagnostic>> {
         let wrong = |message: String, help: &str| {
-            Err(Diagnostic::error("probing-grid", message).help(help).into())
+            Err(Diagnostic::error(Rule::ProbingGrid, message).help(help).into())
         };
         if columns < 2 || rows < 2 || columns.saturating_mul(rows) > MOST_PLACES {
             let message = format!("a grid of {columns} by {rows} places");
@@ -110,7 +110,7 @@ impl Probing {
         let takes = |byte: u8| byte.is_ascii_alphanumeric() || b".-_/".contains(&byte);
         if let Some(file) = log.filter(|file| file.is_empty() || !file.bytes().all(takes)) {
             let message = format!("the log is called `{file}`");
-            return Err(Diagnostic::error("probing", message).help(NAME).into());
+            return Err(Diagnostic::error(Rule::Probing, message).help(NAME).into());
         }
         let mut program = Program::new(name);
         program.push(0, Op::Operation("probing".into()));
@@ -143,7 +143,7 @@ impl Probing {
             if !(value.is_finite() && value > above) {
                 let message = format!("the {what} of the probe is {value}");
                 let help = format!("greater than {above}");
-                return Err(Diagnostic::error("probing", message).help(help).into());
+                return Err(Diagnostic::error(Rule::Probing, message).help(help).into());
             }
         }
         let mut moves = vec![Op::Feed(Feed::PerMinute(feed))];

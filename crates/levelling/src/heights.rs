@@ -1,7 +1,7 @@
 //! The heights of a surface from points of it.
 
 use geom::Vec3;
-use program::{Diagnostic, heights::HeightMap};
+use program::{Diagnostic, Rule, heights::HeightMap};
 
 /// Coordinates that lie no further apart are those of one line of the grid, mm: machines answer in steps.
 pub(crate) const APART: f64 = 0.05;
@@ -85,7 +85,7 @@ fn near(lines: &[f64], value: f64) -> usize {
 }
 
 fn refused(message: String, help: &str) -> Box<Diagnostic> {
-    Diagnostic::error("height-map", message).help(help).into()
+    Diagnostic::error(Rule::HeightMap, message).help(help).into()
 }
 
 #[cfg(test)]

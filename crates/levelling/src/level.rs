@@ -5,7 +5,8 @@ use crate::surface_line::{SurfaceLine, heights_along};
 use geom::{Vec2, Vec3};
 use program::heights::HeightMap;
 use program::{
-    ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Outcome, Pose, Program, Record, WorkOffset,
+    ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Outcome, Pose, Program, Record, Rule,
+    WorkOffset,
 };
 use std::f64::consts::TAU;
 
@@ -89,7 +90,7 @@ impl<'a> Level<'a> {
                 allowed.deviation, allowed.outside
             );
             let help = "a deviation of 0.0001 mm at least, and no negative distance";
-            return Err(Diagnostic::error("levelling-tolerance", message).help(help).into());
+            return Err(Diagnostic::error(Rule::LevellingTolerance, message).help(help).into());
         }
         Ok(Level {
             ground,
@@ -343,5 +344,5 @@ fn upright(pose: &Pose) -> Outcome<Vec3> {
 }
 
 pub(crate) fn refused(message: impl Into<String>, help: &str) -> Box<Diagnostic> {
-    Diagnostic::error("levelling", message).help(help).into()
+    Diagnostic::error(Rule::Levelling, message).help(help).into()
 }

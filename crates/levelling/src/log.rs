@@ -3,8 +3,8 @@
 use crate::heights::height_map;
 use geom::Vec3;
 use memchr::memmem;
-use program::Diagnostic;
 use program::heights::HeightMap;
+use program::{Diagnostic, Rule};
 
 /// After so many errors the reader gives up.
 const MOST_ERRORS: usize = 20;
@@ -40,7 +40,7 @@ fn lines(text: &[u8]) -> impl Iterator<Item = (u32, &[u8])> {
 }
 
 fn wrong(number: u32, line: &[u8], message: impl Into<String>, help: &str) -> Diagnostic {
-    Diagnostic::error("height-map", message).help(help).on(number, line)
+    Diagnostic::error(Rule::HeightMap, message).help(help).on(number, line)
 }
 
 /// The numbers of a line, which commas, semicolons or blanks separate.
@@ -164,7 +164,7 @@ fn grbl(text: &[u8]) -> Result<Vec<Vec3>, Vec<Diagnostic>> {
             "the answers count from the machine's home, and where the work's zero is, is not said";
         let help =
             "send $# before or after the probing and keep its answer, [G54:x,y,z], in the log";
-        return Err(vec![Diagnostic::error("height-map", message).help(help)]);
+        return Err(vec![Diagnostic::error(Rule::HeightMap, message).help(help)]);
     };
     Ok(points.into_iter().map(|point| point - offset).collect())
 }

@@ -7,6 +7,7 @@
 
 use crate::{Machine, Mount, RotaryAxis, Wire};
 use geom::{ANGLE_EPSILON, Vec2, Vec3, angle_between, between, rotate};
+use program::Rule;
 use serde::Serialize;
 use std::fmt;
 
@@ -26,10 +27,10 @@ pub enum Unsaid {
 
 impl Unsaid {
     /// The rule under which a program that hangs on it is refused.
-    pub fn rule(self) -> &'static str {
+    pub fn rule(self) -> Rule {
         match self {
-            Unsaid::AxisPoint(_) | Unsaid::WorkZero | Unsaid::Solution => "kinematics",
-            Unsaid::ToolLength => "tool-length",
+            Unsaid::AxisPoint(_) | Unsaid::WorkZero | Unsaid::Solution => Rule::Kinematics,
+            Unsaid::ToolLength => Rule::ToolLength,
         }
     }
 

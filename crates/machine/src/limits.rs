@@ -6,6 +6,7 @@
 
 use crate::{LinearAxis, Machine};
 use geom::{Arc, Vec2, Vec3, angle_between};
+use program::Rule;
 use program::{Diagnostic, Feed, Spindle, Tool};
 use serde::Serialize;
 
@@ -122,11 +123,11 @@ impl<'a> Limits<'a> {
         let (rule, message) = if uv.abs().max_element() > most + ROUNDING {
             let message =
                 format!("U{:.4} V{:.4} mm: the travel is {most} mm either way", uv.x, uv.y);
-            ("uv-limit", message)
+            (Rule::UvLimit, message)
         } else if taper > wire.taper_max + ROUNDING {
             let most = wire.taper_max;
             (
-                "taper-limit",
+                Rule::TaperLimit,
                 format!("the wire leans by {taper:.4}°: the machine by {most}° at most"),
             )
         } else {
@@ -146,7 +147,9 @@ impl<'a> Limits<'a> {
             return Ok(());
         }
         let message = format!("the program has {points} points, the control holds {most}");
-        Err(Diagnostic::error("memory", message).help("a coarser step, or several programs").into())
+        Err(Diagnostic::error(Rule::Memory, message)
+            .help("a coarser step, or several programs")
+            .into())
     }
 
     /// Checks the speed of the spindle.
@@ -163,7 +166,7 @@ impl<'a> Limits<'a> {
         }
         let message = format!("spindle speed {speed} 1/min");
         let help = format!("the spindle turns at {} to {} 1/min", range.min, range.max);
-        Err(Diagnostic::error("spindle-range", message).help(help).line(line).into())
+        Err(Diagnostic::error(Rule::SpindleRange, message).help(help).line(line).into())
     }
 
     /// Checks the feed of a cut, with the spindle as it turns. How fast a feed in inverse time is
@@ -185,7 +188,7 @@ impl<'a> Limits<'a> {
         }
         let message = format!("feed {speed} mm/min");
         let help = format!("the machine feeds at most {most} mm/min (feed_max)");
-        Err(Diagnostic::error("feed-range", message).help(help).line(line).into())
+        Err(Diagnostic::error(Rule::FeedRange, message).help(help).line(line).into())
     }
 
     /// Checks what is known of a tool against what the magazine takes.
@@ -205,7 +208,7 @@ impl<'a> Limits<'a> {
                 .or_else(|| too_much("length", tool.length, range.max_length))
         };
         fault.map_or(Ok(()), |message| {
-            Err(Diagnostic::error("tool-range", message).line(line).into())
+            Err(Diagnostic::error(Rule::ToolRange, message).line(line).into())
         })
     }
 
@@ -226,7 +229,7 @@ impl<'a> Limits<'a> {
             );
             let help = "lower the clearance planes in the CAM system where only retracts go that far; else divide the work, or take a larger \
                             machine";
-            Some(Diagnostic::error("axis-limit", message).help(help).line(line))
+            Some(Diagnostic::error(Rule::AxisLimit, message).help(help).line(line))
         })
     }
 
@@ -264,5 +267,5 @@ fn held(
     let message =
         format!("{letter} at {at:.4}{unit} is {beyond:.4}{unit} beyond its limit of {limit}{unit}");
     let help = format!("{letter} travels from {min}{unit} to {max}{unit} in machine coordinates");
-    Err(Diagnostic::error("axis-limit", message).help(help).line(line).into())
+    Err(Diagnostic::error(Rule::AxisLimit, message).help(help).line(line).into())
 }

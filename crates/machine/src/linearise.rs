@@ -13,7 +13,7 @@
 
 use crate::{Machine, Mount, RotaryAxis};
 use geom::Vec3;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// Tool tip and rotary positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl Machine {
         if !sound {
             let message =
                 format!("keeping the tool tip within {tolerance} mm takes {chords} points");
-            return Err(Diagnostic::error("linearisation", message)
+            return Err(Diagnostic::error(Rule::Linearisation, message)
                 .help("allow a larger tolerance, or split the move in the source")
                 .into());
         }

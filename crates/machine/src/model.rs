@@ -2,7 +2,7 @@
 
 use crate::sheet::wrong_option;
 use geom::Vec3;
-use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove};
+use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove, Rule};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -542,7 +542,7 @@ impl Machine {
     pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Box<Diagnostic>> {
         let file = self.file.clone();
         let refused = |message: String, help: String| {
-            Box::new(Diagnostic::error("option", message).help(help).file(file))
+            Box::new(Diagnostic::error(Rule::Option, message).help(help).file(file))
         };
         let names = self.options.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         let Some(option) = self.options.get_mut(name) else {
@@ -583,7 +583,7 @@ impl Machine {
     /// Nothing where it is safe.
     pub fn unsafe_position(&self, to: &MachineMove) -> Option<Diagnostic> {
         let found = |message: String, help: String| {
-            Some(Diagnostic::error("machine-position", message).help(help))
+            Some(Diagnostic::error(Rule::MachinePosition, message).help(help))
         };
         let step = self.resolution() / 2.0;
         for (i, name) in ["X", "Y", "Z"].into_iter().enumerate() {

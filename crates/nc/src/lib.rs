@@ -84,7 +84,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Outcome<Settings> {
         let message = format!("there is no virtual control `{}`", machine.reader);
         let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
         let place = &machine.reader_place;
-        return Err(Diagnostic::error("reader", message)
+        return Err(Diagnostic::error(Rule::Reader, message)
             .help(format!("`reader` is one of {names}"))
             .file(&place.file)
             .line(place.line)
@@ -266,7 +266,7 @@ fn axes_at(machine: &Machine, position: &Position, length: Option<f64>) -> Outco
         Orientation::Rotary { tool_center: false, .. } => Ok(position.point),
         Orientation::Axis(_) if machine.rotary.is_empty() => Ok(position.point),
         Orientation::Axis(_) => Err(refuse(
-            "machine-frame",
+            Rule::MachineFrame,
             "only the control knows the positions of the axes along a vector or in a tilted plane",
             "draw it in the frame of the part: without `--frame machine`",
         )),
@@ -316,7 +316,7 @@ pub fn read_by(
         };
         let message =
             format!("the blocks behind `/`, which the operator may switch off, are read as {done}");
-        let mut found = Diagnostic::warning("block-skip", message).help(other).line(line);
+        let mut found = Diagnostic::warning(Rule::BlockSkip, message).help(other).line(line);
         found.count += u32::try_from(optional.count()).unwrap_or(u32::MAX - 1);
         conversion.warnings.push(found);
     }
@@ -328,7 +328,7 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
     const HELP: &str = "the file may be cut off: send it once more";
     if text.trim_ascii().is_empty() {
         let message = "the file is empty";
-        return Some(Diagnostic::error("program-end", message).help(HELP));
+        return Some(Diagnostic::error(Rule::ProgramEnd, message).help(HELP));
     }
     let ending = dialect.ending();
     let has_percent = !matches!(dialect, Dialect::Klartext | Dialect::Grbl | Dialect::Marlin)
@@ -337,7 +337,7 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
     if percent_signs == 1 {
         let message = "`%` opens the program, and none closes it";
         let found = if ended { Diagnostic::warning } else { Diagnostic::error };
-        return Some(found("program-end", message).help(HELP));
+        return Some(found(Rule::ProgramEnd, message).help(HELP));
     }
     if ended || ending == Ending::CodeOrPercent && percent_signs > 1 {
         return None;
@@ -345,9 +345,9 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
     let message = "the program has no end: M30 or M2 is missing";
     match ending {
         Ending::Code | Ending::CodeOrPercent => {
-            Some(Diagnostic::error("program-end", message).help(HELP))
+            Some(Diagnostic::error(Rule::ProgramEnd, message).help(HELP))
         }
-        Ending::CodeOrText => Some(Diagnostic::warning("program-end", message).help(HELP)),
+        Ending::CodeOrText => Some(Diagnostic::warning(Rule::ProgramEnd, message).help(HELP)),
         Ending::Text => None,
     }
 }
@@ -492,7 +492,7 @@ impl<'a> Conversion<'a> {
         if self.count >= MOST_RECORDS {
             let message = format!("the program makes more than {MOST_RECORDS} records");
             let help = "it may loop without end; if not, read it in parts";
-            return Err(refuse("program-length", message, help));
+            return Err(refuse(Rule::ProgramLength, message, help));
         }
         let position = event.action.position().copied();
         within_reach(&event.action)?;
@@ -511,7 +511,7 @@ impl<'a> Conversion<'a> {
             }
             Action::Line(position) if self.starts_a_picture(&position) => {
                 let message = "where the tool comes from is not known: it is drawn from the end of this block on";
-                self.warn_once(line, Diagnostic::warning("unknown-start", message));
+                self.warn_once(line, Diagnostic::warning(Rule::UnknownStart, message));
                 let pose = self.partial_pose(&position);
                 if let Some(pose) = pose.complete() {
                     self.arrive(line, Op::Rapid(pose))?;
@@ -681,12 +681,12 @@ impl<'a> Conversion<'a> {
         }
         let message = "rotary axes turn in the cut, and a parameter of the control decides which axes F in mm/min counts: it is \
                        taken as the speed of the tool tip";
-        if let Some(known) = self.warnings.iter_mut().find(|found| found.rule == "rotary-feed") {
+        if let Some(known) = self.warnings.iter_mut().find(|found| found.rule == Rule::RotaryFeed) {
             known.count = known.count.saturating_add(1);
             return;
         }
         let help = "set `rotary_feed` in [settings] of the machine file (FANUC: parameter 1408#0)";
-        self.warnings.push(Diagnostic::warning("rotary-feed", message).help(help).line(line));
+        self.warnings.push(Diagnostic::warning(Rule::RotaryFeed, message).help(help).line(line));
     }
 
     fn push(&mut self, line: u32, op: Op) {
@@ -724,7 +724,7 @@ impl<'a> Conversion<'a> {
         if tool.offset.replace(active.is_some()).is_some_and(|before| before != active.is_some()) {
             let message = "the tool cuts with its length offset and without: a tool with two lengths cannot be converted";
             let help = "post the parts with the offset and without as programs of their own";
-            return Err(refuse("length-offset", message, help));
+            return Err(refuse(Rule::LengthOffset, message, help));
         }
         match active {
             None if self.bare.insert(register) => {
@@ -733,7 +733,7 @@ impl<'a> Conversion<'a> {
                      {register}"
                 );
                 let help = "where the source counts on a length of 0, set that of the tool to 0 at the new machine";
-                let found = Diagnostic::warning("length-offset", message).help(help);
+                let found = Diagnostic::warning(Rule::LengthOffset, message).help(help);
                 self.warnings.push(found.line(line));
             }
             Some(active) if active != register => {
@@ -742,7 +742,7 @@ impl<'a> Conversion<'a> {
                      place of {register}"
                 );
                 let help = "check that the tool is meant to have that length";
-                let found = Diagnostic::warning("length-offset", message).help(help);
+                let found = Diagnostic::warning(Rule::LengthOffset, message).help(help);
                 self.warnings.push(found.line(line));
                 self.correct(active);
             }
@@ -845,7 +845,7 @@ impl<'a> Conversion<'a> {
                 let message =
                     format!("T{} is called, and stands for \"{name}\" already", tool.number);
                 let help = "give the tools that are called by name their numbers in a tool table";
-                return Err(refuse("tool-number", message, help));
+                return Err(refuse(Rule::ToolNumber, message, help));
             }
             return Ok(());
         }
@@ -868,7 +868,7 @@ impl<'a> Conversion<'a> {
         self.named.insert(tool.name.clone(), tool.number);
         let message =
             format!("tool \"{}\" is called by its name, and T{} here", tool.name, tool.number);
-        let found = Diagnostic::warning("tool-number", message);
+        let found = Diagnostic::warning(Rule::ToolNumber, message);
         self.warnings.push(found.help("a tool table gives it a number of your own").line(line));
         Ok(())
     }
@@ -881,7 +881,7 @@ impl<'a> Conversion<'a> {
             let message =
                 "axes are sent home while Z is not: the machine decides their path past the part";
             let help = "send Z home before";
-            return Err(refuse("home", message, help));
+            return Err(refuse(Rule::Home, message, help));
         }
         if axes.contains(Axes::Z) && self.tool_at.pose().is_some() {
             self.home.get_or_insert(line);
@@ -921,14 +921,14 @@ impl<'a> Conversion<'a> {
                     "Z goes to {z} mm in machine coordinates{below}: where that is in the work is \
                      not known"
                 );
-                return Err(refuse("machine-position", message, machine::SAFE_HEIGHT_HELP));
+                return Err(refuse(Rule::MachinePosition, message, machine::SAFE_HEIGHT_HELP));
             }
             if safe.is_none() {
                 let message = format!(
                     "Z {z} mm in machine coordinates is taken for clear of the part: no safe height \
                      of the machine is known that the program was written for"
                 );
-                let found = Diagnostic::warning("machine-position", message);
+                let found = Diagnostic::warning(Rule::MachinePosition, message);
                 self.warnings.push(found.help(machine::SAFE_HEIGHT_HELP).line(line));
             }
         }
@@ -943,7 +943,7 @@ impl<'a> Conversion<'a> {
                 "length offset {register} is called, and no tool before it: the new program writes the register \
                  of the tool that it calls"
             );
-            let found = Diagnostic::warning("length-offset", message);
+            let found = Diagnostic::warning(Rule::LengthOffset, message);
             let help = "name the tool in the source, or set `default_tool` to the one that has this register";
             self.warnings.push(found.help(help).line(line));
             return Ok(());
@@ -960,7 +960,7 @@ impl<'a> Conversion<'a> {
                 "length offset {register} where {own} is the tool's: a tool with two lengths cannot be converted"
             );
             let help = "post the parts with each offset as programs of their own";
-            return Err(refuse("length-offset", message, help));
+            return Err(refuse(Rule::LengthOffset, message, help));
         }
         self.correct(register);
         Ok(())
@@ -1016,7 +1016,7 @@ fn unknown(what: &str, pose: &PartialPose) -> Box<Diagnostic> {
         false => format!("{what} is not known in {}", missing.join(", ")),
     };
     let help = "go there by rapid with every axis named, before";
-    refuse("unknown-position", message, help)
+    refuse(Rule::UnknownPosition, message, help)
 }
 
 /// An error; its line is that of the record at hand.
@@ -1044,9 +1044,13 @@ fn within_reach(action: &Action) -> Outcome {
     }
     let message =
         format!("{what} {number:e}{unit}: more than {most}{unit} is beyond every machine");
-    Err(refuse("out-of-range", message, "check the numbers of the block, and the unit (G20, G21)"))
+    Err(refuse(
+        Rule::OutOfRange,
+        message,
+        "check the numbers of the block, and the unit (G20, G21)",
+    ))
 }
 
-fn refuse(rule: &'static str, message: impl Into<String>, help: &str) -> Box<Diagnostic> {
+fn refuse(rule: Rule, message: impl Into<String>, help: &str) -> Box<Diagnostic> {
     Diagnostic::error(rule, message).help(help).into()
 }

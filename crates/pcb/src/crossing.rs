@@ -5,6 +5,7 @@
 
 use crate::report::{Outcome, fault};
 use geom::{Element, Vec2};
+use program::Rule;
 
 /// How far a chord may leave its arc, mm.
 const CHORD: f64 = 0.0005;
@@ -66,7 +67,7 @@ pub(crate) fn self_crossing(elements: &[Element], tolerance: f64) -> Outcome<Opt
 #[cold]
 fn too_complex() -> crate::report::Fault {
     let help = "divide it into several regions";
-    fault("region-too-complex", "this contour is too tangled to be looked through", help)
+    fault(Rule::RegionTooComplex, "this contour is too tangled to be looked through", help)
 }
 
 /// Where two lines cross, each end of each being more than `tolerance` off the other.

@@ -6,6 +6,7 @@ use crate::gerber::{Image, Object};
 use crate::report::{Fault, Outcome, fault};
 use geom::Element;
 use geom::region::{Index, Region, RegionError};
+use program::Rule;
 
 /// What is no farther than this from a point that the tool reaches counts as reached, mm.
 const SLIVER: f64 = 0.005;
@@ -51,7 +52,7 @@ pub fn engraved(image: &Image, width: f64) -> Outcome<Engraving> {
 fn outlined(region: &Region, width: f64) -> Outcome<Engraving> {
     if !(width > 0.0 && width.is_finite()) {
         let message = format!("a tool {width} mm wide cannot engrave");
-        return Err(fault("tool-width", message, "give the width of the cut in mm, above 0"));
+        return Err(fault(Rule::ToolWidth, message, "give the width of the cut in mm, above 0"));
     }
     let middles = region.offset(-width / 2.0).map_err(too_large)?;
     let reached = middles.offset(width / 2.0 + SLIVER).map_err(too_large)?;
@@ -67,5 +68,5 @@ fn chained(lines: impl Iterator<Item = Element>) -> Vec<Path> {
 }
 
 fn too_large(error: RegionError) -> Fault {
-    fault("too-much", error.to_string(), "engrave it in parts")
+    fault(Rule::TooMuch, error.to_string(), "engrave it in parts")
 }

@@ -1,8 +1,8 @@
 //! Where a reader's findings gather: errors up to a cap, warnings one for each cause.
 
 use memchr::{memchr2, memrchr2};
-use program::Diagnostic;
 pub(crate) use program::Outcome;
+use program::{Diagnostic, Rule};
 
 /// After so many errors the reader gives up: what follows is mostly the echo of the first.
 const MAX_ERRORS: usize = 20;
@@ -12,7 +12,7 @@ pub(crate) type Fault = Box<Diagnostic>;
 
 /// An error of `rule`; its caller adds the location.
 #[cold]
-pub(crate) fn fault(rule: &'static str, message: impl Into<String>, help: &str) -> Fault {
+pub(crate) fn fault(rule: Rule, message: impl Into<String>, help: &str) -> Fault {
     Diagnostic::error(rule, message).help(help).into()
 }
 
@@ -55,13 +55,7 @@ impl<'a> Report<'a> {
     /// Adds a warning at `location`; one that was given before only counts. What is the same says the
     /// message.
     #[cold]
-    pub(crate) fn warn(
-        &mut self,
-        location: Location,
-        rule: &'static str,
-        message: &str,
-        help: &str,
-    ) {
+    pub(crate) fn warn(&mut self, location: Location, rule: Rule, message: &str, help: &str) {
         let known = |d: &&mut Diagnostic| d.rule == rule && d.message == message;
         match self.warnings.iter_mut().find(known) {
             Some(known) => known.count = known.count.saturating_add(1),

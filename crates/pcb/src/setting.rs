@@ -2,6 +2,7 @@
 
 use crate::report::{Outcome, fault};
 use crate::{Cutter, Tool};
+use program::Rule;
 
 /// The longest length that is taken, mm.
 const LONGEST: f64 = 1000.0;
@@ -18,7 +19,7 @@ pub(crate) fn length(what: &str, mm: f64) -> Outcome {
         return Ok(());
     }
     let help = format!("give a length above 0 and up to {LONGEST} mm");
-    Err(fault("length", format!("{what} is {mm} mm"), &help))
+    Err(fault(Rule::Length, format!("{what} is {mm} mm"), &help))
 }
 
 /// Refuses what is no step down to `depth` mm, or takes too many steps.
@@ -31,7 +32,7 @@ pub fn step(what: &str, mm: f64, depth: f64) -> Outcome {
         return Ok(());
     }
     let message = format!("{what} is {mm} mm: more than {MOST_LEVELS} levels down to {depth} mm");
-    Err(fault("step", message, &format!("give a step of at least {} mm", depth / MOST_LEVELS)))
+    Err(fault(Rule::Step, message, &format!("give a step of at least {} mm", depth / MOST_LEVELS)))
 }
 
 /// The diameter of a tool that cuts upright walls, mm.
@@ -46,7 +47,7 @@ pub(crate) fn diameter(tool: &Tool) -> Outcome<f64> {
         }
         Cutter::Vee { .. } => {
             let message = format!("`{}` is a V-bit, which cuts no upright wall", tool.name);
-            Err(fault("cutter", message, "take an end mill"))
+            Err(fault(Rule::Cutter, message, "take an end mill"))
         }
     }
 }

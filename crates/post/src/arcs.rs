@@ -7,7 +7,7 @@ use crate::template::bit;
 use crate::walk::{Cut, Done, PLANE_XY, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
 use machine::Plane;
-use program::{ArcTo, Diagnostic};
+use program::{ArcTo, Diagnostic, Rule};
 use std::f64::consts::{PI, TAU};
 
 /// A plane of arcs: its code, its axes (first, second, normal) as places in X, Y, Z, and the words of
@@ -97,7 +97,7 @@ impl Walk<'_> {
         if self.compensation_pending() {
             let help = "a straight move in the plane between CUTCOM and the arc";
             let message = "cutter compensation cannot be switched on an arc";
-            return Err(refuse("compensation", message).help(help).into());
+            return Err(refuse(Rule::Compensation, message).help(help).into());
         }
         self.same_taper("an arc")?;
         self.end_cycle()?;
@@ -105,7 +105,7 @@ impl Walk<'_> {
         self.settle(&to.end, stop, true)?;
         self.look_ahead_in_cuts()?;
         let Some(here) = self.position.known() else {
-            return Err(refuse("arc-start", "an arc from a position that is not known"));
+            return Err(refuse(Rule::ArcStart, "an arc from a position that is not known"));
         };
         // The reader holds arcs against its own tolerance; here the ends are what they are.
         let arc = to.circle.arc(here.point(), to.end.point(), f64::MAX).map_err(no_arc)?;
@@ -440,7 +440,7 @@ impl Walk<'_> {
             let point = if line == lines && until == 1.0 { arc.end } else { arc.at(t) };
             self.line_to(&to.end.at(point)?, stop)?;
         }
-        self.findings.lowered("arc-lowered", what, self.line, lines);
+        self.findings.lowered(Rule::ArcLowered, what, self.line, lines);
         Ok(())
     }
 
@@ -456,7 +456,7 @@ impl Walk<'_> {
         let message = format!(
             "{what} over a surface that the control finds: the machine takes this one in parts only"
         );
-        Err(refuse("surface", message).help(LEVEL_FIRST).into())
+        Err(refuse(Rule::Surface, message).help(LEVEL_FIRST).into())
     }
 
     /// Whether an end of the arc counts from a surface.
@@ -534,5 +534,5 @@ fn no_arc(error: ArcError) -> Box<Diagnostic> {
         ArcError::NoRadius => "it starts on its own axis".to_string(),
         ArcError::OffTheCircle(a, b) => format!("its ends have the radii {a} mm and {b} mm"),
     };
-    refuse("arc", format!("this is no arc: {why}"))
+    refuse(Rule::Arc, format!("this is no arc: {why}"))
 }

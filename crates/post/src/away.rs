@@ -7,7 +7,7 @@ use crate::walk::{Done, Walk, motion, refuse};
 use geom::Vec3;
 use machine::plan::Step;
 use machine::{Mount, RotaryAxis};
-use program::{Coolant, Diagnostic, Op, Pose, Record, Spindle};
+use program::{Coolant, Diagnostic, Op, Pose, Record, Rule, Spindle};
 
 /// How far beside the tool axis a cut may end that has drawn the tool back along it, mm.
 const ALONG: f64 = 1e-3;
@@ -26,7 +26,7 @@ impl Walk<'_> {
         if self.stands_in_cut() {
             let message = "the program stops for somebody while the tool is in the cut: the spindle would have to stop there, too";
             let help = "draw the tool back in the toolpath before STOP or OPSTOP, by rapid or along the tool axis";
-            return Err(refuse("stop-in-cut", message).help(help).into());
+            return Err(refuse(Rule::StopInCut, message).help(help).into());
         }
         self.uncompensated("a stop")?;
         if let Some(back) = self.position.known() {
@@ -83,7 +83,7 @@ impl Walk<'_> {
                 "the tool is in the cut where the source {where_to}: it goes out along its axis from there"
             );
             let help = "retract in the toolpath; a file that ends in a cut may be cut off";
-            let found = Diagnostic::warning("ends-in-cut", message).help(help);
+            let found = Diagnostic::warning(Rule::EndsInCut, message).help(help);
             self.findings.warn(found.line(self.line));
         }
     }

@@ -9,7 +9,7 @@
 use crate::walk::{Done, refuse};
 use geom::{Element, Turn, Vec2, turn_angle};
 use machine::{CompensationStart, Machine};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A move below this goes nowhere in the plane, mm.
@@ -123,7 +123,7 @@ impl Contour {
             Stage::Entering(_) => {
                 let message = "cutter compensation is switched on and off with no contour between";
                 let help = "leave CUTCOM out, or a cut in the plane between";
-                return Err(refuse("compensation-entry", message).help(help).into());
+                return Err(refuse(Rule::CompensationEntry, message).help(help).into());
             }
             Stage::Following(last) => last,
         };
@@ -162,7 +162,7 @@ impl Contour {
                 shown(self.radius()),
                 shown(element.radius().unwrap_or_default())
             );
-            return Err(refuse("compensation-arc-radius", message).help(SMALLER).into());
+            return Err(refuse(Rule::CompensationArcRadius, message).help(SMALLER).into());
         };
         Ok(Beside { element, parallel, from: 0.0, leads_in: false, before: None })
     }
@@ -178,7 +178,7 @@ impl Contour {
                 shown(radius)
             );
             let help = "a longer way to the contour";
-            return Err(refuse("compensation-entry", message).help(help).into());
+            return Err(refuse(Rule::CompensationEntry, message).help(help).into());
         }
         Ok(Beside { leads_in: true, ..self.beside(element)? })
     }
@@ -205,7 +205,7 @@ impl Contour {
         if rapid && self.start == CompensationStart::OwnEnd {
             let message = "before a rapid this control leaves an outer corner of a contour on a straight way, which cuts it";
             let help = "a cut in place of the rapid, or cutter compensation switched off before it";
-            return Err(refuse("compensation-gouge", message).help(help).into());
+            return Err(refuse(Rule::CompensationGouge, message).help(help).into());
         }
         self.around(&last, next, turn.abs())?;
         self.complete(&last, 1.0, Some(&next.element))
@@ -223,7 +223,7 @@ impl Contour {
                 shown(self.joint)
             );
             let help = "an arc in place of the short lines, or a smaller tool";
-            return Err(refuse("compensation-gouge", message).help(help).into());
+            return Err(refuse(Rule::CompensationGouge, message).help(help).into());
         }
         if self.start == CompensationStart::NextStart {
             return Ok(());
@@ -247,7 +247,7 @@ impl Contour {
                      would cut the corner"
                 );
                 let help = "put them before or behind the contour";
-                Err(refuse("compensation-look-ahead", message).help(help).into())
+                Err(refuse(Rule::CompensationLookAhead, message).help(help).into())
             }
             _ => Ok(()),
         }
@@ -348,7 +348,7 @@ impl Contour {
              corner, or elements shorter than the tool needs",
             shown(self.radius())
         );
-        refuse("compensation-inner-corner", message).help(SMALLER).into()
+        refuse(Rule::CompensationInnerCorner, message).help(SMALLER).into()
     }
 }
 
@@ -361,7 +361,7 @@ fn gouge(way: &str, at: &str) -> Box<Diagnostic> {
     let message = format!("{way} with cutter compensation cuts into it");
     let help =
         format!("{at} on the tool's side of the contour, farther from it than the tool's radius");
-    refuse("compensation-gouge", message).help(help).into()
+    refuse(Rule::CompensationGouge, message).help(help).into()
 }
 
 /// Places of a way, both ends among them.

@@ -8,7 +8,7 @@ use crate::walk::{Cut, Done, Walk, motion, refuse};
 use geom::Vec3;
 use machine::CycleName;
 use program::lowering::{self, HoleMove};
-use program::{Cycle, CycleKind, Diagnostic, Feed, Pose, Spindle};
+use program::{Cycle, CycleKind, Diagnostic, Feed, Pose, Rule, Spindle};
 
 /// The cycle that the control has on: its definition and the levels it was given, mm along Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,13 +30,16 @@ impl Walk<'_> {
     /// One hole of the source.
     pub(crate) fn hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
         let Some(cycle) = self.wanted.cycle() else {
-            return Err(refuse("cycle-missing", "a hole without a cycle"));
+            return Err(refuse(Rule::NoCycle, "a hole without a cycle"));
         };
         check(cycle)?;
         self.not_from_probe("a hole")?;
         self.uncompensated("a hole")?;
         if self.compensation_pending() {
-            return Err(refuse("compensation", "cutter compensation cannot be switched at a hole"));
+            return Err(refuse(
+                Rule::Compensation,
+                "cutter compensation cannot be switched at a hole",
+            ));
         }
         if let CycleKind::Tap { left, .. } = cycle.kind {
             self.turns_into(left)?;
@@ -56,13 +59,13 @@ impl Walk<'_> {
                 let message =
                     "the control has no tapping cycle for this hole, and moves cannot tap";
                 let help = "tap by hand or mill the thread, or take a machine whose control has a tapping cycle";
-                Err(refuse("cycle-tap", message).help(help).into())
+                Err(refuse(Rule::CycleTap, message).help(help).into())
             }
             None if cycle.kind.withdrawal().is_some() => {
                 let message = "no cycle of this machine's file goes aside from the wall of a hole, and moves \
                                cannot stop the spindle in position";
                 let help = "bore without going aside (G86), or post the hole for another machine";
-                Err(refuse("cycle-bore", message).help(help).into())
+                Err(refuse(Rule::CycleBore, message).help(help).into())
             }
             None => self.expand(cycle, pose, stop),
         }
@@ -78,7 +81,7 @@ impl Walk<'_> {
             _ => return Ok(()),
         };
         let message = format!("a {hand}-hand thread is tapped while the spindle turns {way}");
-        Err(refuse("cycle-tap", message).help(help).into())
+        Err(refuse(Rule::CycleTap, message).help(help).into())
     }
 
     /// The block of the control's own cycle, where it has one that says everything.
@@ -235,7 +238,7 @@ impl Walk<'_> {
             w.set(WordName::Peck, peck);
             if cycle.first_peck.is_some_and(|first| first > peck) && pecks.len() > 1 {
                 let message = "the first peck is made as small as the further ones";
-                self.findings.warn(Diagnostic::warning("peck", message).line(self.line));
+                self.findings.warn(Diagnostic::warning(Rule::Peck, message).line(self.line));
             }
         }
         let speed = match self.wanted.spindle() {
@@ -277,7 +280,7 @@ impl Walk<'_> {
     /// One hole as moves.
     fn expand(&mut self, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
         let Some(moves) = lowering::hole(cycle, pose, self.wanted.spindle()) else {
-            return Err(refuse("cycle-peck", "the pecks of this cycle have no end"));
+            return Err(refuse(Rule::CyclePeck, "the pecks of this cycle have no end"));
         };
         self.settle(pose, stop, false)?;
         self.go_over(&pose.lifted(cycle.retract)?, stop)?;
@@ -299,7 +302,7 @@ impl Walk<'_> {
         });
         self.wanted.set_spindle(spindle);
         self.wanted.set_feed(feed);
-        self.findings.lowered("cycle-expanded", "holes of cycles", self.line, count);
+        self.findings.lowered(Rule::CycleExpanded, "holes of cycles", self.line, count);
         done
     }
 }
@@ -319,5 +322,5 @@ fn check(cycle: &Cycle) -> Done {
         "a hole {} mm deep, from {} mm above it and back to {} mm, dwell {} s",
         cycle.depth, cycle.clearance, cycle.retract, cycle.dwell
     );
-    Err(refuse("cycle", message))
+    Err(refuse(Rule::Cycle, message))
 }

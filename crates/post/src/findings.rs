@@ -1,7 +1,7 @@
 //! What the writer has to say about its work: each kind of lowering once, with how often and from
 //! which source line on.
 
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// More errors than this nobody reads.
 const MOST_ERRORS: usize = 20;
@@ -16,7 +16,7 @@ pub(crate) struct Findings {
 
 /// One kind of lowering.
 struct Lowered {
-    rule: &'static str,
+    rule: Rule,
     what: &'static str,
     line: u32,
     count: usize,
@@ -49,13 +49,7 @@ impl Findings {
     }
 
     /// Counts one thing (`what`, in the plural) that was written as so many lines.
-    pub(crate) fn lowered(
-        &mut self,
-        rule: &'static str,
-        what: &'static str,
-        line: u32,
-        blocks: usize,
-    ) {
+    pub(crate) fn lowered(&mut self, rule: Rule, what: &'static str, line: u32, blocks: usize) {
         match self.lowered.iter_mut().find(|l| l.rule == rule && l.what == what) {
             Some(known) => {
                 known.count += 1;

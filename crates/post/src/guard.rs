@@ -13,7 +13,7 @@ use minijinja::machinery::{Span, parse};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Rest, Value, ValueOrKwargs};
 use minijinja::{Environment, Error, ErrorKind, State, filters, functions, tests};
-use program::nearest;
+use program::{Rule, nearest};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -115,7 +115,7 @@ fn range(lower: i32, upper: Option<i32>, step: Option<i32>) -> Result<Value, Err
 
 /// What a template says that it may not: the rule, what is wrong, the way out, and the bytes it stands at.
 pub(crate) struct Refusal {
-    pub(crate) rule: &'static str,
+    pub(crate) rule: Rule,
     pub(crate) message: String,
     pub(crate) help: String,
     pub(crate) place: Range<usize>,
@@ -140,7 +140,7 @@ pub(crate) fn check(text: &str, machine: &Machine) -> Result<(), Fault> {
         let message = format!("{} bytes are too much for a block with statements", text.len());
         let help = format!("at most {LONGEST} bytes");
         let place = 0..text.len();
-        let refusal = Refusal { rule: "template-output", message, help, place };
+        let refusal = Refusal { rule: Rule::TemplateOutput, message, help, place };
         return Err(Fault::Refused(Box::new(refusal)));
     }
     let parsed = parse(text, "", SyntaxConfig::default()).map_err(Fault::Syntax)?;
@@ -199,7 +199,7 @@ impl Guard<'_> {
             }
             Stmt::Set(set) => {
                 let message = "`set` stands in a loop, where a value could grow with each turn";
-                refuse("template-output", message, "put `set` before the loop", set.span())
+                refuse(Rule::TemplateOutput, message, "put `set` before the loop", set.span())
             }
             Stmt::WithBlock(other) => unknown(other.span()),
             Stmt::SetBlock(other) => unknown(other.span()),
@@ -221,7 +221,7 @@ impl Guard<'_> {
         let Some(kind) = over.filter(|_| !turns.recursive) else {
             let message = "this is nothing that a loop can go over";
             let help = "`for` goes over `program.tools` or `range(...)`, and is not recursive";
-            return refuse("template", message, help, turns.iter.span());
+            return refuse(Rule::Template, message, help, turns.iter.span());
         };
         let outside = self.names.clone();
         self.name(&turns.target, (kind, 1))?;
@@ -237,12 +237,12 @@ impl Guard<'_> {
     /// Gives a value a name. One that is named in two branches is what both have in common.
     fn name(&mut self, target: &Expr, (kind, parts): Shape) -> Held<()> {
         let Expr::Var(name) = target else {
-            return refuse("template", "a single name is needed here", "", target.span());
+            return refuse(Rule::Template, "a single name is needed here", "", target.span());
         };
         let taken = GROUPS.contains(&name.id) || ["text", "loop", "range"].contains(&name.id);
         if taken || WordName::named(name.id).is_some() {
             let message = format!("`{}` has a meaning already", name.id);
-            return refuse("template-name", message, "take another name", name.span());
+            return refuse(Rule::TemplateName, message, "take another name", name.span());
         }
         let (before, most) = self.names.get(name.id).copied().unwrap_or((kind, parts));
         let kind = if before == kind { kind } else { Kind::Text };
@@ -260,7 +260,7 @@ impl Guard<'_> {
         let span = expression.span();
         self.depth += 1;
         if self.depth > DEEPEST {
-            return refuse("template-output", "this nests too deep", "write it in pieces", span);
+            return refuse(Rule::TemplateOutput, "this nests too deep", "write it in pieces", span);
         }
         let shape = self.nested(expression, span)?;
         self.depth -= 1;
@@ -351,10 +351,10 @@ impl Guard<'_> {
             Expr::Filter(filter) => self.filter(filter, span),
             Expr::Test(test) => self.test(test, span),
             Expr::Call(_) => {
-                refuse("template-name", "there are no functions but `range` of a loop", "", span)
+                refuse(Rule::TemplateName, "there are no functions but `range` of a loop", "", span)
             }
             Expr::List(_) | Expr::Tuple(_) | Expr::Map(_) => {
-                refuse("template", "a list stands only behind `in`", "", span)
+                refuse(Rule::Template, "a list stands only behind `in`", "", span)
             }
         }
     }
@@ -378,7 +378,7 @@ impl Guard<'_> {
             ("loop", "first" | "last") => Kind::Text,
             ("loop", _) => {
                 let help = "it has index, index0, revindex, revindex0, length, first, last";
-                return refuse("template-name", "`loop` has no such member", help, span);
+                return refuse(Rule::TemplateName, "`loop` has no such member", help, span);
             }
             ("options", name) => match self.machine.options.get(name) {
                 Some(OptionValue::Number(_)) => Kind::Number,
@@ -396,7 +396,7 @@ impl Guard<'_> {
         let message = format!("`{sign}` needs a number here");
         let help = "`|float` or `|int` makes a number of a text, `~` puts texts together; a word has \
                     no value in a template";
-        refuse("template-output", message, help, expression.span())
+        refuse(Rule::TemplateOutput, message, help, expression.span())
     }
 
     fn filter(&mut self, filter: &Filter, span: Span) -> Held<Shape> {
@@ -435,7 +435,7 @@ impl Guard<'_> {
     fn arguments(&mut self, arguments: &[CallArg], span: Span) -> Held<Vec<Shape>> {
         let shapes = arguments.iter().map(|argument| match argument {
             CallArg::Pos(value) => self.plain(value),
-            _ => refuse("template", "arguments are given without names", "", span),
+            _ => refuse(Rule::Template, "arguments are given without names", "", span),
         });
         shapes.collect()
     }
@@ -448,11 +448,11 @@ fn written((kind, parts): Shape, span: Span) -> Held<Shape> {
         Kind::Tools => "`{% for t in program.tools %}` goes over them",
         Kind::Number | Kind::Text if parts > MOST_PARTS => {
             let message = format!("this is put together from more than {MOST_PARTS} values");
-            return refuse("template-output", message, "write it in pieces", span);
+            return refuse(Rule::TemplateOutput, message, "write it in pieces", span);
         }
         Kind::Number | Kind::Text => return Ok((kind, parts)),
     };
-    refuse("template", "this has members and is no text", help, span)
+    refuse(Rule::Template, "this has members and is no text", help, span)
 }
 
 /// One or the other of two values.
@@ -474,22 +474,22 @@ fn known(what: &str, name: &str, table: &[(&str, Install)], span: Span) -> Held<
     let near = if near.is_empty() { near } else { format!("did you mean {near}? ") };
     let all: Vec<_> = names().collect();
     let help = format!("{near}there are {}", all.join(", "));
-    refuse("template-name", format!("there is no {what} `{name}`"), help, span)
+    refuse(Rule::TemplateName, format!("there is no {what} `{name}`"), help, span)
 }
 
 fn unknown<T>(span: Span) -> Held<T> {
-    refuse("template", "templates have no such statement", STATEMENTS, span)
+    refuse(Rule::Template, "templates have no such statement", STATEMENTS, span)
 }
 
 /// The way out where a statement is not one of these.
 pub(crate) const STATEMENTS: &str = "the statements are `if`, `for` and `set`";
 
 fn no_members<T>(span: Span) -> Held<T> {
-    refuse("template-name", "this has no such member", "`toolpost explain` lists them", span)
+    refuse(Rule::TemplateName, "this has no such member", "`toolpost explain` lists them", span)
 }
 
 fn refuse<T>(
-    rule: &'static str,
+    rule: Rule,
     message: impl Into<String>,
     help: impl Into<String>,
     span: Span,

@@ -46,7 +46,7 @@ mod writer;
 pub use catalogue::{Kind, Parameter, catalogue};
 
 use machine::Machine;
-use program::{Diagnostic, Program, Severity};
+use program::{Diagnostic, Program, Rule, Severity};
 
 /// A written program.
 #[derive(Clone, Debug, Default)]
@@ -89,7 +89,7 @@ fn write_moves(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagn
         "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",
         lines.len()
     );
-    output.warnings.push(Diagnostic::warning("sweep", message).line(lines[0]));
+    output.warnings.push(Diagnostic::warning(Rule::Sweep, message).line(lines[0]));
     Ok(output)
 }
 

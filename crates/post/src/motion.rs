@@ -9,7 +9,7 @@ use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
 use machine::linearise::Stance;
 use machine::plan::{NEAR, Step};
-use program::{Diagnostic, Feed, Pose};
+use program::{Diagnostic, Feed, Pose, Rule};
 
 /// How far beyond everything the source touches the tool is drawn back before it turns, mm.
 const CLEAR: f64 = 5.0;
@@ -28,7 +28,7 @@ impl Walk<'_> {
         if !self.position.is_located() {
             let message =
                 "the first move of the tool is a cut: it starts from wherever the tool is";
-            self.findings.warn(Diagnostic::warning("feed-approach", message).line(self.line));
+            self.findings.warn(Diagnostic::warning(Rule::FeedApproach, message).line(self.line));
             self.position.locate();
         }
         self.position.begin_cut(self.position.distance(pose.point()));
@@ -42,14 +42,14 @@ impl Walk<'_> {
             );
             let help = "tool axes in the source that go round the pole by more than 2° or through it, or positions of the rotary axes \
                         in place of vectors (`simultaneous = \"tool-center-angles\"` in [orientation] of the machine file)";
-            return Err(refuse("pole-way", message).help(help).into());
+            return Err(refuse(Rule::PoleWay, message).help(help).into());
         }
         if self.vector_strays(pose.axis())
             && let Some(here) = self.position.pose()
         {
             let degrees = self.vector_start(here.axis(), pose.axis())?;
             let message = "the travel of the rotary axes ends in this cut: the tool is drawn back, turned and brought in again";
-            self.findings.warn(Diagnostic::warning("rewind", message).line(self.line));
+            self.findings.warn(Diagnostic::warning(Rule::Rewind, message).line(self.line));
             self.rewind(degrees, stop)?;
         }
         self.line_to(pose, stop)
@@ -94,7 +94,7 @@ impl Walk<'_> {
             let message =
                 "along the vector of this cut a rotary axis leaves its travel, wherever it starts";
             let help = "make the steps of the tool axis smaller, or turn the part on the table";
-            Box::new(Diagnostic::error("axis-limit", message).help(help))
+            Box::new(Diagnostic::error(Rule::AxisLimit, message).help(help))
         })
     }
 
@@ -183,7 +183,7 @@ impl Walk<'_> {
             "the rotary axes swing the tool axis {swing:.2}° off its way in this cut, {SWING}° are allowed"
         );
         let help = "make the steps of the tool axis smaller in the source";
-        Err(refuse("axis-swing", message).help(help).into())
+        Err(refuse(Rule::AxisSwing, message).help(help).into())
     }
 
     /// The place half way of a cut in which an axis that may be counted modulo 360° turns by half a turn: which way it
@@ -222,7 +222,7 @@ impl Walk<'_> {
             here = there;
         }
         if count > 1 {
-            self.findings.lowered("linearised", "moves with turning axes", self.line, count);
+            self.findings.lowered(Rule::Linearised, "moves with turning axes", self.line, count);
         }
         Ok(())
     }

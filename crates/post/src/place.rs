@@ -9,7 +9,7 @@ use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};
 use minijinja::value::Value;
-use program::{Diagnostic, Op, Pose, Record};
+use program::{Diagnostic, Op, Pose, Record, Rule};
 
 /// How the control counts at the moment.
 #[derive(Clone, Debug)]
@@ -216,7 +216,7 @@ impl Walk<'_> {
         }
         if cut && self.position.is_located() {
             let help = "begin the operation with a rapid move in the new orientation";
-            let found = refuse("orientation-in-cut", "the plane of work changes in a cut");
+            let found = refuse(Rule::OrientationInCut, "the plane of work changes in a cut");
             return Err(found.help(help).into());
         }
         self.turn(pose.axis(), stop)
@@ -502,7 +502,7 @@ fn unreachable(axis: Vec3) -> Box<Diagnostic> {
         axis.z,
         axis.angle_between(Vec3::Z).to_degrees()
     );
-    refuse("unreachable-orientation", message)
+    refuse(Rule::UnreachableOrientation, message)
 }
 
 /// The word of the rotary axis with that place in the order A, B, C.

@@ -4,7 +4,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
 use machine::{COMMA, CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
-use program::{Diagnostic, Findings, nearest};
+use program::{Diagnostic, Findings, Rule, nearest};
 
 /// The first parameter that can keep a height: those below are a subroutine's own (LinuxCNC, "Numbered Parameters": #1 to
 /// #30).
@@ -30,38 +30,39 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         };
         let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
         let message = format!("no word is called `{name}`");
-        errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
+        errors.push(at(Diagnostic::error(Rule::Word, message).help(help), &word.place));
     }
     for (word, block) in templates.words() {
         let name = word.name();
         if word == WordName::SafeHeight && machine.safe_height.is_none() {
             let message = "the block retracts in machine coordinates, and the machine's file gives no safe \
                            height";
-            let error = Diagnostic::error("safe-height", message).help(machine::SAFE_HEIGHT_HELP);
+            let error =
+                Diagnostic::error(Rule::SafeHeight, message).help(machine::SAFE_HEIGHT_HELP);
             errors.push(error.file(block.file.clone()).line(block.line));
             continue;
         }
         if word == WordName::RapidFeed && machine.linear.iter().all(|axis| axis.rapid.is_none()) {
             let message = "the block goes by rapid at an F, and the machine's file does not say how fast an axis is";
             let help = "add `rapid` in mm/min below [axes]: `X = { rapid = 6000 }`";
-            let error = Diagnostic::error("rapid-feed", message).help(help);
+            let error = Diagnostic::error(Rule::RapidFeed, message).help(help);
             errors.push(error.file(block.file.clone()).line(block.line));
             continue;
         }
         let Some(known) = machine.words.get(name) else {
             let message = format!("the block places `{name}`, and [words.{name}] is missing");
-            let error = Diagnostic::error("word", message);
+            let error = Diagnostic::error(Rule::Word, message);
             errors.push(error.file(block.file.clone()).line(block.line));
             continue;
         };
         let lacks = |code: &&str| !known.codes.contains_key(*code) && needs(machine, word, code);
         for code in word.codes().filter(lacks) {
             let message = format!("[words.{name}] has no text for `{code}` in its `codes`");
-            errors.push(at(Diagnostic::error("word", message), &known.place));
+            errors.push(at(Diagnostic::error(Rule::Word, message), &known.place));
         }
         for code in known.codes.keys().filter(|code| word.codes().all(|known| known != **code)) {
             let message = format!("[words.{name}] has no code called `{code}`");
-            errors.push(at(Diagnostic::error("word", message), &known.place));
+            errors.push(at(Diagnostic::error(Rule::Word, message), &known.place));
         }
     }
     let axes = [WordName::X, WordName::Y, WordName::Z];
@@ -70,7 +71,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
     for word in axes {
         if !machine.words.contains_key(word.name()) {
             let message = format!("[words.{}] is missing", word.name());
-            errors.push(file(Diagnostic::error("word", message)));
+            errors.push(file(Diagnostic::error(Rule::Word, message)));
         }
     }
     if let Some(word) = machine.words.get(WordName::Height.name()) {
@@ -84,7 +85,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
                 "`decimals = 0`, no `scale`, `first` from {FIRST_KEPT} to `max`: subroutines keep what they \
                  are called with below"
             );
-            errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
+            errors.push(at(Diagnostic::error(Rule::Word, message).help(help), &word.place));
         }
     }
     if let Some(sign) =
@@ -93,12 +94,12 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         let message =
             format!("`{sign}` in `comment_signs` may end a comment or be a command in it");
         let help = format!("signs that no control misreads are `{HARMLESS_SIGNS}{COMMA}`");
-        errors.push(file(Diagnostic::error("comment-signs", message).help(help)));
+        errors.push(file(Diagnostic::error(Rule::CommentSigns, message).help(help)));
     }
     for (block, why) in promised(machine) {
         if !templates.has(block) {
             let message = format!("the block `{}` is missing: {why}", block.name());
-            errors.push(file(Diagnostic::error("missing-block", message)));
+            errors.push(file(Diagnostic::error(Rule::MissingBlock, message)));
         }
     }
     let can = &machine.capabilities;
@@ -107,7 +108,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         for word in words.iter().filter(|word| !templates.places(block, **word)) {
             let message = format!("the block `{}` lacks `{}`: {why}", block.name(), word.name());
             let help = format!("put {{{{{}}}}} where the control reads it", word.name());
-            let error = Diagnostic::error("missing-word", message).help(help);
+            let error = Diagnostic::error(Rule::MissingWord, message).help(help);
             errors.push(error.file(text.file.clone()).line(text.line));
         }
     };
@@ -163,7 +164,7 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
             if !templates.has(block) || (switches && machine.leaves_out(block.name())) {
                 let message = format!("the block `{}` is missing: {why}", block.name());
                 let help = format!("write the block, or let `{key}` be what the blocks can write");
-                let error = Diagnostic::error("missing-block", message).help(help);
+                let error = Diagnostic::error(Rule::MissingBlock, message).help(help);
                 errors.push(error.file(machine.file.clone()));
             }
         }
@@ -192,7 +193,7 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
                 if mode == OrientationMode::Vectors {
                     help += "; a control that takes no vectors is given \"tool-center-angles\"";
                 }
-                let error = Diagnostic::error("missing-word", message).help(help);
+                let error = Diagnostic::error(Rule::MissingWord, message).help(help);
                 errors.push(error.file(text.file.clone()).line(text.line));
             }
         }
@@ -202,7 +203,7 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
         if let (OrientationMode::TiltedPlane, Some(text), false) = (mode, tilt, tilts) {
             let message = format!("the block `plane_tilt` says no angle of the plane: {why}");
             let help = "put {{RX}} {{RY}} {{RZ}}, {{SPA}} {{SPB}} {{SPC}} or {{E1}} {{E2}} {{E3}} where the control reads them";
-            let error = Diagnostic::error("missing-word", message).help(help);
+            let error = Diagnostic::error(Rule::MissingWord, message).help(help);
             errors.push(error.file(text.file.clone()).line(text.line));
         }
     }

@@ -13,7 +13,7 @@ use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::Stance;
 use machine::plan::Step;
 use machine::{Mount, Unsaid};
-use program::{Diagnostic, Feed, Pose};
+use program::{Diagnostic, Feed, Pose, Rule};
 
 /// Part of the corridor that is used, and of the angle by which the tool axis may be off its way: the rest is for the
 /// rounding of words.
@@ -108,7 +108,7 @@ impl Walk<'_> {
                            tool off its line near the part";
             let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is \
                         1), or a set-up in which the tool stands along Z of the machine";
-            return Err(refuse("rapid-path", message).help(help).into());
+            return Err(refuse(Rule::RapidPath, message).help(help).into());
         }
         self.rapid_at_once(pose, stop)
     }
@@ -250,7 +250,7 @@ impl Walk<'_> {
             let message = "the tilted tool has to go out along its axis before Z goes home, and each axis of the machine goes \
                            at its own speed by rapid";
             let help = RAPID_PATH_HELP;
-            return Err(refuse("rapid-path", message).help(help).into());
+            return Err(refuse(Rule::RapidPath, message).help(help).into());
         }
         self.rapid_out(&outside)
     }
@@ -284,14 +284,16 @@ impl Walk<'_> {
         let hangs = if rise < -LEVEL { -rise } else { 0.0 };
         let Some(length) = self.tool_length().or((hangs == 0.0).then_some(0.0)) else {
             let message = "the tool points down, and how far it hangs there nobody says: its length is missing";
-            return Err(refuse("tool-length", message).help(Unsaid::ToolLength.way_out()).into());
+            return Err(refuse(Rule::ToolLength, message)
+                .help(Unsaid::ToolLength.way_out())
+                .into());
         };
         let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
         let below = self.cut_reach(up) + clearance + hangs * length - pose.point().dot(up);
         if below > 0.0 && hangs > NEARLY_DOWN {
             let message = "the tool points down along Z of the machine: from home it comes to no place beside the part";
             let help = "another set-up, in which it points to the side or up";
-            return Err(refuse("rapid-path", message).help(help).into());
+            return Err(refuse(Rule::RapidPath, message).help(help).into());
         }
         Ok(below)
     }
@@ -323,7 +325,7 @@ impl Walk<'_> {
                      all cuts: so far up do the rotary axes bring the part"
                 );
                 let help = "a shorter tool, a part nearer to the rotary axes, or the `safe_height` and `work_zero` that the machine has";
-                return Err(refuse("home-height", message).help(help).into());
+                return Err(refuse(Rule::HomeHeight, message).help(help).into());
             }
         }
         Ok(())
@@ -390,7 +392,7 @@ impl Walk<'_> {
         self.position.go_to(*pose);
         let message =
             "rapids while axes turn are written in pieces, so that the tool goes straight";
-        self.findings.warn(Diagnostic::warning("rapid-path", message).line(self.line));
+        self.findings.warn(Diagnostic::warning(Rule::RapidPath, message).line(self.line));
         Ok(())
     }
 
@@ -413,7 +415,7 @@ impl Walk<'_> {
                 "`high_feed` (mm/min) in [settings] gives them a feed of their own; {RAPID_PATH_HELP}"
             ),
         };
-        let mut found = Diagnostic::warning("rapid-path", message).help(help).line(line);
+        let mut found = Diagnostic::warning(Rule::RapidPath, message).help(help).line(line);
         found.count = count;
         Some(found)
     }
@@ -423,7 +425,7 @@ impl Walk<'_> {
             let message = "a rapid near the part, where each axis of the machine goes at its own speed, and no feed is known \
                            by which it could be written instead";
             let help = format!("`high_feed` (mm/min) in [settings] says one; {RAPID_PATH_HELP}");
-            return Err(refuse("rapid-path", message).help(help).into());
+            return Err(refuse(Rule::RapidPath, message).help(help).into());
         };
         let by_feed = &mut self.by_feed;
         by_feed.count = by_feed.count.saturating_add(1);

@@ -3,7 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::walk::{Done, Walk, refuse};
-use program::{Auxiliary, Diagnostic, Input, Output, OutputValue, Until};
+use program::{Auxiliary, Diagnostic, Input, Output, OutputValue, Rule, Until};
 
 /// Entries of the code word `output`.
 mod switch {
@@ -78,7 +78,7 @@ impl Walk<'_> {
         if input.until != Until::Read {
             if self.writer.rounded(WordName::Timeout, input.timeout) <= 0.0 {
                 let message = format!("a wait of {} s for an input, written as 0", input.timeout);
-                return Err(refuse("input", message).help("make it longer").into());
+                return Err(refuse(Rule::Input, message).help("make it longer").into());
             }
             self.writer.set(WordName::Timeout, input.timeout);
         }
@@ -91,13 +91,13 @@ impl Walk<'_> {
         let Auxiliary { number, values } = *function;
         if self.machine.leaves_out(BlockName::Auxiliary.name()) {
             let message = format!("M{number} of the source is left out: `auxiliary` is empty");
-            self.findings.warn(Diagnostic::warning("auxiliary", message).line(self.line));
+            self.findings.warn(Diagnostic::warning(Rule::Auxiliary, message).line(self.line));
             return Ok(());
         }
         if self.machine.clamps(number).is_some() {
             let message = format!("M{number} works a clamp of a rotary axis on this machine");
             let help = "leave it out: the clamps are opened and closed where the axes turn";
-            return Err(refuse("auxiliary", message).help(help).into());
+            return Err(refuse(Rule::Auxiliary, message).help(help).into());
         }
         if !self.machine.auxiliary.contains(&number) {
             let message = format!("the machine file has no auxiliary function M{number}");
@@ -105,7 +105,7 @@ impl Walk<'_> {
                 "add {number} to `auxiliary` in the machine file if M{number} means the same there, or set \
                  `auxiliary = \"\"` under [blocks] to leave such functions out"
             );
-            return Err(refuse("auxiliary", message).help(help).into());
+            return Err(refuse(Rule::Auxiliary, message).help(help).into());
         }
         self.end_cycle()?;
         self.writer.set(WordName::M, f64::from(number));
@@ -116,7 +116,7 @@ impl Walk<'_> {
                     "M{number} of the source is called with values, and the control has no words for them"
                 );
                 let help = format!("place {{{{{}}}}} in the block `auxiliary`", word.name());
-                return Err(refuse("auxiliary", message).help(help).into());
+                return Err(refuse(Rule::Auxiliary, message).help(help).into());
             }
             self.writer.set(word, value);
         }
@@ -133,6 +133,6 @@ impl Walk<'_> {
         }
         let message = format!("the control has no text for `{name}` of `{}`", word.name());
         let help = format!("`{name}` in [words.{}] of its file, or another program", word.name());
-        Err(refuse("unsupported", message).help(help).into())
+        Err(refuse(Rule::Unsupported, message).help(help).into())
     }
 }

@@ -4,14 +4,14 @@ use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{POSITION, Words, bit};
 use crate::walk::{Cut, Done, Walk, refuse};
-use program::{Feed, Probe, Thread};
+use program::{Feed, Probe, Rule, Thread};
 
 impl Walk<'_> {
     /// A thread of the source.
     pub(crate) fn thread(&mut self, thread: &Thread, stop: &Stop) -> Done {
         if self.writer.rounded(WordName::Lead, thread.pitch()) <= 0.0 {
             return Err(refuse(
-                "thread",
+                Rule::Thread,
                 format!("a thread with a pitch of {} mm", thread.pitch()),
             ));
         }
@@ -30,7 +30,7 @@ impl Walk<'_> {
             }
             if self.writer.changes(bit(word)) {
                 let message = format!("the control cuts no thread along {}", word.name());
-                return Err(refuse("thread", message));
+                return Err(refuse(Rule::Thread, message));
             }
             self.writer.unset(bit(word));
         }
@@ -55,23 +55,23 @@ impl Walk<'_> {
                 (false, false) => "the control stops where its probe has touched nothing",
             };
             let help = "another probing move, if the program does not depend on it";
-            return Err(refuse("probe", message).help(help).into());
+            return Err(refuse(Rule::Probe, message).help(help).into());
         }
         let Some(Feed::PerMinute(_)) = self.wanted.feed() else {
-            return Err(refuse("probe", "a probing move needs a feed in mm/min"));
+            return Err(refuse(Rule::Probe, "a probing move needs a feed in mm/min"));
         };
         self.sync_spindle()?;
         self.sync_coolant()?;
         let axis = probe.end.axis();
         let length = self.position.distance(probe.end.point());
         if self.position.pose().is_none_or(|here| !same(here.axis(), axis)) {
-            return Err(refuse("probe", "the tool axis turns in a probing move"));
+            return Err(refuse(Rule::Probe, "the tool axis turns in a probing move"));
         }
         self.aim_at(probe.end.point(), axis, None);
         let words = [WordName::X, WordName::Y, WordName::Z].map(bit);
         let moved: Words = words.into_iter().filter(|word| self.writer.changes(*word)).sum();
         if moved == 0 {
-            return Err(refuse("probe", "a probing move that goes nowhere"));
+            return Err(refuse(Rule::Probe, "a probing move that goes nowhere"));
         }
         self.check_limits()?;
         self.say_feed(length, 1, Cut::Straight)?;
@@ -94,13 +94,13 @@ impl Walk<'_> {
             let message =
                 format!("{what} from a place, or with a tool axis, that blocks do not say");
             let help = "a rapid to its start before it";
-            return Err(refuse("single-block", message).help(help).into());
+            return Err(refuse(Rule::SingleBlock, message).help(help).into());
         }
         self.uncompensated(what)?;
         self.look_ahead(false)?;
         if self.compensation_pending() {
             let message = format!("cutter compensation cannot be switched at {what}");
-            return Err(refuse("compensation", message));
+            return Err(refuse(Rule::Compensation, message));
         }
         self.end_cycle()
     }
@@ -109,7 +109,7 @@ impl Walk<'_> {
     pub(crate) fn not_from_probe(&self, what: &str) -> Done {
         if self.position.is_probed() {
             let message = format!("{what} from where the probe has answered, which is not known");
-            return Err(refuse("probe", message).help("a rapid before it").into());
+            return Err(refuse(Rule::Probe, message).help("a rapid before it").into());
         }
         Ok(())
     }

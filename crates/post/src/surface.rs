@@ -3,7 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::walk::{Done, Walk, refuse};
 use geom::{Vec2, Vec3};
-use program::Surface;
+use program::{Rule, Surface};
 
 /// Parts of kept heights are written to so many decimals: a height of a metre is then right to a micrometre.
 pub(crate) const DECIMALS: usize = 6;
@@ -33,7 +33,7 @@ impl<'a> Walk<'a> {
             self.wanted.set_surface(surface);
             return Ok(());
         };
-        Err(refuse("surface", message).help(LEVEL_FIRST).into())
+        Err(refuse(Rule::Surface, message).help(LEVEL_FIRST).into())
     }
 
     /// # Errors
@@ -42,7 +42,7 @@ impl<'a> Walk<'a> {
         match self.wanted.surface() {
             None => Ok(()),
             Some(_) => {
-                Err(refuse("surface", format!("{what} over a surface that the control finds")))
+                Err(refuse(Rule::Surface, format!("{what} over a surface that the control finds")))
             }
         }
     }

@@ -12,7 +12,7 @@ use deunicode::deunicode;
 use machine::{Block, Format, Machine, OptionValue, OrientationMode};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
-use program::{Diagnostic, Op, Program, Record, Tool, nearest};
+use program::{Diagnostic, Op, Program, Record, Rule, Tool, nearest};
 use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
@@ -441,7 +441,7 @@ pub(crate) fn program_number(
         "`program_number` is {said}: numbers of programs that everybody may use are 1 to 7999"
     );
     let help = "write `program_number = \"O1234\"`, or leave it out";
-    let found = Diagnostic::error("program-number", message).help(help);
+    let found = Diagnostic::error(Rule::ProgramNumber, message).help(help);
     Err(Box::new(found.file(machine.file.clone())))
 }
 
@@ -530,7 +530,7 @@ impl<'a> Templates<'a> {
                 } else {
                     format!("put it between `{comment_start}` and `{comment_end}`")
                 };
-                let found = Diagnostic::error("template-comment", message).help(help);
+                let found = Diagnostic::error(Rule::TemplateComment, message).help(help);
                 let place = template.block.text.find(variable).unwrap_or(0);
                 return Err(Box::new(at(template.block, found, place, place + variable.len())));
             }
@@ -589,9 +589,11 @@ impl<'a> Templates<'a> {
         let names = WordName::TABLE.iter().chain(VARIABLES).map(|row| row.name);
         let near = nearest(name, names.chain(options.iter().map(String::as_str)));
         let help = if near.is_empty() { String::new() } else { format!("did you mean {near}? ") };
-        let error =
-            Diagnostic::error("template-name", format!("no word or variable is called `{name}`"))
-                .help(help + "`toolpost explain` lists them");
+        let error = Diagnostic::error(
+            Rule::TemplateName,
+            format!("no word or variable is called `{name}`"),
+        )
+        .help(help + "`toolpost explain` lists them");
         let place = block.text.find(name).unwrap_or(0);
         Err(Box::new(at(block, error, place, place + name.len())))
     }
@@ -648,7 +650,7 @@ impl<'a> Templates<'a> {
 fn unknown_block(name: &str, block: &Block) -> Box<Diagnostic> {
     let near = nearest(name, BlockName::TABLE.iter().map(|row| row.name));
     let help = if near.is_empty() { String::new() } else { format!("did you mean {near}? ") };
-    let error = Diagnostic::error("template-block", format!("no block is called `{name}`"))
+    let error = Diagnostic::error(Rule::TemplateBlock, format!("no block is called `{name}`"))
         .help(help + "`toolpost explain` lists them")
         .file(block.file.clone())
         .line(block.line);
@@ -666,7 +668,7 @@ fn fault(block: &Block, error: &minijinja::Error) -> Box<Diagnostic> {
     }
     let source = std::error::Error::source(error).map(|s| format!(": {s}")).unwrap_or_default();
     let found =
-        Diagnostic::error("template", format!("the template cannot run: {message}{source}"));
+        Diagnostic::error(Rule::Template, format!("the template cannot run: {message}{source}"));
     let range = error.range().unwrap_or(0..0);
     Box::new(at(block, found, range.start, range.end))
 }

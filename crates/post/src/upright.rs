@@ -3,7 +3,7 @@
 use crate::place::same;
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Program, Rule};
 
 /// So many machines with rotary axes are named.
 const NAMED: usize = 4;
@@ -37,7 +37,7 @@ pub(crate) fn check(program: &Program, machine: &Machine) -> Result<(), Box<Diag
         "choose a machine with rotary axes, such as {}; or post the operations alone whose tool stands upright",
         with_rotary_axes(machine)
     );
-    let found = Diagnostic::error("unreachable-orientation", message).help(help).line(first);
+    let found = Diagnostic::error(Rule::UnreachableOrientation, message).help(help).line(first);
     Err(Box::new(Diagnostic { count, ..found }))
 }
 

@@ -4,7 +4,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::walk::{Done, Walk, refuse};
 use geom::{Vec2, Vec3};
 use machine::Machine;
-use program::{Diagnostic, Pose, Program};
+use program::{Diagnostic, Pose, Program, Rule};
 
 /// How far from the lower plane a pose may be, mm: rounding of its source.
 const FLAT: f64 = 1e-6;
@@ -47,12 +47,14 @@ impl Walk<'_> {
         let told = !self.machine.leaves_out(BlockName::ThreadWire.name());
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
         if wire.threaded {
-            return Err(refuse("wire-threaded", "the wire is threaded already"));
+            return Err(refuse(Rule::WireThreaded, "the wire is threaded already"));
         }
         (wire.threaded, wire.openings) = (true, wire.openings + 1);
         if wire.openings > 1 && !told {
             let message = "a second opening: the control cannot be told to thread the wire again";
-            return Err(refuse("one-opening", message).help("a program for each opening").into());
+            return Err(refuse(Rule::OneOpening, message)
+                .help("a program for each opening")
+                .into());
         }
         self.block(BlockName::ThreadWire)
     }
@@ -63,10 +65,10 @@ impl Walk<'_> {
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
         if wire.active_taper != 0.0 {
             let message = "the end of the opening while the control leans the wire";
-            return Err(refuse("taper-active", message));
+            return Err(refuse(Rule::TaperActive, message));
         }
         if !std::mem::take(&mut wire.threaded) {
-            return Err(refuse("wire-missing", "the wire is cut, and none is threaded"));
+            return Err(refuse(Rule::NoWire, "the wire is cut, and none is threaded"));
         }
         self.block(BlockName::CutWire)
     }
@@ -78,13 +80,13 @@ impl Walk<'_> {
         if degrees != 0.0 && !told {
             let message = "the control leans no wire by an angle";
             let help = "a taper that is worked out here, or a machine that leans the wire";
-            return Err(refuse("taper", message).help(help).into());
+            return Err(refuse(Rule::Taper, message).help(help).into());
         }
         if degrees.abs() > wire.machine.taper_max {
             let most = wire.machine.taper_max;
             let message =
                 format!("a taper of {degrees}°: the machine leans the wire by {most}° at most");
-            return Err(refuse("taper-limit", message));
+            return Err(refuse(Rule::TaperLimit, message));
         }
         wire.taper = degrees;
         Ok(())
@@ -112,7 +114,7 @@ impl Walk<'_> {
     pub(crate) fn same_taper(&self, what: &str) -> Done {
         match &self.wire {
             Some(wire) if wire.taper != wire.active_taper => Err(refuse(
-                "taper",
+                Rule::Taper,
                 format!("a taper is switched by a straight cut, not by {what}"),
             )),
             _ => Ok(()),
@@ -125,11 +127,11 @@ impl Walk<'_> {
             Some(wire) if wire.threaded && !cut => {
                 let message =
                     format!("{what} while the wire is threaded: it would go through the part");
-                Err(refuse("wire-threaded", message).help("cut the wire before").into())
+                Err(refuse(Rule::WireThreaded, message).help("cut the wire before").into())
             }
             Some(wire) if !wire.threaded && cut => {
                 let message = format!("{what} before the wire is threaded");
-                Err(refuse("wire-missing", message).help("thread the wire at the start").into())
+                Err(refuse(Rule::NoWire, message).help("thread the wire at the start").into())
             }
             _ => Ok(()),
         }
@@ -140,19 +142,19 @@ impl Walk<'_> {
         if pose.point().z.abs() > FLAT {
             let message = format!("Z{:.4}: a wire crosses the lower plane at Z0", pose.point().z);
             let help = "`toolpost wire` makes the way of a wire from a contour at any height";
-            return Err(refuse("wire-plane", message).help(help).into());
+            return Err(refuse(Rule::WirePlane, message).help(help).into());
         }
         if !wire.leans {
             return Ok(());
         }
         if !self.templates.places(BlockName::Linear, WordName::U) {
-            return Err(refuse("wire-leans", "the wire leans, and the control has no U and V"));
+            return Err(refuse(Rule::WireLeans, "the wire leans, and the control has no U and V"));
         }
         let axis = pose.axis();
         let Some(lean) = wire.machine.lean(axis) else {
             let message = "the wire leans, and the height of the upper plane is not known";
             let help = "`height` in the [wire] table of the machine, or --uv-height for one run";
-            return Err(refuse("wire-height", message).help(help).into());
+            return Err(refuse(Rule::WireHeight, message).help(help).into());
         };
         self.limits.lean(lean, axis, self.line)
     }
@@ -168,5 +170,7 @@ impl Walk<'_> {
 
 fn no_wire() -> Box<Diagnostic> {
     let help = "a machine for wire EDM: one whose file has a [wire] table";
-    refuse("unsupported", "the program threads a wire, and this machine has none").help(help).into()
+    refuse(Rule::Unsupported, "the program threads a wire, and this machine has none")
+        .help(help)
+        .into()
 }

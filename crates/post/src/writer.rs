@@ -5,7 +5,7 @@ use crate::number::Number;
 use crate::surface::{DECIMALS, Part};
 use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit, holds, words_of};
 use machine::Machine;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// How one word is written on this machine.
 enum Form {
@@ -269,7 +269,7 @@ impl Writer {
     pub(crate) fn block(&mut self, block: &Lines) -> Result<(), Box<Diagnostic>> {
         if let Some((word, value)) = self.refused.take() {
             let message = format!("{value} cannot be written as the word `{}`", word.name());
-            return Err(Diagnostic::error("number-range", message).into());
+            return Err(Diagnostic::error(Rule::NumberRange, message).into());
         }
         let mut start = self.text.len();
         let (mut gap, mut full, mut numbered) = (false, false, false);
@@ -413,7 +413,7 @@ impl Writer {
                 line.len(),
                 self.line_length
             );
-            return Err(Diagnostic::error("line-length", message).into());
+            return Err(Diagnostic::error(Rule::LineLength, message).into());
         }
         self.text.extend_from_slice(&self.line_end);
         Ok(())

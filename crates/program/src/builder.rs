@@ -2,7 +2,8 @@
 
 use crate::{
     ArcTo, Auxiliary, Circle, CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Diagnostic,
-    Feed, Input, Op, Output, OutputValue, Pose, Program, Spindle, Tool, Withdrawal, WorkOffset,
+    Feed, Input, Op, Output, OutputValue, Pose, Program, Rule, Spindle, Tool, Withdrawal,
+    WorkOffset,
 };
 use geom::{Arc, ArcError, Vec3};
 
@@ -91,12 +92,12 @@ impl Builder {
         let center = point("the centre", center)?;
         let normal = direction("the normal", normal)?;
         let Some(start) = self.tip else {
-            let found = Diagnostic::error("no-start", "an arc, but from nowhere");
+            let found = Diagnostic::error(Rule::NoStart, "an arc, but from nowhere");
             return Err(found.help("go to its start before").into());
         };
         if turns > MOST_TURNS {
             let message = format!("an arc of {turns} full turns more; {MOST_TURNS} are the most");
-            return Err(Diagnostic::error("number", message).into());
+            return Err(Diagnostic::error(Rule::Number, message).into());
         }
         let end = point("the end", end)?;
         Arc::new(start, end, center, normal, turns, RADIUS_TOLERANCE)
@@ -135,7 +136,7 @@ impl Builder {
     /// `number` for tool 0, or a length that is none.
     pub fn tool(&mut self, tool: Tool) -> Done {
         if tool.number == 0 {
-            let found = Diagnostic::error("number", "tool 0 is no tool");
+            let found = Diagnostic::error(Rule::Number, "tool 0 is no tool");
             return Err(found.help("tools count from 1").into());
         }
         for (what, length) in [("diameter", tool.diameter), ("length", tool.length)] {
@@ -185,7 +186,7 @@ impl Builder {
     pub fn compensated_path(&mut self, path: CompensatedPath) -> Done {
         if self.program.compensated_path.is_some_and(|known| known != path) {
             let message = "compensation with coordinates of the tool's centre and of the contour in one program";
-            let found = Diagnostic::error("compensated-path", message);
+            let found = Diagnostic::error(Rule::CompensatedPath, message);
             return Err(found.help("build two programs").into());
         }
         self.program.compensated_path = Some(path);
@@ -292,7 +293,7 @@ impl Cycle {
             point("aside", aside.to_array())?;
             angle.map_or(Ok(()), |degrees| finite("angle", degrees))?;
             if *aside == Vec3::ZERO {
-                return no("aside", "`fine-bore` and `back-bore`, and no other, go aside");
+                return no(Rule::Aside, "`fine-bore` and `back-bore`, and no other, go aside");
             }
         }
         finite("retract", self.retract)?;
@@ -306,13 +307,13 @@ impl Cycle {
         self.peck.map_or(Ok(()), |peck| positive("peck", peck))?;
         if self.clearance <= -self.depth || self.retract < self.clearance {
             return no(
-                "no-clear-plane",
+                Rule::NoClearPlane,
                 "the tool feeds from `clearance`, above the bottom, and goes back to `retract`, no lower",
             );
         }
         let pecks = matches!(self.kind, CycleKind::Deep | CycleKind::BreakChip);
         if pecks != (self.peck.is_some() || self.first_peck.is_some()) {
-            return no("peck", "`deep` and `break-chip`, and no other, take a peck");
+            return no(Rule::Peck, "`deep` and `break-chip`, and no other, take a peck");
         }
         if let CycleKind::Tap { pitch, .. } = self.kind {
             positive("pitch", pitch)?;
@@ -324,7 +325,7 @@ impl Cycle {
 fn finite(what: &str, value: f64) -> Done {
     match value.is_finite() {
         true => Ok(()),
-        false => Err(Diagnostic::error("number", format!("{what} is {value}")).into()),
+        false => Err(Diagnostic::error(Rule::Number, format!("{what} is {value}")).into()),
     }
 }
 
@@ -333,7 +334,7 @@ fn positive(what: &str, value: f64) -> Done {
     match value > 0.0 {
         true => Ok(()),
         false => {
-            let found = Diagnostic::error("number", format!("{what} is {value}"));
+            let found = Diagnostic::error(Rule::Number, format!("{what} is {value}"));
             Err(found.help("it must be greater than 0").into())
         }
     }
@@ -343,7 +344,7 @@ fn point(what: &str, value: [f64; 3]) -> Result<Vec3, Box<Diagnostic>> {
     let [x, y, z] = value;
     match Vec3::from_array(value) {
         point if point.is_finite() => Ok(point),
-        _ => Err(Diagnostic::error("number", format!("{what} is ({x}, {y}, {z})")).into()),
+        _ => Err(Diagnostic::error(Rule::Number, format!("{what} is ({x}, {y}, {z})")).into()),
     }
 }
 
@@ -352,7 +353,7 @@ fn direction(what: &str, value: [f64; 3]) -> Result<Vec3, Box<Diagnostic>> {
     let [x, y, z] = value;
     geom::direction(Vec3::from_array(value)).ok_or_else(|| {
         let message = format!("{what} is ({x}, {y}, {z}), which has no direction");
-        Diagnostic::error("zero-vector", message).into()
+        Diagnostic::error(Rule::ZeroVector, message).into()
     })
 }
 
@@ -365,7 +366,7 @@ fn no_arc(error: &ArcError) -> Box<Diagnostic> {
             format!("the arc starts {start:.4} mm from the centre, but ends {end:.4} mm from it")
         }
     };
-    Diagnostic::error("off-the-circle", message).into()
+    Diagnostic::error(Rule::OffTheCircle, message).into()
 }
 
 #[cfg(test)]

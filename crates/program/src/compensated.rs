@@ -1,6 +1,6 @@
 //! Which path the coordinates of a program are where cutter compensation is on.
 
-use crate::{Compensation, Diagnostic, Op, Pose, Program, Tool};
+use crate::{Compensation, Diagnostic, Op, Pose, Program, Rule, Tool};
 use geom::{Arc, Vec3};
 use std::f64::consts::PI;
 
@@ -246,7 +246,7 @@ fn contradiction(center: &PathEvidence, contour: &PathEvidence) -> Diagnostic {
          and that in line {} (radius {:.3} mm) only a contour",
         center.line, center.radius, center.tool_radius, contour.line, contour.radius
     );
-    Diagnostic::error("compensated-path", message)
+    Diagnostic::error(Rule::CompensatedPath, message)
         .help("write the operations of the CAM system with one setting, or post them apart")
         .line(center.line.max(contour.line))
 }

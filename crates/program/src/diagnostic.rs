@@ -50,13 +50,13 @@ const EXCERPT: usize = 160;
 
 impl Diagnostic {
     /// An error of `rule`, with the way out of the rule.
-    pub fn error(rule: impl Into<Rule>, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Severity::Error, rule.into(), message.into())
+    pub fn error(rule: Rule, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Severity::Error, rule, message.into())
     }
 
     /// A warning of `rule`, with the way out of the rule.
-    pub fn warning(rule: impl Into<Rule>, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::new(Severity::Warning, rule.into(), message.into())
+    pub fn warning(rule: Rule, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Severity::Warning, rule, message.into())
     }
 
     fn new(severity: Severity, rule: Rule, message: String) -> Diagnostic {
@@ -268,12 +268,12 @@ mod tests {
     #[test]
     fn a_number_of_many_digits_is_cut() {
         let digits = "1234567890".repeat(30);
-        let found = Diagnostic::error("path", format!("Q1 is {digits}, not -0.{digits} mm"))
+        let found = Diagnostic::error(Rule::Path, format!("Q1 is {digits}, not -0.{digits} mm"))
             .help(format!("give {digits}"));
         assert_eq!(found.message, "Q1 is 1234567890123456…, not -0.1234567890123456… mm");
         assert_eq!(found.help, "give 1234567890123456…");
         let kept = "at X 1234567890123456789012.5, 2026-11-24";
-        assert_eq!(Diagnostic::warning("path", kept).message, kept);
+        assert_eq!(Diagnostic::warning(Rule::Path, kept).message, kept);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! How texts begin, whoever has saved them.
 
-use crate::Diagnostic;
+use crate::{Diagnostic, Rule};
 
 /// U+FEFF in UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -22,6 +22,6 @@ pub fn is_utf_16(text: &[u8]) -> bool {
 
 /// What is said of a file in UTF-16, which no reader takes.
 pub fn utf_16() -> Diagnostic {
-    Diagnostic::error("encoding", "this file is in UTF-16")
+    Diagnostic::error(Rule::Encoding, "this file is in UTF-16")
         .help("save it as plain text (ASCII, Latin-1 or UTF-8)")
 }

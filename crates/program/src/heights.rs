@@ -1,6 +1,6 @@
 //! How high a surface is, between the places where that is known; and a program as it runs over one.
 
-use crate::{Diagnostic, Op, Pose, Program};
+use crate::{Diagnostic, Op, Pose, Program, Rule};
 use geom::{Vec2, Vec3};
 
 /// Heights on a grid of any spacing. Between its places the surface is bilinear, outside it is as high as at
@@ -33,7 +33,7 @@ impl HeightMap {
         let (columns, rows, heights) = (columns.len(), rows.len(), heights.len());
         let message = format!("{heights} heights on {columns} columns and {rows} rows");
         let help = "one at each place of two columns and two rows at least, that rise";
-        Err(Diagnostic::error("height-map", message).help(help).into())
+        Err(Diagnostic::error(Rule::HeightMap, message).help(help).into())
     }
 
     /// Height of the surface, mm.

@@ -1,6 +1,6 @@
 //! Which tools a program calls by which number.
 
-use crate::{Diagnostic, Op, Program, Tool};
+use crate::{Diagnostic, Op, Program, Rule, Tool};
 use std::collections::HashMap;
 
 /// Two sizes of one tool that differ by less are one, mm.
@@ -26,7 +26,7 @@ impl Program {
                 tool.number
             );
             let new = if is_sure { Diagnostic::error } else { Diagnostic::warning };
-            found.push(new("tool-twice", message).line(record.line));
+            found.push(new(Rule::ToolTwice, message).line(record.line));
         }
         found
     }

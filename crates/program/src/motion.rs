@@ -1,7 +1,7 @@
 //! What motions need beside the pose where they end.
 
 use crate::pose::is_unit;
-use crate::{Axes, Diagnostic, FullPose, NoPose, Pose};
+use crate::{Axes, Diagnostic, FullPose, NoPose, Pose, Rule};
 use geom::{Arc, ArcError, Vec3};
 
 /// An arc or helix from where the tool is.
@@ -77,7 +77,7 @@ impl Thread {
             true => Ok(Thread { end, pitch }),
             false => {
                 let message = format!("a thread with a pitch of {pitch} mm");
-                Err(Diagnostic::error("thread", message).into())
+                Err(Diagnostic::error(Rule::Thread, message).into())
             }
         }
     }

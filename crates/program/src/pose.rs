@@ -1,6 +1,6 @@
 //! Where a tool is: its tip, its axis, and for a robot how far it is turned about that axis.
 
-use crate::Diagnostic;
+use crate::{Diagnostic, Rule};
 use geom::Vec3;
 use std::fmt;
 
@@ -142,7 +142,7 @@ impl From<NoPose> for Box<Diagnostic> {
     fn from(numbers: NoPose) -> Box<Diagnostic> {
         let help =
             "every coordinate must be a finite number of mm, and a tool axis a vector of length 1";
-        Diagnostic::error("no-pose", numbers.to_string()).help(help).into()
+        Diagnostic::error(Rule::NoPose, numbers.to_string()).help(help).into()
     }
 }
 

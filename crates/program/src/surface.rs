@@ -1,6 +1,6 @@
 //! Surfaces that the control finds while the program runs.
 
-use crate::Diagnostic;
+use crate::{Diagnostic, Rule};
 
 /// A surface of which the program knows the places alone: their heights are kept where probing moves find them
 /// ([`crate::Probe::place`]). Between the places it is bilinear; outside it is as high as at the nearest place of the
@@ -39,7 +39,7 @@ impl Surface {
         } else {
             return Ok(Surface { columns, rows, reach, clear });
         };
-        Err(Diagnostic::error("surface", message).into())
+        Err(Diagnostic::error(Rule::Surface, message).into())
     }
 
     /// The same surface, from which poses below Z `clear`, mm, count.

@@ -8,7 +8,7 @@ use crate::place::{Number, Place, Station};
 use crate::state::Difference;
 use control::{Orientation, Position};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Withdrawal};
+use program::{Cycle, CycleKind, Rule, Withdrawal};
 
 /// A hole of the source.
 pub(crate) struct Hole<'a> {
@@ -335,18 +335,18 @@ impl Drilled {
         if !same {
             let message =
                 format!("the cycle is {}, but should be {}", name(kinds.1), name(kinds.0));
-            found.push(("cycle", message));
+            found.push((Rule::Cycle, message));
         }
         let dwell = (self.cycle.dwell - cycle.dwell).abs();
         if dwell.is_nan() || dwell > hole.gauge.allowed.dwell_s {
             let (is, should) = (Number(self.cycle.dwell), Number(cycle.dwell));
-            found.push(("dwell", format!("the cycle dwells {is} s, but should {should} s")));
+            found.push((Rule::Dwell, format!("the cycle dwells {is} s, but should {should} s")));
         }
         if matches!(kinds.0, CycleKind::Deep | CycleKind::BreakChip)
             && same
             && let Err(message) = self.pecks(hole)
         {
-            found.push(("peck", message));
+            found.push((Rule::Peck, message));
         }
         found
     }

@@ -68,7 +68,7 @@ pub use tolerance::{Applied, Tolerances};
 use compensation::resolved;
 use control::Setup;
 use machine::Machine;
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Program, Rule};
 use surfaces::Trial;
 
 /// Runs `text` on the virtual control of `machine` and holds it against `source`.
@@ -105,7 +105,8 @@ pub fn prove_while(
             let message = format!(
                 "blocks behind /{level} and /{other} are switched apart: not each position is proven"
             );
-            let found = Diagnostic::error("block-skip", message).help("use one of them").line(line);
+            let found =
+                Diagnostic::error(Rule::BlockSkip, message).help("use one of them").line(line);
             return refused(source, machine, tolerances, found);
         }
         // The operator may have switched the blocks behind `/` off.
@@ -173,7 +174,7 @@ fn prove_on(
                 events = events.wrapping_add(1);
                 if events.is_multiple_of(EVENTS_AT_ONCE) && !go_on() {
                     let message = "the proof was ended before its end";
-                    return Err(Diagnostic::error("cancelled", message)
+                    return Err(Diagnostic::error(Rule::Cancelled, message)
                         .help("prove it again")
                         .into());
                 }

@@ -7,7 +7,7 @@ use crate::state::{self, Difference};
 use control::{FeedPath, Orientation, Position};
 use geom::Vec3;
 use machine::Machine;
-use program::{Feed, Spindle};
+use program::{Feed, Rule, Spindle};
 
 /// A way of the tip below this, mm, is none: the tool turns about its tip.
 pub(crate) const STANDS: f64 = 1e-6;
@@ -161,7 +161,7 @@ impl Pace {
             return Some(Compared {
                 percent: 0.0,
                 is_slowed: false,
-                difference: Some(("feed", unknown(cut.path))),
+                difference: Some((Rule::Feed, unknown(cut.path))),
             });
         };
         let speed = cut.speed();
@@ -242,7 +242,7 @@ impl Pace {
         Compared {
             percent: (wanted / took - 1.0) * 100.0,
             is_slowed: !is_slow && least > wanted * (1.0 + blur),
-            difference: (is_fast || is_slow).then(|| ("feed", message())),
+            difference: (is_fast || is_slow).then(|| (Rule::Feed, message())),
         }
     }
 }

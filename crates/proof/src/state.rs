@@ -5,7 +5,7 @@ use crate::place::Number;
 use crate::tolerance::Applied;
 use control::{Corners, Dialect, FeedPath};
 use machine::{LengthOffset, Machine, RotaryAxis};
-use program::{Compensation, Coolant, Cycle, Feed, PathMode, Spindle, Tool, WorkOffset};
+use program::{Compensation, Coolant, Cycle, Feed, PathMode, Rule, Spindle, Tool, WorkOffset};
 
 /// What the program has switched on.
 #[derive(Clone, Debug)]
@@ -101,15 +101,15 @@ impl Running {
 }
 
 /// A difference: the rule and what is wrong.
-pub(crate) type Difference = (&'static str, String);
+pub(crate) type Difference = (Rule, String);
 
 /// What must be right on every move to a known place: tool, length offset, work offset.
 pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
     if let Some(tool) = wanted.tool {
         match &running.tool {
-            None => return Some(("tool", format!("{} is not called", named(tool)))),
+            None => return Some((Rule::Tool, format!("{} is not called", named(tool)))),
             Some(other) if !same_tool(tool, other) => {
-                return Some(("tool", format!("{} runs, not {}", named(other), named(tool))));
+                return Some((Rule::Tool, format!("{} runs, not {}", named(other), named(tool))));
             }
             Some(_) => {}
         }
@@ -125,7 +125,10 @@ pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> O
     let shown = |offset: Option<u32>| offset.map_or("none".into(), |n| n.to_string());
     if offset.is_some() && running.length_offset != offset {
         let (found, wanted) = (shown(running.length_offset), shown(offset));
-        return Some(("length-offset", format!("length offset {found} is active, not {wanted}")));
+        return Some((
+            Rule::LengthOffset,
+            format!("length offset {found} is active, not {wanted}"),
+        ));
     }
     work_offset(machine, wanted, running)
 }
@@ -139,7 +142,7 @@ pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> 
             let needed = machine.capabilities.length_offset != LengthOffset::Implicit;
             let message = || "no length offset is active on the way to the tool change".into();
             (needed && running.length_offset.is_none())
-                .then(|| ("length-offset", message()))
+                .then(|| (Rule::LengthOffset, message()))
                 .or_else(|| work_offset(machine, wanted, running))
         }
         _ => set_up(machine, wanted, running),
@@ -168,16 +171,16 @@ fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<
         Some(active) if active != expected => {
             let (n, expected) = (active.number(), expected.number());
             let message = format!("work offset {n} is active, not {expected} (54 is the first)");
-            Some(("work-offset", message))
+            Some((Rule::WorkOffset, message))
         }
         None if wanted.work_offset.is_some() => {
             let expected = expected.number();
             let message = format!("no work offset is named, but should be {expected}");
-            Some(("work-offset", message))
+            Some((Rule::WorkOffset, message))
         }
         None if Dialect::named(&machine.reader).is_some_and(Dialect::may_keep_work_offset) => {
             let message = "no work offset is named: that of the last program may be active";
-            Some(("work-offset", message.into()))
+            Some((Rule::WorkOffset, message.into()))
         }
         _ => None,
     }
@@ -191,24 +194,27 @@ pub(crate) fn spindle_and_coolant(
 ) -> Option<Difference> {
     if !same_spindle(allowed, wanted.spindle, running.spindle) {
         let (is, should) = (spindle(running.spindle), spindle(wanted.spindle));
-        return Some(("spindle", format!("the spindle is {is}, but should be {should}")));
+        return Some((Rule::Spindle, format!("the spindle is {is}, but should be {should}")));
     }
     if running.runs_up > 0.0 {
         let seconds = Number(running.runs_up);
         let message =
             format!("cuts {seconds} s before the spindle has its speed (`dwell` in [spindle])");
-        return Some(("spindle-dwell", message));
+        return Some((Rule::SpindleDwell, message));
     }
     if wanted.surface_speed != running.surface_speed {
         let shown = |speed: Option<f64>| {
             speed.map_or("its own".into(), |speed| format!("that of {} m/min at X", Number(speed)))
         };
         let (is, should) = (shown(running.surface_speed), shown(wanted.surface_speed));
-        return Some(("spindle", format!("the spindle's speed is {is}, but should be {should}")));
+        return Some((
+            Rule::Spindle,
+            format!("the spindle's speed is {is}, but should be {should}"),
+        ));
     }
     (wanted.coolant != running.coolant).then(|| {
         let (is, should) = (coolant(running.coolant), coolant(wanted.coolant));
-        ("coolant", format!("coolant is {is}, but should be {should}"))
+        (Rule::Coolant, format!("coolant is {is}, but should be {should}"))
     })
 }
 
@@ -235,7 +241,7 @@ pub(crate) fn corners(machine: &Machine, running: &Running) -> Option<Difference
          (`path_tolerance` in [options])",
         Number(allowed)
     );
-    Some(("path-tolerance", message))
+    Some((Rule::PathTolerance, message))
 }
 
 /// A rotary axis that turns against its clamp; `turns` says which of A, B and C do.
@@ -250,7 +256,7 @@ pub(crate) fn clamps(machine: &Machine, turns: [bool; 3], running: &Running) -> 
         None => "nothing has opened its clamp",
     };
     let open = axis.clamp.map_or(0, |clamp| clamp.open);
-    Some(("clamp", format!("{} turns, but {state}: M{open} opens it", axis.letter)))
+    Some((Rule::Clamp, format!("{} turns, but {state}: M{open} opens it", axis.letter)))
 }
 
 /// What leans the wire in the cut.
@@ -265,7 +271,7 @@ pub(crate) fn taper(allowed: &Applied, wanted: &Wanted, running: &Running) -> Op
     };
     let message =
         || format!("the control leans the wire {}, but should {}", shown(is), shown(should));
-    (!same).then(|| ("taper", message()))
+    (!same).then(|| (Rule::Taper, message()))
 }
 
 /// Compares a feed with what the source wants, where it is the speed of the tip: by the spindle where one counts a minute
@@ -280,13 +286,14 @@ pub(crate) fn feed(
     let Some(wanted) = wanted else {
         // A wire goes as fast as its generator lets it, where nobody says otherwise.
         if machine.wire.is_some() {
-            return running
-                .map(|feed| ("feed", format!("the feed is {}, but should be none", shown(feed))));
+            return running.map(|feed| {
+                (Rule::Feed, format!("the feed is {}, but should be none", shown(feed)))
+            });
         }
-        return Some(("feed", "the source names no feed".into()));
+        return Some((Rule::Feed, "the source names no feed".into()));
     };
     let Some(running) = running else {
-        return Some(("feed", format!("no feed is set, but should be {}", shown(wanted))));
+        return Some((Rule::Feed, format!("no feed is set, but should be {}", shown(wanted))));
     };
     let speed = speed(spindle);
     let same = match (wanted, running) {
@@ -300,7 +307,7 @@ pub(crate) fn feed(
         (Feed::InverseTime(_), feed) | (_, feed @ Feed::InverseTime(_)) => feed.value() > 0.0,
     };
     (!same).then(|| {
-        ("feed", format!("the feed is {}, but should be {}", shown(running), shown(wanted)))
+        (Rule::Feed, format!("the feed is {}, but should be {}", shown(running), shown(wanted)))
     })
 }
 

@@ -10,7 +10,7 @@ use control::{Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::limits::Travel as Known;
 use machine::{Machine, Unsaid};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// What rounding may add to the position of a rotary axis that a block says, degrees.
 const ROUNDING: f64 = 1e-6;
@@ -146,7 +146,7 @@ impl Travel {
                     );
                     let help = "lower the clearance planes in the CAM system where only retracts go that far; else divide the work, or take a larger \
                             machine";
-                    return Some(Diagnostic::error("axis-limit", message).help(help));
+                    return Some(Diagnostic::error(Rule::AxisLimit, message).help(help));
                 }
                 continue;
             }
@@ -203,5 +203,5 @@ fn beyond(
     let message =
         format!("{letter} at {at:.4}{unit} is {far:.4}{unit} beyond its limit of {limit}{unit}");
     let help = format!("{letter} travels from {low}{unit} to {high}{unit} in machine coordinates");
-    Some(Diagnostic::error("axis-limit", message).help(help))
+    Some(Diagnostic::error(Rule::AxisLimit, message).help(help))
 }

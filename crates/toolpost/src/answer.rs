@@ -119,7 +119,7 @@ fn printable(text: &str) -> String {
 
 /// Whether a program rests on what a finding of this rule says: a unit that was guessed, a rule that was accepted.
 fn is_assumption(rule: Rule) -> bool {
-    rule == Rule::UnknownUnit || proof::ACCEPTABLE.iter().any(|(name, _)| rule == *name)
+    rule == Rule::UnknownUnit || proof::ACCEPTABLE.iter().any(|(acceptable, _)| rule == *acceptable)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use ::glass::order::Effort;
 use ::glass::{cloud, material, source};
 use app::files::{self, Target};
 use app::{Account, Stop, Verdict, Watch};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -44,7 +44,8 @@ fn show(name: &str) -> Result<Answer, Stop> {
 fn library(name: &str) -> Result<&'static str, Stop> {
     ::glass::machine::library(name).ok_or_else(|| {
         let names = LIBRARY.map(|(name, _)| name).join(", ");
-        let found = Diagnostic::error("machine", format!("there is no glass engraver `{name}`"));
+        let found =
+            Diagnostic::error(Rule::Machine, format!("there is no glass engraver `{name}`"));
         found.help(format!("there are: {names}; or give a file ending in .toml")).into()
     })
 }
@@ -58,8 +59,10 @@ fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
         "ply" => Ok(Form::Ply),
         "xyz" | "txt" | "csv" | "cft" | "asc" | "pts" => Ok(Form::List(columns)),
         _ => {
-            let found =
-                Diagnostic::error("form", format!("`.{ending}` is no form of bodies or points"));
+            let found = Diagnostic::error(
+                Rule::Form,
+                format!("`.{ending}` is no form of bodies or points"),
+            );
             let help = "give .stl, .obj or .ply, or a list of points in .xyz, .txt, .csv or .cft";
             Err(found.file(files::name(path)).help(help).into())
         }
@@ -74,7 +77,7 @@ fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
 /// The text of a file that must be UTF-8.
 fn text(path: &Path) -> Result<String, Stop> {
     String::from_utf8(files::text(path)?).map_err(|_| {
-        let found = Diagnostic::error("encoding", "is not UTF-8").file(files::name(path));
+        let found = Diagnostic::error(Rule::Encoding, "is not UTF-8").file(files::name(path));
         found.help("save it as UTF-8").into()
     })
 }
@@ -88,7 +91,7 @@ fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
     let points: Option<Vec<_>> = places.iter().map(|place| cloud::point(*place)).collect();
     let points = points.ok_or_else(|| {
         let found =
-            Diagnostic::error("coordinate", "a point is beyond 2 m").file(files::name(path));
+            Diagnostic::error(Rule::Coordinate, "a point is beyond 2 m").file(files::name(path));
         Stop::from(found.help("lengths are mm"))
     })?;
     let found = cloud::distances(&points, (spacing * 1e3).ceil() as i64);

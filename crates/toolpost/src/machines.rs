@@ -7,7 +7,7 @@ use app::files::{self, Target};
 use app::toolpath::{self, describe};
 use app::{Stop, Verdict, summary};
 use machine::{Machine, library};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -109,7 +109,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
     if name.is_empty() || !name.chars().all(plain) {
         return Err(Diagnostic::error(
-            "machine-name",
+            Rule::MachineName,
             format!("`{name}` is no name for a machine"),
         )
         .help("letters, digits, - and _ make a name; the file is NAME.toml in this folder")
@@ -117,7 +117,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     }
     let path = Path::new(name).with_extension("toml");
     if path.symlink_metadata().is_ok() {
-        return Err(Diagnostic::error("output", "there is such a file already")
+        return Err(Diagnostic::error(Rule::Output, "there is such a file already")
             .file(path.display().to_string())
             .help("give another name, or edit the file that is there")
             .into());
@@ -126,7 +126,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     let text = if is_file {
         let bytes = files::text(Path::new(from))?;
         String::from_utf8(bytes)
-            .map_err(|_| Diagnostic::error("encoding", "this file is not UTF-8").file(from))?
+            .map_err(|_| Diagnostic::error(Rule::Encoding, "this file is not UTF-8").file(from))?
     } else {
         library_text(from)?.to_owned()
     };
@@ -170,13 +170,15 @@ fn import(
         (_, _, None) if ending.as_deref() != Some("urdf") => {}
         (Some("urdf"), Some(_), _) => {
             let message = "the file of an arm extends no other one";
-            return Err(Diagnostic::error("arm-extends", message)
+            return Err(Diagnostic::error(Rule::ArmExtends, message)
                 .help("leave --extends out")
                 .into());
         }
         _ => {
             let message = "--reach is for the description of an arm (.urdf)";
-            return Err(Diagnostic::error("arm-reach", message).help("leave --reach out").into());
+            return Err(Diagnostic::error(Rule::ArmReach, message)
+                .help("leave --reach out")
+                .into());
         }
     }
     let invalid = |findings| Stop { verdict: Verdict::Invalid, findings };
@@ -311,7 +313,7 @@ fn library_text(name: &str) -> Result<&'static str, Stop> {
     let found = library::find(name, library::EVERYTHING).map(|(_, text)| text);
     found.ok_or_else(|| {
         let names: Vec<_> = library::names(library::EVERYTHING).collect();
-        Diagnostic::error("unknown-machine", format!("`{name}` is not in the library"))
+        Diagnostic::error(Rule::UnknownMachine, format!("`{name}` is not in the library"))
             .help(format!("there are {}", names.join(", ")))
             .into()
     })

@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use ::pcb::plan::Part;
 use app::pcb::{Job, PROBE, Program};
 use app::{Source, Stop, Verdict, Watch, files, toolpath};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::path::Path;
 
 /// Writes the programs, proves them, and only then saves them with their pictures and the report.
@@ -44,7 +44,7 @@ fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
     let output = whole(&args.output);
     if args.board.iter().any(|path| path.is_dir() && whole(path) == output) {
         let message = "the programs would be saved among the files of the board";
-        let found = Diagnostic::error("output-folder", message).help("give a folder of its own");
+        let found = Diagnostic::error(Rule::OutputFolder, message).help("give a folder of its own");
         return Err(found.file(args.output.display().to_string()).into());
     }
     Ok(())
@@ -59,6 +59,6 @@ fn older(args: &Pcb, programs: &[Program]) -> Option<Diagnostic> {
     (!there.is_empty()).then(|| {
         let message = format!("of an earlier call there are still {}", there.join(", "));
         let help = "they are not of these programs: remove them, or save in a new folder";
-        Diagnostic::warning("file-older", message).help(help)
+        Diagnostic::warning(Rule::FileOlder, message).help(help)
     })
 }

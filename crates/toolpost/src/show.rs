@@ -8,7 +8,7 @@ use app::summary::{Shape, rows};
 use app::toolpath::{self, Frame};
 use app::{Source, Stop, Watch};
 use drawing::Format;
-use program::{Diagnostic, Purpose};
+use program::{Diagnostic, Purpose, Rule};
 use serde_json::json;
 
 /// Counts and measures a toolpath and, where a place is given, draws it.
@@ -29,7 +29,7 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
         let swinging = toolpath::swinging(&source, &origin, args.frame)?;
         if swinging.is_none() && args.frame == Frame::Machine {
             let message = "only an NC program says where the axes of a machine go";
-            let found = Diagnostic::error("machine-frame", message)
+            let found = Diagnostic::error(Rule::MachineFrame, message)
                 .help("name the machine of the program: `--from MACHINE`");
             return Err(Box::new(found.file(&toolpath.file)).into());
         }

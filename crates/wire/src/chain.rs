@@ -3,7 +3,7 @@
 use crate::contour::Contour;
 use crate::element::Element;
 use geom::ChainError;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// What chaining made.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +56,7 @@ fn refused(error: &ChainError, pieces: &[Vec<Element>], gap: f64) -> Box<Diagnos
                 line(one),
                 line(other)
             );
-            Diagnostic::error("branch", message)
+            Diagnostic::error(Rule::Branch, message)
                 .help("a contour has no branches: choose layers, or take out what is too much")
                 .line(line(other))
                 .into()
@@ -64,7 +64,7 @@ fn refused(error: &ChainError, pieces: &[Vec<Element>], gap: f64) -> Box<Diagnos
         ChainError::Tangled { place, piece } => {
             let message =
                 format!("very many ends lie within {gap} mm of X{:.4} Y{:.4}", place.x, place.y);
-            Diagnostic::error("too-tangled", message)
+            Diagnostic::error(Rule::TooTangled, message)
                 .help("allow smaller gaps, or choose layers")
                 .line(line(piece))
                 .into()

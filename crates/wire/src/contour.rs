@@ -2,7 +2,7 @@
 
 use crate::element::{Element, SAME, finite};
 use geom::{Turn, Vec2, turn_angle};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::{PI, TAU};
 
 /// A chain of elements, each of which starts, bit for bit, where the one before ends. It is closed
@@ -51,7 +51,7 @@ impl Contour {
                     "a gap of {apart:.4} mm between X{:.4} Y{:.4} and X{:.4} Y{:.4}",
                     last.x, last.y, next.start.x, next.start.y
                 );
-                return Err(Diagnostic::error("gap", message)
+                return Err(Diagnostic::error(Rule::Gap, message)
                     .help(format!("close it, or allow more than {gap} mm"))
                     .line(next.line)
                     .into());
@@ -60,7 +60,7 @@ impl Contour {
         }
         let many = chain.len() > 1;
         let (Some(start), Some(last)) = (chain.first().map(|e| e.start), chain.last_mut()) else {
-            return Err(Diagnostic::error("empty-contour", "the contour has no length").into());
+            return Err(Diagnostic::error(Rule::EmptyContour, "the contour has no length").into());
         };
         let whole = last.turn.is_some_and(|turn| turn.sweep.abs() > PI);
         if last.end.distance(start) <= gap && (many || whole) {

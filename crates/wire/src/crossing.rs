@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::near::Near;
 use cavalier_contours::static_aabb2d_index::Control;
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// Elements this near to each other touch, mm: half of what counts as one point.
 pub(crate) const TOUCH: f64 = 5e-8;
@@ -42,14 +42,14 @@ impl Contour {
                     element.line,
                     elements.get(j).map_or(0, |e| e.line)
                 );
-                return Err(Diagnostic::error("self-crossing", message)
+                return Err(Diagnostic::error(Rule::SelfCrossing, message)
                     .help("the wire offset needs a contour that goes round once")
                     .line(element.line)
                     .into());
             }
             if pairs > most {
                 let message = format!("more than {most} pairs of elements lie over each other");
-                return Err(Diagnostic::error("too-tangled", message)
+                return Err(Diagnostic::error(Rule::TooTangled, message)
                     .help("divide the drawing into contours")
                     .line(element.line)
                     .into());

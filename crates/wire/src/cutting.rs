@@ -6,6 +6,7 @@ use crate::segment::{ByControl, Segment};
 use crate::taper::Rounding;
 use crate::{Contour, Lead, LeadShape, OffsetContour, Path};
 use geom::Vec2;
+use program::Rule;
 use program::{Compensation, Diagnostic, LEAST_SETTING, MOST_SETTING, within};
 
 /// How contours are cut.
@@ -68,12 +69,14 @@ impl Cutting {
         let wants_side = Cutting { begin: None, feeds: Vec::new(), ..self.clone() };
         if self.side.is_none() && wants_side != Cutting::default() {
             let message = "how the wire runs next to the contours is given, and not on which side";
-            return Err(Diagnostic::error("setting", message).help("give `side`").into());
+            return Err(Diagnostic::error(Rule::Setting, message).help("give `side`").into());
         }
         if self.by_control && self.tab.is_some() {
             let message =
                 "`by_control` and `tab` are both given: a tab needs a path that is offset here";
-            return Err(Diagnostic::error("setting", message).help("leave one of them out").into());
+            return Err(Diagnostic::error(Rule::Setting, message)
+                .help("leave one of them out")
+                .into());
         }
         Ok(())
     }
@@ -130,7 +133,9 @@ pub fn segments(
     let passes = how.leave.len() + 1;
     if !matches!(how.feeds.len(), 0 | 1) && how.feeds.len() != passes {
         let message = format!("{} feeds for {passes} passes", how.feeds.len());
-        return Err(Diagnostic::error("feed", message).help("one feed, or one for each").into());
+        return Err(Diagnostic::error(Rule::Feed, message)
+            .help("one feed, or one for each")
+            .into());
     }
     let feed = |pass: usize| how.feeds.get(pass).or(how.feeds.first()).map(|feed| feed * 60.0);
     let Some(side) = how.side else {
@@ -149,7 +154,7 @@ pub fn segments(
             "the inner corner at X{:.4} Y{:.4} becomes as round as the wire: {left:.4} mm stay",
             place.x, place.y
         );
-        Diagnostic::warning("corner-rounded", message).line(corner.line)
+        Diagnostic::warning(Rule::CornerRounded, message).line(corner.line)
     };
     let warnings = plan.rounded.iter().map(corner).collect();
     let segments = plan.passes.into_iter().map(|pass| Segment {
@@ -203,17 +208,17 @@ fn openings(
     if paths.iter().any(|path| path.upper().is_some()) {
         let message = "a wire between two contours cannot be offset";
         let help = "leave --side out: two contours are the path of the wire itself";
-        return Err(Diagnostic::error("side", message).help(help).into());
+        return Err(Diagnostic::error(Rule::Side, message).help(help).into());
     }
     if how.by_control && paths.iter().any(|path| !path.lower().is_closed()) {
         // The offset ends with a straight lead-out, which only a closed contour is sure to have.
         let message = "an open contour cannot be offset by the control";
         let help = "leave --by-control out: the path of the wire's centre is then calculated here";
-        return Err(Diagnostic::error("by-control", message).help(help).into());
+        return Err(Diagnostic::error(Rule::ByControl, message).help(help).into());
     }
     if how.thread.len() > paths.len() {
         let message = format!("{} thread points for {} contours", how.thread.len(), paths.len());
-        return Err(Diagnostic::error("thread", message).help("one for each contour").into());
+        return Err(Diagnostic::error(Rule::Thread, message).help("one for each contour").into());
     }
     let side_of = |contour: &Contour| match side {
         Side::Inside => plan::Side::Inside,
@@ -243,7 +248,7 @@ fn openings(
                 format!("the program has the wire on the {side} ({word}), and --side has not");
             let line = opening.contour.elements().first().map_or(0, |element| element.line);
             let help = "take the side of the program, or take G41 and G42 out of it";
-            return Err(Diagnostic::error("side", message).help(help).line(line).into());
+            return Err(Diagnostic::error(Rule::Side, message).help(help).line(line).into());
         }
     }
     Ok(openings)
@@ -261,7 +266,7 @@ fn settings(
     let taper = how.taper.map(|degrees| {
         let missing = || {
             let message = "a taper, and the height of the upper contour is not known";
-            Box::new(Diagnostic::error("wire-height", message).help("give it with --height"))
+            Box::new(Diagnostic::error(Rule::WireHeight, message).help("give it with --height"))
         };
         let height = height.ok_or_else(missing)?;
         Ok::<_, Box<Diagnostic>>(Taper {

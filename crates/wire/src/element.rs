@@ -1,7 +1,7 @@
 //! Lines and arcs of a source, each with its line: what contours are made of.
 
 use geom::{Turn, Vec2, turn_angle};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::{PI, TAU};
 use std::ops::Deref;
 
@@ -101,7 +101,7 @@ impl Element {
         let chord = along.length();
         if chord < SAME {
             let message = "an arc by R that ends where it starts";
-            return Err(Diagnostic::error("arc-radius", message)
+            return Err(Diagnostic::error(Rule::ArcRadius, message)
                 .help("give the centre (I, J): R does not say which full circle is meant")
                 .into());
         }
@@ -111,7 +111,7 @@ impl Element {
                 radius.abs(),
                 chord / 2.0
             );
-            return Err(Diagnostic::error("arc-radius", message)
+            return Err(Diagnostic::error(Rule::ArcRadius, message)
                 .help("correct R or the end of the arc")
                 .into());
         }
@@ -143,7 +143,7 @@ impl Element {
         let (from, to) = (start - center, end - center);
         if from.length() < SAME {
             let message = "the arc starts on its own centre";
-            return Err(Diagnostic::error("arc-center", message).help("correct I, J").into());
+            return Err(Diagnostic::error(Rule::ArcCenter, message).help("correct I, J").into());
         }
         if (from.length() - to.length()).abs() > tolerance || to.length() < SAME {
             let message = format!(
@@ -151,7 +151,7 @@ impl Element {
                 to.length(),
                 from.length()
             );
-            return Err(Diagnostic::error("arc-center", message)
+            return Err(Diagnostic::error(Rule::ArcCenter, message)
                 .help("correct I, J or the end of the arc")
                 .into());
         }
@@ -194,7 +194,7 @@ pub(crate) fn finite(points: &[Vec2]) -> Result<(), Box<Diagnostic>> {
         None => Ok(()),
         Some(p) => {
             let message = format!("X {} Y {} is not a point within {FAR} mm", p.x, p.y);
-            Err(Diagnostic::error("not-a-place", message)
+            Err(Diagnostic::error(Rule::NotAPlace, message)
                 .help("look at the values of the line, and at the unit of the drawing")
                 .into())
         }

@@ -12,7 +12,7 @@ use cavalier_contours::polyline::{
     PlineSource, PlineSourceMut, Polyline, seg_arc_radius_and_center,
 };
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::{PI, TAU};
 
 /// By how much the wire's centre may be off, mm.
@@ -74,7 +74,7 @@ pub fn offset(
     let found = match parallel.len() {
         0 => {
             let message = format!("no room for the wire {:.4} mm from the contour", distance.abs());
-            let refused = Diagnostic::error("offset-vanishes", message);
+            let refused = Diagnostic::error(Rule::OffsetVanishes, message);
             return Err(refused.help("take a thinner wire, or the other side").line(first).into());
         }
         1 => elements(&parallel[0]),
@@ -83,7 +83,7 @@ pub fn offset(
                 "the path {:.4} mm from the contour falls into {many} pieces: a neck is too narrow",
                 distance.abs()
             );
-            let refused = Diagnostic::error("offset-divides", message);
+            let refused = Diagnostic::error(Rule::OffsetDivides, message);
             return Err(refused.help("take a thinner wire").line(first).into());
         }
     };
@@ -102,7 +102,7 @@ pub fn offset(
                 corner.left,
                 rounded.len()
             );
-            Err(Diagnostic::error("inner-corner", message)
+            Err(Diagnostic::error(Rule::InnerCorner, message)
                 .help("round the corner by the wire's offset or more, or have it rounded")
                 .line(corner.line)
                 .into())
@@ -232,7 +232,7 @@ fn unreached(contour: &Contour, found: &Contour, distance: f64) -> Vec<Corner> {
 
 fn unsure(line: u32, what: &str) -> Box<Diagnostic> {
     let message = format!("the wire offset did not come out right: {what}");
-    Diagnostic::error("offset-unsure", message)
+    Diagnostic::error(Rule::OffsetUnsure, message)
         .help("simplify the contour near this line: very short elements, arcs that nearly touch")
         .line(line)
         .into()

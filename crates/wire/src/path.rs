@@ -2,7 +2,7 @@
 
 use crate::contour::{Contour, ContourPoint};
 use crate::element::{Element, SAME};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// The path of the wire. Where it leans, each element of the lower contour has its element of the
 /// upper one, and both ends run through them evenly at the same time: the cut is the ruled surface
@@ -83,7 +83,7 @@ impl Path {
         }
         if height.is_nan() || height <= 0.0 {
             let message = format!("a leaning wire and a part height of {height} mm");
-            return Err(Diagnostic::error("part-height", message)
+            return Err(Diagnostic::error(Rule::PartHeight, message)
                 .help("give the height between the lower and the upper contour")
                 .into());
         }
@@ -111,7 +111,7 @@ impl Path {
                 } else {
                     continue;
                 };
-                return Err(Diagnostic::error("taper-limit", message)
+                return Err(Diagnostic::error(Rule::TaperLimit, message)
                     .help("lean less, or take a machine that leans more")
                     .line(below.line)
                     .into());

@@ -10,7 +10,7 @@ use crate::room::Room;
 use crate::round::Round;
 use crate::taper::Rounding;
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::FRAC_PI_3;
 
 /// A contour to cut.
@@ -195,19 +195,19 @@ fn sensible(settings: &Settings) -> Result<(), Box<Diagnostic>> {
     };
     let way_out = "offsets from 0 mm on that do not grow, feeds above 0";
     if settings.passes.is_empty() {
-        return Err(refused("passes", "not one pass".into(), way_out));
+        return Err(refused(Rule::Passes, "not one pass".into(), way_out));
     }
     let mut last = f64::INFINITY;
     for Cut { offset, feed } in &settings.passes {
         if !(0.0..=100.0).contains(offset) {
-            return Err(refused("passes", format!("a wire offset of {offset} mm"), way_out));
+            return Err(refused(Rule::Passes, format!("a wire offset of {offset} mm"), way_out));
         }
         if *offset > last {
             let message = format!("a wire offset of {offset} mm after one of {last} mm");
-            return Err(refused("passes", message, way_out));
+            return Err(refused(Rule::Passes, message, way_out));
         }
         if !feed.is_finite() || *feed <= 0.0 {
-            return Err(refused("passes", format!("a feed of {feed} mm/min"), way_out));
+            return Err(refused(Rule::Passes, format!("a feed of {feed} mm/min"), way_out));
         }
         last = *offset;
     }
@@ -215,16 +215,16 @@ fn sensible(settings: &Settings) -> Result<(), Box<Diagnostic>> {
         && (!(-FRAC_PI_3..=FRAC_PI_3).contains(&angle) || !height.is_finite() || height <= 0.0)
     {
         let message = format!("a taper of {}° over {height} mm", angle.to_degrees());
-        return Err(refused("taper-angle", message, "at most 60°, and a height above 0"));
+        return Err(refused(Rule::TaperAngle, message, "at most 60°, and a height above 0"));
     }
     let Lead { length, shape } = settings.lead;
     let radius = if let LeadShape::Arc(radius) = shape { radius } else { 0.0 };
     if !(0.0..=FAR).contains(&length) || !(0.0..=FAR).contains(&radius) {
         let message = format!("a lead-in of {length} mm with an arc of {radius} mm");
-        return Err(refused("lead", message, "lengths from 0 mm on"));
+        return Err(refused(Rule::Lead, message, "lengths from 0 mm on"));
     }
     if !(0.0..=FAR).contains(&settings.tab) {
-        return Err(refused("tab", format!("a tab of {} mm", settings.tab), "0 mm for none"));
+        return Err(refused(Rule::Tab, format!("a tab of {} mm", settings.tab), "0 mm for none"));
     }
     Ok(())
 }

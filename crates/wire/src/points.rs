@@ -4,7 +4,7 @@ use crate::contour::Contour;
 use crate::element::Element;
 use crate::path::Path;
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -75,7 +75,7 @@ pub fn points(paths: &[&Path], step: Step, memory: Option<usize>) -> Result<Vec<
         Step::Fit => {
             let message = "a step that fits the memory, and the memory is not known".into();
             let way_out = "give the number of points that the control takes, or a step".into();
-            return Err(refuse("fit-without-memory", message, way_out));
+            return Err(refuse(Rule::FitWithoutMemory, message, way_out));
         }
     };
     let length = paths.iter().map(|path| path.length()).fold(0.0, f64::max);
@@ -83,12 +83,16 @@ pub fn points(paths: &[&Path], step: Step, memory: Option<usize>) -> Result<Vec<
     if step != Step::Fit && (!positive || size > length) {
         let message = format!("a {name} of {size} mm on a contour of {length:.4} mm");
         let way_out = format!("give a {name} above 0 and below the length of the contour");
-        return Err(refuse("step", message, way_out));
+        return Err(refuse(Rule::Step, message, way_out));
     }
     let least = count(paths, Step::Fit);
     if least > most {
         let message = format!("the ends of the moves alone are {least} points, and {most} fit");
-        return Err(refuse("memory", message, "divide the contour into several programs".into()));
+        return Err(refuse(
+            Rule::Memory,
+            message,
+            "divide the contour into several programs".into(),
+        ));
     }
     if step == Step::Fit {
         let step = Step::ChordError(finest(paths, kind, most));
@@ -99,7 +103,10 @@ pub fn points(paths: &[&Path], step: Step, memory: Option<usize>) -> Result<Vec<
         let finest = finest(paths, kind, most);
         let message = format!("a {name} of {size} mm makes {count} points, and {most} fit");
         let way_out = format!("a {name} of {finest:.6} mm is the finest that fits");
-        return Err(Refusal { offer: Some(kind(finest)), ..refuse("memory", message, way_out) });
+        return Err(Refusal {
+            offer: Some(kind(finest)),
+            ..refuse(Rule::Memory, message, way_out)
+        });
     }
     Ok(paths.iter().map(|path| divide(path, step)).collect())
 }

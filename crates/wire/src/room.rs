@@ -118,7 +118,7 @@ impl<'a> Room<'a> {
                     element.end.x,
                     element.end.y
                 );
-                return Err(Diagnostic::error("cuts-part", message)
+                return Err(Diagnostic::error(Rule::CutsPart, message)
                     .help("thread elsewhere, start elsewhere, or take a smaller lead-in")
                     .line(lines.into_iter().find(|line| *line > 0).unwrap_or_default())
                     .into());
@@ -156,6 +156,6 @@ impl<'a> Room<'a> {
             "thread the wire more than {:.4} mm from the contour, where there is room",
             round.reach(self.settings)
         );
-        Err(Diagnostic::error("taper-lead", message).help(help).into())
+        Err(Diagnostic::error(Rule::TaperLead, message).help(help).into())
     }
 }

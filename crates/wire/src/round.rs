@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
 use crate::taper::{Remains, lean};
 use geom::{Vec2, turn_angle};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// From which turn on, radians, a contour has a corner.
 const CORNER: f64 = 0.02;
@@ -44,7 +44,7 @@ impl Round {
                 from.x, from.y, to.x, to.y
             );
             let way_out = "close it, or cut it without tab with the wire on its left or right";
-            return Err(refused("open-contour", message, way_out));
+            return Err(refused(Rule::OpenContour, message, way_out));
         }
         let left = opening.left();
         let start = match opening.start.or(opening.thread) {
@@ -57,7 +57,7 @@ impl Round {
                 if settings.lead.length <= 0.0 {
                     let message = "the thread point is not given".into();
                     let way_out = "give the thread point, or the length of the lead-in";
-                    return Err(refused("no-thread", message, way_out));
+                    return Err(refused(Rule::NoThread, message, way_out));
                 }
                 let travel =
                     contour.elements().get(start.element).map(|element| element.tangent(start.t));
@@ -79,7 +79,7 @@ impl Round {
                     settings.tab,
                     path.lower().length()
                 );
-                return Err(refused("tab", message, "a tab is shorter than the contour"));
+                return Err(refused(Rule::Tab, message, "a tab is shorter than the contour"));
             }
             corners = rounded;
             round.paths.push(path);
@@ -107,7 +107,7 @@ impl Round {
         let upper = lean(&lower, aside, taper.rounding, Some(remains))?;
         upper.simple().map_err(|found| {
             let message = format!("no upper contour: {}", found.message);
-            Diagnostic::error("taper-corner", message).help("lean less").line(found.line)
+            Diagnostic::error(Rule::TaperCorner, message).help("lean less").line(found.line)
         })?;
         let path = Path::by_block(lower.elements().to_vec(), upper.elements().to_vec())?;
         Ok((path, centre.rounded))
@@ -329,10 +329,10 @@ impl Passes<'_> {
 
 /// Along the contour the ends of the wire do not cross: where they do, a lead is shorter than the wire leans.
 fn short(found: Box<Diagnostic>) -> Box<Diagnostic> {
-    if found.rule != "wires-cross" {
+    if found.rule != Rule::WiresCross {
         return found;
     }
     let message = format!("the lead is shorter than the wire leans: {}", found.message);
     let help = "thread the wire farther from the contour";
-    Diagnostic::error("taper-lead", message).help(help).line(found.line).into()
+    Diagnostic::error(Rule::TaperLead, message).help(help).line(found.line).into()
 }

@@ -4,7 +4,7 @@ use crate::contour::Contour;
 use crate::element::{Element, SAME, finite};
 use crate::path::Path;
 use geom::{Vec2, turn_angle};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::PI;
 
 /// How far a given point may lie off its contour, mm.
@@ -27,7 +27,7 @@ impl Path {
             let side = if n > m { &lower } else { &upper };
             let line = side.get(n.min(m)).map_or(0, |element| element.line);
             let message = format!("the lower contour has {n} moves and the upper {m}");
-            return Err(Diagnostic::error("sync-blocks", message)
+            return Err(Diagnostic::error(Rule::SyncBlocks, message)
                 .help("synchronise them by arc length or by given points")
                 .line(line)
                 .into());
@@ -64,7 +64,7 @@ impl Path {
     ) -> Result<Path, Box<Diagnostic>> {
         if lower.is_closed() != upper.is_closed() {
             let message = "of the lower and the upper contour one is closed and the other open";
-            return Err(Diagnostic::error("sync-closed", message).help("close both").into());
+            return Err(Diagnostic::error(Rule::SyncClosed, message).help("close both").into());
         }
         let (below, above) = (ArcLength::new(lower), ArcLength::new(upper));
         let mut held = vec![(0.0, 0.0)];
@@ -126,7 +126,7 @@ impl<'a> ArcLength<'a> {
                 "X{:.4} Y{:.4} is not on the {side} contour after the point before it",
                 point.x, point.y
             );
-            Diagnostic::error("sync-point", message)
+            Diagnostic::error(Rule::SyncPoint, message)
                 .help(format!("give points of the contour, within {ON} mm, in the order of travel"))
                 .into()
         })
@@ -216,7 +216,7 @@ fn uncrossed(path: &Path) -> Result<(), Box<Diagnostic>> {
                 );
                 let way_out = "let both contours run the same way round from the same side, or give \
                                points that belong together";
-                return Err(Diagnostic::error("wires-cross", message)
+                return Err(Diagnostic::error(Rule::WiresCross, message)
                     .help(way_out)
                     .line(below.line)
                     .into());

@@ -4,7 +4,7 @@ use crate::contour::Contour;
 use crate::element::{Element, SAME};
 use crate::offset::EXACT;
 use geom::{Turn, Vec2, turn_angle};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::{PI, TAU};
 
 /// The widest corner whose radius can stay the same: beyond it the two sides nearly face each other.
@@ -259,5 +259,5 @@ fn trimmed(
 fn refused(element: &Element, what: &str, way_out: &str) -> Box<Diagnostic> {
     let place = element.start;
     let message = format!("no upper contour at X{:.4} Y{:.4}: {what}", place.x, place.y);
-    Diagnostic::error("taper-corner", message).help(way_out).line(element.line).into()
+    Diagnostic::error(Rule::TaperCorner, message).help(way_out).line(element.line).into()
 }

@@ -3,7 +3,7 @@
 use crate::contour::Contour;
 use crate::element::{ARC_TOLERANCE, Direction, Element, SAME};
 use geom::{Vec2, angle_between};
-use program::{ArcTo, Compensation, Diagnostic, Op, Pose, Program};
+use program::{ArcTo, Compensation, Diagnostic, Op, Pose, Program, Rule};
 
 /// What `program` cuts in the plane of X and Y: each contour runs from where a rapid ends to where the
 /// next begins, and its start is where the wire is threaded. `start` is where the wire stands before
@@ -39,26 +39,26 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
                 cuts.push(Vec::new());
                 continue;
             }
-            Op::Hole(_) => return Err(at(refused("not-a-cut", "a hole cycle", "take it out"))),
+            Op::Hole(_) => return Err(at(refused(Rule::NotACut, "a hole cycle", "take it out"))),
             Op::Taper(degrees) if *degrees != 0.0 => {
                 let way_out = "take the contour without it, and lean the wire with --taper";
-                return Err(at(refused("open-taper", "a wire that the control leans", way_out)));
+                return Err(at(refused(Rule::OpenTaper, "a wire that the control leans", way_out)));
             }
             Op::Thread(_) | Op::Probe(_) => {
-                return Err(at(refused("not-a-cut", "a screw thread or a probe", "take it out")));
+                return Err(at(refused(Rule::NotACut, "a screw thread or a probe", "take it out")));
             }
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
                 let what = "a wire offset whose amount is not known";
                 let way_out =
                     "--side with --wire and --gap: the offset path is then calculated here";
-                return Err(at(refused("open-compensation", what, way_out)));
+                return Err(at(refused(Rule::OpenCompensation, what, way_out)));
             }
             _ => continue,
         };
         if element.start.is_nan() || element.end.is_nan() {
             let what = "a cut, and where it starts or ends is not known in X and Y";
             let way_out = "begin with a rapid to the start point, or name it";
-            return Err(at(refused("nc-unknown-position", what, way_out)));
+            return Err(at(refused(Rule::UnknownPosition, what, way_out)));
         }
         position = element.end;
         if let Some(cut) = cuts.last_mut() {
@@ -67,7 +67,7 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
     }
     cuts.retain(|cut| cut.iter().any(|element| element.length() >= SAME));
     if cuts.is_empty() {
-        return Err(refused("empty-contour", "the program cuts nothing in X and Y", ""));
+        return Err(refused(Rule::EmptyContour, "the program cuts nothing in X and Y", ""));
     }
     Ok(cuts)
 }
@@ -120,12 +120,12 @@ pub fn offset_contours(
                         let what = "a second pass from the same thread point";
                         let way_out =
                             "leave the first pass in the program: --leave makes the others";
-                        return Err(at(refused("source-passes", what, way_out)));
+                        return Err(at(refused(Rule::SourcePasses, what, way_out)));
                     }
                     if position.is_nan() {
                         let what = "a lead-in, and where it starts is not known in X and Y";
                         let way_out = "begin with a rapid to the start point, or name it";
-                        return Err(at(refused("nc-unknown-position", what, way_out)));
+                        return Err(at(refused(Rule::UnknownPosition, what, way_out)));
                     }
                     sides.push((left, position));
                 }
@@ -135,12 +135,12 @@ pub fn offset_contours(
             Op::Line(_) | Op::Arc(_) if side.is_none() => {
                 let what = "a cut without the wire's offset, in a program that has it elsewhere";
                 let way_out = "only the lead-in and the lead-out stand outside of G41 and G40";
-                return Err(at(refused("open-compensation", what, way_out)));
+                return Err(at(refused(Rule::OpenCompensation, what, way_out)));
             }
             Op::Rapid(_) if side.is_some() => {
                 let way_out = "end the offset by G40 and a straight move before";
                 let what = "a rapid while the wire is offset";
-                return Err(at(refused("open-compensation", what, way_out)));
+                return Err(at(refused(Rule::OpenCompensation, what, way_out)));
             }
             op => {
                 fresh |= matches!(op, Op::Rapid(_) | Op::ThreadWire);
@@ -154,7 +154,7 @@ pub fn offset_contours(
     let contours = contours(&plain, start)?;
     if contours.len() != sides.len() {
         let what = "an offset is switched on, and nothing is cut with it";
-        return Err(refused("open-compensation", what, "take G41 and G42 out there"));
+        return Err(refused(Rule::OpenCompensation, what, "take G41 and G42 out there"));
     }
     let found = contours.into_iter().zip(sides);
     Ok(Some(
@@ -167,7 +167,7 @@ fn upright(pose: &Pose) -> Result<Vec2, Box<Diagnostic>> {
     let upright = angle_between(pose.axis(), geom::Vec3::Z) < geom::ANGLE_EPSILON;
     if !upright {
         let way_out = "a wire leans by U and V, or by the taper";
-        return Err(refused("not-upright", "a tool that leans or is turned", way_out));
+        return Err(refused(Rule::NotUpright, "a tool that leans or is turned", way_out));
     }
     Ok(pose.point().truncate())
 }
@@ -177,10 +177,10 @@ fn turned(start: Vec2, arc: &ArcTo) -> Result<Element, Box<Diagnostic>> {
     let direction = match arc.circle.normal().z {
         z if z > 1.0 - 1e-9 => Direction::CounterClockwise,
         z if z < 1e-9 - 1.0 => Direction::Clockwise,
-        _ => return Err(refused("not-a-cut", "an arc out of the plane G17", "cut in X and Y")),
+        _ => return Err(refused(Rule::NotACut, "an arc out of the plane G17", "cut in X and Y")),
     };
     if arc.circle.turns() > 0 {
-        return Err(refused("not-a-cut", "an arc of more than one turn", "cut it once"));
+        return Err(refused(Rule::NotACut, "an arc of more than one turn", "cut it once"));
     }
     // Where the ends are not known, the caller says so of the whole block.
     if start.is_nan() || end.is_nan() {
@@ -189,6 +189,6 @@ fn turned(start: Vec2, arc: &ArcTo) -> Result<Element, Box<Diagnostic>> {
     Element::arc_by_center(start, end, arc.circle.center().truncate(), direction, ARC_TOLERANCE)
 }
 
-fn refused(rule: &'static str, what: &str, way_out: &str) -> Box<Diagnostic> {
+fn refused(rule: Rule, what: &str, way_out: &str) -> Box<Diagnostic> {
     Diagnostic::error(rule, what).help(way_out).into()
 }

@@ -3,7 +3,7 @@
 
 use flate2::{Decompress, FlushDecompress, Status};
 use memchr::memmem;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// A document of this size, bytes, is read however small its file is.
 const ENOUGH: u64 = 32 << 20;
@@ -26,7 +26,7 @@ pub fn check(file: &[u8]) -> Result<(), Box<Diagnostic>> {
         most >> 20
     );
     let help = "open it in FreeCAD and save it again, or post from FreeCAD's window, with the post `toolpost`";
-    Err(Diagnostic::error("document-size", message).help(help).into())
+    Err(Diagnostic::error(Rule::DocumentSize, message).help(help).into())
 }
 
 /// A number of the archive, least byte first; 0 beyond its end.

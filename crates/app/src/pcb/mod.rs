@@ -18,7 +18,7 @@ use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
 use machine::Machine;
 use program::heights::HeightMap;
-use program::{Diagnostic, Op, Record};
+use program::{Diagnostic, Op, Record, Rule};
 use proof::Tolerances;
 use rayon::prelude::*;
 
@@ -60,7 +60,7 @@ impl<'a> Job<'a> {
         if machine.wire.is_some() {
             let message = format!("`{}` cuts by wire: it mills and drills nothing", machine.name);
             let help = "name a mill: `toolpost machines` lists what there is";
-            return Err(Diagnostic::error("machine-kind", message).help(help).into());
+            return Err(Diagnostic::error(Rule::MachineKind, message).help(help).into());
         }
         settings.check()?;
         let heights = heights(&settings.running)?;
@@ -206,7 +206,7 @@ fn heights(running: &Running) -> Result<Heights, Stop> {
     let message =
         format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
     let help = "give --travel no less than --approach";
-    Err(Diagnostic::error("travel", message).help(help).into())
+    Err(Diagnostic::error(Rule::Travel, message).help(help).into())
 }
 
 /// How far inside the edge of the board the outermost places are, mm: on the edge itself there may be no copper.
@@ -227,7 +227,7 @@ fn surface(
     if is_up(Face::Front) && is_up(Face::Back) {
         let message = "a height map is of one side, and programs of both sides would be written";
         let help = "make the programs of each side with its own heights: name them with --only";
-        return Err(Diagnostic::error("heights", message).help(help).into());
+        return Err(Diagnostic::error(Rule::Heights, message).help(help).into());
     }
     let text = file.text()?;
     Ok(Some(levelling::read(&file.name(), &text)?))
@@ -240,7 +240,7 @@ const STEEPNESS: f64 = 0.02;
 /// The control cannot keep what a probe finds at so many places, or a program cuts what no tool feels.
 fn can_probe(parts: &[Part], [columns, rows]: [u32; 2], machine: &Machine) -> Result<(), Stop> {
     let wrong = |message: String, help: &str| {
-        Err(Diagnostic::error("on-control", message).help(help).into())
+        Err(Diagnostic::error(Rule::OnControl, message).help(help).into())
     };
     if !machine.blocks.contains_key("keep_height") {
         let message = format!(
@@ -381,7 +381,7 @@ impl Shop<'_> {
                 place.x, place.y, hole.diameter, at.x, at.y
             );
             let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
-            let found = Diagnostic::error("probe-in-hole", message).help(help);
+            let found = Diagnostic::error(Rule::ProbeInHole, message).help(help);
             return Err(found.file(format!("{}.nc", part.name())).into());
         }
         Ok(())

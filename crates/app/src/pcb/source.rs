@@ -4,7 +4,7 @@ use crate::account::Stop;
 use crate::files;
 use crate::input;
 use pcb::board::{Artwork, File};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::path::Path;
 
 /// The most files of a folder that are looked at.
@@ -86,7 +86,7 @@ fn chosen(named: &[input::Source], given: Vec<input::Source>) -> Result<Vec<inpu
         _ => {
             let names: Vec<String> = wholes.iter().map(|file| file.name()).collect();
             let message = format!("there are several boards in this folder: {}", names.join(", "));
-            let found = Diagnostic::error("board", message).help("give the file of the one");
+            let found = Diagnostic::error(Rule::Board, message).help("give the file of the one");
             Err(found.into())
         }
     }
@@ -103,8 +103,9 @@ fn name(given: &[input::Source]) -> String {
 
 /// The files of a folder, in the order of their names.
 fn within(folder: &Path) -> Result<Vec<input::Source>, Stop> {
-    let about =
-        |message: String| Diagnostic::error("folder", message).file(folder.display().to_string());
+    let about = |message: String| {
+        Diagnostic::error(Rule::Folder, message).file(folder.display().to_string())
+    };
     let entries = std::fs::read_dir(folder)
         .map_err(|error| about(format!("the folder cannot be read: {error}")))?;
     let mut files = Vec::new();
@@ -129,7 +130,7 @@ fn within(folder: &Path) -> Result<Vec<input::Source>, Stop> {
 
 fn not_alone(board: &input::Source) -> Stop {
     let message = "it is a whole board, and other files are given with it";
-    Diagnostic::error("board", message)
+    Diagnostic::error(Rule::Board, message)
         .help("give it alone, or the Gerber and Excellon files alone")
         .file(board.name())
         .into()

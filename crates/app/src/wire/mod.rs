@@ -17,7 +17,7 @@ use ::wire::cutting::{self, Cutting};
 use ::wire::points::{Refusal, Step, points};
 use ::wire::segment::Segment;
 use machine::{Machine, Wire};
-use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, within};
+use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, within};
 use report::Cut;
 use serde_json::json;
 use source::Source;
@@ -187,12 +187,12 @@ fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
     let Some(wire) = machine.wire else {
         let message = format!("`{}` is a mill: its file has no [wire] table", machine.name);
         let help = "`toolpost post` writes for mills; `toolpost machines list` names the machines";
-        return Err(Diagnostic::error("machine-kind", message).help(help).into());
+        return Err(Diagnostic::error(Rule::MachineKind, message).help(help).into());
     };
     if settings.cutting.by_control && !machine.capabilities.compensation {
         let message = format!("the control of `{}` offsets no wire", machine.name);
         let help = "leave --by-control out: the path of the wire's centre is then calculated here";
-        return Err(Diagnostic::error("by-control", message).help(help).into());
+        return Err(Diagnostic::error(Rule::ByControl, message).help(help).into());
     }
     if settings.cutting.tab.is_some() && !machine.blocks.contains_key("stop") {
         let message = format!(
@@ -200,7 +200,7 @@ fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
             machine.name
         );
         let help = "leave --tab out, or write how the control stops into the machine's file";
-        return Err(Diagnostic::error("tab", message).help(help).into());
+        return Err(Diagnostic::error(Rule::Tab, message).help(help).into());
     }
     let height = match (wire.height, settings.uv_height) {
         (Some(own), Some(given)) if own != given => {
@@ -209,7 +209,7 @@ fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
                 machine.name
             );
             let help = "leave --uv-height out, or change `height` in [wire] of the machine's file";
-            return Err(Diagnostic::error("wire-height", message).help(help).into());
+            return Err(Diagnostic::error(Rule::WireHeight, message).help(help).into());
         }
         (own, given) => own.or(given),
     };
@@ -248,6 +248,6 @@ fn refused(Refusal { diagnostic, offer }: Refusal) -> Stop {
         }
         _ => diagnostic.help.clone(),
     };
-    let verdict = if diagnostic.rule == "memory" { Verdict::Failed } else { Verdict::Invalid };
+    let verdict = if diagnostic.rule == Rule::Memory { Verdict::Failed } else { Verdict::Invalid };
     Stop { verdict, findings: vec![diagnostic.help(way_out)] }
 }

@@ -5,7 +5,7 @@ use crate::account::Stop;
 use crate::input;
 use crate::toolpath::{self, Origin, Toolpath, is_unknown_position};
 use geom::Vec2;
-use program::{Circle, Diagnostic, NoPose, Op, Pose, Program};
+use program::{Circle, Diagnostic, NoPose, Op, Pose, Program, Rule};
 use wire::{Contour, Element, OffsetContour, Path, contours, cuts, dxf, offset_contours};
 
 /// A source with the wire paths that it gives.
@@ -143,7 +143,7 @@ impl File {
                 let message =
                     "another work offset: how far it is from the first, only the machine knows";
                 let help = "cut what belongs to each work offset by a program of its own";
-                let found = Diagnostic::error("work-offset", message).help(help);
+                let found = Diagnostic::error(Rule::WorkOffset, message).help(help);
                 Err(found.line(record.line).into())
             }
         }
@@ -189,7 +189,7 @@ fn left_out(program: &Program) -> Vec<Diagnostic> {
         };
         let message = format!("{what} of the source is left out: a contour alone is taken from it");
         let help = "write it into the blocks of the machine file, if every program needs it";
-        Some(Diagnostic::warning("auxiliary", message).help(help).line(record.line))
+        Some(Diagnostic::warning(Rule::Auxiliary, message).help(help).line(record.line))
     });
     let mut all: Vec<Diagnostic> = Vec::new();
     for warning in found {
@@ -246,13 +246,13 @@ fn as_many(below: usize, above: usize) -> Result<(), Box<Diagnostic>> {
     }
     let message = format!("the lower end cuts {below} contours and the upper {above}");
     let help = "a rapid parts two contours: both sources need the same ones in the same order";
-    Err(Diagnostic::error("sync-openings", message).help(help).into())
+    Err(Diagnostic::error(Rule::SyncOpenings, message).help(help).into())
 }
 
 /// The refusal of an upper contour without a height.
 fn without_height_of_part() -> Diagnostic {
     let message = "the wire leans, and the height of the part is not known";
-    Diagnostic::error("wire-height", message).help("give it with --height")
+    Diagnostic::error(Rule::WireHeight, message).help("give it with --height")
 }
 
 /// Height of the part, mm: as the call says it, else that of the plane in which a source counts U and V.

@@ -1,6 +1,6 @@
 //! A block of a text, and what is said about a piece of it.
 
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::ops::Range;
 
 /// What a step of a control answers: what is wrong stops the run.
@@ -20,7 +20,7 @@ impl Source<'_> {
     #[cold]
     pub fn error(
         &self,
-        rule: &'static str,
+        rule: Rule,
         piece: Range<usize>,
         message: impl Into<String>,
     ) -> Box<Diagnostic> {
@@ -29,7 +29,7 @@ impl Source<'_> {
 
     /// An error about the whole block.
     #[cold]
-    pub fn block_error(&self, rule: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
+    pub fn block_error(&self, rule: Rule, message: impl Into<String>) -> Box<Diagnostic> {
         let blanks = |bytes: &mut dyn Iterator<Item = &u8>| {
             bytes.take_while(|b| b.is_ascii_whitespace()).count()
         };

@@ -2,7 +2,7 @@
 //! where the two differ.
 
 use geom::{Frame, Mat3, Vec3};
-use program::{Cycle, CycleKind};
+use program::{Cycle, CycleKind, Rule};
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -210,7 +210,7 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
     let begun = Instant::now();
     read(&settings, "program.ngc", text, &mut |record| {
         if begun.elapsed() > LONGEST {
-            return Err(program::Diagnostic::error("late", "takes too long").into());
+            return Err(program::Diagnostic::error(Rule::Stopped, "takes too long").into());
         }
         let to = |pose: &Position, at: [f64; 6]| {
             let Vec3 { x, y, z } = pose.point;

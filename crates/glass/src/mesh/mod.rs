@@ -6,7 +6,7 @@ mod stl;
 
 use crate::list::{self, Columns};
 use glam::DVec3;
-use program::{Diagnostic, encoding};
+use program::{Diagnostic, Rule, encoding};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -87,13 +87,13 @@ pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnosti
         Shape::Points(points) => (points, points.is_empty()),
     };
     if empty {
-        return Err(Fault::new("empty", "has no triangle and no point").diagnostic(file));
+        return Err(Fault::new(Rule::Empty, "has no triangle and no point").diagnostic(file));
     }
     if let Some(at) =
         places.iter().position(|place| !place.is_finite() || place.abs().max_element() > LARGEST)
     {
         let message = format!("point {} is {}: not a number, or beyond 1 km", at + 1, places[at]);
-        return Err(Fault::new("coordinate", message).diagnostic(file));
+        return Err(Fault::new(Rule::Coordinate, message).diagnostic(file));
     }
     Ok(shape)
 }
@@ -101,13 +101,13 @@ pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnosti
 /// What is wrong with a file.
 #[derive(Debug)]
 pub(crate) struct Fault {
-    rule: &'static str,
+    rule: Rule,
     message: String,
     line: u32,
 }
 
 impl Fault {
-    pub(crate) fn new(rule: &'static str, message: impl Into<String>) -> Fault {
+    pub(crate) fn new(rule: Rule, message: impl Into<String>) -> Fault {
         Fault { rule, message: message.into(), line: 0 }
     }
 
@@ -126,8 +126,9 @@ impl Fault {
 pub(crate) fn number(word: Option<&str>, line: usize) -> Result<f64, Fault> {
     let word = word.unwrap_or("");
     let value = word.parse::<f64>().ok().filter(|value| value.is_finite());
-    value
-        .ok_or_else(|| Fault::new("number", format!("a number is needed, not `{word}`")).line(line))
+    value.ok_or_else(|| {
+        Fault::new(Rule::Number, format!("a number is needed, not `{word}`")).line(line)
+    })
 }
 
 /// The text of a file, line by line with their numbers from 1. Bytes that are not UTF-8 are replaced: they are in no number.

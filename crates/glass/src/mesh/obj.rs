@@ -2,6 +2,7 @@
 
 use super::{Fault, MOST, Mesh, lines, number};
 use glam::DVec3;
+use program::Rule;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
@@ -20,7 +21,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
                     .map(|word| corner(word, mesh.vertices.len(), at))
                     .collect::<Result<_, _>>()?;
                 if corners.len() < 3 {
-                    return Err(Fault::new("face", "a face needs three corners or more").line(at));
+                    return Err(
+                        Fault::new(Rule::Face, "a face needs three corners or more").line(at)
+                    );
                 }
                 let fan = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]);
                 mesh.triangles.extend(fan);
@@ -28,7 +31,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
             _ => {}
         }
         if mesh.vertices.len().max(mesh.triangles.len()) > MOST {
-            return Err(Fault::new("too-large", "has more triangles than can be counted"));
+            return Err(Fault::new(Rule::TooLarge, "has more triangles than can be counted"));
         }
     }
     Ok(mesh)
@@ -40,7 +43,7 @@ fn corner(word: &str, count: usize, line: usize) -> Result<u32, Fault> {
     let own = word.split('/').next().unwrap_or(word);
     let wrong = || {
         let word: String = word.chars().take(40).collect();
-        Fault::new("face", format!("`{word}` names none of the {count} vertices before it"))
+        Fault::new(Rule::Face, format!("`{word}` names none of the {count} vertices before it"))
             .line(line)
     };
     let named: i64 = own.parse().map_err(|_| wrong())?;

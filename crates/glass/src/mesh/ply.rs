@@ -2,6 +2,7 @@
 
 use super::{Fault, MOST, Mesh, Shape};
 use glam::DVec3;
+use program::Rule;
 
 /// How the numbers of a file are written.
 #[derive(Clone, Copy, PartialEq)]
@@ -55,7 +56,8 @@ struct Numbers<'b> {
 
 impl Numbers<'_> {
     fn next(&mut self, kind: Kind) -> Result<f64, Fault> {
-        let ended = || Fault::new("truncated", "ends within its numbers: not all of it is there");
+        let ended =
+            || Fault::new(Rule::Truncated, "ends within its numbers: not all of it is there");
         if self.writing == Writing::Text {
             self.bytes = self.bytes.trim_ascii_start();
             let length =
@@ -99,7 +101,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Shape, Fault> {
         if least > numbers.bytes.len() {
             let Element { name, count, .. } = element;
             return Err(Fault::new(
-                "truncated",
+                Rule::Truncated,
                 format!("states {count} of `{name}`, more than it can hold"),
             ));
         }
@@ -114,7 +116,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Shape, Fault> {
     let count = mesh.vertices.len();
     if mesh.triangles.iter().flatten().any(|&corner| corner as usize >= count) {
         return Err(Fault::new(
-            "face",
+            Rule::Face,
             format!("a face names a vertex beyond the {count} that there are"),
         ));
     }
@@ -137,7 +139,10 @@ fn item(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(),
         };
         let length = numbers.next(*count)?;
         if !(0.0..=LONGEST_LIST).contains(&length) {
-            return Err(Fault::new("list", format!("a list of `{name}` has the length {length}")));
+            return Err(Fault::new(
+                Rule::List,
+                format!("a list of `{name}` has the length {length}"),
+            ));
         }
         let mut corners = Vec::new();
         for _ in 0..length as usize {
@@ -154,7 +159,7 @@ fn item(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(),
         mesh.vertices.push(place);
     }
     if mesh.vertices.len().max(mesh.triangles.len()) > MOST {
-        return Err(Fault::new("too-large", "has more triangles than can be counted"));
+        return Err(Fault::new(Rule::TooLarge, "has more triangles than can be counted"));
     }
     Ok(())
 }
@@ -166,16 +171,16 @@ fn head(bytes: &[u8]) -> Result<(Writing, Vec<Element>, &[u8]), Fault> {
     let mut rest = bytes;
     for at in 1.. {
         let Some(length) = rest.iter().position(|byte| *byte == b'\n') else {
-            return Err(Fault::new("truncated", "has no line `end_header`"));
+            return Err(Fault::new(Rule::Truncated, "has no line `end_header`"));
         };
         let line = String::from_utf8_lossy(&rest[..length]);
         rest = &rest[length + 1..];
         let words: Vec<&str> = line.split_whitespace().collect();
         let wrong =
-            |what: &str| Err(Fault::new("head", format!("{what}: `{}`", line.trim())).line(at));
+            |what: &str| Err(Fault::new(Rule::Head, format!("{what}: `{}`", line.trim())).line(at));
         match words[..] {
             ["ply"] if at == 1 => {}
-            _ if at == 1 => return Err(Fault::new("head", "does not begin with `ply`").line(1)),
+            _ if at == 1 => return Err(Fault::new(Rule::Head, "does not begin with `ply`").line(1)),
             ["format", "ascii", _] => writing = Some(Writing::Text),
             ["format", "binary_little_endian", _] => writing = Some(Writing::Little),
             ["format", "binary_big_endian", _] => writing = Some(Writing::Big),
@@ -209,7 +214,7 @@ fn head(bytes: &[u8]) -> Result<(Writing, Vec<Element>, &[u8]), Fault> {
         }
     }
     let Some(writing) = writing else {
-        return Err(Fault::new("head", "has no line `format`"));
+        return Err(Fault::new(Rule::Head, "has no line `format`"));
     };
     Ok((writing, elements, rest))
 }

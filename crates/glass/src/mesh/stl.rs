@@ -2,6 +2,7 @@
 
 use super::{Fault, MOST, Mesh, lines, number};
 use glam::DVec3;
+use program::Rule;
 use std::collections::HashMap;
 
 /// Bytes before the triangles: a title of 80 and a count.
@@ -30,7 +31,7 @@ impl Corners {
         });
         self.mesh.triangles.push(corners);
         if self.mesh.triangles.len() > MOST {
-            return Err(Fault::new("too-large", "has more triangles than can be counted"));
+            return Err(Fault::new(Rule::TooLarge, "has more triangles than can be counted"));
         }
         Ok(())
     }
@@ -58,9 +59,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
             let held = bytes.len().saturating_sub(HEAD) / TRIANGLE;
             let message =
                 format!("states {count} triangles and holds {held}: not all of it is there");
-            Err(Fault::new("truncated", message))
+            Err(Fault::new(Rule::Truncated, message))
         }
-        None => Err(Fault::new("truncated", "is too short for an STL file")),
+        None => Err(Fault::new(Rule::Truncated, "is too short for an STL file")),
     }
 }
 
@@ -92,7 +93,7 @@ fn text(bytes: &[u8]) -> Result<Mesh, Fault> {
             }
             Some("endfacet") => {
                 let Ok(triangle) = <[[f32; 3]; 3]>::try_from(std::mem::take(&mut open)) else {
-                    return Err(Fault::new("facet", "a facet needs three vertices").line(at));
+                    return Err(Fault::new(Rule::Facet, "a facet needs three vertices").line(at));
                 };
                 corners.add(triangle)?;
             }
@@ -101,13 +102,13 @@ fn text(bytes: &[u8]) -> Result<Mesh, Fault> {
             Some(word) => {
                 let word: String = word.chars().take(40).collect();
                 return Err(
-                    Fault::new("word", format!("`{word}` is no word of an STL file")).line(at)
+                    Fault::new(Rule::Word, format!("`{word}` is no word of an STL file")).line(at)
                 );
             }
         }
     }
     if !ended || !open.is_empty() {
-        return Err(Fault::new("truncated", "ends without `endsolid`: not all of it is there"));
+        return Err(Fault::new(Rule::Truncated, "ends without `endsolid`: not all of it is there"));
     }
     Ok(corners.mesh)
 }

@@ -6,7 +6,7 @@ use super::{Read, fail};
 use crate::Import;
 use arm::{Arm, Calibration, Dh, Frame, Joint, Joints, Structure, Vec3};
 use geom::Euler;
-use program::{Diagnostic, nearest};
+use program::{Diagnostic, Rule, nearest};
 use std::fmt::Write as _;
 
 /// The links in their order.
@@ -26,21 +26,23 @@ pub fn import(file: &str, bytes: &[u8], extends: Option<&str>) -> Result<Import,
     let rows = read(super::text(bytes).map_err(boxed)?).map_err(boxed)?;
     let help = "say which arm it was measured on by --extends, such as ur5e or ur10e";
     let name = extends.ok_or_else(|| {
-        refused(Diagnostic::error("arm-extends", "it does not say of which arm it is").help(help))
+        refused(
+            Diagnostic::error(Rule::ArmExtends, "it does not say of which arm it is").help(help),
+        )
     })?;
     let machine = machine::load(name).map_err(|why| vec![*why])?;
     let nominal = machine.arm.as_ref().map(Arm::structure);
     let Some(Structure::Ur(dh, _)) = nominal else {
         let message = format!("`{name}` is no arm of Universal Robots");
-        return Err(refused(Diagnostic::error("arm-extends", message).help(help)));
+        return Err(refused(Diagnostic::error(Rule::ArmExtends, message).help(help)));
     };
     let off = off(dh, &rows).map_err(boxed)?;
     if off.is_nan() || off > LIKE {
         let message = format!("the arm that was measured is up to {off:.1} mm from `{name}`");
-        return Err(refused(Diagnostic::error("arm-calibration", message).help(help)));
+        return Err(refused(Diagnostic::error(Rule::ArmCalibration, message).help(help)));
     }
     let message = format!("the arm as measured is up to {off:.3} mm from `{name}`");
-    let findings = vec![Diagnostic::warning("arm-calibration", message).file(file).help(
+    let findings = vec![Diagnostic::warning(Rule::ArmCalibration, message).file(file).help(
         "programs of joints hang on it, programs of poses do not; it is true of this one arm",
     )];
     Ok(Import { text: write(file, name, &rows), extends: name.to_owned(), findings })
@@ -63,7 +65,7 @@ fn write(file: &str, name: &str, rows: &[[f64; 6]; 6]) -> String {
 fn read(text: &str) -> Read<[[f64; 6]; 6]> {
     let wrong = |line: usize, message: String| {
         let help = "take the file as the driver of Universal Robots saves it: six links, each with x, y, z, roll, pitch and yaw";
-        Diagnostic::error("calibration", message)
+        Diagnostic::error(Rule::Calibration, message)
             .line(u32::try_from(line).unwrap_or(u32::MAX))
             .help(help)
     };
@@ -134,7 +136,7 @@ fn off(dh: &Dh, rows: &[[f64; 6]; 6]) -> Read<f64> {
     });
     let arm = |calibration| Arm::new(Structure::Ur(*dh, calibration), [joint; 6], None, 0.0);
     let wrong = |why: arm::Misfit| {
-        Diagnostic::error("calibration", why.to_string())
+        Diagnostic::error(Rule::Calibration, why.to_string())
             .help("take the file as the driver saves it")
     };
     let nominal = arm(None).map_err(wrong)?;

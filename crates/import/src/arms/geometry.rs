@@ -4,7 +4,7 @@ use super::urdf::{Chain, Revolute};
 use super::{RIGHT, Read, fail};
 use arm::{Arm, Dh, Frame, Joint, Joints, Spherical, Structure, Vec3};
 use geom::{Mat3, rotate};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Points as near as this are one, mm.
@@ -50,7 +50,7 @@ impl Axis {
 fn refused(message: impl Into<String>) -> Diagnostic {
     let help =
         "arms whose last three axes meet in one point, and those of Universal Robots, are known";
-    Diagnostic::error("arm-kind", message).help(help)
+    Diagnostic::error(Rule::ArmKind, message).help(help)
 }
 
 /// The arm of a chain.

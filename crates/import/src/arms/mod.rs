@@ -11,7 +11,7 @@ mod write;
 pub use calibration::import as import_calibration;
 
 use crate::Import;
-use program::{Diagnostic, encoding};
+use program::{Diagnostic, Rule, encoding};
 
 /// The largest description that is taken, bytes.
 const LARGEST: usize = 4 << 20;
@@ -45,7 +45,7 @@ pub fn import_urdf(
         let message =
             format!("the arm reaches {made:.1} mm to the wrist centre, and {stated} mm are stated");
         let help = "the description is that of another arm, or a wrong one: do not use it";
-        return Err(vec![Diagnostic::error("arm-reach", message).help(help).file(file)]);
+        return Err(vec![Diagnostic::error(Rule::ArmReach, message).help(help).file(file)]);
     }
     let mut findings: Vec<Diagnostic> = read.findings;
     findings.extend(write::open(&found.arm, reach));
@@ -62,14 +62,14 @@ fn text(bytes: &[u8]) -> Read<&str> {
     if bytes.len() > LARGEST {
         let message = format!("{} bytes are more than any description of an arm has", bytes.len());
         return fail(
-            Diagnostic::error("import", message).help("leave meshes in files of their own"),
+            Diagnostic::error(Rule::Import, message).help("leave meshes in files of their own"),
         );
     }
     if encoding::is_utf_16(bytes) {
         return Err(encoding::utf_16().into());
     }
     let text = std::str::from_utf8(bytes).map_err(|_| {
-        Diagnostic::error("encoding", "this file is not UTF-8").help("save it as UTF-8")
+        Diagnostic::error(Rule::Encoding, "this file is not UTF-8").help("save it as UTF-8")
     })?;
     Ok(text.trim_start_matches('\u{feff}'))
 }

@@ -3,7 +3,7 @@
 use super::{RIGHT, Read, fail};
 use arm::{Frame, Vec3};
 use geom::{Euler, direction};
-use program::{Diagnostic, nearest};
+use program::{Diagnostic, Rule, nearest};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -57,7 +57,7 @@ struct Joint<'a> {
 
 fn wrong(line: u32, message: impl Into<String>) -> Diagnostic {
     let help = "correct the description there: one foot, six revolute joints with limits in a row, a link `tool0` at the flange";
-    Diagnostic::error("urdf", message).line(line).help(help)
+    Diagnostic::error(Rule::Urdf, message).line(line).help(help)
 }
 
 /// The chain of a description.
@@ -131,7 +131,7 @@ fn origin(node: Node<'_, '_>, name: &str, findings: &mut Vec<Diagnostic>) -> Rea
                 (right.to_degrees()).round()
             );
             findings.push(
-                Diagnostic::warning("arm-snapped", message).line(line_of(origin)).help(SNAPPED),
+                Diagnostic::warning(Rule::ArmSnapped, message).line(line_of(origin)).help(SNAPPED),
             );
         }
         *turn = right;
@@ -264,7 +264,7 @@ impl<'a> Tree<'a> {
                 "joint `{}` with link `{}` is beside the chain from `{}` to the flange, and left out",
                 joint.name, joint.child, self.root
             );
-            Diagnostic::warning("arm-branch", message)
+            Diagnostic::warning(Rule::ArmBranch, message)
                 .line(joint.line)
                 .help("it moves nothing that carries the flange: compare the reach")
         };
@@ -339,7 +339,8 @@ fn revolute(joint: &Joint<'_>, frame: Frame, findings: &mut Vec<Diagnostic>) -> 
     if off > 1e-9 {
         let message =
             format!("joint `{}`: the axis is turned by {off:.1e} rad to a right angle", joint.name);
-        findings.push(Diagnostic::warning("arm-snapped", message).line(joint.line).help(SNAPPED));
+        findings
+            .push(Diagnostic::warning(Rule::ArmSnapped, message).line(joint.line).help(SNAPPED));
     }
     let limit = child("limit")
         .ok_or_else(|| wrong(joint.line, format!("joint `{}` has no limit", joint.name)))?;

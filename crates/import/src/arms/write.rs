@@ -2,7 +2,7 @@
 
 use crate::text::{quoted, short};
 use arm::{Arm, Structure};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::fmt::Write as _;
 
 /// What the file leaves open.
@@ -11,7 +11,7 @@ pub(super) fn open(arm: &Arm, reach: Option<f64>) -> Vec<Diagnostic> {
     if matches!(arm.structure(), Structure::Spherical(_)) {
         let help = "write `coupling` into [arm]: none, less-joint-2 (FANUC) or plus-joint-2 (parallel rod of ABB)";
         let message = "no description says how the controller counts joint 3";
-        open.push(Diagnostic::warning("arm-coupling", message).help(help));
+        open.push(Diagnostic::warning(Rule::ArmCoupling, message).help(help));
     }
     if reach.is_none() {
         let message = format!(
@@ -19,7 +19,7 @@ pub(super) fn open(arm: &Arm, reach: Option<f64>) -> Vec<Diagnostic> {
             arm.reach()
         );
         let help = "compare it with the data sheet, and give that figure by --reach";
-        open.push(Diagnostic::warning("arm-reach", message).help(help));
+        open.push(Diagnostic::warning(Rule::ArmReach, message).help(help));
     }
     open
 }

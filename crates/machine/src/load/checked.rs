@@ -6,7 +6,7 @@ use super::file::SheetFile;
 use crate::model::*;
 use crate::sheet::*;
 use geom::{Vec3, direction};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
 use toml::Spanned;
 
@@ -382,7 +382,7 @@ impl CheckedSheet {
             let message = format!(
                 "`tip_kinematics` in [settings] is for LinuxCNC, and the reader is `{reader}`"
             );
-            return Err(Diagnostic::error("machine-file", message).file(file).into());
+            return Err(Diagnostic::error(Rule::MachineFile, message).file(file).into());
         }
         Ok(Machine {
             loaded_from: LoadedFrom::default(),

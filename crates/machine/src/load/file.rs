@@ -4,7 +4,7 @@ use super::{Reach, Result, is_path};
 use crate::library;
 use crate::model::{Block, Place};
 use crate::sheet::Sheet;
-use program::{Diagnostic, encoding, nearest};
+use program::{Diagnostic, Rule, encoding, nearest};
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ impl SheetFile {
         reach.check(path)?;
         let shown = path.display().to_string();
         let fail = |why: String| {
-            Diagnostic::error("machine-unreadable", why)
+            Diagnostic::error(Rule::MachineUnreadable, why)
                 .help("`toolpost machines list` names the machines of the library")
                 .file(shown.clone())
         };
@@ -70,7 +70,7 @@ impl SheetFile {
                 let message = format!("`{name}` is a control, not a machine");
                 let own = format!("a file of your own that says `extends = \"{name}\"`");
                 let help = format!("the machines that build on it are {known}; or {own}");
-                Err(Diagnostic::error("machine-is-control", message).help(help).into())
+                Err(Diagnostic::error(Rule::MachineIsControl, message).help(help).into())
             }
             None => {
                 let message = format!("`{name}` is not in the library");
@@ -83,7 +83,7 @@ impl SheetFile {
                         "did you mean {meant}? `toolpost machines list` names all; or give the path of a file"
                     ),
                 };
-                Err(Diagnostic::error("machine-unknown", message).help(help).into())
+                Err(Diagnostic::error(Rule::MachineUnknown, message).help(help).into())
             }
         }
     }
@@ -110,7 +110,7 @@ impl SheetFile {
         if !is_inside && !name.ends_with(".toml") {
             let message = "a file outside the folder of this one, whose name does not end in .toml, is not read";
             let help = "copy it into the folder of this file";
-            return Err(Diagnostic::error("machine-file", message).help(help).into());
+            return Err(Diagnostic::error(Rule::MachineFile, message).help(help).into());
         }
         let quoted = self.quoted && is_inside;
         Ok(SheetFile { quoted, ..SheetFile::read(&path, reach)? })
@@ -130,7 +130,7 @@ impl SheetFile {
                 }
                 false => String::from("this is no machine file"),
             };
-            self.diagnostic("machine-file", message, span).into()
+            self.diagnostic(Rule::MachineFile, message, span).into()
         })
     }
 
@@ -144,15 +144,10 @@ impl SheetFile {
     }
 
     pub(super) fn at<T>(&self, what: &str, place: &Spanned<T>, message: &str) -> Diagnostic {
-        self.diagnostic("machine-file", format!("{what}: {message}"), place.span())
+        self.diagnostic(Rule::MachineFile, format!("{what}: {message}"), place.span())
     }
 
-    fn diagnostic(
-        &self,
-        rule: &'static str,
-        message: String,
-        span: std::ops::Range<usize>,
-    ) -> Diagnostic {
+    fn diagnostic(&self, rule: Rule, message: String, span: std::ops::Range<usize>) -> Diagnostic {
         let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
         let start = before.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
         let line = self.line_of(span.start);

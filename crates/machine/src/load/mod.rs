@@ -12,7 +12,7 @@ use crate::library;
 use crate::model::{LoadedFrom, Machine};
 use checked::CheckedSheet;
 use file::SheetFile;
-use program::{Diagnostic, Digest};
+use program::{Diagnostic, Digest, Rule};
 use std::path::{Path, PathBuf};
 
 /// How many files a chain of `extends` may have.
@@ -83,7 +83,8 @@ impl Reach {
         if is_inside {
             return Ok(());
         }
-        let found = Diagnostic::error("machine-reach", "this file may not be read here").help(help);
+        let found =
+            Diagnostic::error(Rule::MachineReach, "this file may not be read here").help(help);
         Err(found.file(path.display().to_string()).into())
     }
 }
@@ -151,7 +152,7 @@ fn build(file: SheetFile, reach: &Reach) -> Result<Machine> {
     }
     let missing = |what: &str| {
         let message = format!("{what} is missing, here and in everything that this file extends");
-        Box::new(Diagnostic::error("machine-incomplete", message).file(shown.clone()))
+        Box::new(Diagnostic::error(Rule::MachineIncomplete, message).file(shown.clone()))
     };
     let control = control.unwrap_or_else(|| name.clone());
     let machine = merged.finish(name.clone(), shown.clone(), control, &missing)?;

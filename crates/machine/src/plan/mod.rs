@@ -26,7 +26,7 @@ use crate::Machine;
 use crate::inverse::{Bearings, Chain};
 use axis::Axis;
 use geom::Vec3;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use search::Search;
 
 /// A pose to be reached, as far as the rotary axes are concerned.
@@ -128,7 +128,7 @@ impl Rewind {
     pub fn warning(&self) -> Diagnostic {
         let message = "the travel of the rotary axes ends in this cut: the tool is drawn back, \
                        turned and brought in again";
-        Diagnostic::warning("rewind", message).line(self.line)
+        Diagnostic::warning(Rule::Rewind, message).line(self.line)
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Cell, Plan, Rewind, TURN, TURNS, Target, TargetKind};
 use crate::inverse::{Bearings, Chain, Unreachable};
 use crate::{Machine, OrientationMode};
 use geom::{ANGLE_EPSILON, Vec3, angle_between, between};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::PI;
 
 /// The most states of a target: two solutions.
@@ -134,7 +134,7 @@ impl<'a> Search<'a> {
             let arc = target.kind == TargetKind::Arc;
             if arc && angle_between(last, target.axis) > ANGLE_EPSILON {
                 let message = "the tool axis turns during an arc";
-                return Err(Diagnostic::error("arc-orientation", message)
+                return Err(Diagnostic::error(Rule::ArcOrientation, message)
                     .help("split the arc into lines, or give its end the tool axis of its start")
                     .line(target.line)
                     .into());
@@ -266,7 +266,7 @@ impl<'a> Search<'a> {
                 "the tool axis turns by {turn:.3}° in one move, and the rotary axes have no way \
                  through it that stays between its ends and within their travel"
             );
-            Diagnostic::error("axis-limit", message)
+            Diagnostic::error(Rule::AxisLimit, message)
                 .help("make the steps of the tool axis smaller, or turn the part on the table")
                 .line(target.line)
         })?;
@@ -321,7 +321,7 @@ impl<'a> Search<'a> {
             needs.join(" or "),
             travel.join(", ")
         );
-        Diagnostic::error("axis-limit", message).line(target.line).into()
+        Diagnostic::error(Rule::AxisLimit, message).line(target.line).into()
     }
 }
 
@@ -334,7 +334,7 @@ fn unreachable(target: &Target, error: &Unreachable) -> Box<Diagnostic> {
         v.z,
         error.deviation.to_degrees()
     );
-    Diagnostic::error("unreachable-orientation", message)
+    Diagnostic::error(Rule::UnreachableOrientation, message)
         .help("the rotary axes of this machine have no position for it")
         .line(target.line)
         .into()

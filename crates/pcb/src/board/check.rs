@@ -7,7 +7,7 @@ use crate::report::Outcome;
 use crate::{Hole, HoleShape};
 use geom::region::{Index, Region, RegionError};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// Copper outside that covers less is rounding, mm²: 10 mm of an edge by a tenth of a micrometre.
 const SLIVER: f64 = 1e-3;
@@ -31,7 +31,7 @@ pub(super) fn copper(
     };
     let outside = outside(copper, outline, index).map_err(|error| {
         let message = format!("the {face} copper and the outline cannot be compared: {error}");
-        Box::new(Diagnostic::error("copper-outside", message))
+        Box::new(Diagnostic::error(Rule::CopperOutside, message))
     })?;
     let area = outside.area();
     let first = outside.islands().first().filter(|_| area > SLIVER);
@@ -46,7 +46,7 @@ pub(super) fn copper(
              within {first}"
         );
         let help = "it is cut through with the outline; look whether the outline is the right one";
-        Diagnostic::warning("copper-outside", message).help(help)
+        Diagnostic::warning(Rule::CopperOutside, message).help(help)
     }))
 }
 
@@ -66,7 +66,7 @@ pub(super) fn holes(board: &Board, index: Option<&Index>) -> Option<Diagnostic> 
         at.y
     );
     let help = "look whether outline and holes are of one board";
-    Some(Diagnostic::warning("hole-outside", message).help(help))
+    Some(Diagnostic::warning(Rule::HoleOutside, message).help(help))
 }
 
 /// Compares each layer with the outline, or with the first layer where there is no outline.
@@ -101,11 +101,11 @@ pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> 
         let (low, high) = (extents.0.max(board.0), extents.1.min(board.1));
         if low.x > high.x || low.y > high.y {
             let found =
-                Diagnostic::error("layers-apart", message("a layer lies outside the board"));
+                Diagnostic::error(Rule::LayersApart, message("a layer lies outside the board"));
             errors.push(found.help(help));
         } else if size(low, high) < 0.5 * size(extents.0, extents.1) && !name.ends_with("legend") {
             let message = message("more than half of a layer lies outside the board");
-            warnings.push(Diagnostic::warning("layers-shifted", message).help(help));
+            warnings.push(Diagnostic::warning(Rule::LayersShifted, message).help(help));
         }
     }
     if errors.is_empty() { Ok(warnings) } else { Err(errors) }

@@ -7,7 +7,7 @@ use crate::report::Outcome;
 use crate::stroke;
 use geom::region::{Fill, Index, Region, RegionError, Ring, strokes};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ impl Pattern {
         let (copper, found) = named.map_err(|error| {
             let message = format!("the {face} copper cannot be taken: {error}");
             let help = "look at positions and sizes, for what is far away or very many";
-            Box::new(placed(Diagnostic::error("layer", message).help(help)))
+            Box::new(placed(Diagnostic::error(Rule::Layer, message).help(help)))
         })?;
         Ok((copper, found.into_iter().map(placed).collect()))
     }
@@ -172,7 +172,7 @@ impl Copper {
                 "at X{:.3} Y{:.3} copper of net {name} is one piece with that of {first}",
                 spot.x, spot.y
             );
-            Diagnostic::warning("nets-joined", message)
+            Diagnostic::warning(Rule::NetsJoined, message)
                 .help("right where the nets are tied there; otherwise mend the board")
         };
         let findings = joined.into_iter().map(finding).collect();

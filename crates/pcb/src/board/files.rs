@@ -6,7 +6,7 @@
 use super::layer::{Face, Format, Layer};
 use super::{Artwork, Board, Drawn, Pattern, covered, holes, outline};
 use crate::{excellon, gerber};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use rayon::prelude::*;
 
 /// A file of a board.
@@ -101,7 +101,7 @@ fn told_apart<'a>(
                 if stated.is_none() && format == Some(Format::Gerber) {
                     let message = format!("taken as {layer}, by its name");
                     let help = "say which layer it is where it is another one";
-                    let found = Diagnostic::warning("layer-by-name", message).help(help);
+                    let found = Diagnostic::warning(Rule::LayerByName, message).help(help);
                     warnings.push(found.file(file.name));
                 }
                 let holes = matches!(layer, Layer::Holes(_));
@@ -112,7 +112,7 @@ fn told_apart<'a>(
     }
     if !others.is_empty() {
         let message = format!("left out, as they hold no layer that is cut: {}", listed(&others));
-        warnings.push(Diagnostic::warning("file-unused", message));
+        warnings.push(Diagnostic::warning(Rule::FileUnused, message));
     }
     if !not_through.is_empty() {
         let message = format!(
@@ -120,13 +120,13 @@ fn told_apart<'a>(
             listed(&not_through)
         );
         let help = "drill them in their layers, before these are joined";
-        warnings.push(Diagnostic::warning("holes-not-through", message).help(help));
+        warnings.push(Diagnostic::warning(Rule::HolesNotThrough, message).help(help));
     }
     if known.is_empty() {
         let message = format!("none of {} files is a layer of a board", files.len());
         let help = "give the Gerber and Excellon files of a board; copper files end in .gtl and .gbl, \
                     or -F_Cu.gbr and -B_Cu.gbr, or say what they are (X2)";
-        return Err(vec![Diagnostic::error("no-board", message).help(help)]);
+        return Err(vec![Diagnostic::error(Rule::NoBoard, message).help(help)]);
     }
     let twice = known.iter().enumerate().filter_map(|(i, one)| {
         let same = |earlier: &&Known| earlier.layer == one.layer;
@@ -155,7 +155,7 @@ impl Known<'_> {
         if image.objects.is_empty() {
             let message = format!("nothing is on this layer: there is no {}", self.layer);
             let help = "plot it anew, or leave it out where there should be nothing";
-            warnings.push(placed(Diagnostic::warning("layer-empty", message).help(help)));
+            warnings.push(placed(Diagnostic::warning(Rule::LayerEmpty, message).help(help)));
             return Ok(artwork);
         }
         let negative =
@@ -164,7 +164,7 @@ impl Known<'_> {
             Layer::Copper(_) if negative => {
                 let message = "this layer of copper is drawn as a negative";
                 let help = "plot it as a positive: what is painted is copper";
-                let found = Diagnostic::error("layer-negative", message).help(help);
+                let found = Diagnostic::error(Rule::LayerNegative, message).help(help);
                 return Err(vec![placed(found)]);
             }
             Layer::Copper(face) => {
@@ -178,7 +178,7 @@ impl Known<'_> {
                 let mask = covered(&image).map_err(|error| {
                     let message = format!("this layer cannot be taken: {error}");
                     let help = "look at the unit, and at the sizes of apertures";
-                    vec![placed(Diagnostic::error("layer", message).help(help))]
+                    vec![placed(Diagnostic::error(Rule::Layer, message).help(help))]
                 })?;
                 board.side_mut(face).mask = Some(mask);
             }
@@ -205,13 +205,13 @@ impl Known<'_> {
 fn unknown(name: &str) -> Diagnostic {
     let message = "a Gerber file, but neither it nor its name says which layer it is: left out";
     let help = "name it as CAD systems do (-F_Cu.gbr, .gtl), or say which layer it is";
-    Diagnostic::warning("layer-unknown", message).help(help).file(name)
+    Diagnostic::warning(Rule::LayerUnknown, message).help(help).file(name)
 }
 
 fn twice(one: &Known, earlier: &Known) -> Diagnostic {
     let message = format!("the {}, as is {}", one.layer, earlier.file.name);
     let help = "give the files of one board, and of two outlines the one that holds";
-    Diagnostic::error("layer-twice", message).help(help).file(one.file.name)
+    Diagnostic::error(Rule::LayerTwice, message).help(help).file(one.file.name)
 }
 
 /// At most a dozen names.

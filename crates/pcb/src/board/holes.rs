@@ -5,7 +5,7 @@ use crate::gerber::{Image, Object, Pen, Shape};
 use crate::report::{Outcome, fault};
 use crate::{Hole, HoleShape, SAME};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::HashSet;
 
 /// The holes of an Excellon file. What it does not say about their walls is `plated`.
@@ -35,7 +35,8 @@ pub(super) fn of_image(image: &Image, plated: Option<bool>) -> Outcome<Vec<Hole>
     let hole = |object: &Object| {
         let odd = || {
             let help = "holes are circles that are flashed, slots are drawn with them";
-            let mut found = fault("hole-form", "something else than holes is on this layer", help);
+            let mut found =
+                fault(Rule::HoleForm, "something else than holes is on this layer", help);
             found.line = object.line;
             found
         };
@@ -72,7 +73,7 @@ pub(crate) fn once(holes: &mut Vec<Hole>) -> Option<Diagnostic> {
     let again = all - holes.len();
     let message = format!("{again} holes come twice, at the same place and equally wide");
     let help = "they are made once; two files may hold the same holes";
-    (again > 0).then(|| Diagnostic::warning("hole-twice", message).help(help))
+    (again > 0).then(|| Diagnostic::warning(Rule::HoleTwice, message).help(help))
 }
 
 /// What holes that are the same have in common: their lengths in steps of [`SAME`], as a file in inches and

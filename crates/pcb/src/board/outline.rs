@@ -11,7 +11,7 @@ use crate::crossing::self_crossing;
 use crate::gerber::{Image, Object, Shape};
 use geom::region::{Fill, Region, Ring};
 use geom::{Chain, ChainError, Element, Vec2, chain};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// The widest gap between ends that is closed, mm: below the width of any cutter of an outline.
 pub const GAP: f64 = 0.05;
@@ -51,7 +51,7 @@ pub fn of_image(image: &Image) -> Result<Outlined, Vec<Diagnostic>> {
             if let Some(flash) = flashes {
                 let message = "what is flashed on the layer of the outline is no edge";
                 let help = "it is left out";
-                let found = Diagnostic::warning("outline-flash", message).help(help);
+                let found = Diagnostic::warning(Rule::OutlineFlash, message).help(help);
                 warnings.push(found.line(flash.line));
             }
             Ok((region, warnings))
@@ -86,11 +86,11 @@ pub fn of_lines(lines: &[(Element, u32)]) -> Result<Outlined, Vec<Diagnostic>> {
     if let Some(place) = crossing {
         let message = format!("the outline crosses itself near {}", shown(place));
         let help = "draw contours that do not cross: the edge of the board, and its cut-outs in it";
-        return Err(vec![Diagnostic::error("outline-crosses", message).help(help)]);
+        return Err(vec![Diagnostic::error(Rule::OutlineCrosses, message).help(help)]);
     }
     let region = Region::inside(&rings, Fill::EvenOdd).map_err(|e| vec![refused(0, &e)])?;
     if region.is_empty() {
-        let found = Diagnostic::error("outline-empty", "the outline encloses nothing");
+        let found = Diagnostic::error(Rule::OutlineEmpty, "the outline encloses nothing");
         return Err(vec![found.help("draw the edge of the board, or leave the layer out")]);
     }
     let wide = |(from, to): &&(Vec2, Vec2)| from.distance(*to) > ROUNDING;
@@ -100,7 +100,7 @@ pub fn of_lines(lines: &[(Element, u32)]) -> Result<Outlined, Vec<Diagnostic>> {
             from.distance(*to),
             shown(*from)
         );
-        Diagnostic::warning("outline-gap", message).help("let the lines end in one point")
+        Diagnostic::warning(Rule::OutlineGap, message).help("let the lines end in one point")
     });
     Ok((region, warnings.collect()))
 }
@@ -153,7 +153,7 @@ fn open_ends(open: &[&Chain], lines: &[(Element, u32)]) -> Vec<Diagnostic> {
                 shown(*end)
             );
             let help = "an outline has no branches: take out what is no edge";
-            found.push(Diagnostic::error("outline-branch", message).help(help).line(line));
+            found.push(Diagnostic::error(Rule::OutlineBranch, message).help(help).line(line));
             continue;
         }
         let rest = ends.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, (other, _))| *other);
@@ -169,7 +169,7 @@ fn open_ends(open: &[&Chain], lines: &[(Element, u32)]) -> Vec<Diagnostic> {
                 end.distance(nearest)
             );
             let help = format!("close it; gaps of up to {GAP} mm are closed automatically");
-            found.push(Diagnostic::error("outline-open", message).help(help).line(line));
+            found.push(Diagnostic::error(Rule::OutlineOpen, message).help(help).line(line));
         }
     }
     found
@@ -185,13 +185,13 @@ fn no_chain(error: ChainError, line: &dyn Fn(usize) -> u32) -> Diagnostic {
                 line(other)
             );
             let help = "an outline has no branches: take out what is no edge";
-            Diagnostic::error("outline-branch", message).help(help).line(line(other))
+            Diagnostic::error(Rule::OutlineBranch, message).help(help).line(line(other))
         }
         ChainError::Tangled { place, piece } => {
             let message =
                 format!("very many ends of the outline lie within {GAP} mm of {}", shown(place));
             let help = "take out what is no edge of the board";
-            Diagnostic::error("outline-tangled", message).help(help).line(line(piece))
+            Diagnostic::error(Rule::OutlineTangled, message).help(help).line(line(piece))
         }
     }
 }
@@ -199,7 +199,7 @@ fn no_chain(error: ChainError, line: &dyn Fn(usize) -> u32) -> Diagnostic {
 #[cold]
 fn mixed(object: &Object, what: &str) -> Diagnostic {
     let message = format!("on the layer of the outline {what}");
-    Diagnostic::error("outline-mixed", message)
+    Diagnostic::error(Rule::OutlineMixed, message)
         .help("draw the edge with lines alone, or fill the board and nothing else")
         .line(object.line)
 }
@@ -207,7 +207,7 @@ fn mixed(object: &Object, what: &str) -> Diagnostic {
 #[cold]
 fn refused(line: u32, error: &geom::region::RegionError) -> Diagnostic {
     let message = format!("the outline cannot be taken: {error}");
-    Diagnostic::error("outline", message).help("look at the unit and the arcs").line(line)
+    Diagnostic::error(Rule::Outline, message).help("look at the unit and the arcs").line(line)
 }
 
 fn shown(place: Vec2) -> String {

@@ -4,7 +4,7 @@ use super::{Board, Copper, Side};
 use crate::{Hole, HoleShape};
 use geom::region::Region;
 use geom::{Transform, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ impl Board {
         if far.is_nan() || far > FAR {
             let message = format!("the board cannot be moved by X {} Y {} mm", by.x, by.y);
             let help = format!("no place is farther than {FAR} mm from the zero");
-            return Err(Diagnostic::error("not-a-place", message).help(help).into());
+            return Err(Diagnostic::error(Rule::NotAPlace, message).help(help).into());
         }
         Ok(self.placed(&Transform::NONE, by))
     }
@@ -85,7 +85,7 @@ impl Board {
             let message =
                 format!("no pins of {diameter} mm can be put {distance} mm from the board");
             let help = "give a diameter above 0, and a distance of 0 or more";
-            return Err(Diagnostic::error("pins", message).help(help).into());
+            return Err(Diagnostic::error(Rule::Pins, message).help(help).into());
         };
         let away = distance + diameter / 2.0;
         let middle = low.midpoint(high);
@@ -110,7 +110,7 @@ impl Board {
         spacing: Vec2,
     ) -> Result<Board, Box<Diagnostic>> {
         let refused = |message: String, help: &str| {
-            Err(Box::new(Diagnostic::error("panel", message).help(help)))
+            Err(Box::new(Diagnostic::error(Rule::Panel, message).help(help)))
         };
         let boards = columns.saturating_mul(rows);
         let Some((low, high)) = self.extents().filter(|_| boards > 0) else {

@@ -10,6 +10,7 @@ use crate::Path;
 use crate::isolation::Direction;
 use crate::report::{Fault, Outcome, fault};
 use geom::region::{Region, RegionError};
+use program::Rule;
 
 /// What is no farther than this from a place that the tool reaches counts as reached, mm.
 const SLIVER: f64 = 0.005;
@@ -68,7 +69,7 @@ impl Clearing {
             let length = busy.area() / step;
             if length > LONGEST {
                 let message = format!("clearing by steps of {step} mm takes {:.0} m", length / 1e3);
-                return Err(fault("too-much", message, "use a wider tool first, or clear less"));
+                return Err(fault(Rule::TooMuch, message, "use a wider tool first, or clear less"));
             }
             // Not where the middle may be, but where it goes: what is as small as the rounding of regions may be
             // lost between the two, and a disc around it is not small.
@@ -89,7 +90,11 @@ impl Clearing {
         let overlap = self.overlap;
         if !(0.0..1.0).contains(&overlap) {
             let message = format!("rings cannot share {overlap} of their width");
-            return Err(fault("overlap", message, "give a part from 0 to below 1, such as 0.4"));
+            return Err(fault(
+                Rule::Overlap,
+                message,
+                "give a part from 0 to below 1, such as 0.4",
+            ));
         }
         let mut wider = f64::INFINITY;
         for width in &self.widths {
@@ -97,12 +102,16 @@ impl Clearing {
             if !(step >= FINEST && width.is_finite()) {
                 let message = format!("a tool {width} mm wide cannot clear by steps of {step} mm");
                 let help = format!("take a wider tool or less overlap: {FINEST} mm is the least");
-                return Err(fault("tool-width", message, &help));
+                return Err(fault(Rule::ToolWidth, message, &help));
             }
             if *width >= wider {
                 let message =
                     format!("a tool {width} mm wide finds nothing after one of {wider} mm");
-                return Err(fault("tool-width", message, "name the widest tool first, each once"));
+                return Err(fault(
+                    Rule::ToolWidth,
+                    message,
+                    "name the widest tool first, each once",
+                ));
             }
             wider = *width;
         }
@@ -125,5 +134,5 @@ fn middles(area: &Region, widths: &[f64]) -> Result<Vec<Region>, RegionError> {
 }
 
 fn too_large(error: RegionError) -> Fault {
-    fault("too-much", error.to_string(), "clear the area in parts")
+    fault(Rule::TooMuch, error.to_string(), "clear the area in parts")
 }

@@ -7,6 +7,7 @@ use crate::setting;
 use crate::{Cut, Hole, HoleShape, Path, Segment, depths};
 use geom::Element;
 use geom::region::{Cap, Region, RegionError};
+use program::Rule;
 
 /// A hole so much wider than the cutter is as wide as it, mm.
 const WIDTH: f64 = 0.01;
@@ -105,5 +106,5 @@ fn outwards(rings: &[Path], depths: &[f64]) -> Cut {
 }
 
 fn too_large(hole: &Hole, error: &RegionError) -> Fault {
-    fault("too-large", format!("{}: {error}", of(hole)), "correct the drill file")
+    fault(Rule::TooLarge, format!("{}: {error}", of(hole)), "correct the drill file")
 }

@@ -13,7 +13,7 @@ use crate::setting::{self, shown};
 use crate::tour::Tour;
 use crate::{Cut, Cutter, Hole, HoleShape, Operation, Tool};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// Diameters this near to each other are one, mm.
 const ALIKE: f64 = 1e-4;
@@ -190,7 +190,7 @@ impl Drilling {
             "add a drill of {} mm, allow a greater tolerance, or mill with a cutter of at most that",
             shown(hole.diameter)
         );
-        fault("no-drill", message, &help)
+        fault(Rule::NoDrill, message, &help)
     }
 
     fn no_cutter(&self, hole: &Hole) -> Fault {
@@ -201,7 +201,7 @@ impl Drilling {
             }
         };
         let help = format!("give a cutter of at most {} mm", shown(hole.diameter));
-        fault("no-cutter", format!("{}: {has}", of(hole)), &help)
+        fault(Rule::NoCutter, format!("{}: {has}", of(hole)), &help)
     }
 
     /// What one drill does; `at` is where the tool comes from, and then where it is.
@@ -229,7 +229,7 @@ impl Drilling {
                 chain::places(*a, *b, drill, scallop).ok_or_else(|| {
                     let help = "allow a higher scallop, or have slots milled";
                     let message = format!("{} takes more holes than can be drilled", of(hole));
-                    fault("chain-too-long", message, help)
+                    fault(Rule::ChainTooLong, message, help)
                 })
             }
             _ => Ok(vec![place(hole)]),
@@ -269,13 +269,13 @@ fn count(findings: &mut Vec<Diagnostic>, finding: Diagnostic) {
 fn differs(hole: &Hole, drill: f64) -> Diagnostic {
     let message = format!("{} is drilled with {} mm", of(hole), shown(drill));
     let help = format!("add a drill of {} mm where that matters", shown(hole.diameter));
-    Diagnostic::warning("drill-differs", message).help(help)
+    Diagnostic::warning(Rule::DrillDiffers, message).help(help)
 }
 
 fn loose(hole: &Hole) -> Diagnostic {
     let message = format!("{} closes: the piece within it comes loose", of(hole));
     let help = "hold that piece, or leave gaps in the route; only the outline has tabs";
-    Diagnostic::warning("piece-loose", message).help(help)
+    Diagnostic::warning(Rule::PieceLoose, message).help(help)
 }
 
 /// A hole, its diameter and its place in words.

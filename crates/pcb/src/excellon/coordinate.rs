@@ -4,6 +4,7 @@ use crate::FAR;
 use crate::decimal::decimal;
 use crate::report::{Outcome, fault};
 use geom::INCH;
+use program::Rule;
 
 /// Which zeros of a coordinate without a point are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +72,7 @@ impl Notation {
         let value = number * unit.millimetres();
         if value.abs() > FAR {
             let message = format!("{value} is not a place within {FAR} mm");
-            return Err(fault("not-a-place", message, "look at the unit and the format"));
+            return Err(fault(Rule::NotAPlace, message, "look at the unit and the format"));
         }
         Ok(value)
     }
@@ -83,7 +84,7 @@ impl Notation {
         if digits > before + after {
             let message = format!("{digits} digits, where {before} and {after} are the format");
             let help = "say the format in the header, such as METRIC,TZ,000.0000";
-            return Err(fault("format", message, help));
+            return Err(fault(Rule::Format, message, help));
         }
         let places = match self.zeros {
             // No zeros were left out, so nothing distinguishes the two.
@@ -96,7 +97,7 @@ impl Notation {
             }
             None => {
                 let help = "say LZ or TZ in the header, such as METRIC,TZ";
-                return Err(fault("no-zeros", "which zeros were left out is not said", help));
+                return Err(fault(Rule::NoZeros, "which zeros were left out is not said", help));
             }
         };
         Ok(10f64.powi(-i32::try_from(places).unwrap_or(0)))
@@ -105,7 +106,7 @@ impl Notation {
     fn unit(&self) -> Outcome<Unit> {
         self.unit.ok_or_else(|| {
             let help = "say METRIC or INCH in the header";
-            fault("no-unit", "a length, but the file does not say its unit", help)
+            fault(Rule::NoUnit, "a length, but the file does not say its unit", help)
         })
     }
 }
@@ -113,7 +114,7 @@ impl Notation {
 #[cold]
 fn malformed(text: &[u8]) -> crate::report::Fault {
     let shown = String::from_utf8_lossy(&text[..text.len().min(30)]).into_owned();
-    fault("word", format!("{shown:?} is no number"), "correct it")
+    fault(Rule::Word, format!("{shown:?} is no number"), "correct it")
 }
 
 #[cfg(test)]

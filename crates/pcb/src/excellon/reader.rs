@@ -11,7 +11,7 @@ use crate::HoleShape;
 use crate::decimal::whole;
 use crate::report::{Location, Outcome, Report, fault};
 use geom::{Element, Vec2};
-use program::{Diagnostic, encoding};
+use program::{Diagnostic, Rule, encoding};
 
 /// So many holes are more than any board has.
 const MOST_CUTS: usize = 1_000_000;
@@ -71,7 +71,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
         }
         reader.location = Location { line, start, end: start + text.len() };
         if let Err(fault) = reader.obey(text) {
-            let hopeless = fault.rule == "too-large";
+            let hopeless = fault.rule == Rule::TooLarge;
             reader.report.error(reader.location, *fault);
             if hopeless || reader.report.is_full() {
                 return Err(reader.report.errors);
@@ -90,7 +90,7 @@ impl Reader<'_> {
         if self.ended {
             self.report.warn(
                 self.location,
-                "after-end",
+                Rule::AfterEnd,
                 "lines after the end",
                 "they are not read",
             );
@@ -102,20 +102,20 @@ impl Reader<'_> {
             _ if text.first() == Some(&b'/') => {
                 if !self.header {
                     let help = "it depends on a switch of the machine: keep it or leave it out";
-                    return Err(fault("block-delete", "a line that may be skipped", help));
+                    return Err(fault(Rule::BlockDelete, "a line that may be skipped", help));
                 }
             }
             _ if UNITS.iter().any(|unit| text.starts_with(unit.as_bytes())) => self.unit(text)?,
             _ if text.starts_with(b"ICI") => self.incremental = !text.ends_with(b"OFF"),
             _ if text.starts_with(b"FMAT") => {
                 if !matches!(text, b"FMAT,1" | b"FMAT,2") {
-                    return Err(fault("format", "FMAT is 1 or 2", "say FMAT,2"));
+                    return Err(fault(Rule::Format, "FMAT is 1 or 2", "say FMAT,2"));
                 }
             }
             _ if text.starts_with(b"VER") => {
                 if text != b"VER,1" {
                     let help = "say VER,1: X to the right and Y away";
-                    return Err(fault("axes", "other directions of the axes", help));
+                    return Err(fault(Rule::Axes, "other directions of the axes", help));
                 }
             }
             _ if self.header && !matches!(text.first(), Some(b'T' | b'M' | b'G')) => {
@@ -124,7 +124,7 @@ impl Reader<'_> {
                     let help = "it is not known and not used";
                     self.report.warn(
                         self.location,
-                        "header",
+                        Rule::Header,
                         "a line of the header is not known",
                         help,
                     );
@@ -140,7 +140,7 @@ impl Reader<'_> {
     fn unit(&mut self, text: &[u8]) -> Outcome {
         let odd = || {
             let help = "it is such as METRIC,TZ or INCH,LZ,00.0000";
-            fault("unit", "not a unit with its zeros and its format", help)
+            fault(Rule::Unit, "not a unit with its zeros and its format", help)
         };
         for field in text.split(|c| *c == b',') {
             match field.trim_ascii() {
@@ -184,8 +184,9 @@ impl Reader<'_> {
                 b'R' => {
                     let count = whole(word.number).filter(|count| *count > 0);
                     let help = "a repeat is such as R5X0.1: count and distances";
-                    repeats =
-                        Some(count.ok_or_else(|| fault("repeat", "no count of repeats", help))?);
+                    repeats = Some(
+                        count.ok_or_else(|| fault(Rule::Repeat, "no count of repeats", help))?,
+                    );
                 }
                 b'G' if whole(word.number) == Some(85) => slot = true,
                 b'G' => self.general(word.number)?,
@@ -201,7 +202,7 @@ impl Reader<'_> {
                 letter => {
                     let message = format!("there is no word {}", char::from(letter));
                     return Err(fault(
-                        "word",
+                        Rule::Word,
                         message,
                         "see docs/sources/excellon.md for what is read",
                     ));
@@ -227,7 +228,11 @@ impl Reader<'_> {
     /// `T1` selects, `T1C0.5` defines and, in the body, selects too.
     fn tool(&mut self, number: &[u8], parameters: &[Word]) -> Outcome {
         let number = whole(number).ok_or_else(|| {
-            fault("word", "no number of a tool", "a tool is such as T1, or T1C0.5 in the header")
+            fault(
+                Rule::Word,
+                "no number of a tool",
+                "a tool is such as T1, or T1C0.5 in the header",
+            )
         })?;
         if !self.header {
             self.lift();
@@ -266,7 +271,7 @@ impl Reader<'_> {
             code => {
                 let code = code.map_or("G without a number".into(), |code| format!("G{code:02}"));
                 let help = "what is read are G00 to G05, G40, G81, G85, G90 and G91";
-                return Err(fault("unknown-command", format!("{code} is not read"), help));
+                return Err(fault(Rule::UnknownCommand, format!("{code} is not read"), help));
             }
         }
         Ok(())
@@ -275,7 +280,7 @@ impl Reader<'_> {
     fn route_mode(&mut self, mode: Mode) -> Outcome {
         if self.mode == Mode::Drill {
             let help = "G00 begins a route";
-            return Err(fault("route", "a route that was not begun", help));
+            return Err(fault(Rule::Route, "a route that was not begun", help));
         }
         self.mode = mode;
         Ok(())
@@ -293,13 +298,17 @@ impl Reader<'_> {
             Some(95) => self.header = false,
             Some(code @ (1 | 2 | 8 | 25 | 31 | 70 | 80 | 90)) => {
                 let help = "write every hole by itself";
-                return Err(fault("pattern", format!("M{code:02}: patterns are not read"), help));
+                return Err(fault(
+                    Rule::Pattern,
+                    format!("M{code:02}: patterns are not read"),
+                    help,
+                ));
             }
             code => {
                 let code = code.map_or("M without a number".into(), |code| format!("M{code:02}"));
                 let help =
                     "what is read are M00, M02, M06, M09, M14 to M18, M30, M48, M71, M72 and M95";
-                return Err(fault("unknown-command", format!("{code} is not read"), help));
+                return Err(fault(Rule::UnknownCommand, format!("{code} is not read"), help));
             }
         }
         Ok(())
@@ -339,7 +348,7 @@ impl Reader<'_> {
         self.tools.selected()?;
         if !self.down {
             let help = "the route is cut: say M15 where it begins and M16 where it ends";
-            self.report.warn(self.location, "no-plunge", "a route without M15", help);
+            self.report.warn(self.location, Rule::NoPlunge, "a route without M15", help);
         }
         let start = start.ok_or_else(no_point)?;
         let element = match self.mode {
@@ -349,7 +358,7 @@ impl Reader<'_> {
                 }
                 None if center == [None; 2] => {
                     let help = "give the radius with A, or the centre with I and J";
-                    return Err(fault("arc", "an arc without radius and centre", help));
+                    return Err(fault(Rule::Arc, "an arc without radius and centre", help));
                 }
                 None => {
                     let offset = |number: Option<&[u8]>| {
@@ -383,10 +392,9 @@ impl Reader<'_> {
 
     /// So many more holes, each as far from the one before.
     fn repeat(&mut self, count: u32, distance: [Option<&[u8]>; 2]) -> Outcome {
-        let last = self
-            .point
-            .filter(|_| self.mode == Mode::Drill)
-            .ok_or_else(|| fault("repeat", "a repeat of what is no hole", "repeat holes only"))?;
+        let last = self.point.filter(|_| self.mode == Mode::Drill).ok_or_else(|| {
+            fault(Rule::Repeat, "a repeat of what is no hole", "repeat holes only")
+        })?;
         if self.cuts.len().saturating_add(count as usize) > MOST_CUTS {
             return Err(too_large());
         }
@@ -400,7 +408,7 @@ impl Reader<'_> {
             self.point = Some(at);
             if at.abs().max_element() > FAR {
                 let message = format!("hole {i} of {count} is at X {} Y {} mm", at.x, at.y);
-                return Err(fault("not-a-place", message, "look at the count and the distance"));
+                return Err(fault(Rule::NotAPlace, message, "look at the count and the distance"));
             }
             self.cut(HoleShape::Round(at))?;
         }
@@ -422,7 +430,7 @@ impl Reader<'_> {
         let to = Vec2::new(along(x, last.map(|p| p.x))?, along(y, last.map(|p| p.y))?);
         if to.abs().max_element() > FAR {
             let message = format!("X {} Y {} is not a place within {FAR} mm", to.x, to.y);
-            return Err(fault("not-a-place", message, "look at the distances"));
+            return Err(fault(Rule::NotAPlace, message, "look at the distances"));
         }
         self.point = Some(to);
         Ok(to)
@@ -444,7 +452,7 @@ impl Reader<'_> {
                 }
             };
             let help = format!("say {name} in the header, if that is right");
-            self.report.warn(self.location, "zeros-concluded", message, &help);
+            self.report.warn(self.location, Rule::ZerosConcluded, message, &help);
         }
     }
 
@@ -458,14 +466,14 @@ impl Reader<'_> {
                 Unit::Metric => ("METRIC", "the diameters can only be mm: so are the coordinates"),
             };
             let help = format!("say {name} in the header, if that is right");
-            self.report.warn(self.location, "unit-concluded", message, &help);
+            self.report.warn(self.location, Rule::UnitConcluded, message, &help);
         }
     }
 
     fn finish(mut self) -> Result<Reading, Vec<Diagnostic>> {
         if !self.ended {
             let help = "the file may be cut off: write it again";
-            let error = fault("no-end", "the file does not end with M30", help);
+            let error = fault(Rule::NoEnd, "the file does not end with M30", help);
             self.report.error(self.location, *error);
         }
         match self.report.errors.is_empty() {
@@ -490,11 +498,11 @@ const HEADER: [&str; 32] = [
 
 #[cold]
 fn no_point() -> crate::report::Fault {
-    fault("no-point", "nothing says where this is", "give X and Y")
+    fault(Rule::NoPoint, "nothing says where this is", "give X and Y")
 }
 
 #[cold]
 fn too_large() -> crate::report::Fault {
     let message = format!("more than {MOST_CUTS} holes");
-    fault("too-large", message, "look at the counts of the repeats")
+    fault(Rule::TooLarge, message, "look at the counts of the repeats")
 }

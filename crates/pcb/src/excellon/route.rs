@@ -3,6 +3,7 @@
 use crate::report::{Outcome, fault};
 use crate::{SAME, arc};
 use geom::{Element, Vec2};
+use program::Rule;
 
 /// How far ends and centre may be off one circle, mm: four steps of the coarsest format, 0.01 mm.
 const TOLERANCE: f64 = 0.04;
@@ -16,7 +17,7 @@ pub(super) fn by_radius(start: Vec2, end: Vec2, radius: f64, clockwise: bool) ->
     let half = chord.length() / 2.0;
     if half <= SAME || radius <= 0.0 || half > radius + TOLERANCE {
         let message = format!("a radius of {radius:.4} mm over {:.4} mm", 2.0 * half);
-        return Err(fault("arc", message, "correct A or the end of the arc"));
+        return Err(fault(Rule::Arc, message, "correct A or the end of the arc"));
     }
     let height = (radius * radius - half * half).max(0.0).sqrt();
     let left = if clockwise { -height } else { height };
@@ -36,7 +37,7 @@ pub(super) fn by_center(start: Vec2, end: Vec2, offset: Vec2, clockwise: bool) -
             offset.length(),
             end.distance(center)
         );
-        return Err(fault("arc", message, "correct I and J, or the end of the arc"));
+        return Err(fault(Rule::Arc, message, "correct I and J, or the end of the arc"));
     }
     Ok(arc::about(start, end, center, clockwise))
 }

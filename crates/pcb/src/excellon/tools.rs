@@ -3,6 +3,7 @@
 use super::Tool;
 use crate::report::{Outcome, fault};
 use crate::{FAR, SAME};
+use program::Rule;
 use std::collections::HashMap;
 
 /// The tools that are known, and the one in the spindle.
@@ -61,7 +62,7 @@ impl Tools {
             && !(diameter > 0.0 && diameter <= FAR)
         {
             let message = format!("T{number} has a diameter of {diameter} mm");
-            return Err(fault("diameter", message, "give it the diameter of the hole"));
+            return Err(fault(Rule::Diameter, message, "give it the diameter of the hole"));
         }
         let index = match self.by_number.get(&number) {
             Some(index) => *index,
@@ -78,7 +79,7 @@ impl Tools {
         };
         if tool.diameter > 0.0 && (diameter - tool.diameter).abs() > SAME {
             let message = format!("T{number} has a diameter of {} mm already", tool.diameter);
-            return Err(fault("diameter", message, "give every diameter a number of its own"));
+            return Err(fault(Rule::Diameter, message, "give every diameter a number of its own"));
         }
         tool.diameter = diameter;
         Ok(())
@@ -93,7 +94,7 @@ impl Tools {
         self.selected = if known { number } else { 0 };
         if !known {
             let help = "define it in the header, such as T1C0.8";
-            return Err(fault("missing-tool", format!("T{number} is not defined"), help));
+            return Err(fault(Rule::MissingTool, format!("T{number} is not defined"), help));
         }
         Ok(())
     }
@@ -105,13 +106,13 @@ impl Tools {
     pub(super) fn selected(&self) -> Outcome<u32> {
         let Some(index) = self.by_number.get(&self.selected).filter(|_| self.selected != 0) else {
             let help = "select one before the first hole, such as T1";
-            return Err(fault("no-tool", "a hole without a tool", help));
+            return Err(fault(Rule::NoTool, "a hole without a tool", help));
         };
         match self.all.get(*index as usize) {
             Some(tool) if tool.diameter > 0.0 => Ok(*index),
             _ => {
                 let message = format!("T{} has no diameter", self.selected);
-                Err(fault("no-diameter", message, "define it in the header, such as T1C0.8"))
+                Err(fault(Rule::NoDiameter, message, "define it in the header, such as T1C0.8"))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The words of a line: a letter and its number, which stays as it is written.
 
 use crate::report::{Outcome, fault};
+use program::Rule;
 
 /// A letter and the number behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +25,11 @@ pub(super) fn words(line: &[u8]) -> Outcome<Vec<Word<'_>>> {
         }
         if !letter.is_ascii_alphabetic() {
             let message = format!("{} is no word", char::from(*letter).escape_default());
-            return Err(fault("word", message, "see docs/sources/excellon.md for what is read"));
+            return Err(fault(
+                Rule::Word,
+                message,
+                "see docs/sources/excellon.md for what is read",
+            ));
         }
         let part = |c: &u8| c.is_ascii_digit() || matches!(c, b'.' | b'+' | b'-');
         let end = after.iter().position(|c| !part(c)).unwrap_or(after.len());

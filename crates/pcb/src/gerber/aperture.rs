@@ -6,6 +6,7 @@ use crate::report::{Outcome, fault};
 use crate::stroke::Pen;
 use crate::{FAR, Transform};
 use geom::Vec2;
+use program::Rule;
 
 /// What can be flashed.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +36,7 @@ impl<'a> Definition<'a> {
     pub(super) fn of(text: &'a [u8]) -> Outcome<Definition<'a>> {
         let odd = || {
             let help = "an aperture is defined by %ADD10C,0.5*%, with numbers from 10 on";
-            fault("aperture", "not the definition of an aperture", help)
+            fault(Rule::Aperture, "not the definition of an aperture", help)
         };
         let rest = text.strip_prefix(b"D").ok_or_else(odd)?;
         let digits = rest.iter().position(|c| !c.is_ascii_digit()).unwrap_or(rest.len());
@@ -74,7 +75,11 @@ impl<'a> Definition<'a> {
         let count = self.values.len();
         if count < sizes || count > most || (self.template == b"P" && count < 2) {
             let help = "see section 4.4 of the Gerber specification";
-            return Err(fault("aperture", format!("{name} does not take {count} values"), help));
+            return Err(fault(
+                Rule::Aperture,
+                format!("{name} does not take {count} values"),
+                help,
+            ));
         }
         let value = |index: usize| self.values.get(index).copied();
         let size = Vec2::new(value(0).unwrap_or(0.0), value(sizes - 1).unwrap_or(0.0)) * unit;
@@ -83,7 +88,7 @@ impl<'a> Definition<'a> {
         if least < 0.0 || size.max_element() > FAR || (least == 0.0 && self.template != b"C") {
             let message = format!("{name} of {:.4} by {:.4} mm", size.x, size.y);
             let help = "sizes are greater than 0; only a circle may be 0";
-            return Err(fault("aperture", message, help));
+            return Err(fault(Rule::Aperture, message, help));
         }
         let (outline, first_hole) = match self.template {
             b"C" => (Contour::circle(Vec2::ZERO, size.x / 2.0), 1),
@@ -96,7 +101,7 @@ impl<'a> Definition<'a> {
                 let corners = value(1).filter(|n| n.fract() == 0.0 && (3.0..=12.0).contains(n));
                 let corners = corners.ok_or_else(|| {
                     let message = format!("a polygon of {} corners", value(1).unwrap_or(0.0));
-                    fault("aperture", message, "it has 3 to 12")
+                    fault(Rule::Aperture, message, "it has 3 to 12")
                 })?;
                 let turned = Transform::new(false, value(2).unwrap_or(0.0), 1.0);
                 let polygon = Contour::regular(Vec2::ZERO, size.x / 2.0, corners as u32, 0.0);
@@ -112,7 +117,7 @@ impl<'a> Definition<'a> {
             let hole = Vec2::new(x, y.unwrap_or(x)) * unit;
             if hole.min_element() < 0.0 || hole.max_element() > FAR {
                 let message = format!("a hole of {:.4} by {:.4} mm", hole.x, hole.y);
-                return Err(fault("aperture", message, "sizes of holes are 0 or greater"));
+                return Err(fault(Rule::Aperture, message, "sizes of holes are 0 or greater"));
             }
             // A rectangular hole is deprecated (section 8.2.2), a round one of no size is none.
             if hole.min_element() > 0.0 && least > 0.0 {

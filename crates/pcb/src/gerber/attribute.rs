@@ -5,6 +5,7 @@
 
 use super::image::Image;
 use crate::report::{Outcome, fault};
+use program::Rule;
 use std::sync::Arc;
 
 /// What an object is part of.
@@ -46,7 +47,7 @@ impl Dictionary {
         if name.is_empty() && kind != "TD" {
             let help = "an attribute is %TF.Name,value*%";
             return Err(fault(
-                "attribute",
+                Rule::Attribute,
                 format!("{kind} without the name of an attribute"),
                 help,
             ));

@@ -2,7 +2,7 @@
 
 use crate::report::{Location, Outcome, fault};
 use memchr::{memchr, memchr_iter, memchr2};
-use program::encoding;
+use program::{Rule, encoding};
 
 /// What comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl<'a> Blocks<'a> {
 
 #[cold]
 fn unterminated(message: impl Into<String>) -> crate::report::Fault {
-    fault("unterminated", message, "the file may be cut off: write it again")
+    fault(Rule::Unterminated, message, "the file may be cut off: write it again")
 }
 
 #[cfg(test)]

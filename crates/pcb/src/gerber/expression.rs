@@ -2,6 +2,7 @@
 
 use crate::decimal::{decimal, whole};
 use crate::report::{Outcome, fault};
+use program::Rule;
 use std::collections::HashMap;
 
 /// The values of `$1`, `$2` and so on; one that is not there is 0.
@@ -56,7 +57,7 @@ impl Expression {
         let odd = |what: &str| {
             let shown = String::from_utf8_lossy(&text[..text.len().min(60)]);
             let help = "a value of a macro is made of numbers, $1, +, -, x, / and brackets";
-            fault("macro-expression", format!("{shown:?}: {what}"), help)
+            fault(Rule::MacroExpression, format!("{shown:?}: {what}"), help)
         };
         let (mut steps, mut waiting) = (Vec::new(), Vec::new());
         let mut wants_value = true;
@@ -153,7 +154,7 @@ impl Expression {
                         Operator::Multiply => left() * right,
                         Operator::Divide if right == 0.0 => {
                             let help = "correct the macro, or the values that %AD gives it";
-                            return Err(fault("macro-division", "a division by zero", help));
+                            return Err(fault(Rule::MacroDivision, "a division by zero", help));
                         }
                         Operator::Divide => left() / right,
                         Operator::Negate | Operator::Open => -right,
@@ -163,7 +164,7 @@ impl Expression {
             if value.is_nan() || value.abs() > 1e12 {
                 let help = "correct the macro, or the values that %AD gives it";
                 return Err(fault(
-                    "macro-value",
+                    Rule::MacroValue,
                     format!("a value of {value:e} is out of this world"),
                     help,
                 ));

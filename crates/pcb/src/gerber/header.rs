@@ -4,6 +4,7 @@ use crate::decimal::{decimal, whole};
 use crate::gerber::words::Word;
 use crate::report::{Outcome, fault};
 use geom::INCH;
+use program::Rule;
 
 /// How coordinates are written (section 4.2.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ impl Format {
     pub(super) fn of(text: &[u8]) -> Outcome<Format> {
         let odd = || {
             let help = "it is such as %FSLAX36Y36*%: digits before and after the point";
-            fault("format", "not the format of coordinates", help)
+            fault(Rule::Format, "not the format of coordinates", help)
         };
         let mut format = Format { x: (0, 0), y: (0, 0), trailing: false, incremental: false };
         let mut rest = text.trim_ascii();
@@ -81,7 +82,7 @@ pub(super) fn unit(text: &[u8]) -> Outcome<f64> {
     match text.trim_ascii() {
         b"MM" => Ok(1.0),
         b"IN" => Ok(INCH),
-        _ => Err(fault("unit", "neither MM nor IN", "say %MOMM*% or %MOIN*%")),
+        _ => Err(fault(Rule::Unit, "neither MM nor IN", "say %MOMM*% or %MOIN*%")),
     }
 }
 
@@ -117,7 +118,11 @@ pub(super) fn transformation(name: &[u8; 2], text: &[u8]) -> Outcome {
     let name = String::from_utf8_lossy(name);
     let help =
         "it is deprecated, and readers differ in what it does: write the layer again without it";
-    Err(fault("image-transformation", format!("{name}{shown} changes the image as a whole"), help))
+    Err(fault(
+        Rule::ImageTransformation,
+        format!("{name}{shown} changes the image as a whole"),
+        help,
+    ))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::report::{Outcome, fault};
 use crate::stroke::{self, Pen};
 use crate::{Contour, FAR, Piece, Transform};
 use geom::{Element, Vec2};
+use program::Rule;
 
 /// So many lines and arcs of an aperture that erases are worked on as fast as any.
 const FEW: usize = 64;
@@ -198,7 +199,7 @@ impl Object {
         let far = place.abs().max_element().max(transform.scale());
         if far.is_nan() || far > FAR {
             let message = format!("a copy of the object of line {} beyond {FAR} mm", self.line);
-            return Err(fault("not-a-place", message, "look at distances, scales and the unit"));
+            return Err(fault(Rule::NotAPlace, message, "look at distances, scales and the unit"));
         }
         Ok(Object { dark: self.dark == dark, shape, ..*self })
     }

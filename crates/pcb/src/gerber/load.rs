@@ -3,6 +3,7 @@
 use crate::Transform;
 use crate::decimal::decimal;
 use crate::report::{Outcome, fault};
+use program::Rule;
 
 /// Polarity, mirroring, rotation and scaling.
 pub(super) struct Loaded {
@@ -26,7 +27,7 @@ impl Loaded {
     /// # Errors
     /// `load`
     pub(super) fn load(&mut self, letter: u8, value: &[u8]) -> Outcome {
-        let odd = |what: &str, help: &str| Err(fault("load", what, help));
+        let odd = |what: &str, help: &str| Err(fault(Rule::Load, what, help));
         let value = value.trim_ascii();
         match (letter, value, decimal(value)) {
             (b'P', b"D", _) => self.dark = true,

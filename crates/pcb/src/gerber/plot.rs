@@ -7,6 +7,7 @@ use crate::report::{Outcome, fault};
 use crate::stroke::Pen;
 use crate::{FAR, SAME, arc};
 use geom::{Element, INCH, Vec2};
+use program::Rule;
 use std::f64::consts::FRAC_PI_2;
 
 /// How a move from point to point runs.
@@ -65,7 +66,7 @@ impl Reader<'_> {
                 letter => {
                     let message = format!("there is no word {}", char::from(letter));
                     return Err(fault(
-                        "word",
+                        Rule::Word,
                         message,
                         "see chapter 4 of the Gerber specification",
                     ));
@@ -89,7 +90,7 @@ impl Reader<'_> {
             }
             None => {
                 let help = "say D01, D02 or D03 behind them";
-                Err(fault("no-operation", "coordinates without an operation", help))
+                Err(fault(Rule::NoOperation, "coordinates without an operation", help))
             }
         }
     }
@@ -97,12 +98,12 @@ impl Reader<'_> {
     fn select(&mut self, number: i64) -> Outcome {
         let number = u32::try_from(number).ok().filter(|number| *number >= 10);
         let number = number.ok_or_else(|| {
-            fault("word", "D codes are D01, D02, D03, and apertures from D10 on", "correct it")
+            fault(Rule::Word, "D codes are D01, D02, D03, and apertures from D10 on", "correct it")
         })?;
         if !self.entries.contains_key(&number) {
             self.current = None;
             let help = "define it with %AD before it is used";
-            return Err(fault("missing-aperture", format!("D{number} is not defined"), help));
+            return Err(fault(Rule::MissingAperture, format!("D{number} is not defined"), help));
         }
         self.current = Some(number);
         Ok(())
@@ -115,12 +116,20 @@ impl Reader<'_> {
             3 => self.mode = Mode::CounterClockwise,
             36 => {
                 if self.region.replace(Default::default()).is_some() {
-                    return Err(fault("region", "G36 within a region", "end the region with G37"));
+                    return Err(fault(
+                        Rule::Region,
+                        "G36 within a region",
+                        "end the region with G37",
+                    ));
                 }
             }
             37 => {
                 let Some(mut region) = self.region.take() else {
-                    return Err(fault("region", "G37 without G36", "begin the region with G36"));
+                    return Err(fault(
+                        Rule::Region,
+                        "G37 without G36",
+                        "begin the region with G36",
+                    ));
                 };
                 region.finish()?;
                 self.paint_region(region.contours)?;
@@ -145,7 +154,7 @@ impl Reader<'_> {
             }
             code => {
                 let help = "see chapters 4 and 8 of the Gerber specification";
-                return Err(fault("word", format!("there is no G{code:02}"), help));
+                return Err(fault(Rule::Word, format!("there is no G{code:02}"), help));
             }
         }
         Ok(())
@@ -161,7 +170,7 @@ impl Reader<'_> {
             2 => {}
             code => {
                 let message = format!("there is no M{code:02}");
-                return Err(fault("word", message, "the end of a file is M02"));
+                return Err(fault(Rule::Word, message, "the end of a file is M02"));
             }
         }
         self.ended = true;
@@ -180,13 +189,13 @@ impl Reader<'_> {
                 None => Ok(()),
             },
             Operation::Flash if self.region.is_some() => {
-                Err(fault("region", "D03 within a region", "a region has lines and arcs only"))
+                Err(fault(Rule::Region, "D03 within a region", "a region has lines and arcs only"))
             }
             Operation::Flash => self.flash(end),
             Operation::Plot => {
                 let start = start.ok_or_else(|| {
                     let help = "move there with D02 first";
-                    fault("no-point", "nothing says where this line starts", help)
+                    fault(Rule::NoPoint, "nothing says where this line starts", help)
                 })?;
                 let path = match self.mode {
                     Mode::Linear => Element::line(start, end),
@@ -212,7 +221,7 @@ impl Reader<'_> {
             (Some(word), _) if !incremental => self.value(word),
             _ => {
                 let help = "give X and Y";
-                Err(fault("no-point", "nothing says where this is", help))
+                Err(fault(Rule::NoPoint, "nothing says where this is", help))
             }
         };
         let place =
@@ -220,7 +229,7 @@ impl Reader<'_> {
         if place.abs().max_element() > FAR {
             let message = format!("X {} Y {} is not a place within {FAR} mm", place.x, place.y);
             let help = "look at the format (%FS) and the unit (%MO)";
-            return Err(fault("not-a-place", message, help));
+            return Err(fault(Rule::NotAPlace, message, help));
         }
         Ok(place)
     }
@@ -243,7 +252,7 @@ impl Reader<'_> {
         let center = match self.quadrant {
             None => {
                 let help = "say G75 before the first arc";
-                return Err(fault("no-quadrant", "an arc before G75", help));
+                return Err(fault(Rule::NoQuadrant, "an arc before G75", help));
             }
             Some(Quadrant::Multi) => start + offset,
             Some(Quadrant::Single) => {
@@ -262,7 +271,7 @@ impl Reader<'_> {
                 near.min_by(|a, b| off(a).total_cmp(&off(b))).ok_or_else(|| {
                     let message =
                         "no centre at this distance makes an arc of a quarter turn or less";
-                    fault("arc-center", message, "correct I and J, or use G75")
+                    fault(Rule::ArcCenter, message, "correct I and J, or use G75")
                 })?
             }
         };
@@ -271,7 +280,7 @@ impl Reader<'_> {
             let message = format!(
                 "the start is {from:.6} mm from the centre and the end {to:.6} mm, which is more than {tolerance:.6} mm apart"
             );
-            return Err(fault("arc-center", message, "correct I and J, or the ends of the arc"));
+            return Err(fault(Rule::ArcCenter, message, "correct I and J, or the ends of the arc"));
         }
         Ok(arc::about(start, end, center, clockwise))
     }
@@ -290,12 +299,12 @@ impl Reader<'_> {
                 return self.flash(path.end);
             }
             let help = "lines are drawn with a circle; with a rectangle if they are straight";
-            return Err(fault("pen", "this aperture draws no lines", help));
+            return Err(fault(Rule::Pen, "this aperture draws no lines", help));
         };
         if let Pen::Rectangle(_) = pen {
             if path.turn.is_some() {
                 let help = "draw arcs with a circle";
-                return Err(fault("pen", "an arc drawn with a rectangle", help));
+                return Err(fault(Rule::Pen, "an arc drawn with a rectangle", help));
             }
             self.deprecated("lines drawn with a rectangle");
         }
@@ -325,5 +334,5 @@ impl Reader<'_> {
 #[cold]
 fn no_format() -> crate::report::Fault {
     let help = "a Gerber file says it at its start: %FSLAX36Y36*%";
-    fault("no-format", "coordinates before the format of coordinates", help)
+    fault(Rule::NoFormat, "coordinates before the format of coordinates", help)
 }

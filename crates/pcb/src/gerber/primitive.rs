@@ -6,6 +6,7 @@ use crate::crossing::self_crossing;
 use crate::report::{Outcome, fault};
 use crate::{SAME, Transform};
 use geom::{Element, Vec2};
+use program::Rule;
 
 /// The pieces of primitive `code` with these values, for a unit of so many mm.
 ///
@@ -43,7 +44,7 @@ pub(super) fn pieces(code: u32, values: &[f64], unit: f64) -> Outcome<Vec<Piece>
         7 => (thermal(&values)?, values.number(5)?),
         _ => {
             let help = "the primitives are 1, 4, 5, 7, 20 and 21, and the old ones 2, 6 and 22";
-            return Err(fault("macro-primitive", format!("there is no primitive {code}"), help));
+            return Err(fault(Rule::MacroPrimitive, format!("there is no primitive {code}"), help));
         }
     };
     // The macro, not the primitive, is what it turns about (section 4.5.3).
@@ -99,7 +100,7 @@ impl Values<'_> {
     #[cold]
     fn odd(&self, what: String) -> crate::report::Fault {
         let help = "see section 4.5.1 of the Gerber specification";
-        fault("macro-primitive", format!("primitive {} {what}", self.code), help)
+        fault(Rule::MacroPrimitive, format!("primitive {} {what}", self.code), help)
     }
 }
 

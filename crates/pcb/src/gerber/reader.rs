@@ -16,7 +16,7 @@ use crate::contour::Contour;
 use crate::decimal::whole;
 use crate::report::{Location, Outcome, Report, fault};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ impl Budget {
             None => {
                 let message = format!("more than {MOST} objects, segments and values of macros");
                 let help = "look at the counts of step and repeat, or divide the layer";
-                Err(fault("too-large", message, help))
+                Err(fault(Rule::TooLarge, message, help))
             }
         }
     }
@@ -119,7 +119,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
             Err(fault) => Err(fault),
         };
         if let Err(fault) = obeyed {
-            let hopeless = fault.rule == "too-large";
+            let hopeless = fault.rule == Rule::TooLarge;
             reader.report.error(reader.location, *fault);
             if hopeless || reader.report.is_full() {
                 return Err(reader.report.errors);
@@ -144,7 +144,7 @@ impl<'a> Reader<'a> {
             Token::Block { .. } if self.ended => {
                 self.report.warn(
                     self.location,
-                    "after-end",
+                    Rule::AfterEnd,
                     "commands after M02",
                     "they are not read",
                 );
@@ -179,7 +179,7 @@ impl<'a> Reader<'a> {
                 }
                 if self.format.replace(format).is_some_and(|known| known != format) {
                     let help = "a file has one format";
-                    return Err(fault("format", "another format of coordinates", help));
+                    return Err(fault(Rule::Format, "another format of coordinates", help));
                 }
                 Ok(())
             }
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
                 let name = String::from_utf8_lossy(definition.template).into_owned();
                 let template = self.templates.get(definition.template).ok_or_else(|| {
                     let help = "define it with %AM before it is used";
-                    fault("missing-macro", format!("there is no macro {name}"), help)
+                    fault(Rule::MissingMacro, format!("there is no macro {name}"), help)
                 })?;
                 let drawn = template.pieces(&definition.values, unit, &mut self.budget);
                 let pieces = drawn.map_err(|(location, mut fault)| {
@@ -245,7 +245,7 @@ impl<'a> Reader<'a> {
             let help = "what comes after it uses the new one";
             self.report.warn(
                 self.location,
-                "aperture-again",
+                Rule::ApertureAgain,
                 "an aperture that is defined again",
                 help,
             );
@@ -257,7 +257,7 @@ impl<'a> Reader<'a> {
             let number = text.strip_prefix(b"D").and_then(whole).filter(|number| *number >= 10);
             let number = number.ok_or_else(|| {
                 let help = "a block aperture begins with %ABD12*% and ends with %AB*%";
-                fault("block", "not the number of an aperture", help)
+                fault(Rule::Block, "not the number of an aperture", help)
             })?;
             self.collect(Purpose::Block(number));
             return Ok(());
@@ -267,7 +267,7 @@ impl<'a> Reader<'a> {
             other => {
                 self.collectors.extend(other);
                 let help = "a block aperture begins with %ABD12*%";
-                return Err(fault("block", "the end of a block that was not begun", help));
+                return Err(fault(Rule::Block, "the end of a block that was not begun", help));
             }
         };
         self.point = None;
@@ -279,7 +279,7 @@ impl<'a> Reader<'a> {
         let open = match self.collectors.last().map(|collector| collector.purpose) {
             Some(Purpose::Block(_)) => {
                 let help = "flash the block several times instead";
-                return Err(fault("step-and-repeat", "a step and repeat within a block", help));
+                return Err(fault(Rule::StepAndRepeat, "a step and repeat within a block", help));
             }
             Some(Purpose::Repeat(_)) => true,
             None => false,
@@ -344,14 +344,14 @@ impl<'a> Reader<'a> {
     pub(super) fn entry(&self) -> Outcome<&Entry> {
         self.current.and_then(|number| self.entries.get(&number)).ok_or_else(|| {
             let help = "select one before it, such as D10";
-            fault("missing-aperture", "no aperture is selected", help)
+            fault(Rule::MissingAperture, "no aperture is selected", help)
         })
     }
 
     pub(super) fn unit(&self) -> Outcome<f64> {
         self.unit.ok_or_else(|| {
             let help = "a Gerber file says it at its start: %MOMM*% or %MOIN*%";
-            fault("no-unit", "a length before the unit", help)
+            fault(Rule::NoUnit, "a length before the unit", help)
         })
     }
 
@@ -360,7 +360,7 @@ impl<'a> Reader<'a> {
             Some(known) if known != unit => {
                 self.unit = Some(known);
                 let help = "a file has one unit";
-                Err(fault("unit", "another unit", help))
+                Err(fault(Rule::Unit, "another unit", help))
             }
             _ => Ok(()),
         }
@@ -370,7 +370,7 @@ impl<'a> Reader<'a> {
     #[cold]
     pub(super) fn deprecated(&mut self, what: &str) {
         let help = "it is read as chapter 8 of the Gerber specification says";
-        self.report.warn(self.location, "deprecated", what, help);
+        self.report.warn(self.location, Rule::Deprecated, what, help);
     }
 
     fn finish(mut self) -> Result<Reading, Vec<Diagnostic>> {
@@ -381,19 +381,19 @@ impl<'a> Reader<'a> {
             }
             Some(Purpose::Block(number)) => {
                 let message = format!("the block D{number} is not ended");
-                Err(fault("block", message, "end it with %AB*%"))
+                Err(fault(Rule::Block, message, "end it with %AB*%"))
             }
             None => Ok(()),
         };
         let region = match self.region {
-            Some(_) => Err(fault("region", "the last region is not ended", "end it with G37")),
+            Some(_) => Err(fault(Rule::Region, "the last region is not ended", "end it with G37")),
             None => Ok(()),
         };
         let end = match self.ended {
             true => Ok(()),
             false => {
                 let help = "the file may be cut off: write it again";
-                Err(fault("no-end", "the file does not end with M02", help))
+                Err(fault(Rule::NoEnd, "the file does not end with M02", help))
             }
         };
         let size = self.bounded();
@@ -418,7 +418,7 @@ impl Reader<'_> {
                 format!("its objects have {size} lines and arcs; {MOST_DRAWN} are the most");
             let help =
                 "look at the counts of step and repeat and at the macros, or divide the layer";
-            return Err(fault("too-large", message, help));
+            return Err(fault(Rule::TooLarge, message, help));
         }
         let changes = self.image.objects.chunk_by(|a, b| a.dark == b.dark).count();
         if changes > MOST_CHANGES {
@@ -426,7 +426,7 @@ impl Reader<'_> {
                 "the polarity (%LP) changes {changes} times where objects are painted; {MOST_CHANGES} are the most"
             );
             let help = "write the layer again with what is clear in one place, or divide it";
-            return Err(fault("polarity-changes", message, help));
+            return Err(fault(Rule::PolarityChanges, message, help));
         }
         Ok(())
     }
@@ -436,5 +436,5 @@ impl Reader<'_> {
 fn unknown(text: &[u8]) -> crate::report::Fault {
     let shown = String::from_utf8_lossy(&text[..text.len().min(20)]).into_owned();
     let help = "see chapter 4 of the Gerber specification";
-    fault("unknown-command", format!("there is no command {:?}", shown.trim()), help)
+    fault(Rule::UnknownCommand, format!("there is no command {:?}", shown.trim()), help)
 }

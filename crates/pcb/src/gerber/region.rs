@@ -4,6 +4,7 @@ use crate::contour::Contour;
 use crate::crossing::self_crossing;
 use crate::report::{Outcome, fault};
 use geom::Element;
+use program::Rule;
 
 /// Crossings of less than this are rounding, mm: points nearer than it may become one (section 4.14.2).
 pub(super) const MARGIN: f64 = 1e-3;
@@ -42,14 +43,14 @@ impl Statement {
                 start.distance(end)
             );
             let help = "close the contour in the program that wrote it";
-            return Err(fault("region-open", message, help));
+            return Err(fault(Rule::RegionOpen, message, help));
         }
         if let Some(place) = self_crossing(&elements, MARGIN)? {
             let message =
                 format!("the contour crosses itself near X {:.4} Y {:.4} mm", place.x, place.y);
             let help =
                 "the format gives it no meaning: write the layer again, with a finer resolution";
-            return Err(fault("region-crosses-itself", message, help));
+            return Err(fault(Rule::RegionCrossesItself, message, help));
         }
         self.contours.push(Contour::new(elements).counter_clockwise());
         Ok(())

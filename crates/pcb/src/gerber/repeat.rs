@@ -7,6 +7,7 @@ use crate::Transform;
 use crate::decimal::{decimal, whole};
 use crate::report::{Outcome, fault};
 use geom::Vec2;
+use program::Rule;
 
 /// A statement that collects objects.
 pub(super) struct Collector {
@@ -39,7 +40,7 @@ impl Steps {
     pub(super) fn of(text: &[u8], unit: f64) -> Outcome<Steps> {
         let odd = || {
             let help = "it is such as %SRX3Y2I5.0J4.0*%, with counts from 1 on";
-            fault("step-and-repeat", "not a step and repeat", help)
+            fault(Rule::StepAndRepeat, "not a step and repeat", help)
         };
         let mut steps = Steps { count: [1; 2], distance: Vec2::ZERO };
         let mut rest = text.trim_ascii();

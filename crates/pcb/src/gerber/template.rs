@@ -7,6 +7,7 @@ use crate::FAR;
 use crate::contour::{Contour, Piece};
 use crate::decimal::whole;
 use crate::report::{Fault, Location, Outcome, fault};
+use program::Rule;
 
 /// The template of an aperture.
 #[derive(Default)]
@@ -36,7 +37,7 @@ impl Template {
                 let variable = sides.next().and_then(|name| whole(name.trim_ascii()));
                 let (Some(variable), Some(value)) = (variable, sides.next()) else {
                     let help = "a variable is set by $4=$1x0.5";
-                    return Err(fault("macro-expression", "not an assignment", help));
+                    return Err(fault(Rule::MacroExpression, "not an assignment", help));
                 };
                 Statement::Assign(variable, Expression::of(value)?)
             }
@@ -45,7 +46,11 @@ impl Template {
                 let code = fields.next().and_then(|code| whole(code.trim_ascii()));
                 let Some(code) = code else {
                     let help = "a primitive begins with its number, such as 1,1,0.5,0,0";
-                    return Err(fault("macro-primitive", "a primitive without its number", help));
+                    return Err(fault(
+                        Rule::MacroPrimitive,
+                        "a primitive without its number",
+                        help,
+                    ));
                 };
                 Statement::Primitive(code, fields.map(Expression::of).collect::<Outcome<_>>()?)
             }
@@ -109,7 +114,11 @@ fn near(piece: &Piece) -> Outcome {
     match piece.contours.iter().any(far) {
         true => {
             let message = format!("a primitive that reaches beyond {FAR} mm");
-            Err(fault("macro-value", message, "correct the macro, or the values that %AD gives it"))
+            Err(fault(
+                Rule::MacroValue,
+                message,
+                "correct the macro, or the values that %AD gives it",
+            ))
         }
         false => Ok(()),
     }

@@ -1,6 +1,7 @@
 //! The words of a command outside of `%`: a letter and its digits.
 
 use crate::report::{Outcome, fault};
+use program::Rule;
 
 /// A letter and the number behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +74,11 @@ impl<'a> Words<'a> {
 #[cold]
 fn odd(letter: u8, what: &str) -> crate::report::Fault {
     let letter = char::from(letter).escape_default();
-    fault("word", format!("{letter} {what}"), "coordinates are whole numbers in the format of %FS")
+    fault(
+        Rule::Word,
+        format!("{letter} {what}"),
+        "coordinates are whole numbers in the format of %FS",
+    )
 }
 
 #[cfg(test)]

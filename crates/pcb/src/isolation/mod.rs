@@ -21,7 +21,7 @@ pub use severed::{Severed, severed};
 use crate::{Copper, Cutter, Path};
 use field::Field;
 use geom::region::{Index, Region, RegionError};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// How copper is isolated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,11 +130,11 @@ impl Isolation {
 }
 
 fn too_large(error: RegionError) -> Box<Diagnostic> {
-    let finding = Diagnostic::error("board-too-large", error.to_string());
+    let finding = Diagnostic::error(Rule::BoardTooLarge, error.to_string());
     Box::new(finding.help("take a part of the board"))
 }
 
 fn too_wide(width: f64) -> Box<Diagnostic> {
     let what = format!("a cut {width:.3} mm wide is near too much of the copper everywhere");
-    Box::new(Diagnostic::error("cut-too-wide", what).help("take a narrower tool"))
+    Box::new(Diagnostic::error(Rule::CutTooWide, what).help("take a narrower tool"))
 }

@@ -8,6 +8,7 @@ use crate::board::Shape;
 use crate::contour::{Contour, Piece};
 use geom::region::{Fill, Island, Region, Ring};
 use geom::{Element, Vec2};
+use program::Rule;
 use std::f64::consts::TAU;
 
 /// An arc of a larger radius is taken as a line, where that is within [`FLAT`], mm.
@@ -51,7 +52,7 @@ impl Graphic {
                     item.need("pts")?.all("xy").map(Node::point).collect::<Outcome<_>>()?;
                 let [a, b, c, d] = points[..] else {
                     let message = format!("a curve of {} points", points.len());
-                    return Err(item.fault("curve", message, "a Bézier curve has four"));
+                    return Err(item.fault(Rule::Curve, message, "a Bézier curve has four"));
                 };
                 curve::elements([a, b, c, d])
             }
@@ -68,7 +69,7 @@ impl Graphic {
             Some(b"yes" | b"solid") => true,
             Some(other) => {
                 let message = format!("the filling \"{}\"", String::from_utf8_lossy(other));
-                return Err(item.fault("fill", message, "shapes are filled or not: yes or no"));
+                return Err(item.fault(Rule::Fill, message, "shapes are filled or not: yes or no"));
             }
         };
         let area = matches!(kind, b"circle" | b"rect" | b"poly");
@@ -85,7 +86,7 @@ impl Graphic {
             // Polygons may cross themselves.
             let within = Ring::new(self.elements.clone())
                 .and_then(|ring| Region::inside([&ring], Fill::NonZero))
-                .map_err(|e| item.fault("shape", e.to_string(), "draw it again in KiCad"))?;
+                .map_err(|e| item.fault(Rule::Shape, e.to_string(), "draw it again in KiCad"))?;
             // One shape for each piece: a shape is named by one place in it.
             shapes.extend(within.islands().iter().map(|island| Shape::Pieces(vec![piece(island)])));
         }
@@ -107,7 +108,7 @@ pub(super) fn arc(item: Node) -> Outcome<Element> {
         let angle = -item.need("angle")?.number(0)?;
         if angle.abs() > 360.0 {
             let message = format!("an arc of {angle}°");
-            return Err(item.fault("arc", message, "arcs turn up to 360°"));
+            return Err(item.fault(Rule::Arc, message, "arcs turn up to 360°"));
         }
         let stop = start + Transform::new(false, angle, 1.0).apply(end - start);
         let stop = if angle.abs() == 360.0 { end } else { stop };
@@ -121,7 +122,7 @@ pub(super) fn arc(item: Node) -> Outcome<Element> {
             if line.nearest(mid).1 > FLAT {
                 let message = format!("an arc with a radius of {radius:.0} mm");
                 let help = format!("radii up to {MAX_RADIUS} mm are read: draw it with lines");
-                return Err(item.fault("arc", message, &help));
+                return Err(item.fault(Rule::Arc, message, &help));
             }
             Ok(line)
         }
@@ -136,7 +137,7 @@ pub(super) fn chain(pts: Node) -> Outcome<Vec<Element>> {
         b"arc" => arc(item),
         other => {
             let message = format!("\"{}\" in an outline", String::from_utf8_lossy(other));
-            Err(item.fault("outline", message, "outlines have points and arcs"))
+            Err(item.fault(Rule::Outline, message, "outlines have points and arcs"))
         }
     };
     Ok(joined(&pts.items().map(part).collect::<Outcome<Vec<Element>>>()?))

@@ -8,6 +8,7 @@ use crate::board::Shape;
 use crate::contour::{Contour, Piece};
 use crate::{Hole, HoleShape};
 use geom::{Element, Vec2};
+use program::Rule;
 use std::f64::consts::FRAC_PI_2;
 
 /// A pad in its own frame.
@@ -32,7 +33,7 @@ impl Pad {
             other => {
                 let message = format!("a pad of the kind \"{}\"", String::from_utf8_lossy(other));
                 let help = "the kinds are thru_hole, np_thru_hole, smd and connect";
-                return Err(item.fault("pad", message, help));
+                return Err(item.fault(Rule::Pad, message, help));
             }
         };
         let size = item.need("size")?.size()?;
@@ -87,7 +88,7 @@ pub(super) fn copper(item: Node, drilled: bool) -> Outcome<Layers> {
             let message = "its annular rings are on connected layers only, and the file does not say which these are";
             let help = "in KiCad, set its annular rings to \"All copper layers\", or to \
                 \"Start, end, and connected layers\"";
-            return Err(item.fault("unused-layers", message, help));
+            return Err(item.fault(Rule::UnusedLayers, message, help));
         }
     }
     Ok(Layers::of(item))
@@ -99,7 +100,7 @@ fn hole(drill: Node, plated: bool) -> Outcome<Hole> {
     let diameter = size.min_element();
     if diameter <= 0.0 {
         let message = format!("a drill of {} by {} mm", size.x, size.y);
-        return Err(drill.fault("drill", message, "drills have a diameter above 0"));
+        return Err(drill.fault(Rule::Drill, message, "drills have a diameter above 0"));
     }
     let half = (size - Vec2::splat(diameter)) / 2.0;
     let shape = match half == Vec2::ZERO {
@@ -132,7 +133,7 @@ fn is_hole_only(shape: &[u8], size: Vec2, drill: Option<Node>) -> Outcome<bool> 
 fn outline(item: Node, shape: &[u8], size: Vec2, offset: Vec2) -> Outcome<Vec<Shape>> {
     if size.min_element() <= 0.0 {
         let message = format!("a pad of {} by {} mm", size.x, size.y);
-        return Err(item.fault("pad", message, "pads have a width and a height above 0"));
+        return Err(item.fault(Rule::Pad, message, "pads have a width and a height above 0"));
     }
     let half = size / 2.0;
     let one = |contour| vec![solid(contour)];
@@ -150,7 +151,7 @@ fn outline(item: Node, shape: &[u8], size: Vec2, offset: Vec2) -> Outcome<Vec<Sh
         other => {
             let message = format!("a pad of the shape \"{}\"", String::from_utf8_lossy(other));
             let help = "the shapes are circle, rect, oval, trapezoid, roundrect and custom";
-            return Err(item.fault("pad", message, help));
+            return Err(item.fault(Rule::Pad, message, help));
         }
     })
 }
@@ -164,7 +165,7 @@ fn trapezoid(item: Node, half: Vec2, offset: Vec2) -> Outcome<Contour> {
     };
     if delta.x.abs() > half.y || delta.y.abs() > half.x {
         let message = format!("sides that differ by {} and {} mm", delta.x * 2.0, delta.y * 2.0);
-        return Err(item.fault("pad", message, "no side differs by more than its length"));
+        return Err(item.fault(Rule::Pad, message, "no side differs by more than its length"));
     }
     let corner =
         |x: f64, y: f64| offset + Vec2::new(x * (half.x - y * delta.y), y * (half.y - x * delta.x));
@@ -179,7 +180,7 @@ fn rounded(item: Node, half: Vec2, offset: Vec2) -> Outcome<Contour> {
         let ratio = list.number(0)?;
         if !(0.0..=0.5).contains(&ratio) {
             let message = format!("{name} is {ratio}");
-            return Err(list.fault("pad", message, "of the shorter side it is 0 to 0.5"));
+            return Err(list.fault(Rule::Pad, message, "of the shorter side it is 0 to 0.5"));
         }
         Ok(ratio)
     };
@@ -214,7 +215,7 @@ fn custom(item: Node, half: Vec2, offset: Vec2) -> Outcome<Vec<Shape>> {
         None | Some(b"circle") => Contour::circle(offset, half.x),
         Some(other) => {
             let message = format!("an anchor of the shape \"{}\"", String::from_utf8_lossy(other));
-            return Err(item.fault("pad", message, "the anchors are circle and rect"));
+            return Err(item.fault(Rule::Pad, message, "the anchors are circle and rect"));
         }
     };
     let frame = Frame::moved(offset);
@@ -230,7 +231,7 @@ fn custom(item: Node, half: Vec2, offset: Vec2) -> Outcome<Vec<Shape>> {
                 let name = String::from_utf8_lossy(primitive.name()).into_owned();
                 let help =
                     "pads are drawn with lines, arcs, circles, rectangles, polygons and curves";
-                return Err(primitive.fault("pad", format!("\"{name}\" in a pad"), help));
+                return Err(primitive.fault(Rule::Pad, format!("\"{name}\" in a pad"), help));
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::contour::{Contour, Piece};
 use crate::report::Report;
 use crate::{Board, Hole, HoleShape};
 use geom::Element;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -76,16 +76,16 @@ impl Reader<'_> {
         if root.name() != b"kicad_pcb" {
             let message =
                 format!("this is no board but \"{}\"", String::from_utf8_lossy(root.name()));
-            return Err(root.fault("not-kicad", message, "a board begins with \"(kicad_pcb\""));
+            return Err(root.fault(Rule::NotKicad, message, "a board begins with \"(kicad_pcb\""));
         }
         let list = root.need("version")?;
         let Some(version) = list.whole(0) else {
-            return Err(list.fault("version", "the version is no number", "see another file"));
+            return Err(list.fault(Rule::Version, "the version is no number", "see another file"));
         };
         if version < FIRST_VERSION {
             let message = format!("version {version} is older than KiCad 6");
             return Err(list.fault(
-                "version",
+                Rule::Version,
                 message,
                 "open the board in KiCad 6 to 9, and save it",
             ));
@@ -95,7 +95,7 @@ impl Reader<'_> {
                 "version {version} is newer than KiCad 9, whose version is {LAST_VERSION}: it is not known"
             );
             let help = "plot Gerber and Excellon files in KiCad, and read those";
-            return Err(list.fault("version", message, help));
+            return Err(list.fault(Rule::Version, message, help));
         }
         for net in root.all("net") {
             if let (Some(number), Some(name)) = (net.whole(0), net.item(1)) {
@@ -151,7 +151,7 @@ impl Reader<'_> {
             b"gr_text" | b"fp_text" | b"property" | b"target" if !layers.copper() => {
                 let message = "texts and targets on Edge.Cuts are left out";
                 let help = "they are no edge: move them to another layer";
-                self.report.warn(item.location(), "not-an-edge", message, help);
+                self.report.warn(item.location(), Rule::NotAnEdge, message, help);
                 Ok(())
             }
             name => {
@@ -162,7 +162,7 @@ impl Reader<'_> {
                     );
                     let help =
                         "move it to another layer in KiCad, or plot Gerber files and read those";
-                    return Err(item.fault("item", message, help));
+                    return Err(item.fault(Rule::Item, message, help));
                 };
                 self.graphic(item, &graphic, layers, &frame)
             }
@@ -183,7 +183,7 @@ impl Reader<'_> {
                 String::from_utf8_lossy(style)
             );
             let help = "on copper draw the dashes one by one";
-            self.report.warn(item.location(), "line-style", &message, help);
+            self.report.warn(item.location(), Rule::LineStyle, &message, help);
         }
         if layers.copper() {
             let net = self.net(item)?;
@@ -214,18 +214,22 @@ impl Reader<'_> {
         if !(layers.front && layers.back) {
             let message = "a via that does not go through the board from F.Cu to B.Cu";
             let help = "a drill goes through: only vias through the whole board can be made";
-            return Err(item.fault("blind-via", message, help));
+            return Err(item.fault(Rule::BlindVia, message, help));
         }
         if diameter <= 0.0 {
             let message = format!("a drill of {diameter} mm");
-            return Err(drill.fault("drill", message, "drills have a diameter above 0"));
+            return Err(drill.fault(Rule::Drill, message, "drills have a diameter above 0"));
         }
         let back = pad::back_of_stack(item).map_or(Ok(size), |layer| layer.need("size"))?;
         let net = self.net(item)?;
         for (size, side) in [(size, &mut self.front), (back, &mut self.back)] {
             let diameter = size.length(0)?;
             if diameter <= 0.0 {
-                return Err(size.fault("via", "a via without copper", "vias have a size above 0"));
+                return Err(size.fault(
+                    Rule::Via,
+                    "a via without copper",
+                    "vias have a size above 0",
+                ));
             }
             let disc = Piece::new(true, Contour::circle(at, diameter / 2.0));
             side.push((Shape::Pieces(vec![disc]), net.clone()));
@@ -263,7 +267,7 @@ impl Reader<'_> {
         if zone.hollow {
             let message = "a zone has no fill on a side of the board: there it is no copper";
             let help = "fill all zones (key B) in KiCad, and save; if it stays so, the zone has no room there";
-            self.report.warn(item.location(), "zone-fill", message, help);
+            self.report.warn(item.location(), Rule::ZoneFill, message, help);
         }
         Ok(())
     }
@@ -276,14 +280,14 @@ impl Reader<'_> {
                 let message = "a text on copper is drawn with other letters than KiCad's, which are \
                     narrower or wider";
                 let help = "look at the picture where it stands close to other copper";
-                self.report.warn(item.location(), "text-letters", message, help);
+                self.report.warn(item.location(), Rule::TextLetters, message, help);
                 let frame = footprint.of(item)?;
                 shapes.iter().map(|shape| frame.shape(shape)).collect()
             }
             Text::Variable => {
                 let message = "a text on copper with variables (${…}) is left out";
                 let help = "write out in KiCad what is to be there";
-                self.report.warn(item.location(), "text-variable", message, help);
+                self.report.warn(item.location(), Rule::TextVariable, message, help);
                 Vec::new()
             }
         };
@@ -304,7 +308,7 @@ impl Reader<'_> {
         if layers.inner && !layers.outer() {
             let message = "copper within the board is left out";
             let help = "only the two sides can be milled";
-            self.report.warn(item.location(), "inner-layer", message, help);
+            self.report.warn(item.location(), Rule::InnerLayer, message, help);
         }
     }
 
@@ -315,7 +319,7 @@ impl Reader<'_> {
             let known = self.nets.get(&number);
             known.cloned().ok_or_else(|| {
                 let message = format!("there is no net {number}");
-                list.fault("net", message, "the file is damaged: save it again in KiCad")
+                list.fault(Rule::Net, message, "the file is damaged: save it again in KiCad")
             })
         });
         net.transpose()

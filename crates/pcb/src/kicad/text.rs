@@ -5,6 +5,7 @@ use super::tree::{Node, Outcome};
 use crate::board::Shape;
 use crate::contour::{Contour, Piece};
 use geom::{Element, Transform, Vec2, lettering};
+use program::Rule;
 
 /// From line to line, in heights of a capital. Ours: KiCad's letters are its own.
 const LINE: f64 = 1.6;
@@ -34,7 +35,7 @@ impl Text {
         if item.find("layer").is_some_and(|layer| layer.says("knockout")) {
             let message = "a text that is cut out of copper";
             let help = "in KiCad, make it a polygon, or take \"knockout\" off";
-            return Err(item.fault("text-knockout", message, help));
+            return Err(item.fault(Rule::TextKnockout, message, help));
         }
         if let Some(stored) = item.find("render_cache") {
             return stored

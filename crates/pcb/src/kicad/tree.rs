@@ -3,6 +3,7 @@
 use crate::decimal::{decimal, whole};
 use crate::report::{self, Location};
 use geom::Vec2;
+use program::Rule;
 
 /// How deep lists may stand in each other: boards go seven deep.
 const MAX_DEPTH: usize = 64;
@@ -50,7 +51,7 @@ impl<'a> Tree<'a> {
         let start = Location { line: 1, start: 0, end: 0 };
         if u32::try_from(text.len()).is_err() {
             let message = format!("{} bytes are more than this reader counts", text.len());
-            return Err(fault(start, "file-size", message, "files of up to 4 GiB are read"));
+            return Err(fault(start, Rule::FileSize, message, "files of up to 4 GiB are read"));
         }
         let mut tree = Tree { text, entries: Vec::new() };
         // Lists that are not closed yet.
@@ -64,19 +65,19 @@ impl<'a> Tree<'a> {
                 b')' => {
                     let Some(list) = open.pop() else {
                         let message = "a parenthesis closes what was never opened";
-                        return Err(fault(location, "list-closed", message, DAMAGED));
+                        return Err(fault(location, Rule::ListClosed, message, DAMAGED));
                     };
                     at += 1;
                     tree.close(list, at);
                 }
                 _ if open.is_empty() && (*byte != b'(' || !tree.entries.is_empty()) => {
                     let message = "there is something outside the one list that a board is";
-                    return Err(fault(location, "not-kicad", message, NO_BOARD));
+                    return Err(fault(location, Rule::NotKicad, message, NO_BOARD));
                 }
                 b'(' => {
                     if open.len() == MAX_DEPTH {
                         let message = format!("more than {MAX_DEPTH} lists in each other");
-                        return Err(fault(location, "list-depth", message, DAMAGED));
+                        return Err(fault(location, Rule::ListDepth, message, DAMAGED));
                     }
                     open.push(tree.entries.len());
                     tree.push(location);
@@ -84,7 +85,12 @@ impl<'a> Tree<'a> {
                 }
                 b'"' => {
                     let Some(end) = closing_quote(text, at) else {
-                        return Err(fault(location, "text-open", "a text is not closed", DAMAGED));
+                        return Err(fault(
+                            location,
+                            Rule::TextOpen,
+                            "a text is not closed",
+                            DAMAGED,
+                        ));
                     };
                     tree.push(Location { end, ..location });
                     let inside = text.get(at..end).unwrap_or_default();
@@ -102,10 +108,10 @@ impl<'a> Tree<'a> {
         }
         if let Some(entry) = open.last().and_then(|list| tree.entries.get(*list)) {
             let message = "this list is not closed: the end of the file is missing";
-            return Err(fault(entry.location(), "list-open", message, DAMAGED));
+            return Err(fault(entry.location(), Rule::ListOpen, message, DAMAGED));
         }
         if tree.entries.is_empty() {
-            return Err(fault(start, "not-kicad", "there is nothing in the file", NO_BOARD));
+            return Err(fault(start, Rule::NotKicad, "there is nothing in the file", NO_BOARD));
         }
         Ok(tree)
     }
@@ -152,7 +158,7 @@ fn closing_quote(text: &[u8], start: usize) -> Option<usize> {
 }
 
 #[cold]
-fn fault(location: Location, rule: &'static str, message: impl Into<String>, help: &str) -> Fault {
+fn fault(location: Location, rule: Rule, message: impl Into<String>, help: &str) -> Fault {
     Fault { location, what: report::fault(rule, message, help) }
 }
 
@@ -176,12 +182,7 @@ impl<'t> Node<'t> {
 
     /// An error here.
     #[cold]
-    pub(super) fn fault(
-        &self,
-        rule: &'static str,
-        message: impl Into<String>,
-        help: &str,
-    ) -> Fault {
+    pub(super) fn fault(&self, rule: Rule, message: impl Into<String>, help: &str) -> Fault {
         fault(self.location(), rule, message, help)
     }
 
@@ -285,7 +286,7 @@ impl<'t> Node<'t> {
     #[cold]
     fn lacks(&self, what: &str) -> Fault {
         let own = String::from_utf8_lossy(self.name()).into_owned();
-        self.fault("missing", format!("\"{own}\" has no {what}"), DAMAGED)
+        self.fault(Rule::Missing, format!("\"{own}\" has no {what}"), DAMAGED)
     }
 
     /// The number at `index`: mm or degrees.
@@ -301,12 +302,12 @@ impl<'t> Node<'t> {
             Some(value) => {
                 let message = format!("{value} is beyond ±{MAX_NUMBER}");
                 let help = "KiCad has no coordinates beyond 2147 mm";
-                Err(item.fault("not-a-number", message, help))
+                Err(item.fault(Rule::NotANumber, message, help))
             }
             None => {
                 let shown = String::from_utf8_lossy(item.word()).into_owned();
                 let message = format!("\"{shown}\" is not a decimal number");
-                Err(item.fault("not-a-number", message, DAMAGED))
+                Err(item.fault(Rule::NotANumber, message, DAMAGED))
             }
         }
     }
@@ -319,7 +320,7 @@ impl<'t> Node<'t> {
         let value = self.number(index)?;
         if value < 0.0 {
             let message = format!("a length of {value} mm");
-            return Err(self.fault("not-a-length", message, "lengths are 0 or greater"));
+            return Err(self.fault(Rule::NotALength, message, "lengths are 0 or greater"));
         }
         Ok(value)
     }

@@ -5,6 +5,7 @@ use super::layer::Layers;
 use super::tree::{Node, Outcome};
 use crate::board::Shape;
 use crate::contour::{Contour, Piece};
+use program::Rule;
 
 /// A zone.
 pub(super) struct Zone {
@@ -25,7 +26,7 @@ impl Zone {
         if let Some(old) = item.find("fill_segments") {
             let message = "this zone is filled with segments, as KiCad 5 did";
             return Err(old.fault(
-                "zone-fill",
+                Rule::ZoneFill,
                 message,
                 "fill all zones (key B) in KiCad, and save",
             ));

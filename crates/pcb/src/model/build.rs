@@ -7,7 +7,7 @@ use super::sheet::{Bore, Edge, Form, Group, Pad, Track};
 use crate::board::{Artwork, Board, Face, Pattern, Shape, outline};
 use crate::{Contour, Hole, HoleShape, Piece, Transform};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::PI;
 use toml::Spanned;
 
@@ -138,14 +138,14 @@ impl<'a> Maker<'a, '_, '_> {
         if !good {
             let message = format!("{of} of {value} mm");
             let help = format!("give {} to {} mm", WIDTHS.start(), WIDTHS.end());
-            self.findings.error(mm.span(), Diagnostic::error("width", message).help(help));
+            self.findings.error(mm.span(), Diagnostic::error(Rule::Width, message).help(help));
         }
         good.then_some(value)
     }
 
     #[cold]
     fn refuse<T>(&mut self, element: &Spanned<T>, what: &str, help: &str) {
-        self.findings.error(element.span(), Diagnostic::error("node", what).help(help));
+        self.findings.error(element.span(), Diagnostic::error(Rule::Node, what).help(help));
     }
 
     fn artwork(self, file_name: &str) -> Artwork {
@@ -153,7 +153,8 @@ impl<'a> Maker<'a, '_, '_> {
         let nothing = holes.is_empty() && edge.is_empty() && sides.iter().all(Vec::is_empty);
         if nothing && findings.report.errors.is_empty() {
             let help = "give tracks, pads, holes or edges: docs/sources/board.md shows how";
-            let found = Diagnostic::error("no-board", "there is nothing on this board").help(help);
+            let found =
+                Diagnostic::error(Rule::NoBoard, "there is nothing on this board").help(help);
             findings.report.errors.push(found);
         }
         let nets = nets.named(findings);

@@ -18,7 +18,7 @@ mod sheet;
 
 use crate::board::{Artwork, Board};
 use crate::report::{Location, Report};
-use program::{Diagnostic, nearest};
+use program::{Diagnostic, Rule, nearest};
 use serde::Deserialize;
 use sheet::{Group, KEYS};
 use std::ops::Range;
@@ -61,7 +61,7 @@ pub fn artwork(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnostic>>
     let root = match parse(text) {
         Ok(root) => root,
         Err(Mistake { message, help, span }) => {
-            findings.error(span, Diagnostic::error("board-file", message).help(help));
+            findings.error(span, Diagnostic::error(Rule::BoardFile, message).help(help));
             return Err(findings.report.errors);
         }
     };

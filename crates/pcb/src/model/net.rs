@@ -2,7 +2,7 @@
 
 use super::Findings;
 use crate::board::Face;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 use std::sync::Arc;
 use toml::Spanned;
@@ -51,7 +51,7 @@ impl<'a> Nets<'a> {
             if **net != *name.get_ref() {
                 let message = format!("net `{}` is joined with `{net}` by nodes", name.get_ref());
                 let help = "what shares a node on a side is one net: give it one name";
-                findings.error(name.span(), Diagnostic::error("net-twice", message).help(help));
+                findings.error(name.span(), Diagnostic::error(Rule::NetTwice, message).help(help));
             }
         }
         firsts.iter().map(|first| nets.get(first).cloned()).collect()

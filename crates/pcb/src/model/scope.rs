@@ -3,7 +3,7 @@
 use super::Findings;
 use super::sheet::{At, Group};
 use geom::{Transform, Vec2};
-use program::{Diagnostic, nearest};
+use program::{Diagnostic, Rule, nearest};
 use std::collections::BTreeMap;
 use std::iter;
 use toml::Spanned;
@@ -53,7 +53,8 @@ impl<'a> Scopes<'a> {
         let group = placed.get_ref();
         if depth > DEEPEST {
             let message = format!("groups lie more than {DEEPEST} deep in each other");
-            let found = Diagnostic::error("group", message).help("put groups next to each other");
+            let found =
+                Diagnostic::error(Rule::Group, message).help("put groups next to each other");
             return findings.error(placed.span(), found);
         }
         let around = outer.and_then(|outer| self.all.get(outer));
@@ -75,7 +76,7 @@ impl<'a> Scopes<'a> {
             if name.is_empty() || name.contains('.') {
                 let message = format!("`{name}` is no name of a node");
                 let help = "names have no dots: these stand between a group and a node of it";
-                findings.error(position.span(), Diagnostic::error("node", message).help(help));
+                findings.error(position.span(), Diagnostic::error(Rule::Node, message).help(help));
             }
             let position = self.checked(index, position.get_ref(), position.span(), findings);
             let node = self.new_node(position);
@@ -89,7 +90,8 @@ impl<'a> Scopes<'a> {
                 && scope.groups.insert(name, next).is_some()
             {
                 let message = format!("two groups on one level are called `{name}`");
-                let found = Diagnostic::error("group", message).help("call one of them otherwise");
+                let found =
+                    Diagnostic::error(Rule::Group, message).help("call one of them otherwise");
                 findings.error(inner.span(), found);
             }
             self.add(inner, Some(index), depth + 1, findings);
@@ -135,7 +137,7 @@ impl<'a> Scopes<'a> {
                 "" => String::from("put it in `nodes`, or give its position [x, y]"),
                 meant => format!("did you mean {meant}?"),
             };
-            findings.error(at.span(), Diagnostic::error("node-unknown", message).help(help));
+            findings.error(at.span(), Diagnostic::error(Rule::NodeUnknown, message).help(help));
         }
         found.copied()
     }
@@ -166,7 +168,7 @@ impl<'a> Scopes<'a> {
         if !place.to_array().iter().all(|value| value.abs() <= FAR) {
             let [x, y] = position;
             let message = format!("X {x} Y {y} is not a place within {FAR} mm");
-            let found = Diagnostic::error("node", message).help("positions are in mm");
+            let found = Diagnostic::error(Rule::Node, message).help("positions are in mm");
             findings.error(span, found);
         }
         place
@@ -181,5 +183,5 @@ impl<'a> Scopes<'a> {
 /// What is no angle.
 pub(super) fn no_angle(degrees: f64) -> Diagnostic {
     let message = format!("a rotation by {degrees} degrees");
-    Diagnostic::error("angle", message).help("give a number of degrees, counter-clockwise")
+    Diagnostic::error(Rule::Angle, message).help("give a number of degrees, counter-clockwise")
 }

@@ -17,7 +17,7 @@ use crate::tour::Tour;
 use crate::{Cut, MERGED, Operation, Path, Segment, Tool, depths};
 use geom::Vec2;
 use geom::region::{Fill, Region, RegionError, Ring};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// How a board is cut out.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +75,7 @@ impl Outline {
         }
         if board.is_empty() {
             let help = "give the outline of the board";
-            return Err(fault("no-outline", "there is no board to cut out", help));
+            return Err(fault(Rule::NoOutline, "there is no board to cut out", help));
         }
         setting::diameter(&self.tool)
     }
@@ -161,5 +161,5 @@ fn levels(region: &Region) -> Vec<Vec<Path>> {
 }
 
 fn too_large(error: RegionError) -> Fault {
-    fault("too-large", format!("the outline of the board: {error}"), "correct the outline")
+    fault(Rule::TooLarge, format!("the outline of the board: {error}"), "correct the outline")
 }

@@ -3,7 +3,7 @@
 use crate::setting::shown;
 use geom::Vec2;
 use geom::region::{Fill, Index, Island, Region, RegionError, Ring};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
 
 /// What is left of a corner is reported from this width on, mm.
@@ -37,7 +37,7 @@ pub(super) fn cutouts(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
             at.y,
             shown(width)
         );
-        list(&mut errors, Diagnostic::error("cutout-too-small", message).help(way_out(fits)));
+        list(&mut errors, Diagnostic::error(Rule::CutoutTooSmall, message).help(way_out(fits)));
     }
     Ok(errors)
 }
@@ -69,7 +69,7 @@ pub(super) fn pieces(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Regi
             other.x,
             other.y
         );
-        list(&mut errors, Diagnostic::error("not-parted", message).help(way_out(fits)));
+        list(&mut errors, Diagnostic::error(Rule::NotParted, message).help(way_out(fits)));
     }
     Ok(errors)
 }
@@ -117,7 +117,7 @@ pub(super) fn corners(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
             at.x,
             at.y
         );
-        list(&mut warnings, Diagnostic::warning("narrow-corner", message).help(way_out(fits)));
+        list(&mut warnings, Diagnostic::warning(Rule::NarrowCorner, message).help(way_out(fits)));
     }
     Ok(warnings)
 }

@@ -4,7 +4,7 @@ use crate::Path;
 use crate::report::{Outcome, fault};
 use crate::setting::{self, shown};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// More tabs than this are a mistake.
 const MOST: usize = 1000;
@@ -49,11 +49,11 @@ impl Tabs {
                 shown(self.height),
                 shown(thickness)
             );
-            return Err(fault("tab-height", message, "give a part of the thickness"));
+            return Err(fault(Rule::TabHeight, message, "give a part of the thickness"));
         }
         if self.count == 0 || self.count > MOST {
             let help = format!("give 1 to {MOST}, or no tabs");
-            return Err(fault("tab-count", format!("{} tabs a contour", self.count), &help));
+            return Err(fault(Rule::TabCount, format!("{} tabs a contour", self.count), &help));
         }
         Ok(())
     }
@@ -90,7 +90,7 @@ impl Tabs {
                 at.y
             );
             let help = "give fewer or narrower tabs, or hold the piece otherwise";
-            warnings.push(Diagnostic::warning("tabs-left-out", message).help(help));
+            warnings.push(Diagnostic::warning(Rule::TabsLeftOut, message).help(help));
         }
         if straight.is_empty() && !middles.is_empty() {
             let message = format!(
@@ -100,7 +100,7 @@ impl Tabs {
                 shown(span)
             );
             let help = "give narrower tabs, or be careful when breaking the piece out";
-            warnings.push(Diagnostic::warning("tabs-bent", message).help(help));
+            warnings.push(Diagnostic::warning(Rule::TabsBent, message).help(help));
         }
         middles.into_iter().map(|middle| (middle - span / 2.0, middle + span / 2.0)).collect()
     }

@@ -11,7 +11,7 @@ pub use work::Work;
 
 use crate::Board;
 use crate::board::{Artwork, Face};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// The programs that `settings` ask for of a board, in the order in which they are run.
 ///
@@ -29,7 +29,7 @@ pub fn parts(artwork: &Artwork, settings: &Settings) -> Result<Vec<Part>, Vec<Di
     if let Some(part) = parts.iter().find(|part| !has(**part)) {
         let message = format!("there is no {} on {}", part.what(), artwork.board().name);
         let help = "look which files of the board were read, and as what";
-        return Err(vec![Diagnostic::error("no-such-part", message).help(help)]);
+        return Err(vec![Diagnostic::error(Rule::NoSuchPart, message).help(help)]);
     }
     let tools = [
         (settings.clearing.mask_tool, [Part::FrontMask, Part::BackMask]),
@@ -40,7 +40,7 @@ pub fn parts(artwork: &Artwork, settings: &Settings) -> Result<Vec<Part>, Vec<Di
             let message =
                 format!("a tool is given, and there is no {} nor of the back", parts[0].what());
             let help = "give the layer too, or leave out the tool";
-            return Err(vec![Diagnostic::error("no-such-part", message).help(help)]);
+            return Err(vec![Diagnostic::error(Rule::NoSuchPart, message).help(help)]);
         }
     }
     if parts.is_empty() {
@@ -86,7 +86,7 @@ pub fn late_pins(parts: &[Part], settings: &Settings) -> Option<Diagnostic> {
         let message =
             "the pins that align the board are drilled when it has been turned over already";
         let help = "drill from the front, or run drill.nc first and turn the board then";
-        Diagnostic::warning("pins-late", message).help(help)
+        Diagnostic::warning(Rule::PinsLate, message).help(help)
     })
 }
 
@@ -104,6 +104,6 @@ pub fn order(part: Part, settings: &Settings) -> (bool, bool, bool) {
 
 /// What is said of a board with nothing on it.
 pub(crate) fn empty() -> Diagnostic {
-    Diagnostic::error("board-empty", "there is nothing to make of this board")
+    Diagnostic::error(Rule::BoardEmpty, "there is nothing to make of this board")
         .help("look which files of the board were read, and as what")
 }

@@ -3,7 +3,7 @@
 use crate::board::Face;
 use crate::isolation::{Direction, Narrow};
 use geom::Vec2;
-use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, within};
+use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, within};
 
 /// How a board is made. The default has no tool that cuts around copper.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -98,7 +98,7 @@ impl Settings {
             Some((_, names)) => {
                 let message =
                     format!("{names} are given, of which one leaves the other no meaning");
-                Err(Diagnostic::error("setting", message).help("leave one of them out").into())
+                Err(Diagnostic::error(Rule::Setting, message).help("leave one of them out").into())
             }
         }
     }

@@ -12,7 +12,7 @@ use crate::{
 };
 use geom::Vec2;
 use geom::region::Region;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use rayon::prelude::*;
 
 /// The speed of a spindle that has no limit in its machine file, 1/min.
@@ -179,12 +179,12 @@ impl Worker<'_> {
                 "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
                  nothing would be isolated"
             );
-            return Err(vec![Diagnostic::error("tool-too-wide", message).help(help)]);
+            return Err(vec![Diagnostic::error(Rule::ToolTooWide, message).help(help)]);
         }
         let done = if middle { "cut down the middle" } else { "left out" };
         let gaps = counted(gaps.len(), "gap");
         let message = format!("{gaps} narrower than the cut of {width:.3} mm: {done}");
-        work.warnings.push(Diagnostic::warning("narrow-gap", message).help(help));
+        work.warnings.push(Diagnostic::warning(Rule::NarrowGap, message).help(help));
         Ok(())
     }
 
@@ -199,7 +199,7 @@ impl Worker<'_> {
         if self.asked.isolation.passes > 1 {
             let message = "one path in the middle separates two nets: several passes do not apply";
             let help = "leave out --passes, or --isolate middle";
-            return Err(vec![Diagnostic::error("passes", message).help(help)]);
+            return Err(vec![Diagnostic::error(Rule::Passes, message).help(help)]);
         }
         let Division { mut paths, narrow } = crate::divided(copper, &area(board)?, width)?;
         self.narrow(work, copper, &narrow, width)?;
@@ -304,7 +304,7 @@ impl Worker<'_> {
             let places = counted(rest.islands().len(), "place");
             let message = format!("{places}, {:.3} mm², {what}", rest.area());
             let help = "take a narrower tool";
-            work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
+            work.warnings.push(Diagnostic::warning(Rule::NotReached, message).help(help));
         }
     }
 
@@ -321,7 +321,7 @@ impl Worker<'_> {
             if paths.is_empty() {
                 let message = format!("{what}: nothing is left that {} reaches", tool.name);
                 let help = "take a narrower tool, or leave it out";
-                work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
+                work.warnings.push(Diagnostic::warning(Rule::NotReached, message).help(help));
                 continue;
             }
             work.operations.push(Operation {
@@ -353,7 +353,7 @@ impl Worker<'_> {
                 let message = "no tool is given that cuts around copper";
                 let help = "give --tool with the width of an end mill, or --vee with the angle of a V-bit; \
                             or leave copper out with --only";
-                Err(vec![Diagnostic::error("no-tool", message).help(help)])
+                Err(vec![Diagnostic::error(Rule::NoTool, message).help(help)])
             }
         }
     }
@@ -391,7 +391,7 @@ fn tell_severed(work: &mut Work, copper: &Copper, severed: &[Severed]) {
             net(copper, first.island)
         );
         let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
-        work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
+        work.warnings.push(Diagnostic::warning(Rule::ConductorSevered, message).help(help));
     }
 }
 
@@ -436,7 +436,7 @@ fn area(board: &Board) -> Result<Region, Vec<Diagnostic>> {
     }
     let message = "no file says where the board ends";
     let help = "give the layer of its outline too";
-    Err(vec![Diagnostic::error("no-outline", message).help(help)])
+    Err(vec![Diagnostic::error(Rule::NoOutline, message).help(help)])
 }
 
 /// Whether gaps that are left out join all conductors, which are more than one, with each other.

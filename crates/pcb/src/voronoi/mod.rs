@@ -19,6 +19,7 @@ use crate::report::{Outcome, fault};
 use crate::{Copper, Path};
 use diagram::DiagramPoint;
 use geom::region::{Index, Region};
+use program::Rule;
 use samples::{Boundary, frame};
 
 /// The most points on boundaries: some 500 MB.
@@ -43,7 +44,7 @@ pub struct Division {
 pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> {
     if !(width > 0.0 && width.is_finite()) {
         let message = format!("a tool {width} mm wide cannot divide copper");
-        return Err(fault("tool-width", message, "give the width of the cut in mm, above 0"));
+        return Err(fault(Rule::ToolWidth, message, "give the width of the cut in mm, above 0"));
     }
     let (Some(board), Some(around)) = (copper.region.extents(), area.extents()) else {
         return Ok(Division::default());
@@ -52,11 +53,12 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
     let index = Index::new(&copper.region);
     let mut samples = boundary.samples(&index, MOST).map_err(|_| {
         let message = format!("the gaps of the board take more than {MOST} points");
-        fault("too-much", message, "divide the board in parts")
+        fault(Rule::TooMuch, message, "divide the board in parts")
     })?;
     samples.extend(frame(board.0.min(around.0), board.1.max(around.1)));
-    let chains = diagram::chains(&boundary, samples, &index)
-        .map_err(|error| fault("not-a-place", error.to_string(), "look at the copper's places"))?;
+    let chains = diagram::chains(&boundary, samples, &index).map_err(|error| {
+        fault(Rule::NotAPlace, error.to_string(), "look at the copper's places")
+    })?;
     let mut division = Division::default();
     let area = Index::new(area);
     let fits = |ends: &[DiagramPoint]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);

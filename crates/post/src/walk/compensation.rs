@@ -7,7 +7,7 @@ use crate::contour::Contour;
 use crate::template::bit;
 use geom::{Turn, Vec2, Vec3};
 use machine::ToolRadius;
-use program::{CompensatedPath, Compensation, Diagnostic, Op, Record};
+use program::{CompensatedPath, Compensation, Diagnostic, Op, Record, Rule};
 use std::collections::BTreeMap;
 
 impl Walk<'_> {
@@ -18,7 +18,7 @@ impl Walk<'_> {
         if compensation != Compensation::Off && !self.machine.capabilities.compensation {
             let help = "give the path of the tool's centre: without CUTCOM, or of an NC program with its tool table (--tools)";
             return Err(Box::new(
-                refuse("compensation", "the control has no cutter compensation").help(help),
+                refuse(Rule::Compensation, "the control has no cutter compensation").help(help),
             ));
         }
         if let Compensation::Left(Some(register)) | Compensation::Right(Some(register)) =
@@ -44,7 +44,7 @@ impl Walk<'_> {
                                tool's centre or the contour";
                 let help = "`--cutcom centre` or `--cutcom contour` (in Python `cutcom`; `path` of a builder's \
                             compensation): look at the setting of the CAM system, or compare with the drawing";
-                Err(refuse("compensated-path", message).help(help).into())
+                Err(refuse(Rule::CompensatedPath, message).help(help).into())
             }
             (Some(CompensatedPath::Center), Some(ToolRadius::Wear))
                 if self.machine.capabilities.compensation =>
@@ -61,7 +61,7 @@ impl Walk<'_> {
                     }
                     false => "the control has no compensation",
                 };
-                let found = Diagnostic::warning("compensated-path", message).help(help);
+                let found = Diagnostic::warning(Rule::CompensatedPath, message).help(help);
                 self.findings.warn(found.line(self.line));
                 Ok(true)
             }
@@ -74,14 +74,14 @@ impl Walk<'_> {
                                off by its radius";
                 let help = "give the path of the tool's centre, or a machine whose table keeps the full radius (`tool_radius` \
                             in [settings])";
-                Err(refuse("compensated-path", message).help(help).into())
+                Err(refuse(Rule::CompensatedPath, message).help(help).into())
             }
             (Some(CompensatedPath::Contour), None) => {
                 let message = "the source gives the contour, and the machine file does not say that the tool table keeps the \
                                radius of the tool";
                 let help =
                     "`tool_radius = \"full\"` in [settings] of the machine file, where it does";
-                Err(refuse("compensated-path", message).help(help).into())
+                Err(refuse(Rule::CompensatedPath, message).help(help).into())
             }
         }
     }
@@ -120,7 +120,7 @@ impl Walk<'_> {
         if self.is_compensating() && self.wire.is_none() {
             let message = "cutter compensation changes its side or its register while it is on";
             let help = "CUTCOM/OFF and a straight move in the plane before it";
-            return Err(refuse("compensation-change", message).help(help).into());
+            return Err(refuse(Rule::CompensationChange, message).help(help).into());
         }
         let from = [WordName::X, WordName::Y].map(|word| self.writer.active(word));
         let from = match (from, self.position.turned_to()) {
@@ -161,7 +161,7 @@ impl Walk<'_> {
                     tool.number
                 );
                 let help = "the register of the tool itself, or none";
-                Err(refuse("compensation", message).help(help).into())
+                Err(refuse(Rule::Compensation, message).help(help).into())
             }
             _ => Ok(None),
         }
@@ -221,7 +221,7 @@ impl Walk<'_> {
         }
         let help = "CUTCOM/OFF and a straight move in the plane before it";
         let message = format!("cutter compensation is still on at {what}");
-        Err(refuse("compensation-active", message).help(help).into())
+        Err(refuse(Rule::CompensationActive, message).help(help).into())
     }
 
     /// The plane of work for a straight move that may switch compensation, with the tool along `axis`: the control offsets
@@ -234,7 +234,7 @@ impl Walk<'_> {
             let message = "cutter compensation is switched on for a tool that does not stand along Z of the control's coordinates";
             let help = "work in the plane of a set-up (`positioned = \"tilted-plane\"` in the machine file), or give the path of \
                         the tool's centre";
-            return Err(refuse("compensation", message).help(help).into());
+            return Err(refuse(Rule::Compensation, message).help(help).into());
         }
         self.plane_xy()
     }

@@ -27,7 +27,7 @@ use machine::{Inverse, Machine};
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
-    Compensation, Coolant, CutBox, Diagnostic, Feed, Op, Program, Record, Spindle, Tool,
+    Compensation, Coolant, CutBox, Diagnostic, Feed, Op, Program, Record, Rule, Spindle, Tool,
     WorkOffset, WorkOffsetData,
 };
 use std::cell::{Cell, OnceCell};
@@ -227,7 +227,7 @@ impl<'a> Walk<'a> {
         if self.ended {
             return match matches!(record.op, Op::End | Op::Comment(_) | Op::EndOfOperation) {
                 true => Ok(()),
-                false => Err(refuse("after-end", "the program goes on after its end")),
+                false => Err(refuse(Rule::AfterEnd, "the program goes on after its end")),
             };
         }
         let goes_on = std::mem::take(&mut self.goes_on);
@@ -299,7 +299,9 @@ impl<'a> Walk<'a> {
             Op::SurfaceSpeed(None) => Ok(()),
             Op::SurfaceSpeed(Some(_)) => {
                 let message = "the speed of the spindle follows X (G96), which is for turning";
-                Err(refuse("surface-speed", message).help("give it speeds of its own (G97)").into())
+                Err(refuse(Rule::SurfaceSpeed, message)
+                    .help("give it speeds of its own (G97)")
+                    .into())
             }
             Op::Coolant(coolant) => {
                 self.end_cycle()?;
@@ -322,7 +324,7 @@ impl<'a> Walk<'a> {
             Op::Stop => self.stop(BlockName::Stop),
             Op::OptionalStop if self.machine.leaves_out("optional_stop") => {
                 let message = "the control has no optional stop: it is left out";
-                let found = Diagnostic::warning("optional-stop", message);
+                let found = Diagnostic::warning(Rule::OptionalStop, message);
                 self.findings.warn(found.line(self.line));
                 Ok(())
             }
@@ -367,7 +369,7 @@ impl<'a> Walk<'a> {
             Op::Clamp(_) => {
                 let message = "a clamp of the source's machine is left to this one's file: its blocks \
                                `unclamp` and `clamp` follow the axes";
-                self.findings.warn(Diagnostic::warning("clamp", message).line(self.line));
+                self.findings.warn(Diagnostic::warning(Rule::Clamp, message).line(self.line));
                 Ok(())
             }
             Op::Output(output) => self.output(output),
@@ -398,7 +400,7 @@ impl<'a> Walk<'a> {
             let message = format!("the control has no text for work offset {number}");
             let help =
                 format!("`{name}` in [words.work_offset] of its file, or another work offset");
-            return Err(refuse("unsupported", message).help(help).into());
+            return Err(refuse(Rule::Unsupported, message).help(help).into());
         };
         self.not_over_surface("another work offset")?;
         self.end_cycle()?;
@@ -417,14 +419,14 @@ impl<'a> Walk<'a> {
         if !self.machine.settings.sets_work_offsets {
             let message = "the source writes work offsets (G10), and the program does not: whoever runs it sets them";
             let help = "`sets_work_offsets = true` in [settings] of a machine file whose shop sets its fixtures by programs";
-            let found = Diagnostic::warning("operator-data", message).help(help);
+            let found = Diagnostic::warning(Rule::OperatorData, message).help(help);
             self.findings.warn(found.line(self.line));
             return Ok(());
         }
         if self.position.is_located() {
             let message = "a work offset is written while the tool is over the part: where it then stands is not known";
             let help = "G10 before the first move of the tool";
-            return Err(refuse("operator-data", message).help(help).into());
+            return Err(refuse(Rule::OperatorData, message).help(help).into());
         }
         self.end_cycle()?;
         // Here these words are no position to go to.
@@ -531,7 +533,7 @@ impl<'a> Walk<'a> {
         }
         let message = format!("the control has no block `{}`", name.name());
         let help = format!("`{}` in its file, or a toolpath that does without", name.name());
-        Err(refuse("missing-block", message).help(help).into())
+        Err(refuse(Rule::MissingBlock, message).help(help).into())
     }
 
     fn text(&mut self, name: BlockName, text: &str) -> Done {
@@ -550,7 +552,7 @@ impl<'a> Walk<'a> {
         self.leave_place()?;
         if self.compensation_pending() {
             let message = "cutter compensation is switched here, and no move in the plane follows";
-            let found = Diagnostic::warning("compensation-pending", message);
+            let found = Diagnostic::warning(Rule::CompensationPending, message);
             self.findings.warn(found.line(self.wanted.compensation_line()));
         }
         self.plane_origin(Vec3::ZERO)?;
@@ -569,11 +571,13 @@ impl<'a> Walk<'a> {
     fn dwell(&mut self, seconds: f64) -> Done {
         let positive = seconds > 0.0 && seconds.is_finite();
         if !positive {
-            return Err(refuse("dwell", format!("a dwell of {seconds} s")));
+            return Err(refuse(Rule::Dwell, format!("a dwell of {seconds} s")));
         }
         if self.writer.rounded(WordName::P, seconds) == 0.0 {
             let message = format!("a dwell of {seconds} s, written as 0");
-            return Err(refuse("dwell", message).help("leave it out, or make it longer").into());
+            return Err(refuse(Rule::Dwell, message)
+                .help("leave it out, or make it longer")
+                .into());
         }
         self.end_cycle()?;
         self.expect_spindle()?;
@@ -613,10 +617,10 @@ fn blank(program: &Program) -> Option<[f64; 6]> {
 
 /// No block of a mill or a wire machine says this.
 fn unknown_here(what: &str, help: &str) -> Box<Diagnostic> {
-    refuse("unsupported", format!("the machine has no words for {what}")).help(help).into()
+    refuse(Rule::Unsupported, format!("the machine has no words for {what}")).help(help).into()
 }
 
 /// An error; its line is that of the record at hand.
-pub(crate) fn refuse(rule: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
+pub(crate) fn refuse(rule: Rule, message: impl Into<String>) -> Box<Diagnostic> {
     Box::new(Diagnostic::error(rule, message))
 }

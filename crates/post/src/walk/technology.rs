@@ -5,7 +5,9 @@ use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, tool_value};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, OptionValue};
-use program::{Compensation, Coolant, Diagnostic, Feed, Op, PathMode, Spindle, Tool, lowering};
+use program::{
+    Compensation, Coolant, Diagnostic, Feed, Op, PathMode, Rule, Spindle, Tool, lowering,
+};
 
 /// Entries of the code word `feed_mode`.
 pub(super) mod feed_mode {
@@ -74,7 +76,7 @@ impl Walk<'_> {
             PathMode::ExactPath | PathMode::Blend(_) => return,
         };
         let message = format!("{less}: this control leaves it by {allowed} mm at the most there");
-        self.findings.warn(Diagnostic::warning("path-mode", message).line(self.line));
+        self.findings.warn(Diagnostic::warning(Rule::PathMode, message).line(self.line));
     }
 
     pub(super) fn change_tool(&mut self, tool: &Tool) -> Done {
@@ -154,7 +156,7 @@ impl Walk<'_> {
         let message = format!(
             "{what} register {register} is left out: the control takes the {what} with the tool"
         );
-        self.findings.warn(Diagnostic::warning("register", message).line(self.line));
+        self.findings.warn(Diagnostic::warning(Rule::Register, message).line(self.line));
     }
 
     /// The speed at which the tool that is called now will cut first.
@@ -175,12 +177,12 @@ impl Walk<'_> {
                 let help =
                     "LOAD/TOOL in the source, or `default_tool` in the [options] of the machine";
                 return Err(Box::new(
-                    refuse("no-tool", "the source moves before it calls a tool").help(help),
+                    refuse(Rule::NoTool, "the source moves before it calls a tool").help(help),
                 ));
             }
         };
         let message = format!("the source calls no tool: tool {number} (`default_tool`) is called");
-        self.findings.warn(Diagnostic::warning("no-tool", message).line(self.line));
+        self.findings.warn(Diagnostic::warning(Rule::NoTool, message).line(self.line));
         self.change_tool(&Tool { number, ..Tool::default() })
     }
 
@@ -194,7 +196,7 @@ impl Walk<'_> {
             Some(speed) => {
                 let help = "SPINDL/OFF where the spindle is to stand";
                 let message = format!("spindle speed {speed} 1/min, written as 0");
-                Err(refuse("spindle-range", message).help(help).into())
+                Err(refuse(Rule::SpindleRange, message).help(help).into())
             }
         }
     }
@@ -280,7 +282,7 @@ impl Walk<'_> {
             let message =
                 format!("the control has no coolant of this kind: `{}` is empty", name.name());
             let help = "another coolant in the toolpath, or the block in a file of your own";
-            return Err(refuse("missing-block", message).help(help).into());
+            return Err(refuse(Rule::MissingBlock, message).help(help).into());
         }
         self.required(name)
     }
@@ -292,7 +294,7 @@ impl Walk<'_> {
         if self.wanted.spindle() == Spindle::Off && self.wire.is_none() {
             let help = "SPINDL/ with a speed before the first cut";
             return Err(Box::new(
-                refuse("spindle-off", "a cut while the spindle stands").help(help),
+                refuse(Rule::SpindleOff, "a cut while the spindle stands").help(help),
             ));
         }
         self.sync_spindle()?;
@@ -352,7 +354,7 @@ impl Walk<'_> {
             if self.wire.is_some() {
                 return Ok(0.0);
             }
-            return Err(refuse("feed-missing", "a cut before the first feed"));
+            return Err(refuse(Rule::NoFeed, "a cut before the first feed"));
         };
         self.limits.feed(feed, self.wanted.spindle(), self.line)?;
         if let Feed::InverseTime(rate) = &mut feed {
@@ -378,11 +380,16 @@ impl Walk<'_> {
         };
         match feed {
             Feed::PerTurn(_) if mode == feed_mode::PER_MINUTE => {
-                self.findings.lowered("feed-per-turn", "feeds per turn (as mm/min)", self.line, 1);
+                self.findings.lowered(
+                    Rule::FeedPerTurn,
+                    "feeds per turn (as mm/min)",
+                    self.line,
+                    1,
+                );
             }
             Feed::InverseTime(_) if mode == feed_mode::PER_MINUTE => {
                 let what = "inverse-time feeds (as mm/min)";
-                self.findings.lowered("feed-inverse-time", what, self.line, 1);
+                self.findings.lowered(Rule::FeedInverseTime, what, self.line, 1);
             }
             Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_) => {}
         }
@@ -399,7 +406,7 @@ impl Walk<'_> {
         let moves = written > 0.0;
         if !moves {
             let message = format!("a cut with a feed of {value}, written as {written}");
-            return Err(refuse("feed-zero", message));
+            return Err(refuse(Rule::FeedZero, message));
         }
         self.writer.set(WordName::F, value);
         self.writer.code(WordName::FeedMode, mode);
@@ -451,7 +458,7 @@ impl Walk<'_> {
                 let message = "rotary axes turn in a cut, the control has no inverse-time feed, and nobody says what F counts there";
                 let help = "`rotary_feed = \"all-axes\"` in [settings] of the machine file where F counts a degree like a mm, \
                             `\"linear-axes\"` where it counts X, Y and Z alone";
-                return Err(refuse("rotary-feed", message).help(help).into());
+                return Err(refuse(Rule::RotaryFeed, message).help(help).into());
             }
         };
         if value > most {
@@ -464,7 +471,7 @@ impl Walk<'_> {
     fn slowed(&mut self, why: &str) {
         let message =
             format!("the tip is slower than the feed of the source where rotary axes turn: {why}");
-        self.findings.warn(Diagnostic::warning("feed-limited", message).line(self.line));
+        self.findings.warn(Diagnostic::warning(Rule::FeedLimited, message).line(self.line));
     }
 }
 

@@ -9,7 +9,7 @@ pub(crate) mod trail;
 
 use control::{Action, ArcTo, Dialect, Position};
 use machine::{Machine, ToolRadius};
-use program::{CompensatedPath, Compensation, Diagnostic, Program};
+use program::{CompensatedPath, Compensation, Diagnostic, Program, Rule};
 
 /// Whether a program for `machine` has to compensate where `source` does. A path of the tool's centre goes without, unless the
 /// tool table keeps nothing but wear: the control would offset it by the tool once more.
@@ -41,7 +41,7 @@ pub(crate) fn unsettled(source: &Program, machine: &Machine) -> Option<Diagnosti
         ),
     };
     let message = format!("source line {line}: {message}");
-    Some(Diagnostic::error("compensated-path", message).help(help))
+    Some(Diagnostic::error(Rule::CompensatedPath, message).help(help))
 }
 
 /// Whether the virtual control of `machine` is to be asked where it leads the tools of `source`.

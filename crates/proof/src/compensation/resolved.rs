@@ -7,7 +7,7 @@ use crate::place::{Number, Station};
 use crate::report::Report;
 use control::{ArcTo, Dialect, Event, Position, Setup, ToolData};
 use machine::{Machine, ToolRadius};
-use program::{CompensatedPath, Compensation, Diagnostic, Op, Program, Tool};
+use program::{CompensatedPath, Compensation, Diagnostic, Op, Program, Rule, Tool};
 use std::collections::BTreeMap;
 
 /// How far the centre may be from where it should be, in tip tolerances: as an arc, whose centre is rounded too.
@@ -159,7 +159,7 @@ impl Run<'_> {
                     stretch.terms.source_line,
                     Number(radius)
                 );
-                let found = Diagnostic::error("compensation", message).line(line);
+                let found = Diagnostic::error(Rule::Compensation, message).line(line);
                 self.report.mismatch(stretch.terms.source_line, found);
             }
         }
@@ -178,14 +178,14 @@ impl Run<'_> {
         if let Some(stretch) = self.stretches.first() {
             let line = stretch.pieces.first().map_or(0, |piece| piece.line);
             let message = "the control does not lead the tool along this contour";
-            let found = Diagnostic::error("compensation", message).line(line);
+            let found = Diagnostic::error(Rule::Compensation, message).line(line);
             self.report.mismatch(stretch.terms.source_line, found);
         }
     }
 
     /// The control does not lead the tool along the contour.
     fn refused(&mut self, mut found: Diagnostic) {
-        if found.rule == "compensation-unsupported" {
+        if found.rule == Rule::CompensationUnsupported {
             let warning = not_compared(&found.message).line(found.line);
             return self.report.warn(warning);
         }
@@ -198,5 +198,5 @@ impl Run<'_> {
 /// That a contour is compared as programmed alone.
 pub(super) fn not_compared(why: &str) -> Diagnostic {
     let message = format!("where compensation leads the tool's centre is not compared: {why}");
-    Diagnostic::warning("compensation-open", message)
+    Diagnostic::warning(Rule::CompensationOpen, message)
 }

@@ -6,6 +6,7 @@
 //! cuts, or Z of the machine alone comes down, along the tool.
 
 use super::*;
+use program::Rule;
 
 /// A tool that points down by less than this sine lies level.
 const LEVEL: f64 = 1e-4;
@@ -101,7 +102,7 @@ impl Prover<'_> {
             Number(short)
         );
         let help = "go out along the tool axis first";
-        self.found(Diagnostic::error("rapid-path", message).help(help).line(line));
+        self.found(Diagnostic::error(Rule::RapidPath, message).help(help).line(line));
     }
 
     /// What is wrong with a rapid from a place that nobody knows while Z has not been home since the last move.
@@ -313,7 +314,7 @@ impl Prover<'_> {
         );
         let help = "a shorter tool, a part that lies lower or nearer to the rotary axes, or another `safe_height` and \
                     `work_zero` in the machine file";
-        Some(Diagnostic::error("home-height", message).help(help).line(to.line))
+        Some(Diagnostic::error(Rule::HomeHeight, message).help(help).line(to.line))
     }
 }
 

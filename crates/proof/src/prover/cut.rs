@@ -1,6 +1,7 @@
 //! Cuts: lines and arcs, and what must hold in them.
 
 use super::*;
+use program::Rule;
 
 impl Prover<'_> {
     /// A feed move while the source cuts a line or an arc.
@@ -22,7 +23,7 @@ impl Prover<'_> {
         };
         let Followed { t, path_mm, left_mm } = followed.map_err(|how| {
             let message = format!("goes to {} and {how}; the source goes to {}", to.place, goal.to);
-            self.lost_at(to.line, "path", &message)
+            self.lost_at(to.line, Rule::Path, &message)
         })?;
         let (rounding, source) = (self.gauge.slack(to), goal.length());
         let done = self.gauge.at(to, &goal.to) && left_mm <= arc::PAST * rounding;
@@ -51,11 +52,11 @@ impl Prover<'_> {
                 "feeds to {} from a place that is not known; the source goes to {}",
                 to.place, goal.to
             );
-            return Err(self.lost_at(to.line, "unknown-start", &message));
+            return Err(self.lost_at(to.line, Rule::UnknownStart, &message));
         }
         let message =
             format!("source line {}: feeds to {} from an unknown place", goal.line, to.place);
-        self.report.warn(Diagnostic::warning("unknown-start", message).line(to.line));
+        self.report.warn(Diagnostic::warning(Rule::UnknownStart, message).line(to.line));
         let feed = self.feed_by_number();
         self.check_cut(to, feed, false);
         self.arrive(to);
@@ -154,7 +155,7 @@ impl Prover<'_> {
         if switched && (kept || !on_arc) {
             self.compensation = wanted;
         } else if switched {
-            self.differs(line, ("compensation", "compensation is switched on an arc".into()));
+            self.differs(line, (Rule::Compensation, "compensation is switched on an arc".into()));
         } else if !kept || must {
             let (is, should) = (state::compensation(is), state::compensation(wanted));
             let why = match self.cursor.compensates() {
@@ -164,7 +165,7 @@ impl Prover<'_> {
                 }
             };
             let message = format!("compensation is {is}, but should be {should}{why}");
-            self.differs(line, ("compensation", message));
+            self.differs(line, (Rule::Compensation, message));
         }
     }
 }

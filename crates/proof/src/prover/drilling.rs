@@ -1,6 +1,7 @@
 //! Holes: by canned cycles, and by the moves that make them.
 
 use super::*;
+use program::Rule;
 
 impl Prover<'_> {
     /// A single move while the source drills.
@@ -24,7 +25,7 @@ impl Prover<'_> {
             }
             if !hole.is_over(&here) {
                 let message = format!("feeds to {}, but the hole is at {point}", to.place);
-                return Err(self.lost_at(to.line, "hole", &message));
+                return Err(self.lost_at(to.line, Rule::Hole, &message));
             }
             self.leg.hole.over = true;
         }
@@ -34,7 +35,7 @@ impl Prover<'_> {
             Gait::Rapid => run.rapid(&hole, &here, to, stopped),
             Gait::Feed => run.feed(&hole, &here, to),
         }
-        .map_err(|how| self.lost_at(to.line, "hole", &how))?;
+        .map_err(|how| self.lost_at(to.line, Rule::Hole, &how))?;
         if gait == Gait::Feed {
             self.check_drilling(to.line, cycle.feed, self.running.feed);
         }
@@ -47,15 +48,15 @@ impl Prover<'_> {
     /// A hole of a canned cycle.
     pub(super) fn drilled(&mut self, line: u32, pose: &Position) -> Outcome {
         let Some(own) = self.running.cycle else {
-            return Err(self.lost_at(line, "hole", "drills without a cycle"));
+            return Err(self.lost_at(line, Rule::Hole, "drills without a cycle"));
         };
         self.pass_left_out(|_| false);
         self.miss_events(line);
         let Step::Move(Goal { kind: Kind::Hole(cycle), to: point, .. }) = &self.cursor.step else {
             let message = "drills a hole that the source does not have";
             return Err(match self.nearest_stop() {
-                Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
-                None => self.lost_at(line, "hole", message),
+                Some(stop) => self.lost_at(stop.line, Rule::EndPoint, &self.not_reached(&stop)),
+                None => self.lost_at(line, Rule::Hole, message),
             });
         };
         let (gauge, cycle, point) = (self.gauge, *cycle, *point);
@@ -63,11 +64,15 @@ impl Prover<'_> {
         self.unclamped(line, &pose.orientation);
         let drilled = Drilled::new(&gauge, line, pose, own);
         if self.leg.hole.begun(&cycle) {
-            return Err(self.lost_at(line, "hole", "drills a hole that has been begun by moves"));
+            return Err(self.lost_at(
+                line,
+                Rule::Hole,
+                "drills a hole that has been begun by moves",
+            ));
         }
         // A cycle may end at the R plane: then the way up to the retract level is still to come.
         let below = own.retract == own.clearance && cycle.retract > cycle.clearance;
-        drilled.place(&hole, !below).map_err(|how| self.lost_at(line, "hole", &how))?;
+        drilled.place(&hole, !below).map_err(|how| self.lost_at(line, Rule::Hole, &how))?;
         let wrong_way = self.wrong_cycle(&drilled.r_plane);
         self.approached(&drilled.r_plane)?;
         if let Some(found) = wrong_way {
@@ -139,7 +144,7 @@ impl Prover<'_> {
         for stop in self.leg.stops.iter().chain(to) {
             if hole.beside_and_down(&last, stop) {
                 let message = format!("goes down by rapid to {}, beside the hole", stop.place);
-                return Err(self.lost_at(stop.line, "hole", &message));
+                return Err(self.lost_at(stop.line, Rule::Hole, &message));
             }
             last = *stop;
         }

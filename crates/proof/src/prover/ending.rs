@@ -24,7 +24,7 @@ impl Prover<'_> {
             let (source, left) = (self.cursor.line, left.join(", "));
             let message = format!("source line {source}: the program ends and leaves {left}");
             let help = "switch it off, or select that of the last cut, before the end: the next program takes it as off";
-            self.found(Diagnostic::error("left-on", message).help(help).line(line));
+            self.found(Diagnostic::error(Rule::LeftOn, message).help(help).line(line));
         }
         if machine.wire.is_none() && self.here.position.point.z.is_finite() {
             let message = format!(
@@ -32,7 +32,7 @@ impl Prover<'_> {
                 self.cursor.line
             );
             let help = "send Z home before the end: the next program, or the operator, may move X and Y first";
-            self.report.warn(Diagnostic::warning("end-height", message).help(help).line(line));
+            self.report.warn(Diagnostic::warning(Rule::EndHeight, message).help(help).line(line));
         }
     }
 }

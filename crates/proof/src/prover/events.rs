@@ -2,14 +2,14 @@
 
 use super::*;
 use machine::RotaryAxis;
-use program::{Output, OutputValue};
+use program::{Output, OutputValue, Rule};
 
 impl Prover<'_> {
     /// A tool change.
     pub(super) fn change_tool(&mut self, line: u32, tool: &Tool) -> Outcome {
         if !self.at_tool_change() {
             let message = "changes the tool where the source does not";
-            return Err(self.lost_at(line, "extra-tool-change", message));
+            return Err(self.lost_at(line, Rule::ExtraToolChange, message));
         }
         if !self.gauge.machine.tools.retracts && self.here.position.point.z.is_finite() {
             let message = format!(
@@ -18,7 +18,7 @@ impl Prover<'_> {
             );
             let help = "send Z home before it, or say `retracts = true` in [tools] of the machine's file where its \
                         tool change brings Z up by itself";
-            self.found(Diagnostic::error("tool-change-height", message).help(help).line(line));
+            self.found(Diagnostic::error(Rule::ToolChangeHeight, message).help(help).line(line));
         }
         if self.gauge.machine.tools.retracts {
             self.leaves_for_home(line);
@@ -59,7 +59,7 @@ impl Prover<'_> {
         );
         let help = "turn the axes of the head to 0 behind the retract, or say `turns_upright = true` in [tools] of the machine's \
                     file where its tool change does that by itself";
-        self.found(Diagnostic::error("tool-change-tilt", message).help(help).line(line));
+        self.found(Diagnostic::error(Rule::ToolChangeTilt, message).help(help).line(line));
     }
 
     /// Something that happens between motions: a dwell, a stop, an output.
@@ -112,25 +112,25 @@ impl Prover<'_> {
             self.report.compared.events += 1;
             if self.cursor.wanted.spindle == Spindle::Off && self.running.spindle != Spindle::Off {
                 let message = "the spindle turns at a stop, but should be stopped";
-                self.differs(line, ("spindle", message.into()));
+                self.differs(line, (Rule::Spindle, message.into()));
             }
             self.advance();
         } else if let (Step::Dwell(a), Step::Dwell(b)) = (&self.cursor.step, &event) {
             let message = format!("dwells {} s, but should {} s", Number(*b), Number(*a));
-            self.differs(line, ("dwell", message));
+            self.differs(line, (Rule::Dwell, message));
             self.advance();
         } else if matches!(event, Step::Auxiliary(_)) {
             // Of the machine's own blocks.
         } else if !matches!(event, Step::Stop | Step::OptionalStop) || !self.at_tool_change() {
             let (rule, what) = match event {
-                Step::Dwell(_) => ("dwell", "dwells"),
-                Step::ThreadWire => ("wire", "threads the wire"),
-                Step::CutWire => ("wire", "cuts the wire"),
-                Step::Stop => ("stop", "stops"),
-                Step::OptionalStop => ("stop", "stops if the operator asks for it"),
-                Step::Output(_) => ("output", "sets an output"),
-                Step::Input(_) => ("input", "reads an input or waits for it"),
-                Step::WorkOffsetData(_) => ("operator-data", "writes a work offset"),
+                Step::Dwell(_) => (Rule::Dwell, "dwells"),
+                Step::ThreadWire => (Rule::Wire, "threads the wire"),
+                Step::CutWire => (Rule::Wire, "cuts the wire"),
+                Step::Stop => (Rule::Stop, "stops"),
+                Step::OptionalStop => (Rule::Stop, "stops if the operator asks for it"),
+                Step::Output(_) => (Rule::Output, "sets an output"),
+                Step::Input(_) => (Rule::Input, "reads an input or waits for it"),
+                Step::WorkOffsetData(_) => (Rule::OperatorData, "writes a work offset"),
                 Step::Auxiliary(_) | Step::Move(_) | Step::Unproven(_) | Step::End => return Ok(()),
             };
             self.differs(line, (rule, format!("{what} where the source does not")));
@@ -154,19 +154,21 @@ impl Prover<'_> {
     pub(super) fn miss_events(&mut self, line: u32) {
         loop {
             let (rule, what) = match &self.cursor.step {
-                Step::Dwell(seconds) => ("dwell", format!("a dwell of {} s", Number(*seconds))),
-                Step::Stop => ("stop", "a stop".into()),
-                Step::OptionalStop => ("stop", "an optional stop".into()),
-                Step::ThreadWire => ("wire", "threading the wire".into()),
-                Step::CutWire => ("wire", "cutting the wire".into()),
-                Step::Output(output) => ("output", format!("output {} being set", output.number)),
-                Step::Input(input) => ("input", format!("reading input {}", input.number)),
+                Step::Dwell(seconds) => (Rule::Dwell, format!("a dwell of {} s", Number(*seconds))),
+                Step::Stop => (Rule::Stop, "a stop".into()),
+                Step::OptionalStop => (Rule::Stop, "an optional stop".into()),
+                Step::ThreadWire => (Rule::Wire, "threading the wire".into()),
+                Step::CutWire => (Rule::Wire, "cutting the wire".into()),
+                Step::Output(output) => {
+                    (Rule::Output, format!("output {} being set", output.number))
+                }
+                Step::Input(input) => (Rule::Input, format!("reading input {}", input.number)),
                 Step::Auxiliary(function) => {
-                    ("auxiliary", format!("the auxiliary function M{}", function.number))
+                    (Rule::Auxiliary, format!("the auxiliary function M{}", function.number))
                 }
                 Step::WorkOffsetData(data) => {
                     let number = data.offset.number();
-                    ("operator-data", format!("writing work offset {number} (54 is the first)"))
+                    (Rule::OperatorData, format!("writing work offset {number} (54 is the first)"))
                 }
                 Step::Move(_) | Step::Unproven(_) | Step::End => return,
             };

@@ -28,6 +28,7 @@ use crate::{arc, line, stops};
 use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
+use program::Rule;
 use program::statistics::Statistics;
 use program::{
     Axes, Compensation, Coolant, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Severity,
@@ -209,11 +210,13 @@ impl<'a> Prover<'a> {
                     let found = self.unproven(0, what);
                     self.report.mismatch(self.cursor.line, *found);
                 }
-                (_, Some(stop)) => self.differs(stop.line, ("end-point", self.not_reached(&stop))),
-                _ => self.differs(0, ("missing", "the program ends before this".into())),
+                (_, Some(stop)) => {
+                    self.differs(stop.line, (Rule::EndPoint, self.not_reached(&stop)))
+                }
+                _ => self.differs(0, (Rule::Missing, "the program ends before this".into())),
             }
             if !self.ended {
-                self.differs(0, ("no-end", "the program has no end".into()));
+                self.differs(0, (Rule::NoEnd, "the program has no end".into()));
             }
         }
         let linear = self.travel.known();
@@ -254,7 +257,7 @@ impl<'a> Prover<'a> {
         let line = event.line;
         let passive = matches!(event.action, Action::Comment(_) | Action::Message(_) | Action::End);
         if self.ended && !passive {
-            return Err(self.lost_at(line, "after-end", "goes on after the end of the program"));
+            return Err(self.lost_at(line, Rule::AfterEnd, "goes on after the end of the program"));
         }
         let running = &mut self.running;
         running.just_started &= !matches!(
@@ -389,7 +392,7 @@ impl<'a> Prover<'a> {
         let to = self.gauge.station(line, *position);
         let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
         if block == Some(None) {
-            return Err(self.lost_at(line, "arc", "makes no arc"));
+            return Err(self.lost_at(line, Rule::Arc, "makes no arc"));
         }
         let block = block.flatten();
         self.count(gait, &to, arc, block.as_ref());
@@ -419,16 +422,16 @@ impl<'a> Prover<'a> {
                 }
                 Kind::Line | Kind::Arc(_) => self.cut(&to, block.as_ref()),
                 Kind::Hole(_) if block.is_some() => {
-                    Err(self.lost_at(line, "hole", "makes an arc where the source has a hole"))
+                    Err(self.lost_at(line, Rule::Hole, "makes an arc where the source has a hole"))
                 }
                 Kind::Hole(_) => self.hole_move(gait, &to),
                 kind @ (Kind::Thread(_) | Kind::Probe { .. }) => {
                     let message = format!("moves where the source {}", single::does(kind));
-                    Err(self.lost_at(line, "single-block", &message))
+                    Err(self.lost_at(line, Rule::SingleBlock, &message))
                 }
                 Kind::Broken(why) => {
                     let message = format!("has no motion to hold against: {why}");
-                    Err(self.lost_at(line, "source", &message).help(COMPARABLE).into())
+                    Err(self.lost_at(line, Rule::Source, &message).help(COMPARABLE).into())
                 }
             },
             Step::Unproven(what) => Err(self.unproven(line, what)),
@@ -537,7 +540,7 @@ impl<'a> Prover<'a> {
             self.cursor.line
         );
         let help = "send Z home before it";
-        self.found(Diagnostic::error("turn-height", message).help(help).line(line));
+        self.found(Diagnostic::error(Rule::TurnHeight, message).help(help).line(line));
     }
 
     /// Holds the clamps of these axes open.
@@ -659,7 +662,7 @@ impl<'a> Prover<'a> {
     /// The source has something before this that no program can be compared with.
     fn unproven(&self, line: u32, what: &str) -> Box<Diagnostic> {
         let message = format!("cannot be compared: the source has {what} before this");
-        self.lost_at(line, "unproven", &message).help(COMPARABLE).into()
+        self.lost_at(line, Rule::Unproven, &message).help(COMPARABLE).into()
     }
 
     /// Holds known what the place of the tip hangs on.
@@ -682,7 +685,7 @@ impl<'a> Prover<'a> {
     }
 
     /// The mismatch on `line` of the program after which the comparison cannot go on.
-    fn lost_at(&self, line: u32, rule: &'static str, what: &str) -> Box<Diagnostic> {
+    fn lost_at(&self, line: u32, rule: Rule, what: &str) -> Box<Diagnostic> {
         let message = format!("source line {}: the program {what}", self.cursor.line);
         Diagnostic::error(rule, message).help(ALIKE).line(line).into()
     }

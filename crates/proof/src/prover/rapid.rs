@@ -1,7 +1,7 @@
 //! Rapids, excursions from the path of a cut, home positions, and the way out at the end.
 
 use super::*;
-use program::Axes;
+use program::{Axes, Rule};
 
 impl Prover<'_> {
     /// A move while the source goes by rapid.
@@ -14,8 +14,10 @@ impl Prover<'_> {
                 return self.rapid_by_feed(to);
             }
             return Err(match self.nearest_stop() {
-                Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
-                None => self.lost_at(to.line, "rapid-feed", "feeds where the source goes by rapid"),
+                Some(stop) => self.lost_at(stop.line, Rule::EndPoint, &self.not_reached(&stop)),
+                None => {
+                    self.lost_at(to.line, Rule::RapidFeed, "feeds where the source goes by rapid")
+                }
             });
         }
         if self.gauge.at(to, &goal.to) {
@@ -43,12 +45,12 @@ impl Prover<'_> {
                     "goes to {} and {how}; the source goes to {} by rapid",
                     to.place, goal.to
                 );
-                self.lost_at(to.line, "path", &message)
+                self.lost_at(to.line, Rule::Path, &message)
             })?;
         let done = self.gauge.at(to, &goal.to);
         self.leg.t = t;
         if !matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed > 0.0) {
-            self.differs(to.line, ("feed", "no feed in mm/min is set".into()));
+            self.differs(to.line, (Rule::Feed, "no feed in mm/min is set".into()));
         }
         self.check(to.line, state::corners(self.gauge.machine, &self.running));
         if done {
@@ -82,7 +84,7 @@ impl Prover<'_> {
         }
         if self.leg.stops.len() >= MOST_STOPS {
             let stop = self.nearest_stop().unwrap_or(*to);
-            return Err(self.lost_at(stop.line, "end-point", &self.not_reached(&stop)));
+            return Err(self.lost_at(stop.line, Rule::EndPoint, &self.not_reached(&stop)));
         }
         self.leg.stops.push(*to);
         Ok(())
@@ -95,7 +97,7 @@ impl Prover<'_> {
         let free = goal.free(self.gauge.allowed.axis_degrees);
         if goal.homed && !self.leg.homed {
             let message = "does not go home in Z before this, as the source does";
-            return Err(self.lost_at(to.line, "home", message));
+            return Err(self.lost_at(to.line, Rule::Home, message));
         }
         if self.leg.stops.is_empty() {
             return Ok(());
@@ -113,7 +115,7 @@ impl Prover<'_> {
                     "stops by rapid at {}, on no way axis by axis to {}",
                     stop.place, to.place
                 );
-                Err(self.lost_at(stop.line, "rapid-stop", &message))
+                Err(self.lost_at(stop.line, Rule::RapidStop, &message))
             }
         }
     }
@@ -127,7 +129,7 @@ impl Prover<'_> {
             }
             if self.gauge.at(to, &goal.to) || !stops::lifted(&self.gauge, &self.here, to) {
                 let message = "goes by rapid where the source feeds";
-                return Err(self.lost_at(to.line, "rapid-feed", message));
+                return Err(self.lost_at(to.line, Rule::RapidFeed, message));
             }
             self.leg.left = Some(self.here);
             return self.stop_at(to);
@@ -140,14 +142,14 @@ impl Prover<'_> {
             if !self.comes_down(&last, to) {
                 return Err(self.lost_at(
                     to.line,
-                    "excursion",
+                    Rule::Excursion,
                     "comes back, but not along the tool axis",
                 ));
             }
             let lift =
                 stops::explain(&self.gauge, &left, &self.leg.stops, to, true).map_err(|stop| {
                     let message = format!("stops by rapid at {}, away from the path", stop.place);
-                    self.lost_at(stop.line, "rapid-stop", &message)
+                    self.lost_at(stop.line, Rule::RapidStop, &message)
                 })?;
             self.note_excursion(to, lift.left_mm);
             self.leg.left = None;
@@ -158,7 +160,7 @@ impl Prover<'_> {
         if gait == Gait::Feed {
             let line = self.leg.stops.first().map_or(to.line, |stop| stop.line);
             let message = "leaves the cut by rapid and does not come back to where it left";
-            return Err(self.lost_at(line, "rapid-feed", message));
+            return Err(self.lost_at(line, Rule::RapidFeed, message));
         }
         self.stop_at(to)
     }
@@ -225,19 +227,27 @@ impl Prover<'_> {
         let is_up = self.here.position.point.z.is_nan();
         let retracted = is_up || self.leg.homed;
         if !first && !retracted && !z {
-            return Err(self.lost_at(line, "home", "sends axes home before the tool is retracted"));
+            return Err(self.lost_at(
+                line,
+                Rule::Home,
+                "sends axes home before the tool is retracted",
+            ));
         }
         let up = axes == Axes::Z && (is_up || self.hangs_down() || self.clear_of_part());
         if !first && !free && (!up || self.leg.hole.over) {
-            return Err(self.lost_at(line, "home", "sends axes home in the middle of the work"));
+            return Err(self.lost_at(
+                line,
+                Rule::Home,
+                "sends axes home in the middle of the work",
+            ));
         }
         if !first && !retracted && axes != Axes::Z {
             if !self.clear_of_part() {
                 let message = "sends axes home together with Z, not after it, beside the part";
-                return Err(self.lost_at(line, "home", message));
+                return Err(self.lost_at(line, Rule::Home, message));
             }
             let message = "Z goes home together with other axes, not before them";
-            self.report.warn(Diagnostic::warning("home", message).line(line));
+            self.report.warn(Diagnostic::warning(Rule::Home, message).line(line));
         }
         if holding && !first && self.leg.left.is_none() {
             self.leg.left = Some(self.here);
@@ -320,7 +330,7 @@ impl Prover<'_> {
             true => Ok(()),
             false => {
                 let message = format!("goes to {} after the last motion of the source", to.place);
-                Err(self.lost_at(to.line, "extra-motion", &message))
+                Err(self.lost_at(to.line, Rule::ExtraMotion, &message))
             }
         }
     }

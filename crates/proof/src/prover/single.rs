@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::hole::PITCH;
+use program::Rule;
 
 impl Prover<'_> {
     /// A thread or a probing move of the program.
@@ -16,7 +17,7 @@ impl Prover<'_> {
             Step::Move(goal) if same(&goal.kind, &is) => goal,
             Step::Move(Goal { kind: kind @ (Kind::Thread(_) | Kind::Probe { .. }), .. }) => {
                 let message = format!("{}, but the source {}", does(&is), does(kind));
-                return Err(self.lost_at(line, "single-block", &message));
+                return Err(self.lost_at(line, Rule::SingleBlock, &message));
             }
             Step::Move(_)
             | Step::Dwell(_)
@@ -31,17 +32,17 @@ impl Prover<'_> {
             | Step::Unproven(_)
             | Step::End => {
                 let message = format!("{} where the source does not", does(&is));
-                return Err(self.lost_at(line, "single-block", &message));
+                return Err(self.lost_at(line, Rule::SingleBlock, &message));
             }
         };
         let (here, goes_to) = (self.here, goal.to);
         if !here.place.known() || !self.leg.stops.is_empty() {
             let message = format!("{} from a place where the source does not", does(&is));
-            return Err(self.lost_at(line, "single-block", &message));
+            return Err(self.lost_at(line, Rule::SingleBlock, &message));
         }
         if !self.gauge.at(&to, &goes_to) {
             let message = format!("goes to {}; the source goes to {goes_to}", to.place);
-            return Err(self.lost_at(line, "path", &message));
+            return Err(self.lost_at(line, Rule::Path, &message));
         }
         let length = goal.length();
         self.pace = Pace::default();

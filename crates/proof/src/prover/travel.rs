@@ -1,6 +1,7 @@
 //! Each block of the program in machine space: no axis leaves its travel, at its end and on the way.
 
 use super::*;
+use program::Rule;
 
 /// Rotary axes turn at most this much between two positions that are looked at, degrees: 200 mm from the axis of a table
 /// the slides leave the chord between two by 0.07 mm.
@@ -58,7 +59,7 @@ impl Prover<'_> {
         );
         let help = "tool axes in the source that go round the pole by more than 2° or through it, or positions of the rotary axes \
                     in place of vectors (`simultaneous = \"tool-center-angles\"` in [orientation] of the machine file)";
-        self.found(Diagnostic::error("pole-way", message).help(help).line(to.line));
+        self.found(Diagnostic::error(Rule::PoleWay, message).help(help).line(to.line));
     }
 
     /// What is wrong between the ends of a move in which the rotary axes turn from one place (degrees of A, B, C) to

@@ -8,6 +8,7 @@
 use super::*;
 use crate::line::{blend, turn};
 use geom::{nearest_on_segment, off_great_circle};
+use program::Rule;
 
 /// Rotary axes turn at most this much between two samples of a rapid, degrees: with the part half a metre off, the tip
 /// leaves the chord between two by less than 0.005 mm.
@@ -158,7 +159,7 @@ impl Prover<'_> {
                  machine's file where its axes go together by rapid"
             }
         };
-        Diagnostic::error("rapid-path", message).help(help).line(to.line)
+        Diagnostic::error(Rule::RapidPath, message).help(help).line(to.line)
     }
 }
 

@@ -12,7 +12,7 @@ use super::motion::Next;
 use super::record::Record;
 use super::report::{Fault, Outcome};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between, direction};
-use program::{ArcTo, Circle, Diagnostic, Op, Pose, Program};
+use program::{ArcTo, Circle, Diagnostic, Op, Pose, Program, Rule};
 use std::f64::consts::{PI, TAU};
 
 /// How far the ends of an arc, and the radius the record gives, may be from each other, mm. Files give
@@ -50,7 +50,7 @@ impl Reader {
         let count = times.unwrap_or(record.fields.len()) - first;
         if !matches!(count, 6..=11) {
             let message = format!("{count} values where a circle takes 6 to 11");
-            return Err(Fault::new("malformed", message)
+            return Err(Fault::new(Rule::Malformed, message)
                 .help("write CIRCLE/cx,cy,cz,i,j,k,r")
                 .fields(first, count));
         }
@@ -67,7 +67,7 @@ impl Reader {
                 n if n.fract() == 0.0 && (1.0..=1e4).contains(&n) => n as u32,
                 n => {
                     let message = format!("{n} turns cannot be made");
-                    return Err(Fault::new("malformed", message).fields(i + 1, 1));
+                    return Err(Fault::new(Rule::Malformed, message).fields(i + 1, 1));
                 }
             },
         };
@@ -81,10 +81,10 @@ impl Reader {
     fn may_turn(&mut self) -> Outcome {
         self.no_pending_circle()?;
         if matches!(self.next, Next::Rapid) {
-            return Err(Fault::new("unsupported", "an arc cannot be a rapid"));
+            return Err(Fault::new(Rule::Unsupported, "an arc cannot be a rapid"));
         }
         if self.cycle.is_some() {
-            return Err(Fault::new("unsupported", "an arc within a hole cycle")
+            return Err(Fault::new(Rule::Unsupported, "an arc within a hole cycle")
                 .help("add CYCLE/OFF before it"));
         }
         Ok(())
@@ -97,7 +97,7 @@ impl Reader {
         }
         self.next = Next::Line;
         let message = format!("the CIRCLE of line {} has no GOTO", self.circle_at);
-        Err(Fault::new("circle-without-goto", message).help("add the GOTO that ends the arc"))
+        Err(Fault::new(Rule::CircleWithoutGoto, message).help("add the GOTO that ends the arc"))
     }
 
     /// The arc of `circle` from where the tool is to `end`.
@@ -120,7 +120,7 @@ impl Reader {
     ) -> Outcome {
         self.prepare(record, true)?;
         let Some(start) = self.tip else {
-            return Err(Fault::new("no-start", "an arc, but from nowhere")
+            return Err(Fault::new(Rule::NoStart, "an arc, but from nowhere")
                 .help("add a GOTO to its start before the CIRCLE"));
         };
         let arc = Arc::new(start.point(), end.point(), circle.center, normal, 0, RADIUS_TOLERANCE)
@@ -132,24 +132,24 @@ impl Reader {
             let message = format!(
                 "the arc starts {radius:.4} mm from the centre, but its radius is {given:.4} mm"
             );
-            return Err(Fault::new("off-the-circle", message));
+            return Err(Fault::new(Rule::OffTheCircle, message));
         }
         if arc.sweep < TAU && arc.sweep > PI && start.point().distance(end.point()) < NEARLY {
             let message = "the ends of this arc are not the same, but so near that it could be a full \
                            circle or nothing";
             return Err(
-                Fault::new("arc-chord", message).help("give the same point for a full circle")
+                Fault::new(Rule::ArcChord, message).help("give the same point for a full circle")
             );
         }
         if circle.times > 1 && arc.sweep < TAU {
             let message = "several turns that do not end where they began (seen along the axis) are \
                            not defined";
-            return Err(Fault::new("unsupported", message)
+            return Err(Fault::new(Rule::Unsupported, message)
                 .help("end the full turns first, then the rest in an arc of its own"));
         }
         let tilt = angle_between(start.axis(), end.axis());
         if tilt > ANGLE_EPSILON {
-            return Err(Fault::new("unsupported", "the tool axis turns during this arc")
+            return Err(Fault::new(Rule::Unsupported, "the tool axis turns during this arc")
                 .help("let the CAM system write lines where the axis turns"));
         }
         let turns = circle.times - 1;
@@ -175,7 +175,7 @@ impl Reader {
         let further = arc(point).map_err(|error| not_an_arc(&error))?;
         if further.sweep <= so_far.sweep {
             let message = "the points of this arc do not follow each other in its direction";
-            return Err(Fault::new("arc-direction", message));
+            return Err(Fault::new(Rule::ArcDirection, message));
         }
         let end = to.end.at(point)?;
         to.end = end;
@@ -193,7 +193,12 @@ impl Reader {
         if start.distance(pose.point()) <= RADIUS_TOLERANCE {
             let message =
                 "a line to the start of the arc just cut: read as the chord that closes it";
-            self.report.warn(record, "arc-points", message, "check that no full circle is meant");
+            self.report.warn(
+                record,
+                Rule::ArcPoints,
+                message,
+                "check that no full circle is meant",
+            );
             return Ok(());
         }
         let Some(Op::Arc(to)) = self.program.records.last().map(|r| &r.op) else { return Ok(()) };
@@ -209,7 +214,7 @@ impl Reader {
             Ok(arc) if arc.rise().abs() <= RADIUS_TOLERANCE => {
                 let message = "a line to another point of the circle just cut: is it a chord, or a \
                                further point of the arc?";
-                Err(Fault::new("arc-points", message)
+                Err(Fault::new(Rule::ArcPoints, message)
                     .help("let Creo write one point for an arc (NUMBER_OF_ARC_PTS 1)"))
             }
             _ => Ok(()),
@@ -237,14 +242,14 @@ impl Reader {
             && count == line + 7;
         if !known {
             let message = "only a circle up to a line is known here";
-            return Err(Fault::new("unsupported", message).help(syntax));
+            return Err(Fault::new(Rule::Unsupported, message).help(syntax));
         }
         let center = self.setup.to_work.transform_point3(self.point(record, 1)?);
         let radius = Some(self.length(record.number(4, "the radius")?)?);
         let end = self.setup.to_work.transform_point3(self.point(record, line + 4)?);
         let (Some(start), Some(towards)) = (self.tip, self.towards.take()) else {
             return Err(Fault::new(
-                "no-start",
+                Rule::NoStart,
                 "the start or the direction of this arc is not known",
             )
             .help("add GOTO/ and INDIRV/ before it"));
@@ -252,7 +257,7 @@ impl Reader {
         let spoke = start.point() - center;
         let Some(normal) = direction(spoke.cross(towards)) else { return Err(no_direction()) };
         if spoke.normalize_or_zero().dot(towards).abs() > 0.1 {
-            return Err(Fault::new("arc-direction", "INDIRV is not tangent to this circle"));
+            return Err(Fault::new(Rule::ArcDirection, "INDIRV is not tangent to this circle"));
         }
         let principal = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
         let normal = principal.into_iter().find(|a| a.distance(normal) < SNAP).unwrap_or(normal);
@@ -267,9 +272,9 @@ impl Reader {
 fn not_an_arc(error: &ArcError) -> Box<Fault> {
     match error {
         ArcError::NoAxis => no_direction(),
-        ArcError::NoRadius => Fault::new("off-the-circle", "the arc starts at its centre"),
+        ArcError::NoRadius => Fault::new(Rule::OffTheCircle, "the arc starts at its centre"),
         ArcError::OffTheCircle(start, end) => Fault::new(
-            "off-the-circle",
+            Rule::OffTheCircle,
             format!("the arc starts {start:.4} mm from the centre, but ends {end:.4} mm from it"),
         )
         .help(format!("the two may differ by {RADIUS_TOLERANCE} mm")),
@@ -335,20 +340,22 @@ pub(super) fn judge(program: &Program, dialect: Dialect) -> Option<Diagnostic> {
              go on smoothly"
         );
         let help = "let the CAM system write lines for arcs, or TLON with INDIRV";
-        return Some(Diagnostic::error("arc-direction", message).help(help).line(first_reversed));
+        return Some(
+            Diagnostic::error(Rule::ArcDirection, message).help(help).line(first_reversed),
+        );
     }
     if reversed > 0 {
         let message = format!(
             "{reversed} arcs reverse the path, and would not in the other direction; {smooth} go \
              on smoothly"
         );
-        let warning = Diagnostic::warning("arc-direction", message);
+        let warning = Diagnostic::warning(Rule::ArcDirection, message);
         return Some(warning.help("look at the path here").line(first_reversed));
     }
     if smooth == 0 && dialect.turn().is_none() {
         let message = "neither the file nor its path shows in which direction arcs turn: taken as \
                        counter-clockwise about the vector of CIRCLE";
-        return Some(Diagnostic::warning("arc-direction", message).help("look at the arcs"));
+        return Some(Diagnostic::warning(Rule::ArcDirection, message).help("look at the arcs"));
     }
     None
 }

@@ -9,7 +9,7 @@ use super::report::{Fault, Outcome};
 use super::technology::{FeedUnit, is_dwell, speed_of};
 use super::{Dialect, Reader, Ready};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Feed, Op, Pose, Spindle};
+use program::{Cycle, CycleKind, Feed, Op, Pose, Rule, Spindle};
 
 /// What a minor word of a `CYCLE` record is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,7 +166,7 @@ impl Reader {
                 self.cycle = last.map(|last| ActiveCycle { initial, ..last });
                 return match self.cycle {
                     Some(_) => Ok(()),
-                    None => Err(Fault::new("malformed", "no cycle has been given yet")),
+                    None => Err(Fault::new(Rule::Malformed, "no cycle has been given yet")),
                 };
             }
             // Both say to which level the tool goes back between holes. The record that follows gives
@@ -178,7 +178,7 @@ impl Reader {
         }
         if matches!(self.next, Next::Rapid) {
             let message = "RAPID before a cycle: is the next GOTO a rapid or a hole?";
-            return Err(Fault::new("unsupported", message).help(
+            return Err(Fault::new(Rule::Unsupported, message).help(
                 "write the RAPID after the cycle, or \
                                                                not at all",
             ));
@@ -202,22 +202,25 @@ impl Reader {
         if record.is(0, "TAP") && record.is(1, "FLOAT") {
             let help = "a floating holder takes it too; check which one holds the tap";
             let message = "TAP,FLOAT is written as any tap, with its pitch";
-            self.report.warn(record, "tap-holder", message, help);
+            self.report.warn(record, Rule::TapHolder, message, help);
         }
         let parts = self.parts(record, words)?;
         let clearance = parts.get(Part::Clearance).ok_or_else(|| {
-            Fault::new("no-clear-plane", "this cycle does not say from which height the tool feeds")
-                .help("add RAPTO,height or CLEAR,height")
+            Fault::new(
+                Rule::NoClearPlane,
+                "this cycle does not say from which height the tool feeds",
+            )
+            .help("add RAPTO,height or CLEAR,height")
         })?;
         let depth = self.depth(kind, &parts)?;
         if clearance <= -depth {
             let message = "the tool would feed from below the bottom of the hole";
-            return Err(Fault::new("no-clear-plane", message));
+            return Err(Fault::new(Rule::NoClearPlane, message));
         }
         let retract = parts.get(Part::Retract).unwrap_or(clearance);
         if retract < clearance && !parts.to_initial {
             let help = "the tool goes back to the higher of the two";
-            self.report.warn(record, "retract", "RTRCTO is lower than RAPTO", help);
+            self.report.warn(record, Rule::Retract, "RTRCTO is lower than RAPTO", help);
         }
         let kind = cycle_kind(kind, &parts)?;
         let (first_peck, peck) = (parts.get(Part::FirstPeck), parts.get(Part::Peck));
@@ -225,7 +228,9 @@ impl Reader {
         let is_pecking = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
         if is_pecking != pecks.peek().is_some() || pecks.any(|peck| *peck <= 0.0) {
             let message = "a cycle that pecks, and no other, takes a peck greater than 0";
-            return Err(Fault::new("peck", message).help("write DEEP or BRKCHP with INCR,depth"));
+            return Err(
+                Fault::new(Rule::Peck, message).help("write DEEP or BRKCHP with INCR,depth")
+            );
         }
         let cycle = Cycle {
             kind,
@@ -265,13 +270,13 @@ impl Reader {
                 }
                 let message = format!("{word} of a cycle is not passed on");
                 let help = "check whether the job needs it";
-                self.report.warn(record, "ignored-word", &message, help);
+                self.report.warn(record, Rule::IgnoredWord, &message, help);
                 i += 1 + usize::from(has_value);
                 continue;
             }
             let known = PARTS.iter().find(|(word, _)| record.is(i, word));
             let (word, mut part) = *known.ok_or_else(|| {
-                Fault::new("unsupported", "this is not known of a cycle")
+                Fault::new(Rule::Unsupported, "this is not known of a cycle")
                     .help("write a word and its value: FEDTO, RAPTO, RTRCTO, INCR, DWELL, MMPM")
                     .fields(i, 1)
             })?;
@@ -286,7 +291,9 @@ impl Reader {
             }
             let number = record.number(i + 1, "its value")?;
             if matches!(record.fields.get(i + 2), Some(Field::Number(_))) {
-                return Err(Fault::new("unsupported", "one value is taken here").fields(i + 2, 1));
+                return Err(
+                    Fault::new(Rule::Unsupported, "one value is taken here").fields(i + 2, 1)
+                );
             }
             // Creo: a return of 0 is to the retract plane.
             parts.to_initial |= word == "RETURN" && number == 0.0;
@@ -315,11 +322,11 @@ impl Reader {
     /// A part that is given twice: only two heights from which to feed make sense together.
     fn twice(&mut self, record: &Record, field: usize, part: Part, differ: bool) -> Outcome {
         if part != Part::Clearance {
-            return Err(Fault::new("malformed", "this is given twice").fields(field, 2));
+            return Err(Fault::new(Rule::Malformed, "this is given twice").fields(field, 2));
         }
         if differ {
             let help = "the tool feeds from the higher of the two";
-            self.report.warn(record, "clear-plane", "CLEAR and RAPTO are both given", help);
+            self.report.warn(record, Rule::ClearPlane, "CLEAR and RAPTO are both given", help);
         }
         Ok(())
     }
@@ -329,13 +336,13 @@ impl Reader {
         let matches = |words: &&[&str]| words.iter().enumerate().all(|(i, w)| record.is(i, w));
         let other = OTHER_BORES.iter().find(|(word, _)| record.is(0, "BORE") && record.is(1, word));
         if let Some((word, reason)) = other {
-            return Err(Fault::new("unsupported", format!("BORE,{word} {reason}"))
+            return Err(Fault::new(Rule::Unsupported, format!("BORE,{word} {reason}"))
                 .help("let the CAM system write BORE or BORE,DRAG, or the single moves")
                 .fields(0, 2));
         }
         let known = KINDS.iter().find(|(words, _)| matches(words));
         let (words, kind) = known.ok_or_else(|| {
-            Fault::new("unsupported", "this cycle is not known")
+            Fault::new(Rule::Unsupported, "this cycle is not known")
                 .help("cycles are DRILL, DEEP, DEEP2, BRKCHP, TAP, BORE, REAM, FACE, CSINK, THRU")
                 .fields(0, 1)
         })?;
@@ -368,7 +375,7 @@ impl Reader {
                 "let the CAM system write words and values: FEDTO,depth,RAPTO,height",
             ),
         };
-        Fault::new("unsupported", message).help(help)
+        Fault::new(Rule::Unsupported, message).help(help)
     }
 
     /// The depth below the point of the hole. Siemens NX gives it as a height, below zero.
@@ -381,7 +388,7 @@ impl Reader {
                 let angle = angle.filter(|a| (1.0..180.0).contains(a));
                 let angle = angle.ok_or_else(|| {
                     Fault::new(
-                        "cycle-depth",
+                        Rule::CycleDepth,
                         "a countersink by diameter needs the tool's point angle",
                     )
                     .help("add TLANGL,degrees or FEDTO,depth")
@@ -398,7 +405,7 @@ impl Reader {
             Dialect::Nx => "FEDTO,-depth (NX counts it as a height)",
             _ => "FEDTO,depth or DEPTH,depth, greater than 0",
         };
-        Err(Fault::new("cycle-depth", message).help(format!("give {sign}")))
+        Err(Fault::new(Rule::CycleDepth, message).help(format!("give {sign}")))
     }
 
     /// The tap of `active` with the spindle and the feed that hold now. The pitch is the threads an
@@ -440,7 +447,7 @@ impl Reader {
         if active.to_initial {
             let Some(initial) = active.initial else {
                 return Err(Fault::new(
-                    "no-start",
+                    Rule::NoStart,
                     "the retract level is that before the cycle, which \
                                                    is not known",
                 )
@@ -479,6 +486,6 @@ fn cycle_kind(kind: Kind, parts: &Parts) -> Result<CycleKind, Box<Fault>> {
 
 #[cold]
 fn unknown_pitch() -> Box<Fault> {
-    Fault::new("tap-pitch", "the pitch of this tap is not known")
+    Fault::new(Rule::TapPitch, "the pitch of this tap is not known")
         .help("give MMPR,pitch or TPI,threads, or feed and spindle speed")
 }

@@ -7,7 +7,7 @@ use super::record::Record;
 use super::report::{Fault, Outcome};
 use super::{Csys, Dialect, Reader, SetUps};
 use geom::{Frame, INCH, Mat3, Vec3, direction};
-use program::Op;
+use program::{Op, Rule};
 
 /// Coordinates beyond this are a fault of the file, mm: no machine is a kilometre long.
 pub(super) const FARTHEST: f64 = 1e6;
@@ -81,7 +81,7 @@ impl Setup {
 /// The frame with these axes and origin, its axes made exactly perpendicular.
 fn frame(origin: Vec3, x: Vec3, y: Vec3) -> Result<Frame, Box<Fault>> {
     let skew = || {
-        Fault::new("frame", "the axes of this frame are not perpendicular unit vectors")
+        Fault::new(Rule::Frame, "the axes of this frame are not perpendicular unit vectors")
             .help("give x and y axes of length 1 at a right angle")
     };
     let unit = |v: Vec3| (v.length() - 1.0).abs() <= SKEW;
@@ -96,12 +96,12 @@ fn frame(origin: Vec3, x: Vec3, y: Vec3) -> Result<Frame, Box<Fault>> {
 /// The frame of a matrix given in rows of three axis components and one of the origin.
 fn frame_of_rows(rows: &[[f64; 4]]) -> Result<Frame, Box<Fault>> {
     let [a, b, c] = rows else {
-        return Err(Fault::new("frame", "this frame has not three rows"));
+        return Err(Fault::new(Rule::Frame, "this frame has not three rows"));
     };
     let column = |i: usize| Vec3::new(a[i], b[i], c[i]);
     let frame = frame(column(3), column(0), column(1))?;
     if frame.matrix3.z_axis.distance(column(2)) > 2.0 * SKEW {
-        return Err(Fault::new("frame", "the axes of this frame are not right-handed"));
+        return Err(Fault::new(Rule::Frame, "the axes of this frame are not right-handed"));
     }
     Ok(frame)
 }
@@ -116,7 +116,7 @@ impl Reader {
             () if mm.iter().any(|word| record.is(0, word)) => 1.0,
             () if inch.iter().any(|word| record.is(0, word)) => INCH,
             () => {
-                return Err(Fault::new("unknown-unit", "this unit is not known")
+                return Err(Fault::new(Rule::UnknownUnit, "this unit is not known")
                     .help("units are MM and INCHES")
                     .fields(0, 1));
             }
@@ -135,7 +135,7 @@ impl Reader {
                  or in inches?",
                 record.line
             );
-            return Err(Fault::new("unknown-unit", message)
+            return Err(Fault::new(Rule::UnknownUnit, message)
                 .help("write the unit before the first length: at the head of the file"));
         }
         Ok(())
@@ -160,7 +160,7 @@ impl Reader {
             return Ok(mm);
         }
         let message = format!("{value:e} is farther than {FARTHEST} mm");
-        Err(Fault::new("out-of-range", message))
+        Err(Fault::new(Rule::OutOfRange, message))
     }
 
     /// Three values from field `first` on as a point or shift in mm.
@@ -218,10 +218,10 @@ impl Reader {
     pub(super) fn trntyp(&mut self, record: &Record) -> Outcome {
         record.count(&[1, 4], "TRNTYP/WORLD,0,0,0")?;
         if !record.is(0, "WORLD") {
-            return Err(Fault::new("frame", "only TRNTYP/WORLD is known").fields(0, 1));
+            return Err(Fault::new(Rule::Frame, "only TRNTYP/WORLD is known").fields(0, 1));
         }
         if record.fields.len() == 4 && record.numbers::<3>(1)? != [0.0; 3] {
-            return Err(Fault::new("frame", "a shift of the world is not known").fields(1, 3));
+            return Err(Fault::new(Rule::Frame, "a shift of the world is not known").fields(1, 3));
         }
         self.setup.world = true;
         Ok(())
@@ -248,7 +248,7 @@ impl Reader {
                            this CSYS";
             let help =
                 "let the CAM system write TRNTYP/WORLD, or give --csys local or --csys world";
-            return Err(Fault::new("frame", message).help(help));
+            return Err(Fault::new(Rule::Frame, message).help(help));
         }
         if self.setup.csys == Some(Csys::Local) {
             for (i, field) in [3, 7, 11].into_iter().enumerate() {
@@ -279,7 +279,7 @@ impl Reader {
         }
         let message = "this sequence has another coordinate system than the first, and how the two \
                        stand to each other is not known";
-        Err(Fault::new("frame", message).help("post the sequences one by one").fields(1, 12))
+        Err(Fault::new(Rule::Frame, message).help("post the sequences one by one").fields(1, 12))
     }
 
     /// `TRANS/x,y,z`: adds to the coordinates that follow.
@@ -307,7 +307,7 @@ impl Reader {
             "{word} turns a rotary axis, and the file does not say what that does to the coordinates \
              after it"
         );
-        Err(Fault::new("unsupported", message)
+        Err(Fault::new(Rule::Unsupported, message)
             .help("let the CAM system write tool-axis vectors (multi-axis output) instead"))
     }
 
@@ -315,7 +315,7 @@ impl Reader {
     pub(super) fn head(&mut self, _: &Record) -> Outcome {
         let message = "HEAD changes to another head of the machine, and how that holds the tool is not in \
                        the file";
-        Err(Fault::new("unsupported", message).help(
+        Err(Fault::new(Rule::Unsupported, message).help(
             "post the operations of each head as a file of its own, with the machine file of that head",
         ))
     }
@@ -334,7 +334,7 @@ impl Reader {
                 self.axis = self.setup.to_work.matrix3.z_axis;
                 Ok(())
             }
-            () => Err(Fault::new("malformed", "MULTAX is ON or OFF").fields(0, 1)),
+            () => Err(Fault::new(Rule::Malformed, "MULTAX is ON or OFF").fields(0, 1)),
         }
     }
 
@@ -369,7 +369,10 @@ impl Reader {
             _ if rows.is_empty() => return Ok(true),
             _ => {
                 self.setup.rows = None;
-                return Err(Fault::new("frame", "this axis system of CATIA has not three rows"));
+                return Err(Fault::new(
+                    Rule::Frame,
+                    "this axis system of CATIA has not three rows",
+                ));
             }
         }
         if rows.len() == 3 {
@@ -387,6 +390,6 @@ impl Reader {
 /// The fault of a tool axis or arc axis without a direction.
 #[cold]
 pub(super) fn no_direction() -> Box<Fault> {
-    Fault::new("zero-vector", "this vector has no direction")
+    Fault::new(Rule::ZeroVector, "this vector has no direction")
         .help("give the direction of the tool axis, not zero")
 }

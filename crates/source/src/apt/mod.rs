@@ -31,7 +31,7 @@ use geom::Vec3;
 use motion::Next;
 use program::{
     CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
-    Purpose, Record as Step, Spindle, Tool, encoding,
+    Purpose, Record as Step, Rule, Spindle, Tool, encoding,
 };
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
@@ -336,44 +336,48 @@ impl Reader {
         if !self.known {
             let what = if last.number == 0 { "the file is empty" } else { "no record is known" };
             let help = "cutter-location data (APT, .cls, .apt, .ncl) is expected";
-            return self.report.error(Diagnostic::error("not-cldata", what).help(help));
+            return self.report.error(Diagnostic::error(Rule::NotCldata, what).help(help));
         }
         if let Err(fault) = self.no_pending_circle() {
             let record = record::Record::whole(last);
             return self.report.fault(&record, *fault);
         }
         if self.point.is_none() {
-            return self.report.error(Diagnostic::error("no-motion", "nothing moves in this file"));
+            return self
+                .report
+                .error(Diagnostic::error(Rule::NoMotion, "nothing moves in this file"));
         }
         if self.setup.lacks_csys() {
             let message =
                 "where coordinates stand is asked for by `csys`, and the file has no CSYS record";
             return self
                 .report
-                .error(Diagnostic::error("frame", message).help("leave `--csys` out"));
+                .error(Diagnostic::error(Rule::Frame, message).help("leave `--csys` out"));
         }
         if let (Some(early), Some(load)) = (&self.early, self.first_load) {
             // What looked like a record was part of another one.
             let message = format!("line {} moves, but line {load} loads no tool", early.line);
             let help = "add LOAD/TOOL,n before the first motion";
-            return self.report.error(place(Diagnostic::error("tool-number", message).help(help)));
+            return self
+                .report
+                .error(place(Diagnostic::error(Rule::ToolNumber, message).help(help)));
         }
         let open = self.operation.take().or_else(|| self.sections.pop());
         if let Some((line, name)) = open {
             let message = format!("the file ends within {name}, which line {line} begins");
-            let error = Diagnostic::error("truncated", message);
+            let error = Diagnostic::error(Rule::Truncated, message);
             return self.report.error(place(error.help("the file is cut off: write it again")));
         }
         match self.dialect {
             _ if self.ended => {}
             Dialect::SolidWorksCam => {
-                let error = Diagnostic::error("truncated", "the file ends without FINI");
+                let error = Diagnostic::error(Rule::Truncated, "the file ends without FINI");
                 self.report.error(place(error.help("the file is cut off: write it again")));
             }
             // These close what they open instead.
             Dialect::Nx | Dialect::Makino => self.push(last.number, Op::End),
             Dialect::Iso | Dialect::Catia | Dialect::Creo => {
-                let warning = Diagnostic::warning("no-fini", "the file ends without FINI");
+                let warning = Diagnostic::warning(Rule::NoFini, "the file ends without FINI");
                 let help = "check that it is not cut off";
                 self.report.warning(place(warning.help(help)));
                 self.push(last.number, Op::End);
@@ -391,7 +395,7 @@ impl Reader {
             (Some(_), _) if self.program.compensates().is_none() => {
                 let message =
                     "which path CUTCOM means is given by `cutcom`, and the file has no CUTCOM";
-                let found = Diagnostic::error("compensated-path", message);
+                let found = Diagnostic::error(Rule::CompensatedPath, message);
                 Err(found.help("leave `--cutcom` out").into())
             }
             (Some(given), Some(shown)) if given != shown.path => {
@@ -402,7 +406,7 @@ impl Reader {
                     shown.tool_radius,
                     shown.path.described()
                 );
-                let found = Diagnostic::error("compensated-path", message).line(shown.line);
+                let found = Diagnostic::error(Rule::CompensatedPath, message).line(shown.line);
                 Err(found.help(format!("`--cutcom {}`, or leave it out", shown.path.name())).into())
             }
             (given, evidence) => {

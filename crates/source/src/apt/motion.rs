@@ -7,7 +7,7 @@ use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
 use super::{Dialect, Early, Reader, Ready};
 use geom::{ANGLE_EPSILON, Vec3};
-use program::{Feed, Op, Pose, Spindle};
+use program::{Feed, Op, Pose, Rule, Spindle};
 
 /// How the next `GOTO` goes.
 #[derive(Clone, Debug, Default)]
@@ -104,7 +104,7 @@ impl Reader {
         let count = record.fields.len() - first.min(record.fields.len());
         if count != 3 && count != 6 {
             let message = format!("{count} values where a point takes 3, or 6 with the tool axis");
-            return Err(Fault::new("malformed", message)
+            return Err(Fault::new(Rule::Malformed, message)
                 .help("write GOTO/x,y,z or GOTO/x,y,z,i,j,k")
                 .fields(first, count));
         }
@@ -115,7 +115,7 @@ impl Reader {
         } else if self.axis_is_due() {
             let message = "the tool is tilted, and this system gives its axis in every GOTO: is it kept \
                            here, or along Z again?";
-            return Err(Fault::new("tool-axis", message)
+            return Err(Fault::new(Rule::ToolAxis, message)
                 .help("give the vector: GOTO/x,y,z,i,j,k")
                 .fields(first, count));
         }
@@ -137,7 +137,7 @@ impl Reader {
         for (i, value) in point.iter_mut().enumerate() {
             *value = match record.fields.get(first + i) {
                 Some(Field::Blank) => last().map(|last| last[i]).ok_or_else(|| {
-                    Fault::new("malformed", "no earlier point has this value to keep")
+                    Fault::new(Rule::Malformed, "no earlier point has this value to keep")
                         .help("give all three coordinates of the first point")
                         .fields(first + i, 1)
                 })?,
@@ -165,7 +165,7 @@ impl Reader {
         if (0..3).any(blank) && (axis.length() - 1.0).abs() > SKEW {
             let message =
                 "what this vector gives and what it keeps of the last one are no unit vector";
-            return Err(Fault::new("tool-axis", message)
+            return Err(Fault::new(Rule::ToolAxis, message)
                 .help("give all three values of the vector")
                 .fields(first, 3));
         }
@@ -213,7 +213,7 @@ impl Reader {
         if !self.unit_known && !std::mem::replace(&mut self.unit_assumed, true) {
             let help = "add UNITS/MM, or UNITS/INCHES where that is meant";
             let message = "the file does not say its unit: read as mm";
-            self.report.warn(record, "unknown-unit", message, help);
+            self.report.warn(record, Rule::UnknownUnit, message, help);
             // Plain points after this one are not looked at one by one.
             if self.unit_used.get() == 0 {
                 self.unit_used.set(record.line);
@@ -225,7 +225,7 @@ impl Reader {
             && cut
         {
             let message = "the first motion from FROM is a cut: a rapid to FROM goes before it";
-            self.report.warn(record, "from", message, "check that the path there is free");
+            self.report.warn(record, Rule::From, message, "check that the path there is free");
             self.push(line, Op::Rapid(pose));
         }
         self.ready = Ready::Rapid;
@@ -239,11 +239,11 @@ impl Reader {
         };
         self.ready = Ready::Cut;
         if stands && !std::mem::replace(&mut self.stands, true) {
-            return Err(Fault::new("spindle-off", "the tool cuts here, but the spindle stands")
+            return Err(Fault::new(Rule::SpindleOff, "the tool cuts here, but the spindle stands")
                 .help("add SPINDL/speed,RPM,CLW before it"));
         }
         if no_feed && !std::mem::replace(&mut self.no_feed, true) {
-            return Err(Fault::new("no-feed", "the tool cuts here without a feed")
+            return Err(Fault::new(Rule::NoFeed, "the tool cuts here without a feed")
                 .help("add FEDRAT/value,MMPM before it"));
         }
         Ok(())
@@ -260,7 +260,7 @@ impl Reader {
             let line = if self.next_line > 0 { self.next_line } else { record.line };
             let message = "the file loads no tool: the tool is taken as number 1";
             let help = "add LOAD/TOOL,n before the first motion";
-            self.report.warn(record, "tool-number", message, help);
+            self.report.warn(record, Rule::ToolNumber, message, help);
             self.change_tool(line, tool);
         }
         self.tool_record = None;
@@ -271,7 +271,7 @@ impl Reader {
                 "this operation is for tool {wanted}, but {} is in the spindle",
                 self.tool.name
             );
-            return Err(Fault::new("tool-change", message)
+            return Err(Fault::new(Rule::ToolChange, message)
                 .help("add LOAD/TOOL,n at the start of the operation"));
         }
         Ok(())
@@ -285,7 +285,7 @@ impl Reader {
         if cut {
             let message =
                 format!("line {} cuts before the first tool is loaded (line {load})", record.line);
-            return Err(Fault::new("tool-number", message)
+            return Err(Fault::new(Rule::ToolNumber, message)
                 .help("load the tool first, or make the motion a RAPID"));
         }
         if self.early.is_none() {
@@ -294,7 +294,7 @@ impl Reader {
                 record.line
             );
             let help = "check that the path there is free with this tool";
-            self.report.warn(record, "tool-number", &message, help);
+            self.report.warn(record, Rule::ToolNumber, &message, help);
             let (line, records) = (record.line, self.program.records.len());
             self.early = Some(Early { line, records, diameter: self.next_tool.diameter });
         }
@@ -319,12 +319,12 @@ impl Reader {
     pub(super) fn godlta(&mut self, record: &Record) -> Outcome {
         let count = record.count(&[1, 3, 6], "GODLTA/dx,dy,dz or GODLTA/d")?;
         let Some(last) = self.point else {
-            return Err(Fault::new("no-start", "a relative motion, but from nowhere")
+            return Err(Fault::new(Rule::NoStart, "a relative motion, but from nowhere")
                 .help("add FROM/x,y,z or an absolute GOTO before it"));
         };
         if self.cycle.is_none() && self.tip.is_some_and(|tip| tip.point() != last) {
             return Err(Fault::new(
-                "no-start",
+                Rule::NoStart,
                 "a relative motion after a hole: from which height?",
             )
             .help("write an absolute GOTO after CYCLE/OFF"));
@@ -341,7 +341,7 @@ impl Reader {
         }
         let to = last + step;
         if to.abs().max_element() > FARTHEST {
-            return Err(Fault::new("out-of-range", "this leads beyond the farthest point"));
+            return Err(Fault::new(Rule::OutOfRange, "this leads beyond the farthest point"));
         }
         self.go(record, Pose::new(to, self.axis)?)
     }
@@ -358,7 +358,7 @@ impl Reader {
     /// an arc.
     pub(super) fn further_point(&mut self, record: &Record) -> Outcome {
         if !self.inside_goto {
-            return Err(Fault::new("malformed", "a line of numbers, but no GOTO before it"));
+            return Err(Fault::new(Rule::Malformed, "a line of numbers, but no GOTO before it"));
         }
         if self.lengthen_arc(record)? { Ok(()) } else { self.goto(record) }
     }

@@ -7,7 +7,7 @@
 use super::number;
 use super::report::Fault;
 use super::table::takes_text;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// The longest line and the longest joined record, bytes: a thousand times what any CAM system
 /// writes, and short enough that a file of one endless line costs no memory.
@@ -136,11 +136,11 @@ impl<'r> Record<'r> {
             Some(Field::Number(value)) => Ok(*value),
             Some(Field::Word(from, to)) => {
                 let word = self.text.get(*from..*to).unwrap_or_default();
-                Err(Fault::new("malformed", not_a_number(word))
+                Err(Fault::new(Rule::Malformed, not_a_number(word))
                     .help(format!("{what} is a decimal number"))
                     .fields(index, 1))
             }
-            _ => Err(Fault::new("malformed", format!("{what} is missing"))
+            _ => Err(Fault::new(Rule::Malformed, format!("{what} is missing"))
                 .help("write a decimal number here")
                 .fields(index, 1)),
         }
@@ -168,7 +168,7 @@ impl<'r> Record<'r> {
             return Ok(count);
         }
         let message = format!("{count} values where this record takes {}", list(allowed));
-        Err(Fault::new("malformed", message).help(format!("write {syntax}")).fields(0, count))
+        Err(Fault::new(Rule::Malformed, message).help(format!("write {syntax}")).fields(0, count))
     }
 
     /// `diagnostic` placed at `fields` (first and how many) of this record, or at the record as a whole.
@@ -277,7 +277,7 @@ impl<'t> Joiner<'t> {
                 record.spans = &[];
                 let spans = [(from, to)];
                 let record = Record { spans: &spans, ..record };
-                let error = Diagnostic::error("malformed", message)
+                let error = Diagnostic::error(Rule::Malformed, message)
                     .help("values are decimal numbers and words, with commas between them");
                 Err(Box::new(record.locate(error, Some((0, 1)))))
             }
@@ -289,7 +289,7 @@ impl<'t> Joiner<'t> {
         loop {
             let Some(next) = lines.next() else {
                 let end = first.text.len();
-                let error = Diagnostic::error("truncated", "the file ends inside this record")
+                let error = Diagnostic::error(Rule::Truncated, "the file ends inside this record")
                     .help("the file is cut off: write it again")
                     .at(first.number, first.text, 0, end);
                 return Err(Box::new(error));
@@ -314,7 +314,7 @@ fn too_long(line: Line) -> Result<(), Box<Diagnostic>> {
 
 #[cold]
 fn too_long_error(line: Line) -> Diagnostic {
-    Diagnostic::error("line-too-long", format!("a record of more than {LONGEST} bytes"))
+    Diagnostic::error(Rule::LineTooLong, format!("a record of more than {LONGEST} bytes"))
         .help("this is not cutter-location data in text form")
         .at(line.number, line.text, 0, 1)
 }

@@ -1,7 +1,7 @@
 //! Where the reader's findings gather: errors up to a cap, warnings one for each cause.
 
 use super::record::Record;
-use program::{Diagnostic, NoPose};
+use program::{Diagnostic, NoPose, Rule};
 
 /// After so many errors the reader gives up: what follows is mostly the echo of the first.
 const MAX_ERRORS: usize = 20;
@@ -12,7 +12,7 @@ pub(super) type Outcome = Result<(), Box<Fault>>;
 /// What is wrong with a record, before its place is known.
 #[derive(Debug)]
 pub(super) struct Fault {
-    rule: &'static str,
+    rule: Rule,
     message: String,
     help: String,
     /// First field and how many, where the fault is in fields.
@@ -21,7 +21,7 @@ pub(super) struct Fault {
 
 impl Fault {
     /// A fault of `rule` in the record as a whole.
-    pub(super) fn new(rule: &'static str, message: impl Into<String>) -> Box<Fault> {
+    pub(super) fn new(rule: Rule, message: impl Into<String>) -> Box<Fault> {
         Box::new(Fault { rule, message: message.into(), help: String::new(), fields: None })
     }
 
@@ -41,7 +41,7 @@ impl Fault {
 /// Numbers that make no pose; frames and units may lead beyond what a number holds.
 impl From<NoPose> for Box<Fault> {
     fn from(numbers: NoPose) -> Box<Fault> {
-        Fault::new("out-of-range", numbers.to_string())
+        Fault::new(Rule::OutOfRange, numbers.to_string())
     }
 }
 
@@ -84,7 +84,7 @@ impl Report {
     /// Adds a warning of `rule` in `record`; one that was given before only counts. What is the same
     /// says the message.
     #[cold]
-    pub(super) fn warn(&mut self, record: &Record, rule: &'static str, message: &str, help: &str) {
+    pub(super) fn warn(&mut self, record: &Record, rule: Rule, message: &str, help: &str) {
         let warning = Diagnostic::warning(rule, message).help(help);
         self.warning(record.locate(warning, None));
     }
@@ -106,7 +106,7 @@ impl Report {
     }
 
     /// How many different warnings of `rule` there are.
-    pub(super) fn count_of(&self, rule: &str) -> usize {
+    pub(super) fn count_of(&self, rule: Rule) -> usize {
         self.errors.iter().chain(&self.warnings).filter(|d| d.rule == rule).count()
     }
 }

@@ -3,6 +3,7 @@
 use super::Reader;
 use super::record::Record;
 use super::report::{Fault, Outcome};
+use program::Rule;
 
 /// What becomes of a record.
 #[derive(Clone, Copy)]
@@ -149,13 +150,13 @@ impl Reader {
             && record.major != b"$$"
             && !record.major.eq_ignore_ascii_case(b"FINI")
         {
-            return Err(Fault::new("after-the-end", "a record after the end of the program")
+            return Err(Fault::new(Rule::AfterEnd, "a record after the end of the program")
                 .help("post the programs of this file one by one"));
         }
         let ignored = !matches!(known, Some(By(_) | Text(_) | Refused));
         if ignored && (0..record.fields.len()).any(|i| record.is(i, "GOTO")) {
             let message = "a GOTO within a record that is ignored";
-            return Err(Fault::new("malformed", message).help("write it on a line of its own"));
+            return Err(Fault::new(Rule::Malformed, message).help("write it on a line of its own"));
         }
         match known {
             Some(By(handler) | Text(handler)) => {
@@ -170,13 +171,13 @@ impl Reader {
                 let word = super::text::decode(record.major);
                 let message = format!("{word} is not passed on");
                 let help = "check whether the job needs it";
-                self.report.warn(record, "ignored-word", &message, help);
+                self.report.warn(record, Rule::IgnoredWord, &message, help);
                 Ok(())
             }
             Some(Refused) => {
                 let word = super::text::decode(record.major);
                 let message = format!("{word} changes where the tool goes, and cannot be resolved");
-                Err(Fault::new("unsupported", message)
+                Err(Fault::new(Rule::Unsupported, message)
                     .help("let the CAM system write points (GOTO) instead"))
             }
             None => self.unknown(record),
@@ -185,12 +186,12 @@ impl Reader {
 
     /// A word that is not known: one warning for each, but not without end.
     fn unknown(&mut self, record: &Record) -> Outcome {
-        const RULE: &str = "unknown-word";
+        const RULE: Rule = Rule::UnknownWord;
         /// More different unknown words than any CAM system has of its own.
         const MAX_WORDS: usize = 20;
         let mut parts = record.major.split(|c| b" \t,".contains(c));
         if parts.any(|part| !part.is_empty() && find(part).is_some()) {
-            return Err(Fault::new("malformed", "this record does not begin with its word")
+            return Err(Fault::new(Rule::Malformed, "this record does not begin with its word")
                 .help("a record is a word, a slash, and values with commas between them"));
         }
         let word = super::text::decode(record.major.get(..40).unwrap_or(record.major));
@@ -199,7 +200,7 @@ impl Reader {
         if self.report.count_of(RULE) > MAX_WORDS {
             self.hopeless = true;
             let message = "too many words that are not cutter-location data";
-            return Err(Fault::new("not-cldata", message));
+            return Err(Fault::new(Rule::NotCldata, message));
         }
         Ok(())
     }
@@ -209,10 +210,8 @@ impl Reader {
         let foreign = ["INCR", "TURN", "LATHE", "WIRE"];
         let word = |i: &usize| foreign.iter().any(|word| record.is(*i, word));
         match (0..record.fields.len()).find(word) {
-            Some(i) => {
-                Err(Fault::new("unsupported", "coordinates in this mode are not known")
-                    .fields(i, 1))
-            }
+            Some(i) => Err(Fault::new(Rule::Unsupported, "coordinates in this mode are not known")
+                .fields(i, 1)),
             None => Ok(()),
         }
     }

@@ -6,7 +6,7 @@ use super::text::decode;
 use super::{Reader, Ready};
 use geom::INCH;
 use program::{
-    Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record as Step, Spindle, Tool,
+    Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record as Step, Rule, Spindle, Tool,
 };
 use std::f64::consts::PI;
 
@@ -52,7 +52,7 @@ impl FeedUnit {
 }
 
 /// A whole number from `least` on as a number of a tool or register.
-fn whole(record: &Record, index: usize, least: f64, rule: &'static str) -> Result<u32, Box<Fault>> {
+fn whole(record: &Record, index: usize, least: f64, rule: Rule) -> Result<u32, Box<Fault>> {
     let value = record.number(index, "a number")?;
     if value.fract() == 0.0 && (least..=MAX_NUMBER).contains(&value) {
         return Ok(value as u32);
@@ -89,12 +89,12 @@ impl Reader {
     /// `value` in `unit` as a feed. A feed of 0 is taken; it is an error at the first cut.
     pub(super) fn feed_of(&mut self, value: f64, unit: FeedUnit) -> Result<Feed, Box<Fault>> {
         if !(0.0..=1e9).contains(&value) {
-            return Err(Fault::new("feed", format!("{value:e} is no feed")));
+            return Err(Fault::new(Rule::Feed, format!("{value:e} is no feed")));
         }
         if matches!(unit, FeedUnit::InchPerMinute | FeedUnit::InchPerTurn) && !self.unit_known {
             let message =
                 "feeds in inches, but the file does not say in which unit its coordinates are";
-            return Err(Fault::new("unknown-unit", message).help("add UNITS/INCHES or UNITS/MM"));
+            return Err(Fault::new(Rule::UnknownUnit, message).help("add UNITS/INCHES or UNITS/MM"));
         }
         Ok(match unit {
             FeedUnit::MmPerMinute => Feed::PerMinute(value),
@@ -137,7 +137,7 @@ impl Reader {
                     range = true;
                 }
                 _ => {
-                    return Err(Fault::new("malformed", "this is not known of a spindle")
+                    return Err(Fault::new(Rule::Malformed, "this is not known of a spindle")
                         .help("write SPINDL/speed,RPM,CLW or SPINDL/OFF")
                         .fields(i, 1));
                 }
@@ -147,7 +147,7 @@ impl Reader {
         if range {
             let help = "check that the control chooses the gear by the speed";
             let message = "the gear range of SPINDL is not passed on";
-            self.report.warn(record, "spindle-range", message, help);
+            self.report.warn(record, Rule::SpindleRange, message, help);
             if record.fields.len() == 2 {
                 return Ok(());
             }
@@ -156,14 +156,14 @@ impl Reader {
             && (speed.is_none() || !(1.0..=1e7).contains(&max))
         {
             let message = "MAXRPM takes a speed greater than 0, in the record of the surface speed";
-            return Err(Fault::new("spindle", message)
+            return Err(Fault::new(Rule::Spindle, message)
                 .help("write SPINDL/SFM,speed,MAXRPM,greatest,CLW")
                 .fields(field, 1));
         }
         if speed.is_none() && left.is_none() {
             return match self.last_spindle {
                 Some(spindle) => self.turn(record, spindle),
-                None => Err(Fault::new("malformed", "no speed has been given yet")
+                None => Err(Fault::new(Rule::Malformed, "no speed has been given yet")
                     .help("write SPINDL/speed,RPM,CLW")),
             };
         }
@@ -175,14 +175,14 @@ impl Reader {
                 let rpm = self.speed(value, surface).map_err(|fault| fault.fields(field, 1))?;
                 if rpm > max && surface.is_none() {
                     let message = format!("a speed of {rpm} 1/min above its MAXRPM of {max}");
-                    return Err(Fault::new("spindle", message)
+                    return Err(Fault::new(Rule::Spindle, message)
                         .help("give the lower of the two as speed")
                         .fields(field, 1));
                 }
                 rpm.min(max)
             }
             (None, Some(last)) => speed_of(last),
-            (None, None) => return Err(Fault::new("malformed", "a speed is missing")),
+            (None, None) => return Err(Fault::new(Rule::Malformed, "a speed is missing")),
         };
         let spindle = match (rpm, left) {
             (0.0, _) => Spindle::Off,
@@ -195,7 +195,7 @@ impl Reader {
     /// A speed in 1/min; with `surface`, a surface speed of so many mm a unit.
     fn speed(&self, value: f64, surface: Option<f64>) -> Result<f64, Box<Fault>> {
         if !(0.0..=1e7).contains(&value) {
-            return Err(Fault::new("spindle", format!("{value:e} is no spindle speed")));
+            return Err(Fault::new(Rule::Spindle, format!("{value:e} is no spindle speed")));
         }
         let Some(mm) = surface else { return Ok(value) };
         // A description that no LOAD has taken yet is of the tool to come.
@@ -205,7 +205,7 @@ impl Reader {
         };
         match diameter {
             Some(diameter) if diameter > 0.0 => Ok(value * mm / (PI * diameter)),
-            _ => Err(Fault::new("spindle", "a surface speed needs the diameter of the tool")
+            _ => Err(Fault::new(Rule::Spindle, "a surface speed needs the diameter of the tool")
                 .help("add CUTTER/ or TLDATA/ before it, or give the speed in RPM")),
         }
     }
@@ -241,7 +241,7 @@ impl Reader {
                 // Two kinds, or OFF with one, are not one thing to do.
                 let known = known.filter(|_| on.is_some() || count == 1);
                 let (_, coolant) = known.ok_or_else(|| {
-                    Fault::new("malformed", "this coolant is not known")
+                    Fault::new(Rule::Malformed, "this coolant is not known")
                         .help("write COOLNT/ON, FLOOD, MIST, THRU or OFF")
                         .fields(field, 1)
                 })?;
@@ -264,7 +264,7 @@ impl Reader {
         for i in 0..own {
             match record.fields.get(i) {
                 Some(Field::Number(_)) if register.is_none() && i > 0 => {
-                    register = Some(whole(record, i, 0.0, "malformed")?);
+                    register = Some(whole(record, i, 0.0, Rule::Malformed)?);
                 }
                 _ if ["LEFT", "RIGHT", "OFF", "ON"].iter().any(|word| record.is(i, word))
                     && side.is_none() =>
@@ -278,7 +278,7 @@ impl Reader {
                 }
                 _ if record.is(i, "XYPLAN") => {}
                 _ => {
-                    return Err(Fault::new("malformed", "this is not known of a compensation")
+                    return Err(Fault::new(Rule::Malformed, "this is not known of a compensation")
                         .help("write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF")
                         .fields(i, 1));
                 }
@@ -286,7 +286,7 @@ impl Reader {
         }
         // Without a side ADJUST is an offset of the fixture in some systems.
         let side = side.ok_or_else(|| {
-            Fault::new("malformed", "a compensation is LEFT, RIGHT, ON or OFF")
+            Fault::new(Rule::Malformed, "a compensation is LEFT, RIGHT, ON or OFF")
                 .help("write CUTCOM/LEFT,register, CUTCOM/RIGHT,register or CUTCOM/OFF")
         })?;
         let compensation = match () {
@@ -294,7 +294,7 @@ impl Reader {
             () if record.is(side, "RIGHT") => Compensation::Right(register),
             () if record.is(side, "OFF") => Compensation::Off,
             () => self.last_side.ok_or_else(|| {
-                Fault::new("malformed", "CUTCOM/ON before any side was given")
+                Fault::new(Rule::Malformed, "CUTCOM/ON before any side was given")
                     .help("write CUTCOM/LEFT or CUTCOM/RIGHT")
                     .fields(side, 1)
             })?,
@@ -314,19 +314,19 @@ impl Reader {
     pub(super) fn load(&mut self, record: &Record) -> Outcome {
         let first = usize::from(record.major.eq_ignore_ascii_case(b"LOAD"));
         if first == 1 && !record.is(0, "TOOL") {
-            return Err(Fault::new("unsupported", "only tools can be loaded").fields(0, 1));
+            return Err(Fault::new(Rule::Unsupported, "only tools can be loaded").fields(0, 1));
         }
         let mut tool = std::mem::take(&mut self.next_tool);
-        tool.number = whole(record, first, 1.0, "tool-number")?;
+        tool.number = whole(record, first, 1.0, Rule::ToolNumber)?;
         let mut i = first + 1;
         if let Some(Field::Number(_)) = record.fields.get(i) {
-            tool.offset = Some(whole(record, i, 0.0, "malformed")?);
+            tool.offset = Some(whole(record, i, 0.0, Rule::Malformed)?);
             i += 1;
         }
         while i < record.fields.len() {
             match () {
                 () if record.is(i, "ADJUST") || record.is(i, "OSETNO") => {
-                    tool.offset = Some(whole(record, i + 1, 0.0, "malformed")?);
+                    tool.offset = Some(whole(record, i + 1, 0.0, Rule::Malformed)?);
                 }
                 () if record.is(i, "LENGTH") => {
                     let length = record.number(i + 1, "the length")?;
@@ -337,11 +337,11 @@ impl Reader {
                     if record.number(i + 1, "the offset")? != 0.0 {
                         let help = "check that the register of the tool length has it";
                         let message = "the Z offset of LOAD/TOOL is not passed on";
-                        self.report.warn(record, "tool-offset", message, help);
+                        self.report.warn(record, Rule::ToolOffset, message, help);
                     }
                 }
                 () => {
-                    return Err(Fault::new("malformed", "this is not known of a tool change")
+                    return Err(Fault::new(Rule::Malformed, "this is not known of a tool change")
                         .help("write LOAD/TOOL,number,ADJUST,register")
                         .fields(i, 1));
                 }
@@ -353,7 +353,9 @@ impl Reader {
             // The next GOTO would be a hole of the new tool.
             let message =
                 format!("the hole cycle of line {} is still on at the tool change", cycle.line());
-            return Err(Fault::new("cycle-on", message).help("add CYCLE/OFF behind the last hole"));
+            return Err(
+                Fault::new(Rule::CycleOn, message).help("add CYCLE/OFF behind the last hole")
+            );
         }
         if let Some(early) = self.early.take() {
             if early.diameter.is_some() && early.diameter != tool.diameter {
@@ -361,7 +363,7 @@ impl Reader {
                     "line {} moves with a tool of another diameter, which is not loaded",
                     early.line
                 );
-                return Err(Fault::new("tool-number", message)
+                return Err(Fault::new(Rule::ToolNumber, message)
                     .help("add LOAD/TOOL,n before the first motion"));
             }
             self.change_tool_at(early.records, record.line, tool);
@@ -389,10 +391,10 @@ impl Reader {
         let first = usize::from(record.major.eq_ignore_ascii_case(b"SELECT"));
         if first == 1 && !record.is(0, "TOOL") {
             let help = "only SELECT/TOOL is passed on";
-            self.report.warn(record, "ignored-word", "SELECT of another thing is ignored", help);
+            self.report.warn(record, Rule::IgnoredWord, "SELECT of another thing is ignored", help);
             return Ok(());
         }
-        let number = whole(record, first, 1.0, "tool-number")?;
+        let number = whole(record, first, 1.0, Rule::ToolNumber)?;
         self.push(record.line, Op::Preselect(number));
         Ok(())
     }
@@ -477,7 +479,7 @@ impl Reader {
         if diameter >= 0.0 {
             return Ok(diameter);
         }
-        Err(Fault::new("malformed", "a diameter cannot be negative").fields(index, 1))
+        Err(Fault::new(Rule::Malformed, "a diameter cannot be negative").fields(index, 1))
     }
 
     /// `TPRINT/text`: the name of the tool.
@@ -491,7 +493,7 @@ impl Reader {
     /// one for each surface the least holds.
     pub(super) fn tolerance(&mut self, record: &Record) -> Outcome {
         if let Some(i) = record.fields.iter().position(|field| matches!(field, Field::Word(..))) {
-            return Err(Fault::new("malformed", "a tolerance is a number").fields(i, 1));
+            return Err(Fault::new(Rule::Malformed, "a tolerance is a number").fields(i, 1));
         }
         let given = record.fields.iter().filter_map(|field| match field {
             Field::Number(value) => Some(*value),
@@ -499,7 +501,7 @@ impl Reader {
         });
         let Some(least) = given.reduce(f64::min) else { return Ok(()) };
         if least < 0.0 {
-            return Err(Fault::new("malformed", "a tolerance has no sign"));
+            return Err(Fault::new(Rule::Malformed, "a tolerance has no sign"));
         }
         match () {
             () if record.major.eq_ignore_ascii_case(b"INTOL") => self.tolerances[0] = least,
@@ -525,9 +527,8 @@ impl Reader {
         let number = usize::from(!matches!(record.fields.first(), Some(Field::Number(_))));
         let turns = record.is(1 - number, "REV");
         if record.fields.len() == 2 && !turns && !record.is(1 - number, "SEC") {
-            return Err(
-                Fault::new("malformed", "a dwell is in seconds, or in REV").fields(1 - number, 1)
-            );
+            return Err(Fault::new(Rule::Malformed, "a dwell is in seconds, or in REV")
+                .fields(1 - number, 1));
         }
         let value = record.number(number, "the dwell")?;
         let seconds = self.dwell(value, turns).map_err(|fault| fault.fields(number, 1))?;
@@ -541,7 +542,7 @@ impl Reader {
         match speed_of(self.spindle) {
             _ if !turns => Ok(value),
             rpm if rpm > 0.0 => Ok(value * 60.0 / rpm),
-            _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")
+            _ => Err(Fault::new(Rule::Dwell, "a dwell in turns needs a running spindle")
                 .help("add SPINDL/speed,RPM,CLW before it, or give the dwell in seconds")),
         }
     }
@@ -549,7 +550,7 @@ impl Reader {
     /// `AUXFUN/n`: a function that the builder of the machine has added, by the number of its M function.
     pub(super) fn auxfun(&mut self, record: &Record) -> Outcome {
         record.count(&[1], "AUXFUN/number")?;
-        let number = whole(record, 0, 0.0, "malformed")?;
+        let number = whole(record, 0, 0.0, Rule::Malformed)?;
         self.push(record.line, Op::Auxiliary(Auxiliary::of(number)));
         Ok(())
     }
@@ -569,7 +570,7 @@ impl Reader {
 
 #[cold]
 fn no_register(field: usize) -> Box<Fault> {
-    Fault::new("malformed", "the number of a register is missing here")
+    Fault::new(Rule::Malformed, "the number of a register is missing here")
         .help("write CUTCOM/LEFT,ADJUST,register")
         .fields(field, 1)
 }
@@ -579,7 +580,7 @@ pub(super) fn is_dwell(value: f64) -> Outcome {
     if (0.0..=86_400.0).contains(&value) {
         return Ok(());
     }
-    Err(Fault::new("dwell", format!("{value:e} is no dwell")).help("give seconds, 0 or more"))
+    Err(Fault::new(Rule::Dwell, format!("{value:e} is no dwell")).help("give seconds, 0 or more"))
 }
 
 /// Speed of a spindle in 1/min; 0 where it stands.
@@ -591,7 +592,7 @@ pub(super) fn speed_of(spindle: Spindle) -> f64 {
 }
 
 fn unknown_feed(field: usize) -> Box<Fault> {
-    Fault::new("unknown-unit", "this unit of a feed is not known")
+    Fault::new(Rule::UnknownUnit, "this unit of a feed is not known")
         .help("units are MMPM, IPM, PERMIN, MMPR, IPR, PERREV and INVERS")
         .fields(field, 1)
 }

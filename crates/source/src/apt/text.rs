@@ -3,7 +3,7 @@
 use super::record::Record;
 use super::report::{Fault, Outcome};
 use super::{Dialect, Reader, Ready};
-use program::Op;
+use program::{Op, Rule};
 
 /// The longest comment that is passed on, characters.
 const LONGEST_COMMENT: usize = 250;
@@ -78,7 +78,7 @@ impl Reader {
         match text.split_once(',') {
             Some(("TOOL-POSITION", place)) if place != "TOOL-NOSE" => {
                 let message = format!("the points of this file are not the tool tip but {place}");
-                Err(Fault::new("tool-position", message)
+                Err(Fault::new(Rule::ToolPosition, message)
                     .help("let the CAM system write the tool nose"))
             }
             Some(("BEGIN-SECTION", name)) => {
@@ -87,7 +87,9 @@ impl Reader {
             }
             Some(("END-SECTION", name)) => match self.sections.pop() {
                 Some((_, open)) if *open == *name => Ok(()),
-                _ => Err(Fault::new("malformed", format!("section {name} ends but is not open"))),
+                _ => {
+                    Err(Fault::new(Rule::Malformed, format!("section {name} ends but is not open")))
+                }
             },
             _ => Ok(()),
         }
@@ -99,7 +101,12 @@ impl Reader {
         let text = decode(record.body.0);
         if let Some(message) = after(&text, "STOP") {
             let help = "check that the operator is to stop here";
-            self.report.warn(record, "insert", "INSERT/STOP is read as a stop and a message", help);
+            self.report.warn(
+                record,
+                Rule::Insert,
+                "INSERT/STOP is read as a stop and a message",
+                help,
+            );
             // First what the operator is to do, then the stop at which it is read.
             let message = message.trim();
             if !message.is_empty() {
@@ -113,7 +120,7 @@ impl Reader {
             let help = "what the control must do has to be in a record of its own";
             self.report.warn(
                 record,
-                "insert",
+                Rule::Insert,
                 "INSERT is passed on as a comment, not as code",
                 help,
             );
@@ -139,7 +146,7 @@ impl Reader {
     pub(super) fn end_of_path(&mut self, record: &Record) -> Outcome {
         self.no_pending_circle()?;
         if self.operation.take().is_none() {
-            return Err(Fault::new("malformed", "no TOOL PATH is open here"));
+            return Err(Fault::new(Rule::Malformed, "no TOOL PATH is open here"));
         }
         self.push(record.line, Op::EndOfOperation);
         Ok(())

@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand, value_parser};
 use clap_complete::Shell;
 use control::{Units, WholeNumbers};
 use geom::{Vec2, Vec3};
-use program::{CompensatedPath, LEAST_SETTING, MOST_SETTING};
+use program::{CompensatedPath, LEAST_SETTING, MOST_SETTING, Rule};
 use proof::{Accepted, Tolerances};
 use source::apt::Csys;
 use std::path::PathBuf;
@@ -259,21 +259,22 @@ pub struct Closeness {
     /// Let a rule pass in this run that hangs on how the machine is set up; may be given several times. The head of the
     /// program and the report name it.
     #[arg(long, value_name = "RULE", value_parser = accepted)]
-    pub accept: Vec<&'static str>,
+    pub accept: Vec<Rule>,
 }
 
 impl Closeness {
     /// As the proof takes it.
     pub fn tolerances(&self) -> Tolerances {
-        let names = self.accept.iter();
-        let accepted = names.fold(Accepted::default(), |all, name| all.and(name).unwrap_or(all));
+        let rules = self.accept.iter();
+        let accepted =
+            rules.fold(Accepted::default(), |all, rule| all.and(rule.name()).unwrap_or(all));
         Tolerances { position: self.tolerance, angle: None, accepted }
     }
 }
 
 /// The rule of this name, where it may be accepted.
-fn accepted(name: &str) -> Result<&'static str, String> {
-    Accepted::default().and(name)?.names().next().ok_or_else(String::new)
+fn accepted(name: &str) -> Result<Rule, String> {
+    Accepted::default().and(name)?.rules().next().ok_or_else(String::new)
 }
 
 /// Arguments of `post`.

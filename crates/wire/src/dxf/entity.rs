@@ -2,7 +2,7 @@
 
 use super::groups::Group;
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// An entity: its pairs, the first of which names its kind.
 #[derive(Clone, Copy)]
@@ -44,7 +44,7 @@ impl<'a> Entity<'a> {
     pub fn needed(&self, code: i32) -> Result<Vec2, Box<Diagnostic>> {
         self.point(code)?.ok_or_else(|| {
             let message = format!("no X and Y with the codes {code} and {}", code + 10);
-            self.refused("dxf-entity", message, "the file is not whole")
+            self.refused(Rule::DxfEntity, message, "the file is not whole")
         })
     }
 
@@ -53,7 +53,7 @@ impl<'a> Entity<'a> {
             Some(radius) if radius > 0.0 => Ok(radius),
             other => {
                 let message = format!("a radius of {}", other.unwrap_or(0.0));
-                Err(self.refused("dxf-entity", message, "draw it anew"))
+                Err(self.refused(Rule::DxfEntity, message, "draw it anew"))
             }
         }
     }
@@ -84,10 +84,10 @@ impl<'a> Entity<'a> {
 
     pub fn slanted(&self) -> Box<Diagnostic> {
         let message = "it does not lie in the plane of X and Y".into();
-        self.refused("dxf-slanted", message, "draw the contour in one plane")
+        self.refused(Rule::DxfSlanted, message, "draw the contour in one plane")
     }
 
-    pub fn refused(&self, rule: &'static str, what: String, way_out: &str) -> Box<Diagnostic> {
+    pub fn refused(&self, rule: Rule, what: String, way_out: &str) -> Box<Diagnostic> {
         let message = format!("{}: {what}", String::from_utf8_lossy(self.kind()));
         Diagnostic::error(rule, message).help(way_out).line(self.line()).into()
     }

@@ -1,6 +1,6 @@
 //! The file as pairs of a code and a value, each on a line of its own.
 
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// One pair.
 #[derive(Clone, Copy, Debug)]
@@ -19,17 +19,17 @@ impl Group<'_> {
         let text = std::str::from_utf8(self.value).unwrap_or("");
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(self.refused("dxf-number", "this is no number")),
+            _ => Err(self.refused(Rule::DxfNumber, "this is no number")),
         }
     }
 
     /// The value as a whole number.
     pub fn whole(&self) -> Result<i64, Box<Diagnostic>> {
         let text = std::str::from_utf8(self.value).unwrap_or("");
-        text.parse().map_err(|_| self.refused("dxf-number", "this is no whole number"))
+        text.parse().map_err(|_| self.refused(Rule::DxfNumber, "this is no whole number"))
     }
 
-    fn refused(&self, rule: &'static str, what: &str) -> Box<Diagnostic> {
+    fn refused(&self, rule: Rule, what: &str) -> Box<Diagnostic> {
         let message = format!("{what}, and code {} needs one", self.code);
         let refused = Diagnostic::error(rule, message).help("save the drawing again");
         refused.on(self.line, self.value).into()
@@ -39,7 +39,7 @@ impl Group<'_> {
 /// The pairs of `text`, up to the end of the file.
 pub(super) fn groups(text: &[u8]) -> Result<Vec<Group<'_>>, Box<Diagnostic>> {
     if text.starts_with(b"AutoCAD Binary DXF") {
-        let refused = Diagnostic::error("dxf-binary", "the drawing is a binary DXF file");
+        let refused = Diagnostic::error(Rule::DxfBinary, "the drawing is a binary DXF file");
         return Err(refused.help("save it as an ASCII DXF file").line(1).into());
     }
     let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
@@ -52,12 +52,12 @@ pub(super) fn groups(text: &[u8]) -> Result<Vec<Group<'_>>, Box<Diagnostic>> {
             if code.is_empty() && lines.all(|(rest, _)| rest.trim_ascii().is_empty()) {
                 break;
             }
-            let refused = Diagnostic::error("dxf-code", "this is no group code of a DXF file");
+            let refused = Diagnostic::error(Rule::DxfCode, "this is no group code of a DXF file");
             let refused = refused.help("save the drawing as an ASCII DXF file");
             return Err(refused.on(number, code).into());
         };
         let Some((value, line)) = lines.next() else {
-            let refused = Diagnostic::error("dxf-code", "the file ends after a group code");
+            let refused = Diagnostic::error(Rule::DxfCode, "the file ends after a group code");
             return Err(refused.help("the file is not whole").on(number, code).into());
         };
         let value = value.trim_ascii();
@@ -66,6 +66,6 @@ pub(super) fn groups(text: &[u8]) -> Result<Vec<Group<'_>>, Box<Diagnostic>> {
             return Ok(groups);
         }
     }
-    let refused = Diagnostic::error("dxf-code", "the file ends without EOF");
+    let refused = Diagnostic::error(Rule::DxfCode, "the file ends without EOF");
     Err(refused.help("the file is not whole").into())
 }

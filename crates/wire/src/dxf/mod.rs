@@ -13,7 +13,7 @@ mod shapes;
 use crate::chain::chain;
 use crate::contour::Contour;
 use groups::groups;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use reader::Reader;
 
 /// How a drawing is read.
@@ -54,7 +54,7 @@ pub fn read(text: &[u8], options: &Options) -> Result<Drawing, Box<Diagnostic>> 
     for (name, value) in [("gap", options.gap), ("tolerance", options.tolerance)] {
         if !(1e-6..=10.0).contains(&value) {
             let message = format!("a {name} of {value} mm");
-            let refused = Diagnostic::error("dxf-options", message);
+            let refused = Diagnostic::error(Rule::DxfOptions, message);
             return Err(refused.help("between 0.000001 mm and 10 mm").into());
         }
     }
@@ -64,17 +64,17 @@ pub fn read(text: &[u8], options: &Options) -> Result<Drawing, Box<Diagnostic>> 
     let (pieces, mut warnings) = reader.finish()?;
     let chained = chain(&pieces, options.gap)?;
     if chained.contours.is_empty() {
-        let refused = Diagnostic::error("empty-contour", "the drawing holds no contour");
+        let refused = Diagnostic::error(Rule::EmptyContour, "the drawing holds no contour");
         return Err(refused.help("LINE, ARC, CIRCLE, polylines, ELLIPSE, SPLINE are read").into());
     }
     if chained.doubled > 0 {
         let message = format!("{} entities lie on others and were left out", chained.doubled);
-        warnings.push(Diagnostic::warning("dxf-doubled", message));
+        warnings.push(Diagnostic::warning(Rule::DxfDoubled, message));
     }
     if chained.gaps > 0 {
         let message =
             format!("{} gaps were closed, the widest of {:.6} mm", chained.gaps, chained.widest);
-        warnings.push(Diagnostic::warning("dxf-gap", message));
+        warnings.push(Diagnostic::warning(Rule::DxfGap, message));
     }
     Ok(Drawing { contours: chained.contours, warnings })
 }

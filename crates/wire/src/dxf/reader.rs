@@ -7,7 +7,7 @@ use super::placement::Placement;
 use super::shapes::{Shape, Shapes};
 use crate::element::{Element, FAR, finite};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The deepest nesting of blocks.
@@ -76,13 +76,13 @@ impl<'a> Reader<'a> {
             (Some(unit), _) if unit > 0.0 && unit <= FAR => unit,
             (Some(unit), _) => {
                 let message = format!("a unit of {unit} mm");
-                let refused = Diagnostic::error("dxf-options", message);
+                let refused = Diagnostic::error(Rule::DxfOptions, message);
                 return Err(refused.help("give the mm in a unit of the drawing").into());
             }
             (None, Some(unit)) => unit,
             (None, None) => {
                 let message = "the drawing names no unit: it is read in mm";
-                let warning = Diagnostic::warning("dxf-unit", message);
+                let warning = Diagnostic::warning(Rule::DxfUnit, message);
                 self.warnings.push(warning.help("name the unit if it is another"));
                 1.0
             }
@@ -97,14 +97,14 @@ impl<'a> Reader<'a> {
                 let names = self.layers.iter().map(|name| String::from_utf8_lossy(name));
                 let names: Vec<_> = names.take(20).collect();
                 let message = format!("no contour on layer `{layer}`");
-                return Err(Diagnostic::error("dxf-layer", message)
+                return Err(Diagnostic::error(Rule::DxfLayer, message)
                     .help(format!("layers that hold some: {}", names.join(", ")))
                     .into());
             }
         }
         for (kind, (line, count)) in self.left_out {
             let message = format!("{kind}: not read");
-            let warning = Diagnostic::warning("dxf-left-out", message).line(line);
+            let warning = Diagnostic::warning(Rule::DxfLeftOut, message).line(line);
             self.warnings.push(Diagnostic { count, ..warning });
         }
         Ok((self.pieces, self.warnings))
@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
         self.count = self.count.saturating_add(count);
         if self.count > MOST {
             let message = format!("the drawing comes to more than {MOST} elements");
-            return Err(entity.refused("dxf-size", message, "choose layers, or divide it"));
+            return Err(entity.refused(Rule::DxfSize, message, "choose layers, or divide it"));
         }
         Ok(())
     }
@@ -225,17 +225,17 @@ impl<'a> Reader<'a> {
         let name = entity.first(2).map_or(&b""[..], |group| group.value);
         let Some(block) = self.blocks.get(name).copied() else {
             let message = format!("no block `{}`", String::from_utf8_lossy(name));
-            return Err(entity.refused("dxf-insert", message, "the file is not whole"));
+            return Err(entity.refused(Rule::DxfInsert, message, "the file is not whole"));
         };
         if depth >= DEEPEST {
             let message = format!("blocks within blocks, more than {DEEPEST} deep");
-            return Err(entity.refused("dxf-insert", message, "explode them"));
+            return Err(entity.refused(Rule::DxfInsert, message, "explode them"));
         }
         let (x, y) = (entity.number(41)?.unwrap_or(1.0), entity.number(42)?.unwrap_or(1.0));
         if x == 0.0 || (x.abs() - y.abs()).abs() > 1e-9 * x.abs() {
             let message = format!("a block at scale {x} in X and {y} in Y");
             return Err(entity.refused(
-                "dxf-insert",
+                Rule::DxfInsert,
                 message,
                 "explode it: circles become ellipses",
             ));
@@ -281,7 +281,7 @@ fn insertion_unit(header: &[Group]) -> Result<Option<f64>, Box<Diagnostic>> {
         14 => 100.0,
         unit => {
             let message = format!("the unit {unit} of $INSUNITS is none that parts are drawn in");
-            let refused = Diagnostic::error("dxf-unit", message).line(group.line);
+            let refused = Diagnostic::error(Rule::DxfUnit, message).line(group.line);
             return Err(refused.help("name the unit").into());
         }
     }))

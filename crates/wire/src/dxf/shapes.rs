@@ -7,7 +7,7 @@ use super::placement::Placement;
 use crate::element::{Element, SAME};
 use crate::fit::{Curve, Ellipse, Spline, fit};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::f64::consts::TAU;
 
 /// The most elements that a curve may come to.
@@ -118,7 +118,7 @@ impl Shapes<'_> {
         let radius = major.length() * ratio.abs().min(1.0);
         if !(1e-6..=1.0).contains(&ratio.abs()) || radius * self.unit < SAME {
             let message = format!("an ellipse with axes at a ratio of {ratio}");
-            return Err(entity.refused("dxf-entity", message, "draw a line"));
+            return Err(entity.refused(Rule::DxfEntity, message, "draw a line"));
         }
         let side = if entity.behind()? { -1.0 } else { 1.0 };
         let minor = major.perp() * (side * ratio);
@@ -141,18 +141,18 @@ impl Shapes<'_> {
         if xs.is_empty() && entity.first(11).is_some() {
             let message = "a spline by fit points, without control points";
             return Err(entity.refused(
-                "dxf-spline",
+                Rule::DxfSpline,
                 message.into(),
                 "save it with control points",
             ));
         }
         if xs.len() != ys.len() {
             let message = "a spline with control points that are not whole";
-            return Err(entity.refused("dxf-spline", message.into(), "save the drawing again"));
+            return Err(entity.refused(Rule::DxfSpline, message.into(), "save the drawing again"));
         }
         let poles: Vec<Vec2> = xs.into_iter().zip(ys).map(|(x, y)| Vec2::new(x, y)).collect();
         let spline = Spline::new(degree, all(40)?, &poles, &all(41)?)
-            .map_err(|what| entity.refused("dxf-spline", what, "save the drawing again"))?;
+            .map_err(|what| entity.refused(Rule::DxfSpline, what, "save the drawing again"))?;
         let mut piece = Vec::new();
         for (from, to) in spline.spans() {
             self.fitted(entity, &spline, from, to, &mut piece)?;
@@ -179,7 +179,7 @@ impl Shapes<'_> {
         fit(curve, from, to, tolerance, MOST, piece).ok_or_else(|| {
             let message =
                 format!("arcs do not follow the curve within {} mm", self.options.tolerance);
-            entity.refused("curve-fit", message, "allow more, or draw it anew")
+            entity.refused(Rule::CurveFit, message, "allow more, or draw it anew")
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::event::{Action, ArcTo};
 use crate::iso::dialects::facts::OuterCenter;
 use crate::iso::language::block::Fault;
 use geom::Vec3;
+use program::Rule;
 
 /// The letters of the centre, by axis.
 const CENTER: [u8; 3] = *b"IJK";
@@ -26,14 +27,14 @@ impl Step<'_, '_, '_> {
         let (from, to) = (radius(start), radius(target.point));
         let rules = &self.facts.arcs;
         if from < rules.least_radius {
-            return Err(self.block.whole("nc-arc", "the arc starts on its own centre"));
+            return Err(self.block.whole(Rule::Arc, "the arc starts on its own centre"));
         }
         let inches = self.state.inches == Some(true);
         if !(rules.is_circle)(inches, from, to) {
             let message = format!(
                 "the end is {to:.4} mm from the centre and the start {from:.4} mm: not on one circle"
             );
-            return Err(self.block.whole("nc-arc", message));
+            return Err(self.block.whole(Rule::Arc, message));
         }
         let turns = self.turns()?;
         self.stood();
@@ -54,32 +55,32 @@ impl Step<'_, '_, '_> {
         let start = self.state.position;
         if start.is_nan() || target.point.is_nan() {
             let message = "an arc, and where the tool stands is not known in all of X, Y and Z";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         if let Tilt::Declared(_) = self.state.tilt {
             let message =
                 "a move in a tilted plane before G53.1 has brought the tool upright to it";
-            return Err(self.block.whole("nc-tilt", message));
+            return Err(self.block.whole(Rule::TiltedPlane, message));
         }
         if target.named & !7 != 0 {
             let message = "a rotary axis in an arc";
-            return Err(self.block.whole("nc-arc", message));
+            return Err(self.block.whole(Rule::Arc, message));
         }
         // LinuxCNC may begin it on an arc; where that arc then leads needs the tool's radius.
         let begins = self.facts.arcs.may_compensate && self.state.compensation.is_on();
         if self.compensation_waits() && !begins {
             let message = "radius compensation starts and ends on a straight move, not on an arc";
-            return Err(self.block.whole("nc-compensation", message));
+            return Err(self.block.whole(Rule::Compensation, message));
         }
         let [first, second, _] = self.state.plane.axes();
         let transform = &self.state.frames.transform;
         if transform.factor(first).abs() != transform.factor(second).abs() {
             let message = "an arc while the axes of the plane have two scales is no arc";
-            return Err(self.block.whole("nc-frame", message));
+            return Err(self.block.whole(Rule::Frame, message));
         }
         if self.facts.arcs.needs_axis && target.named & (1 << first | 1 << second) == 0 {
             let message = "an arc needs an axis word of its plane";
-            return Err(self.block.whole("nc-arc", message));
+            return Err(self.block.whole(Rule::Arc, message));
         }
         Ok(())
     }
@@ -90,21 +91,21 @@ impl Step<'_, '_, '_> {
         let [first, second, _] = self.state.plane.axes();
         if let Some(&letter) = CENTER.iter().find(|&&letter| self.block.has(letter)) {
             let message = format!("an arc by R and by {}: one or the other", char::from(letter));
-            return Err(self.block.at_word(letter, "nc-arc", message));
+            return Err(self.block.at_word(letter, Rule::Arc, message));
         }
         let radius = self.take_length(b'R')?.unwrap_or(0.0);
         let (along, across) = (end[first] - start[first], end[second] - start[second]);
         let chord = along.hypot(across);
         if chord < 1e-9 {
             let message = "an arc by R ends where it starts: a full circle needs its centre";
-            return Err(self.block.at_word(b'R', "nc-arc", message));
+            return Err(self.block.at_word(b'R', Rule::Arc, message));
         }
         if chord / 2.0 > radius.abs() + self.facts.arcs.radius_slack {
             let message = format!(
                 "the radius {:.4} mm does not reach: the ends are {chord:.4} mm apart",
                 radius.abs()
             );
-            return Err(self.block.at_word(b'R', "nc-arc", message));
+            return Err(self.block.at_word(b'R', Rule::Arc, message));
         }
         let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
         // Seen along the way, the centre of a short counter-clockwise arc lies on the left.
@@ -133,7 +134,7 @@ impl Step<'_, '_, '_> {
         if given == 0 || self.state.centers_absolute && given < 2 {
             let (i, j) = (char::from(CENTER[first]), char::from(CENTER[second]));
             let message = format!("an arc without its centre ({i}, {j}) and without R");
-            return Err(self.block.whole("nc-arc", message));
+            return Err(self.block.whole(Rule::Arc, message));
         }
         Ok(center)
     }
@@ -149,7 +150,7 @@ impl Step<'_, '_, '_> {
         }
         let plane = self.state.plane.name();
         let message = format!("{} has no meaning in an arc in {plane}", char::from(letter));
-        Err(self.block.at_word(letter, "nc-arc", message))
+        Err(self.block.at_word(letter, Rule::Arc, message))
     }
 
     /// LinuxCNC: `P` counts the turns begun, 1 where it is not given.
@@ -160,7 +161,7 @@ impl Step<'_, '_, '_> {
         }
         match self.take_whole(b'P')? {
             None => Ok(0),
-            Some(0) => Err(self.block.at_word(b'P', "nc-arc", "P counts turns from 1")),
+            Some(0) => Err(self.block.at_word(b'P', Rule::Arc, "P counts turns from 1")),
             Some(turns) => Ok(turns - 1),
         }
     }

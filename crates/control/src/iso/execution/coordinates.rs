@@ -8,7 +8,7 @@ use crate::event::{Action, Risk};
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::words::{G, Group};
 use geom::{Frame, Mat3, Vec3};
-use program::{WorkOffset, WorkOffsetData};
+use program::{Rule, WorkOffset, WorkOffsetData};
 
 /// The letters of the axes, in the order of [`Six`].
 const AXES: [u8; 6] = *b"XYZABC";
@@ -22,7 +22,7 @@ impl Step<'_, '_, '_> {
         self.may_change_coordinates(Group::OneShot)?;
         if !matches!(word, G::CancelShift { .. }) && self.state.frames.is_transformed() {
             let message = "a shift while the coordinates are turned, scaled, mirrored or tilted";
-            return Err(self.block.at_group(Group::OneShot, "nc-frame", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Frame, message));
         }
         match word {
             G::ShiftHere => {
@@ -76,7 +76,7 @@ impl Step<'_, '_, '_> {
         self.not_compensated("a change of the coordinates")?;
         if self.state.cycle.is_some() {
             let message = "the coordinates change within a cycle; cancel it with G80 first";
-            return Err(self.block.at_group(group, "nc-cycle", message));
+            return Err(self.block.at_group(group, Rule::Cycle, message));
         }
         Ok(())
     }
@@ -85,7 +85,7 @@ impl Step<'_, '_, '_> {
         answer.map_err(|Unknown| {
             let message = "by how much this moves the zero depends on what stands in the control";
             self.block
-                .at_group(Group::OneShot, "nc-unknown-shift", message)
+                .at_group(Group::OneShot, Rule::UnknownShift, message)
                 .help("write the offset, or clear G92, before the first move")
                 .into()
         })
@@ -125,7 +125,7 @@ impl Step<'_, '_, '_> {
         }
         if values == [None; 6] {
             let message = "no axis word says by how much";
-            return Err(self.block.at_group(Group::OneShot, "nc-frame", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Frame, message));
         }
         Ok(values)
     }
@@ -177,7 +177,7 @@ impl Step<'_, '_, '_> {
             Some(number) if (1..=most).contains(&number) => Ok(number),
             _ => {
                 let message = format!("the work offset is named by P1 to P{most}");
-                Err(self.block.at_group(Group::WorkOffset, "nc-work-offset", message))
+                Err(self.block.at_group(Group::WorkOffset, Rule::WorkOffset, message))
             }
         }
     }
@@ -186,7 +186,7 @@ impl Step<'_, '_, '_> {
     fn write_data(&mut self) -> Result<(), Fault> {
         let Some(kind) = self.take_whole(b'L')? else {
             let message = "G10 needs L, which says what is written";
-            return Err(self.block.at_group(Group::OneShot, "nc-data", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Data, message));
         };
         match kind {
             2 | 20 => self.write_offset(kind),
@@ -196,7 +196,7 @@ impl Step<'_, '_, '_> {
             }
             _ => {
                 let message = format!("G10 L{kind} is not known to this control");
-                Err(self.block.at_word(b'L', "nc-data", message))
+                Err(self.block.at_word(b'L', Rule::Data, message))
             }
         }
     }
@@ -205,7 +205,7 @@ impl Step<'_, '_, '_> {
         self.may_change_coordinates(Group::OneShot)?;
         if self.state.frames.is_transformed() {
             let message = "an offset is written while the coordinates are turned, scaled or tilted";
-            return Err(self.block.at_group(Group::OneShot, "nc-frame", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Frame, message));
         }
         let which = self.take_whole(b'P')?;
         let active = self.state.frames.active();
@@ -214,7 +214,7 @@ impl Step<'_, '_, '_> {
         let external = offsets.external && (kind, which) == (2, Some(0));
         let Some(number) = number.or(external.then_some(active)) else {
             let message = "P names no work offset that can be written here";
-            return Err(self.block.at_group(Group::OneShot, "nc-data", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Data, message));
         };
         let sets_here = kind == 20 && offsets.sets_here;
         let angle = match offsets.turn && !sets_here {
@@ -299,7 +299,7 @@ impl Step<'_, '_, '_> {
         self.may_change_coordinates(group)?;
         if self.state.tilt != Tilt::None || self.state.keeps_center() {
             let message = "coordinates turned, scaled or mirrored in a tilted plane or with G43.4";
-            return Err(self.block.at_group(group, "nc-frame", message));
+            return Err(self.block.at_group(group, Rule::Frame, message));
         }
         let before = std::mem::replace(&mut self.state.frames.transform, transform).turn;
         if before != transform.turn {
@@ -316,14 +316,14 @@ impl Step<'_, '_, '_> {
         let mut transform = self.state.frames.transform;
         if transform.scale.is_some() || transform.turn.is_some() {
             let message = "a mirror goes on before G51 and G68 and off after G69 and G50";
-            return Err(self.block.at_group(Group::Mirror, "nc-frame", message));
+            return Err(self.block.at_group(Group::Mirror, Rule::Frame, message));
         }
         let mut named = 0;
         for (axis, letter) in LINEAR.into_iter().enumerate() {
             if let Some(at) = self.take_length(letter)? {
                 if self.facts.frames.mirrors_at_zero && at != 0.0 {
                     let message = "G101 mirrors about the zero: write 0";
-                    return Err(self.block.at_word(letter, "nc-frame", message));
+                    return Err(self.block.at_word(letter, Rule::Frame, message));
                 }
                 transform.mirror[axis] = on.then_some(at);
                 named += 1;
@@ -331,7 +331,7 @@ impl Step<'_, '_, '_> {
         }
         if named == 0 {
             let message = "no axis word says which axis is mirrored";
-            return Err(self.block.at_group(Group::Mirror, "nc-frame", message));
+            return Err(self.block.at_group(Group::Mirror, Rule::Frame, message));
         }
         self.transformed(transform, Group::Mirror)
     }
@@ -344,13 +344,13 @@ impl Step<'_, '_, '_> {
         }
         if transform.turn.is_some() {
             let message = "a scale changes while the coordinates are turned; write G69 first";
-            return Err(self.block.at_group(Group::Scaling, "nc-frame", message));
+            return Err(self.block.at_group(Group::Scaling, Rule::Frame, message));
         }
         transform.scale = None;
         if on {
             if self.state.frames.transform.scale.is_some() {
                 let message = "a scale is on already; write G50 first";
-                return Err(self.block.at_group(Group::Scaling, "nc-frame", message));
+                return Err(self.block.at_group(Group::Scaling, Rule::Frame, message));
             }
             transform.scale = Some(self.factors_and_center()?);
         }
@@ -375,11 +375,11 @@ impl Step<'_, '_, '_> {
         }
         if given == 0 {
             let message = "G51 needs its factor";
-            return Err(self.block.at_group(Group::Scaling, "nc-frame", message));
+            return Err(self.block.at_group(Group::Scaling, Rule::Frame, message));
         }
         if center.is_nan() {
             let message = "the scale is about where the tool stands, which is not known";
-            return Err(self.block.at_group(Group::Scaling, "nc-unknown-position", message));
+            return Err(self.block.at_group(Group::Scaling, Rule::UnknownPosition, message));
         }
         Ok((factors, center))
     }
@@ -390,10 +390,10 @@ impl Step<'_, '_, '_> {
         let Some(Word { value, point, .. }) = self.block.take(letter) else { return Ok(None) };
         if self.facts.numbers.factor_needs_point && !point {
             let message = "a factor without a point counts thousandths or hundred thousandths";
-            return Err(self.block.at_word(letter, "nc-decimal-point", message));
+            return Err(self.block.at_word(letter, Rule::DecimalPoint, message));
         }
         if value == 0.0 || !value.is_finite() {
-            return Err(self.block.at_word(letter, "nc-frame", "a factor of 0"));
+            return Err(self.block.at_word(letter, Rule::Frame, "a factor of 0"));
         }
         Ok(Some(value))
     }
@@ -405,16 +405,16 @@ impl Step<'_, '_, '_> {
         let uneven = transform.factor(first) != transform.factor(second);
         if uneven {
             let message = "the coordinates are turned while the axes of the plane have two scales";
-            return Err(self.block.at_group(Group::Tilt, "nc-frame", message));
+            return Err(self.block.at_group(Group::Tilt, Rule::Frame, message));
         }
         let Some(degrees) = self.take_degrees(b'R')? else {
             let message = "G68 needs its angle R";
-            return Err(self.block.at_group(Group::Tilt, "nc-frame", message));
+            return Err(self.block.at_group(Group::Tilt, Rule::Frame, message));
         };
         let before = transform.turn;
         if before.is_some_and(|(about, ..)| about != axis) {
             let message = "the coordinates are turned in another plane already; write G69 first";
-            return Err(self.block.at_group(Group::Tilt, "nc-frame", message));
+            return Err(self.block.at_group(Group::Tilt, Rule::Frame, message));
         }
         let degrees = match before {
             // Haas adds in G91; on FANUC parameter 5400#0 says whether it does.
@@ -423,7 +423,7 @@ impl Step<'_, '_, '_> {
             }
             Some(_) if self.state.incremental => {
                 let message = "in G91 a second G68 adds or replaces, as parameter 5400#0 is set";
-                return Err(self.block.at_group(Group::Tilt, "nc-frame", message));
+                return Err(self.block.at_group(Group::Tilt, Rule::Frame, message));
             }
             _ => degrees,
         };
@@ -440,7 +440,7 @@ impl Step<'_, '_, '_> {
         }
         if center.is_nan() {
             let message = "the coordinates turn about where the tool stands, which is not known";
-            return Err(self.block.at_group(Group::Tilt, "nc-unknown-position", message));
+            return Err(self.block.at_group(Group::Tilt, Rule::UnknownPosition, message));
         }
         transform.turn = Some((axis, center, degrees));
         self.transformed(transform, Group::Tilt)
@@ -472,7 +472,7 @@ impl Step<'_, '_, '_> {
         let busy = self.state.frames.is_transformed() || self.state.keeps_center();
         if busy || self.state.tilt != Tilt::None {
             let message = "G68.2 while other coordinates or G43.4 are active; cancel them first";
-            return Err(self.block.at_group(Group::Tilt, "nc-tilt", message));
+            return Err(self.block.at_group(Group::Tilt, Rule::TiltedPlane, message));
         }
         let mut values = [0.0; 6];
         for (value, letter) in values.iter_mut().zip(*b"XYZIJK") {
@@ -480,7 +480,7 @@ impl Step<'_, '_, '_> {
                 if letter >= b'X' { self.take_length(letter)? } else { self.take_degrees(letter)? };
             *value = word.ok_or_else(|| {
                 let message = format!("G68.2 needs {}: write all six", char::from(letter));
-                self.block.at_group(Group::Tilt, "nc-tilt", message)
+                self.block.at_group(Group::Tilt, Rule::TiltedPlane, message)
             })?;
         }
         let [x, y, z, i, j, k] = values;

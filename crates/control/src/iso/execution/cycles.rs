@@ -8,7 +8,7 @@ use crate::iso::dialects::facts::Cycles;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, G, Group};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Feed, Spindle, Withdrawal};
+use program::{Cycle, CycleKind, Feed, Rule, Spindle, Withdrawal};
 
 /// The most often that a block may repeat its hole: FANUC's K has four digits.
 const MOST_REPEATS: u32 = 9999;
@@ -84,12 +84,12 @@ impl Step<'_, '_, '_> {
         if self.state.keeps_center() {
             // It would go along Z of the work, wherever the tool points.
             let message = "a cycle while the control keeps the tool centre point: end that first";
-            return Err(self.block.whole("nc-cycle", message));
+            return Err(self.block.whole(Rule::Cycle, message));
         }
         let axis = self.state.plane.axes()[2];
         if self.facts.cycles.apart && axis != 2 {
             let message = "a cycle out of the plane G17: the drilling axis is a setting (5101#0)";
-            return Err(self.block.whole("nc-cycle", message));
+            return Err(self.block.whole(Rule::Cycle, message));
         }
         // LinuxCNC feeds along another axis than that of the plane there (found with `rs274`).
         if self.facts.cycles.taps_in_g17
@@ -97,7 +97,7 @@ impl Step<'_, '_, '_> {
             && matches!(canned, Canned::Tap | Canned::LeftTap)
         {
             let message = "G84 and G74 are followed in G17 only";
-            return Err(self.block.whole("nc-cycle", message));
+            return Err(self.block.whole(Rule::Cycle, message));
         }
         if !self.facts.cycles.apart {
             self.state.motion = None;
@@ -193,19 +193,19 @@ impl Step<'_, '_, '_> {
         let transform = &self.state.frames.transform;
         if transform.factor(axis) != 1.0 || transform.mirror[axis].is_some() {
             let message = "a cycle while its axis is scaled or mirrored";
-            return Err(self.block.whole("nc-frame", message));
+            return Err(self.block.whole(Rule::Frame, message));
         }
         if let Tilt::Declared(_) = self.state.tilt {
             let message = "a cycle in a tilted plane before G53.1 has brought the tool along its Z";
-            return Err(self.block.whole("nc-tilt", message));
+            return Err(self.block.whole(Rule::TiltedPlane, message));
         }
         if let Some(&letter) = b"ABC".iter().find(|&&letter| self.block.has(letter)) {
             let message = "a rotary axis in a cycle; move it before";
-            return Err(self.block.at_word(letter, "nc-cycle", message));
+            return Err(self.block.at_word(letter, Rule::Cycle, message));
         }
         if held.initial.is_nan() {
             let message = "a cycle starts, and at which level the tool stands is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         Ok(())
     }
@@ -236,14 +236,14 @@ impl Step<'_, '_, '_> {
             && let Some(value) = self.take_length(b'Q')?
         {
             if value <= 0.0 {
-                return Err(self.block.at_word(b'Q', "nc-cycle", "Q must be greater than 0"));
+                return Err(self.block.at_word(b'Q', Rule::Cycle, "Q must be greater than 0"));
             }
             held.q = Some(value);
         }
         if held.canned.may_dwell(&self.facts.cycles) {
             let seconds = self.dwell_p()?;
             if seconds.is_some_and(|s| s < 0.0) {
-                return Err(self.block.at_word(b'P', "nc-cycle", "P is below 0"));
+                return Err(self.block.at_word(b'P', Rule::Cycle, "P is below 0"));
             }
             held.dwell = seconds.or(held.dwell);
             self.state.cycle_dwell = seconds.or(self.state.cycle_dwell);
@@ -332,7 +332,7 @@ impl Step<'_, '_, '_> {
     fn withdrawal(&self, held: &Holding) -> Result<Withdrawal, Fault> {
         if self.state.frames.is_transformed() {
             let message = "the tool goes aside while the coordinates are turned, scaled or tilted";
-            return Err(self.block.whole("nc-frame", message));
+            return Err(self.block.whole(Rule::Frame, message));
         }
         let turns = match held.canned {
             // It starts the spindle so by itself at R.
@@ -387,7 +387,7 @@ impl Step<'_, '_, '_> {
             Some(_) => {
                 let message =
                     format!("{} repeats {least} to {MOST_REPEATS} times", char::from(letter));
-                Err(self.block.at_word(letter, "nc-cycle", message))
+                Err(self.block.at_word(letter, Rule::Cycle, message))
             }
         }
     }
@@ -403,7 +403,7 @@ impl Step<'_, '_, '_> {
     fn drill(&mut self, at: Vec3, held: &mut Holding) -> Result<(), Fault> {
         if at.is_nan() {
             let message = "a hole, and where the tool stands in the plane is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         let axis = self.state.plane.axes()[2];
         let cycle = self.cycle(held)?;
@@ -459,7 +459,7 @@ impl Step<'_, '_, '_> {
     }
 
     fn wrong(&self, message: impl Into<String>) -> Fault {
-        self.block.whole("nc-cycle", message)
+        self.block.whole(Rule::Cycle, message)
     }
 }
 

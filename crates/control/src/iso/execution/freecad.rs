@@ -6,7 +6,7 @@ use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, FeedMode, G, Group, Motion};
 use crate::kernel::decimal;
-use program::Feed;
+use program::{Feed, Rule};
 
 /// How many digits FreeCAD's shorter form of a number has (`Command G1 [ F:3.3333 ]`). It leaves zeros
 /// at the end out, so that a number with fewer digits is as good as one with so many.
@@ -41,7 +41,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         if word.value <= 0.0 {
-            return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
+            return Err(self.block.at_word(b'F', Rule::Feed, "the feed must be greater than 0"));
         }
         let sixty = || per_minute(word.value, word.digits);
         let feed = match self.state.feed_mode {

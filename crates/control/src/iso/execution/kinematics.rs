@@ -7,6 +7,7 @@ use crate::Settings;
 use crate::iso::dialects::facts::Facts;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{G, Group, M, bit};
+use program::Rule;
 
 /// What X, Y and Z are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +68,7 @@ impl Step<'_, '_, '_> {
         }
         let message =
             "which kinematics are on, the program before has left: they are the axes' or the tip's";
-        let fault = self.block.whole("nc-kinematics", message);
+        let fault = self.block.whole(Rule::Kinematics, message);
         Err(fault.help("switch to those of the axes at the start of the program").into())
     }
 
@@ -93,11 +94,11 @@ impl Step<'_, '_, '_> {
         if self.state.kinematics != Kinematics::Tip {
             return Ok(());
         }
-        let fault = self.block.at_group(group, "nc-kinematics", what);
+        let fault = self.block.at_group(group, Rule::Kinematics, what);
         Err(fault.help("switch to the kinematics of the axes first").into())
     }
 
     fn wrong_kinematics(&self, message: &str) -> Fault {
-        self.block.at_group(Group::Kinematics, "nc-kinematics", message)
+        self.block.at_group(Group::Kinematics, Rule::Kinematics, message)
     }
 }

@@ -8,7 +8,7 @@ use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, G, Group, Motion, bit};
 use crate::kernel::way::{self, Modulo};
 use geom::{Arc, Vec3};
-use program::{Compensation, Feed};
+use program::{Compensation, Feed, Rule};
 
 /// The letters of the linear axes.
 pub(super) const LINEAR: [u8; 3] = *b"XYZ";
@@ -80,7 +80,7 @@ impl Step<'_, '_, '_> {
         if !asks {
             return Ok(());
         }
-        Err(self.block.whole("nc-no-motion", "no axis word says where the move goes"))
+        Err(self.block.whole(Rule::MissingWord, "no axis word says where the move goes"))
     }
 
     /// # Errors
@@ -98,7 +98,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let message = "two words of the block use its axis words: which one has them?";
-        Err(self.block.at_group(Group::OneShot, "nc-modal-group", message))
+        Err(self.block.at_group(Group::OneShot, Rule::ModalGroup, message))
     }
 
     /// The motion word of the block: on LinuxCNC and GRBL also a cycle or `G80`.
@@ -112,7 +112,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let message = "an axis moves between M29 and its G84 or G74 (alarm PS0204)";
-        let fault = self.block.whole("nc-cycle", message);
+        let fault = self.block.whole(Rule::Cycle, message);
         Err(fault.help("write M29 right before the block of the cycle").into())
     }
 
@@ -132,7 +132,7 @@ impl Step<'_, '_, '_> {
             || motion.is_some() && matches!(cycle, Some(G::Cycle(_)))
         {
             let message = "a cycle and another motion word in a block";
-            return Err(self.block.at_group(Group::Cycle, "nc-modal-group", message));
+            return Err(self.block.at_group(Group::Cycle, Rule::ModalGroup, message));
         }
         for word in [cycle, motion].into_iter().flatten() {
             match word {
@@ -163,7 +163,7 @@ impl Step<'_, '_, '_> {
             return match b"XYZABC@^".iter().find(|&&letter| self.block.has(letter)) {
                 Some(&letter) => {
                     let message = "an axis word, and no G0, G1, G2 or G3 says how to move";
-                    Err(self.block.at_word(letter, "nc-no-motion", message))
+                    Err(self.block.at_word(letter, Rule::MissingWord, message))
                 }
                 None => Ok(()),
             };
@@ -222,7 +222,7 @@ impl Step<'_, '_, '_> {
         if let Some(word) = self.state.frames.lost.filter(|_| target.named != 0) {
             let message =
                 format!("{word} has moved the zero by what the control held before the program");
-            let fault = self.block.whole("nc-unknown-shift", message);
+            let fault = self.block.whole(Rule::UnknownShift, message);
             return Err(fault.help(format!("write {word} before the first move")).into());
         }
         Ok(target)
@@ -241,7 +241,7 @@ impl Step<'_, '_, '_> {
             if self.state.tilt != Tilt::None {
                 let message =
                     "a rotary axis moved by hand in a tilted plane; G53.1 or G69 moves it";
-                return Err(self.block.at_word(letter, "nc-tilt", message));
+                return Err(self.block.at_word(letter, Rule::TiltedPlane, message));
             }
             if let Some(value) = self.take_degrees(letter)? {
                 target.named |= 1 << (axis + 3);
@@ -316,7 +316,7 @@ impl Step<'_, '_, '_> {
         if self.state.incremental || !all {
             let message = "the coordinates have been turned: the first move in the plane names both \
                            its axes in G90";
-            return Err(self.block.whole("nc-frame", message));
+            return Err(self.block.whole(Rule::Frame, message));
         }
         self.state.loose = 0;
         Ok(())
@@ -334,7 +334,7 @@ impl Step<'_, '_, '_> {
             if self.state.incremental {
                 let message =
                     "a polar radius in G91 moves the pole to where the tool stands: write G90";
-                return Err(self.block.at_word(LINEAR[first], "nc-polar", message));
+                return Err(self.block.at_word(LINEAR[first], Rule::Polar, message));
             }
             polar.radius = radius;
         }
@@ -344,7 +344,7 @@ impl Step<'_, '_, '_> {
         }
         if polar.radius.is_nan() || polar.angle.is_nan() || polar.pole.is_nan() {
             let message = "polar coordinates, and radius, angle or pole are not known yet";
-            return Err(self.block.whole("nc-polar", message));
+            return Err(self.block.whole(Rule::Polar, message));
         }
         let (sin, cos) = polar.angle.to_radians().sin_cos();
         target.point[first] = polar.pole[first] + polar.radius * cos;
@@ -361,7 +361,7 @@ impl Step<'_, '_, '_> {
         let cartesian = b"XY".iter().find(|&&letter| self.block.has(letter));
         if self.state.plane.axes()[2] != 2 || cartesian.is_some() {
             let message = "@ and ^ are for the plane G17, and not beside X or Y";
-            return Err(self.block.whole("nc-polar", message));
+            return Err(self.block.whole(Rule::Polar, message));
         }
         let (mut radius, mut degrees) = (x.hypot(y), y.atan2(x).to_degrees());
         let from = if self.state.incremental { (radius, degrees) } else { (0.0, 0.0) };
@@ -374,11 +374,11 @@ impl Step<'_, '_, '_> {
         if radius.is_nan() || degrees.is_nan() {
             let message =
                 "radius or angle stay what they are where the tool stands, which is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         if self.state.incremental && from.0 == 0.0 {
             let message = "a polar increment from the zero has no direction";
-            return Err(self.block.whole("nc-polar", message));
+            return Err(self.block.whole(Rule::Polar, message));
         }
         let (sin, cos) = degrees.to_radians().sin_cos();
         (target.point.x, target.point.y) = (radius * cos, radius * sin);
@@ -406,7 +406,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let message = format!("the machine has no axis {}", char::from(letter));
-        Err(self.block.at_word(letter, "nc-axis", message))
+        Err(self.block.at_word(letter, Rule::UnknownAxis, message))
     }
 
     /// The coordinate that `value` gives an axis that stands at `from`.
@@ -431,7 +431,7 @@ impl Step<'_, '_, '_> {
     #[cold]
     fn nowhere(&self, letter: u8) -> Fault {
         let message = format!("an increment, and where {} stands is not known", char::from(letter));
-        let fault = self.block.at_word(letter, "nc-unknown-position", message);
+        let fault = self.block.at_word(letter, Rule::UnknownPosition, message);
         fault.help("give the position in G90 first").into()
     }
 
@@ -454,14 +454,14 @@ impl Step<'_, '_, '_> {
             }
             Some(_) if self.state.awaits_tool(self.facts) => {
                 let message = "T has named a tool, and no M0 has stopped the program to put it in";
-                return Err(self.block.whole("nc-tool", message));
+                return Err(self.block.whole(Rule::Tool, message));
             }
             Some(_) => {
                 self.state.cut = true;
                 return Ok(());
             }
         };
-        Err(self.block.whole("nc-feed", message))
+        Err(self.block.whole(Rule::Feed, message))
     }
 
     /// FANUC's F of an arc in `G93` is the feed divided by the radius (B-62764EN, "Inverse time feed"), so the arc from
@@ -490,14 +490,14 @@ impl Step<'_, '_, '_> {
         if let Tilt::Declared(_) = self.state.tilt {
             let message =
                 "a move in a tilted plane before G53.1 has brought the tool upright to it";
-            return Err(self.block.whole("nc-tilt", message));
+            return Err(self.block.whole(Rule::TiltedPlane, message));
         }
         let (from, to) = (self.state.position, target.point);
         let aside = !(to.x.is_finite() && to.y.is_finite());
         if matches!(self.state.tilt, Tilt::Reached(_)) && to.z.is_finite() && aside {
             let message =
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         if !rapid {
             self.stood();
@@ -555,7 +555,7 @@ impl Step<'_, '_, '_> {
     fn look_ahead(&mut self, letter: u8, on: u32) -> Result<(), Fault> {
         if !self.block.has_only(&[letter, b'R'], Group::OneShot) {
             let message = "look-ahead goes on and off in a block of its own";
-            return Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::LookAhead, message));
         }
         self.take_whole(b'R')?;
         match self.take_whole(letter)? {
@@ -567,7 +567,7 @@ impl Step<'_, '_, '_> {
                 let letter = char::from(letter);
                 let message =
                     format!("look-ahead goes on with {letter}{on} and off with {letter}0");
-                Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message))
+                Err(self.block.at_group(Group::OneShot, Rule::LookAhead, message))
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::iso::dialects::facts::DwellUnit;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
+use program::Rule;
 
 impl Step<'_, '_, '_> {
     /// mm in the unit of length, for the word of this letter.
@@ -25,7 +26,7 @@ impl Step<'_, '_, '_> {
     #[cold]
     fn no_unit(&self, letter: u8) -> Fault {
         let message = "a length, and neither G20 nor G21 has been given";
-        let fault = self.block.at_word(letter, "nc-units", message);
+        let fault = self.block.at_word(letter, Rule::Units, message);
         fault.help("write G20 or G21: a control keeps the unit of the program before").into()
     }
 
@@ -75,7 +76,7 @@ impl Step<'_, '_, '_> {
         let message = format!(
             "{shown} has no decimal point: units or least increments, as the machine is set"
         );
-        let fault = self.block.at_word(letter, "nc-decimal-point", message);
+        let fault = self.block.at_word(letter, Rule::DecimalPoint, message);
         fault.help(WHOLE_NUMBERS_HELP).into()
     }
 
@@ -88,7 +89,7 @@ impl Step<'_, '_, '_> {
             Some(value) => Ok(Some(value)),
             None => {
                 let message = format!("{} must be a whole number", char::from(letter));
-                Err(self.block.at_word(letter, "nc-number", message))
+                Err(self.block.at_word(letter, Rule::Number, message))
             }
         }
     }

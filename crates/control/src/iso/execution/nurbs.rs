@@ -7,6 +7,7 @@ use super::step::Step;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{G, Group, Motion};
 use geom::Vec3;
+use program::Rule;
 
 /// How far the lines may lie from the curve, mm.
 const TOLERANCE: f64 = 0.0005;
@@ -56,7 +57,7 @@ impl Step<'_, '_, '_> {
             }
             if self.state.position.is_nan() {
                 let message = "a NURBS, and where the tool stands is not known";
-                return Err(self.block.whole("nc-unknown-position", message));
+                return Err(self.block.whole(Rule::UnknownPosition, message));
             }
         }
         let order = self.take_whole(b'L')?.map_or(ORDER, |l| (l as usize).max(ORDER));
@@ -117,7 +118,7 @@ impl Step<'_, '_, '_> {
     }
 
     fn wrong_nurbs(&self, message: &str) -> Fault {
-        self.block.whole("nc-spline", message)
+        self.block.whole(Rule::Spline, message)
     }
 }
 

@@ -6,6 +6,7 @@ use crate::event::{Action, ArcTo};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Group, Pattern};
 use geom::Vec3;
+use program::Rule;
 
 /// Most holes of a pattern.
 const MOST_HOLES: u32 = 9999;
@@ -16,14 +17,14 @@ impl Step<'_, '_, '_> {
         self.not_compensated("a circular pocket")?;
         let center = self.state.position;
         if self.state.plane.axes()[2] != 2 {
-            return Err(self.block.whole("nc-pattern", "a circular pocket lies in the plane G17"));
+            return Err(self.block.whole(Rule::Pattern, "a circular pocket lies in the plane G17"));
         }
         if center.is_nan() {
             let message = "a circular pocket, and where the tool stands is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         let Some(radius) = self.take_length(b'I')?.filter(|&radius| radius > 0.0) else {
-            return Err(self.block.whole("nc-pattern", "a circular pocket needs its radius I"));
+            return Err(self.block.whole(Rule::Pattern, "a circular pocket needs its radius I"));
         };
         self.feed_for_cut()?;
         let rotary = self.state.rotary;
@@ -47,7 +48,7 @@ impl Step<'_, '_, '_> {
         let [first, second, _] = self.state.plane.axes();
         if self.state.cycle.is_none() {
             let message = "a pattern of holes, and no cycle is active";
-            return Err(self.block.at_group(Group::OneShot, "nc-pattern", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Pattern, message));
         }
         let size = self.take_length(b'I')?;
         let angle = self.take_degrees(b'J')?.unwrap_or(0.0);
@@ -58,7 +59,7 @@ impl Step<'_, '_, '_> {
         let count = self.take_whole(b'L')?.filter(|count| (1..=MOST_HOLES).contains(count));
         let (Some(size), Some(step), Some(count)) = (size, step, count) else {
             let message = "the pattern needs I, L holes, and on an arc K";
-            return Err(self.block.at_group(Group::OneShot, "nc-pattern", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Pattern, message));
         };
         for n in 0..count {
             let n = f64::from(n);

@@ -8,7 +8,7 @@ use crate::event::{Action, Risk, TiltChoice};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Group, Motion};
 use geom::Vec3;
-use program::{Axes, MachineMove, Probe};
+use program::{Axes, MachineMove, Probe, Rule};
 
 /// How far beside a probe a point of the surface may be that it touches, mm: words are rounded, those of two decimals
 /// by up to 0.005 mm along X and along Y.
@@ -29,14 +29,14 @@ impl Step<'_, '_, '_> {
         if second && self.facts.homes.numbered {
             let message = "P names the reference position 2, 3 or 4";
             if !matches!(self.take_whole(b'P')?, None | Some(2..=4)) {
-                return Err(self.block.at_word(b'P', "nc-home", message));
+                return Err(self.block.at_word(b'P', Rule::Home, message));
             }
         }
         let mut target = self.target(true)?;
         if target.named == 0 {
             if self.facts.homes.names_axes {
                 let message = "name the axes that go to the reference position";
-                return Err(self.block.at_group(Group::OneShot, "nc-home", message));
+                return Err(self.block.at_group(Group::OneShot, Rule::Home, message));
             }
             target.named = self.all_axes();
         }
@@ -102,14 +102,14 @@ impl Step<'_, '_, '_> {
         }
         let Some(via) = self.state.via else {
             let message = "G29 goes through the point of the last G28, and there was none";
-            return Err(self.block.at_group(Group::OneShot, "nc-home", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Home, message));
         };
         // "In general, it is commanded immediately following the G28 command" (B-64484EN-2, "Reference position return").
         let away = |axis: usize| self.block.has(LINEAR[axis]) && self.state.position[axis].is_nan();
         if !(0..3).any(away) {
             let message =
                 "G29 comes from the reference position, and no axis that it names is there";
-            let fault = self.block.at_group(Group::OneShot, "nc-home", message);
+            let fault = self.block.at_group(Group::OneShot, Rule::Home, message);
             return Err(fault
                 .help("write it right behind its G28; or G0 to the place itself")
                 .into());
@@ -120,7 +120,7 @@ impl Step<'_, '_, '_> {
             if self.block.has(LINEAR[axis]) {
                 if via[axis].is_nan() {
                     let message = "G29 goes through the point of the last G28, which is not known";
-                    return Err(self.block.at_word(LINEAR[axis], "nc-home", message));
+                    return Err(self.block.at_word(LINEAR[axis], Rule::Home, message));
                 }
                 first.point[axis] = via[axis];
             }
@@ -185,7 +185,7 @@ impl Step<'_, '_, '_> {
             return self.has_no_axis_word();
         }
         if target.named >= 8 {
-            return Err(self.block.whole("nc-probe", "a rotary axis in a probing move"));
+            return Err(self.block.whole(Rule::Probe, "a rotary axis in a probing move"));
         }
         self.feed_for_cut()?;
         self.state.probed = if away { None } else { self.touched(&target, must_answer)? };
@@ -226,7 +226,7 @@ impl Step<'_, '_, '_> {
                     "the surface is at Z{} mm, not on the way of the probe: the control stops here",
                     point.z
                 );
-                Err(self.block.whole("nc-probe", message))
+                Err(self.block.whole(Rule::Probe, message))
             }
         }
     }
@@ -239,12 +239,12 @@ impl Step<'_, '_, '_> {
         }
         if self.state.incremental {
             let message = "G53 takes absolute positions; write G90";
-            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::MachinePosition, message));
         }
         let rapid = self.facts.homes.numbered || self.state.motion == Some(Motion::Rapid);
         if !rapid && self.state.motion != Some(Motion::Line) {
             let message = "G53 needs G0 or G1";
-            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::MachinePosition, message));
         }
         let mut place = UNKNOWN;
         let mut named = 0;
@@ -261,7 +261,7 @@ impl Step<'_, '_, '_> {
         named |= target.named;
         if named == 0 {
             let message = "name the axes that G53 moves";
-            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::MachinePosition, message));
         }
         let value = |axis: usize, value: f64| (named & 1 << axis != 0).then_some(value);
         let to = MachineMove {
@@ -278,7 +278,7 @@ impl Step<'_, '_, '_> {
             if !known || named != linear {
                 let message = "G53 is followed with G0 only: where a cut in machine coordinates is, \
                                only the machine knows";
-                return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+                return Err(self.block.at_group(Group::OneShot, Rule::MachinePosition, message));
             }
         }
         self.go_to_machine(place, named, rapid, Action::MachineMove(Box::new(to)))
@@ -290,12 +290,12 @@ impl Step<'_, '_, '_> {
         self.not_compensated("a move to a fixed position")?;
         if self.facts.homes.cancels_length && self.state.keeps_center() {
             let message = "a move to a fixed position while G234 keeps the tool centre point";
-            let fault = self.block.at_group(Group::OneShot, "nc-machine-position", message);
+            let fault = self.block.at_group(Group::OneShot, Rule::MachinePosition, message);
             return Err(fault.help("end it by G49 before").into());
         }
         if self.state.cycle.is_some() {
             let message = "a move to a fixed position in a cycle; cancel it with G80 first";
-            return Err(self.block.at_group(Group::OneShot, "nc-cycle", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Cycle, message));
         }
         Ok(())
     }
@@ -303,7 +303,7 @@ impl Step<'_, '_, '_> {
     /// `G29`, `G53`, and `G28` of most controls, are not for a tilted plane.
     fn in_tilted_plane(&self) -> Fault {
         let message = "a move to a fixed position in a tilted plane; cancel it with G69 first";
-        self.block.at_group(Group::OneShot, "nc-tilt", message)
+        self.block.at_group(Group::OneShot, Rule::TiltedPlane, message)
     }
 
     /// The named axes go to their fixed positions.
@@ -342,7 +342,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn swing(&mut self) -> Result<(), Fault> {
         let Tilt::Declared(frame) = self.state.tilt else {
             let message = "G53.1 and no tilted plane has been declared by G68.2";
-            return Err(self.block.at_group(Group::OneShot, "nc-tilt", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::TiltedPlane, message));
         };
         self.state.tilt = Tilt::Reached(frame);
         self.state.frames.tilt = Some(frame);

@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Group, M};
-use program::{Auxiliary, Input, Output, OutputValue, Until};
+use program::{Auxiliary, Input, Output, OutputValue, Rule, Until};
 
 impl Step<'_, '_, '_> {
     /// `M62` to `M68` of LinuxCNC ("M codes"), and the M functions of the builder.
@@ -38,7 +38,7 @@ impl Step<'_, '_, '_> {
     /// any other L needs a time in Q.
     fn input(&mut self) -> Result<(), Fault> {
         let wrong = |step: &Self, message: &str| {
-            Err(step.block.at_group(Group::Output, "nc-input", message))
+            Err(step.block.at_group(Group::Output, Rule::Input, message))
         };
         let (digital, analog) = (self.take_whole(b'P')?, self.take_whole(b'E')?);
         let way = self.take_whole(b'L')?.unwrap_or(0);
@@ -69,6 +69,6 @@ impl Step<'_, '_, '_> {
 
     fn lacks(&self, letter: u8) -> Fault {
         let message = format!("{} is missing", char::from(letter));
-        self.block.at_group(Group::Output, "nc-output", message)
+        self.block.at_group(Group::Output, Rule::Output, message)
     }
 }

@@ -3,6 +3,7 @@
 use super::step::Step;
 use crate::iso::language::block::Fault;
 use geom::Vec3;
+use program::Rule;
 
 /// How far the lines may lie from the spline, mm.
 const TOLERANCE: f64 = 0.0005;
@@ -25,7 +26,7 @@ impl Step<'_, '_, '_> {
         }
         if start.is_nan() {
             let message = "a spline, and where the tool stands is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
+            return Err(self.block.whole(Rule::UnknownPosition, message));
         }
         self.feed_for_cut()?;
         let (i, j) = (self.take_length(b'I')?, self.take_length(b'J')?);
@@ -76,6 +77,6 @@ impl Step<'_, '_, '_> {
     }
 
     fn wrong_spline(&self, message: &str) -> Fault {
-        self.block.whole("nc-spline", message)
+        self.block.whole(Rule::Spline, message)
     }
 }

@@ -6,6 +6,7 @@ use crate::iso::dialects::facts::{AtEnd, Facts, FeedMeaning, FeedUnit};
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
 use crate::{Settings, WholeNumbers};
+use program::Rule;
 use program::{Coolant, Feed, PathMode, Spindle, WorkOffset};
 
 /// A virtual control: its dialect, its axes and its state.
@@ -110,7 +111,7 @@ impl Step<'_, '_, '_> {
         let commands = self.block.commands() + usize::from(self.block.has(b'T'));
         if commands > 1 + usize::from(others) {
             let message = "this control takes one command a line";
-            return Err(self.block.whole("nc-many-commands", message));
+            return Err(self.block.whole(Rule::ManyCommands, message));
         }
         Ok(())
     }
@@ -123,7 +124,7 @@ impl Step<'_, '_, '_> {
         }
         if self.block.m_count > 1 {
             let message = "this control runs one M function a block (FANUC: parameter 3404#7)";
-            let fault = self.block.whole("nc-many-m", message);
+            let fault = self.block.whole(Rule::MFunction, message);
             return Err(fault.help("write each in a block of its own").into());
         }
         let drills = match self.block.g(Group::Cycle) {
@@ -139,7 +140,7 @@ impl Step<'_, '_, '_> {
                 matches!(self.block.m(group), Some(M::SpindleOff | M::CoolantOff | M::Orient));
             if off && cuts && moves {
                 let message = "whether this acts before or after the cut is up to the machine";
-                let fault = self.block.at_group(group, "nc-m-beside-cut", message);
+                let fault = self.block.at_group(group, Rule::MFunction, message);
                 return Err(fault.help("write it in a block of its own").into());
             }
         }
@@ -168,7 +169,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         let inches = self.inches_of_feed()?;
         if word.value <= 0.0 {
-            return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
+            return Err(self.block.at_word(b'F', Rule::Feed, "the feed must be greater than 0"));
         }
         self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
@@ -189,7 +190,7 @@ impl Step<'_, '_, '_> {
         let rate = if thousandths { value / 1000.0 } else { value };
         if !(0.001..=9999.999).contains(&rate) {
             let message = "F takes 0.001 to 9999.999 in G93";
-            return Err(self.block.at_word(b'F', "nc-feed", message));
+            return Err(self.block.at_word(b'F', Rule::Feed, message));
         }
         self.state.f = Some(value);
         let feed = Feed::InverseTime(rate);
@@ -210,7 +211,7 @@ impl Step<'_, '_, '_> {
             FeedUnit::OfFirst if before.is_none() => Ok(Some(inches)),
             _ => {
                 let message = "F in the block that changes the units counts in those of before";
-                let fault = self.block.at_word(b'F', "nc-feed", message);
+                let fault = self.block.at_word(b'F', Rule::Feed, message);
                 Err(fault.help("write G20 or G21 in a block before").into())
             }
         }
@@ -224,7 +225,7 @@ impl Step<'_, '_, '_> {
         self.surface_speed()?;
         let Some(word) = self.block.take(b'S') else { return Ok(()) };
         if word.value < 0.0 {
-            return Err(self.block.at_word(b'S', "nc-spindle", "the speed is below 0"));
+            return Err(self.block.at_word(b'S', Rule::Spindle, "the speed is below 0"));
         }
         self.state.speed = Some(word.value);
         if self.state.surface.is_some() {
@@ -247,7 +248,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         };
         let wrong = |step: &Self, message| {
-            Err(step.block.at_group(Group::SpindleMode, "nc-spindle", message))
+            Err(step.block.at_group(Group::SpindleMode, Rule::Spindle, message))
         };
         // `rs274` takes G97 without S, and does not say how fast the spindle then turns.
         if !self.block.has(b'S') && (constant || self.state.surface.is_some()) {
@@ -267,7 +268,7 @@ impl Step<'_, '_, '_> {
         }
         let most = self.block.take(b'D').map_or(f64::INFINITY, |word| word.value);
         if most <= 0.0 {
-            return Err(self.block.at_word(b'D', "nc-spindle", "the most speed D is above 0"));
+            return Err(self.block.at_word(b'D', Rule::Spindle, "the most speed D is above 0"));
         }
         self.state.surface = Some(most);
         Ok(())
@@ -283,12 +284,12 @@ impl Step<'_, '_, '_> {
 
     fn spindle_and_coolant(&mut self) -> Result<(), Fault> {
         if self.block.take(b'$').is_some_and(|word| word.value != 0.0) {
-            return Err(self.block.at_word(b'$', "nc-spindle", "there is one spindle, $0"));
+            return Err(self.block.at_word(b'$', Rule::Spindle, "there is one spindle, $0"));
         }
         let speed = || {
             self.state.surface.or(self.state.speed).ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";
-                let fault = self.block.at_group(Group::Spindle, "nc-spindle", message);
+                let fault = self.block.at_group(Group::Spindle, Rule::Spindle, message);
                 Fault::from(fault.help("write S beside M3 or M4, or before"))
             })
         };
@@ -344,7 +345,7 @@ impl Step<'_, '_, '_> {
                 Some(M::IdleTime) if self.block.take(b'S').is_none() => {
                     let message =
                         "the axes are let go: where the tool stands afterwards is not known";
-                    return Err(self.block.at_group(group, "nc-unknown-position", message));
+                    return Err(self.block.at_group(group, Rule::UnknownPosition, message));
                 }
                 _ => {}
             }
@@ -374,7 +375,7 @@ impl Step<'_, '_, '_> {
         let adds = coolant == Coolant::FloodAndMist || running == Coolant::Off;
         if coolant != Coolant::Off && !adds {
             let message = "one coolant runs already: whether both then run is up to the machine";
-            let fault = self.block.at_group(Group::Coolant, "nc-coolant", message);
+            let fault = self.block.at_group(Group::Coolant, Rule::Coolant, message);
             return Err(fault.help("write M9 first").into());
         }
         self.state.coolant = coolant;
@@ -405,8 +406,8 @@ impl Step<'_, '_, '_> {
                 self.actions.push(Action::Dwell(seconds));
                 Ok(())
             }
-            Some(_) => Err(self.block.whole("nc-dwell", "the dwell is below 0")),
-            None => Err(self.block.at_group(Group::OneShot, "nc-dwell", "G4 and no time")),
+            Some(_) => Err(self.block.whole(Rule::Dwell, "the dwell is below 0")),
+            None => Err(self.block.at_group(Group::OneShot, Rule::Dwell, "G4 and no time")),
         }
     }
 
@@ -424,7 +425,7 @@ impl Step<'_, '_, '_> {
                 let lines = self.take_length(b'Q')?;
                 if [corner, lines].iter().flatten().any(|mm| *mm < 0.0) {
                     let message = "P and Q of G64 are distances, not below 0";
-                    return Err(self.block.at_group(Group::Path, "nc-path-mode", message));
+                    return Err(self.block.at_group(Group::Path, Rule::PathMode, message));
                 }
                 match corner {
                     Some(corner) if corner > 0.0 => {
@@ -464,7 +465,7 @@ impl Step<'_, '_, '_> {
             self.not_compensated("a change of units")?;
             if self.facts.motion.units_at_start && self.state.moved {
                 let message = "this control takes G20 or G21 before the first move only";
-                return Err(self.block.at_group(Group::Units, "nc-units", message));
+                return Err(self.block.at_group(Group::Units, Rule::Units, message));
             }
             self.state.inches = Some(inches);
         }
@@ -502,7 +503,7 @@ impl Step<'_, '_, '_> {
     /// `G40` to `G42` with the register D; LinuxCNC's `G41.1`, `G42.1` with D as the diameter.
     fn compensation(&mut self, g: G) -> Result<(), Fault> {
         let refused = |step: &Self, message: String| {
-            Err(step.block.at_group(Group::Compensation, "nc-compensation", message))
+            Err(step.block.at_group(Group::Compensation, Rule::Compensation, message))
         };
         let (side, mut register, radius) = match g {
             G::Compensation(side) => (side, None, None),
@@ -547,7 +548,7 @@ impl Step<'_, '_, '_> {
                 | (Some(M::ThroughOff), Coolant::Through) => self.cool(Coolant::Off)?,
                 (Some(M::CoolantOff), Coolant::Through) => {
                     let message = "M9 leaves the coolant through the tool on; write M89";
-                    return Err(self.block.at_group(Group::Coolant, "nc-coolant", message));
+                    return Err(self.block.at_group(Group::Coolant, Rule::Coolant, message));
                 }
                 _ => {}
             }
@@ -557,7 +558,7 @@ impl Step<'_, '_, '_> {
                 if self.state.spindle != Spindle::Off {
                     let message =
                         "a tool is changed by hand while the spindle turns; write M5 first";
-                    return Err(self.block.at_group(Group::Flow, "nc-tool", message));
+                    return Err(self.block.at_group(Group::Flow, Rule::Tool, message));
                 }
                 self.stops_while_running();
                 self.change_by_hand();
@@ -627,13 +628,13 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let message = format!("{what} while radius compensation is on; cancel it with G40 first");
-        Err(self.block.whole("nc-compensation", message))
+        Err(self.block.whole(Rule::Compensation, message))
     }
 
     pub(super) fn has_rotary_axes(&self, group: Group) -> Result<(), Fault> {
         if self.axes.contains(&true) {
             return Ok(());
         }
-        Err(self.block.at_group(group, "nc-axis", "the machine has no rotary axis"))
+        Err(self.block.at_group(group, Rule::UnknownAxis, "the machine has no rotary axis"))
     }
 }

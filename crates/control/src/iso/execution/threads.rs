@@ -3,7 +3,7 @@
 use super::step::Step;
 use crate::event::{Action, Thread};
 use crate::iso::language::block::Fault;
-use program::{Cycle, CycleKind, Spindle};
+use program::{Cycle, CycleKind, Rule, Spindle};
 
 impl Step<'_, '_, '_> {
     /// `G33`: a straight line in step with the spindle. LinuxCNC's K counts along the way, FANUC's F
@@ -15,11 +15,11 @@ impl Step<'_, '_, '_> {
         }
         self.not_compensated("a thread")?;
         if target.named >= 8 {
-            return Err(self.block.whole("nc-thread", "a rotary axis in a thread"));
+            return Err(self.block.whole(Rule::Thread, "a rotary axis in a thread"));
         }
         if self.facts.motion.threads_along_one_axis && target.named.count_ones() > 1 {
             let message = "a thread along more than one axis";
-            return Err(self.block.whole("nc-thread", message));
+            return Err(self.block.whole(Rule::Thread, message));
         }
         let pitch = self.pitch(if self.facts.feed.pitch_by_f { b'F' } else { b'K' })?;
         self.spindle_turns()?;
@@ -43,7 +43,7 @@ impl Step<'_, '_, '_> {
         let way = start - target.point;
         if start.is_nan() || way.truncate() != geom::Vec3::ZERO.truncate() || way.z <= 0.0 {
             let message = "G33.1 is followed straight down along Z from a known position only";
-            return Err(self.block.whole("nc-thread", message));
+            return Err(self.block.whole(Rule::Thread, message));
         }
         let cycle = Cycle {
             kind: CycleKind::Tap { pitch, left },
@@ -70,7 +70,7 @@ impl Step<'_, '_, '_> {
             _ => {
                 let message =
                     format!("a thread needs its pitch {}, greater than 0", char::from(letter));
-                Err(self.block.whole("nc-thread", message))
+                Err(self.block.whole(Rule::Thread, message))
             }
         }
     }
@@ -84,7 +84,7 @@ impl Step<'_, '_, '_> {
             Spindle::Clockwise(_) => Ok(false),
             Spindle::CounterClockwise(_) => Ok(true),
             Spindle::Off => {
-                Err(self.block.whole("nc-spindle", "a thread while the spindle stands"))
+                Err(self.block.whole(Rule::Spindle, "a thread while the spindle stands"))
             }
         }
     }

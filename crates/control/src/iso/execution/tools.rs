@@ -6,7 +6,7 @@ use crate::ToolData;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{G, Group, M, Plane, bit};
-use program::{Spindle, Tool};
+use program::{Rule, Spindle, Tool};
 
 /// What the program can know of the tool registers.
 #[derive(Clone, Debug, Default)]
@@ -66,7 +66,7 @@ impl Step<'_, '_, '_> {
             Some(_) => {
                 let Some(number) = self.take_whole(b'Q')? else {
                     let message = "M61 needs Q, the number of the tool that is in";
-                    return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+                    return Err(self.block.at_group(Group::ToolChange, Rule::Tool, message));
                 };
                 self.actions.push(Action::Risk(Risk::TOOL_DECLARED.into()));
                 self.put_in(number);
@@ -82,11 +82,11 @@ impl Step<'_, '_, '_> {
     fn change_tool(&mut self) -> Result<(), Fault> {
         let Some(number) = self.state.selected else {
             let message = "M6 and no tool has been named by T";
-            return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+            return Err(self.block.at_group(Group::ToolChange, Rule::Tool, message));
         };
         if number == 0 && self.facts.tools.numbered {
             let message = "the tool has no number";
-            return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+            return Err(self.block.at_group(Group::ToolChange, Rule::Tool, message));
         }
         self.not_compensated("a tool change")?;
         self.looks_ahead_no_more();
@@ -122,7 +122,7 @@ impl Step<'_, '_, '_> {
             let stays = self.block.g(Group::Compensation).is_none();
             if compensates && stays && self.state.registers.d != Some(register) {
                 let message = "another radius while radius compensation is on";
-                let fault = self.block.at_word(b'D', "nc-compensation", message);
+                let fault = self.block.at_word(b'D', Rule::Compensation, message);
                 return Err(fault.help("write it beside G41 or G42, after G40").into());
             }
             self.state.registers.d = Some(register);
@@ -168,14 +168,14 @@ impl Step<'_, '_, '_> {
                 self.has_rotary_axes(Group::Length)?;
                 if self.state.tilt != Tilt::None || self.state.frames.is_transformed() {
                     let message = "cancel the turned, scaled or tilted coordinates first";
-                    return Err(self.block.at_group(Group::Length, "nc-tilt", message));
+                    return Err(self.block.at_group(Group::Length, Rule::TiltedPlane, message));
                 }
                 Length::Center(self.length_register()?.ok_or_else(|| self.no_register())?)
             }
             Some(G::DynamicLength) => {
                 if self.block.g(Group::Motion).is_some() || !self.block.has(b'Z') {
                     let message = "G43.1 takes Z alone, and no motion beside it";
-                    return Err(self.block.at_group(Group::Length, "nc-length", message));
+                    return Err(self.block.at_group(Group::Length, Rule::LengthOffset, message));
                 }
                 // No program has measured it.
                 self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
@@ -248,14 +248,18 @@ impl Step<'_, '_, '_> {
     }
 
     fn no_register(&self) -> Fault {
-        self.block.at_group(Group::Length, "nc-length", "the length offset needs its register H")
+        self.block.at_group(
+            Group::Length,
+            Rule::LengthOffset,
+            "the length offset needs its register H",
+        )
     }
 
     /// `G10 L1` and `L10` to `L13`: a length or a radius into the register P.
     pub(super) fn write_tool(&mut self, kind: u32) -> Result<(), Fault> {
         let Some(register) = self.take_whole(b'P')? else {
             let message = "P names the tool whose data is written";
-            return Err(self.block.at_group(Group::OneShot, "nc-data", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Data, message));
         };
         let in_use = match self.state.length {
             Length::Register(active) | Length::Center(active) => active == register,
@@ -272,17 +276,17 @@ impl Step<'_, '_, '_> {
             12 | 13 if !ngc => (None, self.take_length(b'R')?),
             _ => {
                 let message = format!("G10 L{kind} is not known to this control");
-                return Err(self.block.at_word(b'L', "nc-data", message));
+                return Err(self.block.at_word(b'L', Rule::Data, message));
             }
         };
         if length.is_none() && radius.is_none() {
             let message = "no word says what is written";
-            return Err(self.block.at_group(Group::OneShot, "nc-data", message));
+            return Err(self.block.at_group(Group::OneShot, Rule::Data, message));
         }
         if let Some(length) = length {
             if in_use {
                 let message = format!("the register {register} is written while it is in use");
-                let fault = self.block.at_group(Group::OneShot, "nc-data", message);
+                let fault = self.block.at_group(Group::OneShot, Rule::Data, message);
                 return Err(fault.help("write it before G43, or cancel with G49 first").into());
             }
             self.state.registers.write_length(register, length);
@@ -302,7 +306,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let message = "compensation with a radius that the program has written by G10";
-        let fault = self.block.at_group(Group::Compensation, "nc-compensation", message);
+        let fault = self.block.at_group(Group::Compensation, Rule::Compensation, message);
         Err(fault.help("put the radius into the tool table").into())
     }
 }

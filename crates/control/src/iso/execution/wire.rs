@@ -6,6 +6,7 @@ use crate::event::{Action, Orientation};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{G, Group, M, Motion, Side};
 use geom::{Vec3, direction};
+use program::Rule;
 
 /// The wire as the control knows it.
 #[derive(Clone, Copy, Debug)]
@@ -51,13 +52,13 @@ impl Step<'_, '_, '_> {
         };
         if b"XYUV".iter().any(|&letter| self.block.has(letter)) {
             let message = "the wire is threaded or cut in a block that moves: before or after it?";
-            return Err(self.block.at_group(Group::Wire, "nc-wire", message));
+            return Err(self.block.at_group(Group::Wire, Rule::Wire, message));
         }
         if action == Action::CutWire {
             self.not_compensated("the end of the wire")?;
             if self.state.wire.is_some_and(|wire| wire.taper != 0.0) {
                 let message = "the end of the wire while the control leans it; write G50 first";
-                return Err(self.block.at_group(Group::Wire, "nc-taper", message));
+                return Err(self.block.at_group(Group::Wire, Rule::Taper, message));
             }
         }
         self.stood();
@@ -75,7 +76,7 @@ impl Step<'_, '_, '_> {
                 _ => {
                     let letter = char::from(letter);
                     let message = format!("G51 and G52 need their angle {letter}, 0 to 90 degrees");
-                    return Err(self.block.at_group(Group::Taper, "nc-taper", message));
+                    return Err(self.block.at_group(Group::Taper, Rule::Taper, message));
                 }
             };
         }
@@ -102,7 +103,7 @@ impl Step<'_, '_, '_> {
         if named == 0 {
             return Ok(0);
         }
-        let refused = |message| Err(self.block.whole("nc-wire", message));
+        let refused = |message| Err(self.block.whole(Rule::Wire, message));
         let Some(height) = wire.upper_plane else {
             return refused("U and V, and the height of the upper plane is not known");
         };

@@ -10,6 +10,7 @@ use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::parameters::Locals;
 use crate::iso::language::words::{G, Group, M};
+use program::Rule;
 
 /// How many calls LinuxCNC nests (`INTERP_SUB_ROUTINE_LEVELS` less that of the program).
 const NGC_CALLS: usize = 9;
@@ -90,7 +91,7 @@ impl<'a> Run<'a, '_> {
     /// The subprogram of `M98 P L` and how often it is run.
     pub(super) fn called_program(&mut self) -> Result<(Place<'a>, u32), Fault> {
         let fault =
-            |block: &Block, message: String| block.at_group(Group::Flow, "nc-call", message);
+            |block: &Block, message: String| block.at_group(Group::Flow, Rule::Call, message);
         let Some(program) = self.whole_word(b'P')? else {
             return Err(fault(&self.block, "M98 needs P, the number of the subprogram".into()));
         };
@@ -128,7 +129,7 @@ impl<'a> Run<'a, '_> {
             Some(value) => Ok(Some(value)),
             None => {
                 let message = format!("{} must be a whole number", char::from(letter));
-                Err(self.block.at_word(letter, "nc-number", message))
+                Err(self.block.at_word(letter, Rule::Number, message))
             }
         }
     }
@@ -137,7 +138,7 @@ impl<'a> Run<'a, '_> {
     pub(super) fn macro_call(&mut self) -> Result<(), Fault> {
         self.flows = true;
         let fault =
-            |block: &Block, message: String| block.at_group(Group::Macro, "nc-call", message);
+            |block: &Block, message: String| block.at_group(Group::Macro, Rule::Call, message);
         let Some(program) = self.whole_word(b'P')? else {
             return Err(fault(&self.block, "a macro call needs P, the number of the macro".into()));
         };
@@ -179,7 +180,7 @@ impl<'a> Run<'a, '_> {
             };
             let Some(place) = locals.get_mut(variable) else {
                 let message = format!("{} is no argument of a macro", char::from(letter));
-                return Err(self.block.at_group(Group::Macro, "nc-call", message));
+                return Err(self.block.at_group(Group::Macro, Rule::Call, message));
             };
             *place = Some(value);
         }
@@ -200,7 +201,7 @@ impl<'a> Run<'a, '_> {
         }
         let (place, turns, locals) = (modal.place, modal.turns, modal.locals);
         self.call(Kind::Macro { modal: true }, place, turns, Some(locals))
-            .map_err(|message| self.block.whole("nc-call", message))
+            .map_err(|message| self.block.whole(Rule::Call, message))
     }
 
     /// Calls what begins at `place`, `turns` times, with these local values or those of the caller.
@@ -247,7 +248,7 @@ impl<'a> Run<'a, '_> {
         let begin = self.frames.last().map_or(self.here.at, |frame| frame.begin.at);
         let read = self.here.at.saturating_sub(begin);
         let counted = self.channel.budget.again(read);
-        counted.map_err(|message| self.at_line("nc-endless", message))?;
+        counted.map_err(|message| self.at_line(Rule::Endless, message))?;
         let modes = self.frame().modes.filter(|modes| modes.until_return);
         let Some(frame) = (if self.frames.len() > 1 { self.frames.pop() } else { None }) else {
             return Ok(());
@@ -267,7 +268,7 @@ impl<'a> Run<'a, '_> {
         }
         if frame.turns > 1 {
             let again = self.call(frame.kind, frame.begin, frame.turns - 1, frame.locals);
-            return again.map_err(|message| self.block.whole("nc-call", message));
+            return again.map_err(|message| self.block.whole(Rule::Call, message));
         }
         Ok(())
     }
@@ -275,7 +276,8 @@ impl<'a> Run<'a, '_> {
     /// `M99`: to the caller; with P to a block of its.
     pub(super) fn back(&mut self, label: Option<u32>) -> Result<(), Fault> {
         self.flows = true;
-        let fault = |run: &Self, message: &str| run.block.at_group(Group::Flow, "nc-call", message);
+        let fault =
+            |run: &Self, message: &str| run.block.at_group(Group::Flow, Rule::Call, message);
         match (self.kind(), label) {
             (Kind::Main, None) if self.language == Language::Ngc => {
                 Err(fault(self, "M99 in the program itself runs it again without end; write M2"))

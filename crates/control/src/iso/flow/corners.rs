@@ -12,7 +12,7 @@ use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::corner::{self, Element, Misfit, Shape};
 use geom::Vec3;
-use program::{Diagnostic, Feed};
+use program::{Diagnostic, Feed, Rule};
 
 /// Two ways whose directions differ by less make no corner, degrees (the same chapter, "Travel distance 0").
 const STRAIGHT_ON: f64 = 1.0;
@@ -49,7 +49,7 @@ impl Run<'_, '_> {
                         "F changes behind the corner of line {}: how fast that is cut is not known",
                         held.line
                     );
-                    let fault = self.block.whole("nc-corner", message);
+                    let fault = self.block.whole(Rule::Corner, message);
                     return Err(fault.help("write F in the block with the corner").into());
                 }
                 self.actions.push(action);
@@ -81,7 +81,7 @@ impl Run<'_, '_> {
         up: Vec3,
     ) -> Result<(), Fault> {
         let (mut first, line) = (held.action.clone(), held.line);
-        let fault = |run: &Self, message: String| run.block.whole("nc-corner", message);
+        let fault = |run: &Self, message: String| run.block.whole(Rule::Corner, message);
         if up != held.up || cut(&first).is_none_or(|(at, _)| at.orientation != end.orientation) {
             let message = format!(
                 "the plane or the tool axis changes at the corner of line {line} (alarm PS0051)"
@@ -137,7 +137,7 @@ impl Run<'_, '_> {
     fn has_a_plane(&self, element: &Element, up: Vec3) -> Result<(), Fault> {
         let state = &self.control.state;
         let transform = &state.frames.transform;
-        let fault = |message: &str| Err(self.block.whole("nc-corner", message));
+        let fault = |message: &str| Err(self.block.whole(Rule::Corner, message));
         if transform.turn.is_some()
             || transform.scale.is_some()
             || transform.mirror.iter().any(Option::is_some)
@@ -169,10 +169,10 @@ impl Run<'_, '_> {
             fault.at(line, text, word.start as usize, word.end as usize).into()
         };
         if word.value < 0.0 {
-            return Err(at("nc-corner", "the size of a corner has no sign"));
+            return Err(at(Rule::Corner, "the size of a corner has no sign"));
         }
         let Some(inches) = self.control.state.inches else {
-            let fault = at("nc-units", "a length, and neither G20 nor G21 has been given");
+            let fault = at(Rule::Units, "a length, and neither G20 nor G21 has been given");
             return Err(fault.help("write G20 or G21").into());
         };
         let whole_numbers = self.settings.setup.whole_numbers;
@@ -184,7 +184,7 @@ impl Run<'_, '_> {
             WholeNumbers::Unknown => {
                 let message = "the corner has no decimal point: units or least increments, as the \
                                machine is set";
-                let fault = at("nc-decimal-point", message);
+                let fault = at(Rule::DecimalPoint, message);
                 let help = WHOLE_NUMBERS_HELP;
                 return Err(fault.help(help).into());
             }
@@ -203,7 +203,7 @@ impl Run<'_, '_> {
             ),
             None => String::from("a corner (,C ,R) belongs to a cut: G1, G2 or G3"),
         };
-        self.block.whole("nc-corner", message)
+        self.block.whole(Rule::Corner, message)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::iso::language::expression::{Reader, Target};
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::decimal;
 use crate::kernel::flow::{self, Labels, Place, Structures};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// What begins a statement.
 const KEYWORDS: [(&[u8], Keyword); 10] = [
@@ -114,7 +114,7 @@ impl Numbers {
                 found.blocks.add(number, place);
             }
             let fault = |message: &str| -> Fault {
-                let fault = Diagnostic::error("nc-macro", message);
+                let fault = Diagnostic::error(Rule::Macro, message);
                 fault.at(place.line, content, start, content.len()).into()
             };
             if let Some(b'O' | b':') = content.get(start) {
@@ -162,7 +162,7 @@ impl Numbers {
         let place = self.loops[begun].place;
         let rest = text.get(place.at..).unwrap_or_default();
         let content = rest.split(|&b| b == b'\n').next().unwrap_or_default();
-        let fault = Diagnostic::error("nc-macro", "the DO has no END");
+        let fault = Diagnostic::error(Rule::Macro, "the DO has no END");
         Err(fault.at(place.line, content, 0, content.len()).into())
     }
 
@@ -280,7 +280,7 @@ impl<'a> Run<'a, '_> {
             3000 => {
                 let message =
                     format!("the program raises alarm {}: {}", 3000.0 + code, self.comment());
-                Err(Diagnostic::error("nc-alarm", message).at(line, text, at, text.len()).into())
+                Err(Diagnostic::error(Rule::Alarm, message).at(line, text, at, text.len()).into())
             }
             3006 => {
                 if self.control.state.is_running() && self.facts.functions.stop_leaves_on {
@@ -334,11 +334,11 @@ impl<'a> Run<'a, '_> {
         let numbers = self.here.source.numbers(self.settings.setup.block_delete)?;
         let Some(place) = numbers.block(label, from) else {
             let message = format!("there is no block N{label} in this program");
-            return Err(self.at_line("nc-macro", message));
+            return Err(self.at_line(Rule::Macro, message));
         };
         if !numbers.loops.may_jump(from, place.at) {
             let message = format!("N{label} is inside of a loop: a jump into it is not allowed");
-            return Err(self.at_line("nc-macro", message));
+            return Err(self.at_line(Rule::Macro, message));
         }
         self.jump(place)
     }
@@ -397,7 +397,7 @@ impl<'a> Run<'a, '_> {
                     "argument {} has no decimal point: units or increments, as the machine is set",
                     char::from(word.letter)
                 );
-                let fault = self.at_line("nc-decimal-point", message);
+                let fault = self.at_line(Rule::DecimalPoint, message);
                 Err(fault.help(WHOLE_NUMBERS_HELP).into())
             }
         }
@@ -416,7 +416,7 @@ impl<'a> Run<'a, '_> {
                     "argument {} counts increments, and neither G20 nor G21 has been given",
                     char::from(word.letter)
                 );
-                return Err(self.at_line("nc-units", message).help("write G20 or G21").into());
+                return Err(self.at_line(Rule::Units, message).help("write G20 or G21").into());
             }
             _ => {}
         }
@@ -424,6 +424,6 @@ impl<'a> Run<'a, '_> {
             "argument {} has no decimal point: what it counts depends on the machine",
             char::from(word.letter)
         );
-        Err(self.at_line("nc-decimal-point", message).help("write the point").into())
+        Err(self.at_line(Rule::DecimalPoint, message).help("write the point").into())
     }
 }

@@ -4,7 +4,7 @@ use super::run::Run;
 use crate::iso::execution::state::{Length, State};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, G, Group, M, Plane, Side};
-use program::{Compensation, Coolant, Spindle};
+use program::{Compensation, Coolant, Rule, Spindle};
 
 /// What is kept (LinuxCNC manual, "M70 Save Modal State"): the motion word is not.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +61,7 @@ impl Run<'_, '_> {
                 Some(modes) => self.restore(&modes)?,
                 None => {
                     let message = "M72, and no M70 or M73 has kept the modes";
-                    return Err(self.block.at_group(Group::Modes, "nc-modes", message));
+                    return Err(self.block.at_group(Group::Modes, Rule::Modes, message));
                 }
             },
             _ => {}
@@ -88,7 +88,7 @@ impl Run<'_, '_> {
         };
         if let Some(lost) = lost {
             let message = format!("{lost} has changed since it was kept, and is not brought back");
-            return Err(self.block.whole("nc-modes", message));
+            return Err(self.block.whole(Rule::Modes, message));
         }
         self.block.clear(line, text);
         let block = &mut self.block;

@@ -7,7 +7,7 @@ use super::source;
 use crate::iso::language::block::Fault;
 use crate::kernel::decimal;
 use crate::kernel::flow::{self, Place, Structures};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 
 /// How deep branches and loops may nest.
@@ -188,7 +188,7 @@ impl OWords {
                 continue;
             }
             let fault = |message: &str| -> Fault {
-                let fault = Diagnostic::error("nc-o-word", message);
+                let fault = Diagnostic::error(Rule::OWord, message);
                 fault.at(place.line, content, o, content.len()).into()
             };
             let (name, keyword, rest) = parse(content, o).map_err(fault)?;
@@ -203,7 +203,7 @@ impl OWords {
             let mark = &found.words[begun];
             let content = text.get(mark.place.at..mark.after.at).unwrap_or_default();
             let content = content.trim_ascii_end();
-            let fault = Diagnostic::error("nc-o-word", "what begins here has no end");
+            let fault = Diagnostic::error(Rule::OWord, "what begins here has no end");
             return Err(fault.at(mark.place.line, content, 0, content.len()).into());
         }
         Ok(found)

@@ -19,7 +19,7 @@ use crate::iso::language::expression::Reader;
 use crate::iso::language::parameters::{Parameters, Values};
 use crate::iso::language::words::{G, Group, M};
 use crate::kernel::{Channel, flow};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 use std::ptr;
 
@@ -125,7 +125,7 @@ impl<'a, 's> Run<'a, 's> {
     /// The text has ended: so has the program, but not one that it has called.
     fn end_of_text(&mut self) -> Result<(), Fault> {
         if self.frames.len() == 1 {
-            self.control.ends_no_curve().map_err(|message| self.at_line("nc-spline", message))?;
+            self.control.ends_no_curve().map_err(|message| self.at_line(Rule::Spline, message))?;
             if self.facts.syntax.ending == Ending::Text && !self.control.state.ended {
                 let line = self.here.line.max(1);
                 for risk in self.control.state.left_on(self.facts) {
@@ -140,7 +140,7 @@ impl<'a, 's> Run<'a, 's> {
             _ => "M99",
         };
         let message = format!("the called program ends without {end}");
-        Err(self.here.source.located(self.at_line("nc-call", message)))
+        Err(self.here.source.located(self.at_line(Rule::Call, message)))
     }
 
     /// Whether the plain line `text` is a straight move behind another one: that has then been executed.
@@ -206,7 +206,7 @@ impl<'a, 's> Run<'a, 's> {
         let alone = text[1..].iter().all(|b| matches!(b, b' ' | b'\t'));
         if !alone || self.here.percent_signs > 2 {
             let message = "a line with % holds nothing else, and a program has two at most";
-            let fault = Diagnostic::error("nc-syntax", message);
+            let fault = Diagnostic::error(Rule::Syntax, message);
             return Err(fault.at(line, text, 0, text.len()).into());
         }
         if self.here.percent_signs == 2 && self.frames.len() > 1 {
@@ -228,7 +228,7 @@ impl<'a, 's> Run<'a, 's> {
         for &(target, value) in &self.block.assignments {
             self.flows = true;
             let set = self.parameters.set(target, value);
-            set.map_err(|message| self.block.whole("nc-parameter", message))?;
+            set.map_err(|message| self.block.whole(Rule::Parameter, message))?;
         }
         Ok(())
     }
@@ -237,7 +237,7 @@ impl<'a, 's> Run<'a, 's> {
     fn execute(&mut self) -> Result<(), Fault> {
         if self.control.state.ended || self.here.percent_signs == 2 {
             let message = "the program has ended before this block";
-            return Err(self.block.whole("nc-after-end", message));
+            return Err(self.block.whole(Rule::AfterEnd, message));
         }
         self.begin_program()?;
         if matches!(self.block.g(Group::Macro), Some(G::MacroCall { .. })) {
@@ -269,7 +269,7 @@ impl<'a, 's> Run<'a, 's> {
             let locals = None;
             return self
                 .call(Kind::Subprogram, place, turns, locals)
-                .map_err(|message| self.block.at_group(Group::Flow, "nc-call", message));
+                .map_err(|message| self.block.at_group(Group::Flow, Rule::Call, message));
         }
         if flow == Some(M::Return) {
             return self.back(back);
@@ -288,12 +288,12 @@ impl<'a, 's> Run<'a, 's> {
                 Kind::Main => "another program begins here, and this one has no M30 before",
                 _ => "another program begins here, and the called one has no M99 before",
             };
-            return Err(self.block.at_word(b'O', "nc-program-number", message));
+            return Err(self.block.at_word(b'O', Rule::ProgramNumber, message));
         }
         match self.block.take(b'O') {
             Some(word) if arithmetic::whole(word.value).is_none() || word.point => {
                 let message = "O must be a whole number";
-                Err(self.block.at_word(b'O', "nc-number", message))
+                Err(self.block.at_word(b'O', Rule::Number, message))
             }
             _ => Ok(()),
         }
@@ -304,7 +304,7 @@ impl<'a, 's> Run<'a, 's> {
         let again = self.here.at.saturating_sub(to.at);
         (self.here.at, self.here.line) = (to.at, to.line - 1);
         let counted = self.channel.budget.again(again);
-        counted.map_err(|message| self.at_line("nc-endless", message))
+        counted.map_err(|message| self.at_line(Rule::Endless, message))
     }
 
     /// What stands behind a statement: nothing but comments.
@@ -405,14 +405,14 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// A finding about the line that is run.
-    pub(super) fn at_line(&self, rule: &'static str, message: impl Into<String>) -> Fault {
+    pub(super) fn at_line(&self, rule: Rule, message: impl Into<String>) -> Fault {
         let (text, line) = self.text;
         Diagnostic::error(rule, message).at(line, text, 0, text.len()).into()
     }
 
     /// A finding in the line `text` from byte `at` on.
     pub(super) fn wrong(&self, text: &[u8], at: usize, message: impl Into<String>) -> Fault {
-        let rule = if self.language == Language::Ngc { "nc-o-word" } else { "nc-macro" };
+        let rule = if self.language == Language::Ngc { Rule::OWord } else { Rule::Macro };
         Diagnostic::error(rule, message).at(self.here.line, text, at, text.len()).into()
     }
 }

@@ -7,7 +7,7 @@ use super::words::{G, Group, LETTERS, M, bit, index, set};
 use crate::Settings;
 use crate::iso::dialects::facts::{BlockDelete, Brackets, CornerWords, Facts, Language, Semicolon};
 use crate::kernel::decimal::{self, Decimal};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
 /// kilometre long.
@@ -198,7 +198,7 @@ impl<'a> Block<'a> {
                 // FreeCAD itself passes over it and takes the words behind it.
                 b';' if facts.syntax.semicolon == Semicolon::Refused => {
                     let message = "FreeCAD knows no comment behind ;";
-                    let fault = self.fault("nc-syntax", message, at, text.len());
+                    let fault = self.fault(Rule::Syntax, message, at, text.len());
                     return Err(fault.help("put it into ( ) as a command of its own").into());
                 }
                 b';' => {
@@ -267,11 +267,11 @@ impl<'a> Block<'a> {
             Some(&letter @ (b'C' | b'R')) => letter,
             Some(b'A') => {
                 let message = "a line by its angle (,A) is not followed; write its end";
-                return Err(self.fault("nc-corner", message, at, place + 1));
+                return Err(self.fault(Rule::Corner, message, at, place + 1));
             }
             _ => {
                 let message = "behind a comma stands C or R: a chamfer or a rounding";
-                return Err(self.fault("nc-syntax", message, at, place + 1));
+                return Err(self.fault(Rule::Syntax, message, at, place + 1));
             }
         };
         let number = self.text.get(from..).and_then(decimal::parse);
@@ -288,7 +288,7 @@ impl<'a> Block<'a> {
             }
         };
         if self.corner.replace(word).is_some() {
-            return Err(self.fault("nc-repeated-word", "a block has one corner", at, end));
+            return Err(self.fault(Rule::RepeatedWord, "a block has one corner", at, end));
         }
         Ok(end)
     }
@@ -321,7 +321,7 @@ impl<'a> Block<'a> {
             return Ok(());
         }
         let message = format!("the block has {length} characters, at most {longest}");
-        Err(self.fault("nc-long-block", message, 0, self.text.len()))
+        Err(self.fault(Rule::BlockLength, message, 0, self.text.len()))
     }
 
     /// Adds a word.
@@ -389,7 +389,7 @@ impl<'a> Block<'a> {
                 if letter == b'N' {
                     if self.started || word.point || word.value < 0.0 {
                         let message = "N is a whole number and stands first in its block";
-                        return Err(self.fault("nc-block-number", message, at, end));
+                        return Err(self.fault(Rule::BlockNumber, message, at, end));
                     }
                 } else {
                     self.pending |= letter_bit;
@@ -480,7 +480,7 @@ impl<'a> Block<'a> {
         // There it goes to the least increment (B-63684EN, 16.3), which is the machine's.
         if values.language() == Language::MacroB && [&b"ROUND"[..], b"RND"].iter().any(rounds) {
             let message = "ROUND in a word rounds to the least increment of the machine";
-            let fault = self.fault("nc-expression", message, at, reader.at);
+            let fault = self.fault(Rule::Expression, message, at, reader.at);
             let help = "round in a block before: in #1=ROUND[..] it gives a whole number";
             return Err(fault.help(help).into());
         }
@@ -515,7 +515,7 @@ impl<'a> Block<'a> {
                 b'(' => self.comment(at)?,
                 _ => {
                     let message = "; ends the block, and there is more behind it";
-                    let fault = self.fault("nc-syntax", message, at, self.text.len());
+                    let fault = self.fault(Rule::Syntax, message, at, self.text.len());
                     let help = "put a comment into ( ), and another block on a line of its own";
                     return Err(fault.help(help).into());
                 }
@@ -542,10 +542,11 @@ impl<'a> Block<'a> {
             }
             Some(n) => {
                 let place = at + 1 + n;
-                let fault = self.fault("nc-comment", "comments cannot be nested", place, place + 1);
+                let fault =
+                    self.fault(Rule::Comment, "comments cannot be nested", place, place + 1);
                 Err(fault.help("leave the inner brackets out, or write [ ]").into())
             }
-            None => Err(self.fault("nc-comment", "the comment has no end", at, self.text.len())),
+            None => Err(self.fault(Rule::Comment, "the comment has no end", at, self.text.len())),
         }
     }
 
@@ -657,7 +658,7 @@ impl<'a> Block<'a> {
         }
         let letter = LETTERS[self.pending.trailing_zeros() as usize % LETTERS.len()];
         let message = format!("nothing in the block uses {}", self.shown(letter));
-        Err(self.at_word(letter, "nc-unused-word", message))
+        Err(self.at_word(letter, Rule::UnusedWord, message))
     }
 }
 

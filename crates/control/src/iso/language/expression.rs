@@ -19,7 +19,7 @@ use super::parameters::Values;
 use crate::iso::dialects::facts::Language;
 use crate::kernel::decimal;
 use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// A calculated number; `None` is the null of a macro variable that holds nothing.
 pub(super) type Value = Option<f64>;
@@ -140,7 +140,7 @@ impl<'t, 'v> Reader<'t, 'v> {
         let value = self.value()?.unwrap_or(f64::NAN);
         whole(value).ok_or_else(|| {
             let message = format!("{what} must be a whole number, and it is {value}");
-            self.fault("nc-number", message, start)
+            self.fault(Rule::Number, message, start)
         })
     }
 
@@ -167,7 +167,7 @@ impl<'t, 'v> Reader<'t, 'v> {
         let start = self.at;
         self.at += 1;
         let target = self.target()?;
-        self.values.get(target).map_err(|message| self.fault("nc-parameter", message, start))
+        self.values.get(target).map_err(|message| self.fault(Rule::Parameter, message, start))
     }
 
     /// The word of `table` that stands here and its length. Macro B has no small letters.
@@ -190,7 +190,7 @@ impl<'t, 'v> Reader<'t, 'v> {
         };
         let Some((function, length)) = self.word(&FUNCTIONS).or_else(|| self.word(own)) else {
             let message = "no function of this control begins here";
-            return Err(self.fault("nc-expression", message, start));
+            return Err(self.fault(Rule::Expression, message, start));
         };
         self.at += length;
         self.open()?;
@@ -238,7 +238,7 @@ impl<'t, 'v> Reader<'t, 'v> {
         let exists = self.values.exists(target);
         exists
             .map(|exists| Some(truth(exists)))
-            .map_err(|message| self.fault("nc-parameter", message, start))
+            .map_err(|message| self.fault(Rule::Parameter, message, start))
     }
 
     /// # Errors
@@ -254,27 +254,22 @@ impl<'t, 'v> Reader<'t, 'v> {
             Ok(_) => "the result is beyond all numbers",
             Err(message) => message,
         };
-        Err(self.fault_between("nc-arithmetic", message, start, end))
+        Err(self.fault_between(Rule::Arithmetic, message, start, end))
     }
 
     /// A finding at what stands here.
     pub(crate) fn wrong(&self, message: impl Into<String>) -> Fault {
-        self.fault_between("nc-expression", message, self.at, self.at + 1)
+        self.fault_between(Rule::Expression, message, self.at, self.at + 1)
     }
 
     /// A finding about what has been read from `start` on.
-    pub(super) fn fault(
-        &self,
-        rule: &'static str,
-        message: impl Into<String>,
-        start: usize,
-    ) -> Fault {
+    pub(super) fn fault(&self, rule: Rule, message: impl Into<String>, start: usize) -> Fault {
         self.fault_between(rule, message, start, self.at.max(start + 1))
     }
 
     fn fault_between(
         &self,
-        rule: &'static str,
+        rule: Rule,
         message: impl Into<String>,
         start: usize,
         end: usize,

@@ -3,7 +3,7 @@
 use super::block::{Block, Fault, Word};
 use super::words::{Group, index};
 use crate::iso::dialects::facts::Language;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 impl Block<'_> {
     /// A word as it is written.
@@ -15,24 +15,14 @@ impl Block<'_> {
 
     /// A finding at the word of this letter.
     #[cold]
-    pub(crate) fn at_word(
-        &self,
-        letter: u8,
-        rule: &'static str,
-        message: impl Into<String>,
-    ) -> Fault {
+    pub(crate) fn at_word(&self, letter: u8, rule: Rule, message: impl Into<String>) -> Fault {
         let word = self.words[index(letter)];
         self.fault(rule, message, word.start as usize, word.end as usize)
     }
 
     /// A finding at the G or M word of this group; at the whole block where there is none.
     #[cold]
-    pub(crate) fn at_group(
-        &self,
-        group: Group,
-        rule: &'static str,
-        message: impl Into<String>,
-    ) -> Fault {
+    pub(crate) fn at_group(&self, group: Group, rule: Rule, message: impl Into<String>) -> Fault {
         if self.g(group).is_none() && self.m(group).is_none() {
             return self.whole(rule, message);
         }
@@ -42,14 +32,14 @@ impl Block<'_> {
 
     /// A finding about the whole block.
     #[cold]
-    pub(crate) fn whole(&self, rule: &'static str, message: impl Into<String>) -> Fault {
+    pub(crate) fn whole(&self, rule: Rule, message: impl Into<String>) -> Fault {
         self.fault(rule, message, 0, self.text.len())
     }
 
     #[cold]
     pub(super) fn fault(
         &self,
-        rule: &'static str,
+        rule: Rule,
         message: impl Into<String>,
         start: usize,
         end: usize,
@@ -68,13 +58,13 @@ impl Block<'_> {
             show(first.start as usize, first.end as usize),
             show(start, end)
         );
-        self.fault("nc-modal-group", message, start, end)
+        self.fault(Rule::ModalGroup, message, start, end)
     }
 
     #[cold]
     pub(super) fn repeated(&self, letter: u8, start: usize, end: usize) -> Fault {
         let message = format!("{} is given twice in the block", char::from(letter));
-        self.fault("nc-repeated-word", message, start, end)
+        self.fault(Rule::RepeatedWord, message, start, end)
     }
 
     #[cold]
@@ -86,7 +76,7 @@ impl Block<'_> {
         } else {
             format!("{} is no word of this control", char::from(letter))
         };
-        let fault = Diagnostic::error("nc-unknown-word", message);
+        let fault = Diagnostic::error(Rule::UnknownWord, message);
         let fault = match self.facts.why_refused(letter, word.value) {
             Some(reason) => fault.help(reason),
             None if letter == b'M' => fault.help(
@@ -109,7 +99,7 @@ impl Block<'_> {
             }
             _ => {
                 let message = format!("a number is missing after {}", char::from(letter));
-                self.fault("nc-number", message, at, from)
+                self.fault(Rule::Number, message, at, from)
             }
         }
     }
@@ -120,7 +110,7 @@ impl Block<'_> {
         let word = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
         let message = format!("{word} is no number: FreeCAD writes what it could not work out so");
         let help = "recompute the operation in FreeCAD, and look at what it is made from";
-        let found = Diagnostic::error("nc-number", message).help(help);
+        let found = Diagnostic::error(Rule::Number, message).help(help);
         found.at(self.line, self.text, start, end).into()
     }
 
@@ -148,7 +138,7 @@ impl Block<'_> {
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
-        let fault = self.fault("nc-syntax", message, at, at + 1);
+        let fault = self.fault(Rule::Syntax, message, at, at + 1);
         match byte {
             b'$' if syntax.console => {
                 fault.help("take it out, and give it by hand before the start").into()

@@ -5,6 +5,7 @@ use super::{SAME, error};
 use crate::event::Position;
 use crate::kernel::source::Fallible;
 use geom::{Element, Vec2};
+use program::Rule;
 
 /// The end of a contour that the tool has not left yet.
 pub(super) struct Leaving {
@@ -26,13 +27,13 @@ impl Leaving {
         if to.distance(self.contour.end) < SAME && to.distance(self.parallel.end) > SAME {
             let message = "compensation is switched off beside a move out of its plane: whether the \
                            tool goes to the contour is not known";
-            return Err(error("compensation-exit", line, message)
+            return Err(error(Rule::CompensationExit, line, message)
                 .help("switch it off in a straight move in the plane")
                 .into());
         }
         if cuts(to, &self.contour.reversed(), &self.parallel.reversed()) {
             let message = "the way off the contour cuts into it";
-            return Err(error("compensation-gouge", line, message)
+            return Err(error(Rule::CompensationGouge, line, message)
                 .help("end on the tool's side of the contour, or beyond its end")
                 .into());
         }

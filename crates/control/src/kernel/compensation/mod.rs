@@ -17,6 +17,7 @@ use crate::{Dialect, Settings, Sink, ToolData};
 use geom::Vec3;
 use leaving::Leaving;
 use path::Path;
+use program::Rule;
 use program::{Axes, Compensation, Diagnostic, Feed};
 pub(crate) use rules::{Outer, Rules};
 
@@ -93,7 +94,7 @@ impl<'a> Compensator<'a> {
         if let Some(mut path) = self.path.take() {
             if side != Compensation::Off {
                 let message = "compensation changes its side or its register while it is on";
-                return Err(error("compensation-change", line, message)
+                return Err(error(Rule::CompensationChange, line, message)
                     .help("switch it off (G40, R0) with a straight move first")
                     .into());
             }
@@ -110,7 +111,7 @@ impl<'a> Compensator<'a> {
         let (Some(radius), true) = (radius, left != 0.0) else {
             if side != Compensation::Off && !terms.across_tool {
                 let message = "compensation in a plane that is not that of the tool";
-                return Err(error("compensation-plane", line, message)
+                return Err(error(Rule::CompensationPlane, line, message)
                     .help("with the tool in the tool table it is resolved into the path")
                     .into());
             }
@@ -119,32 +120,32 @@ impl<'a> Compensator<'a> {
         };
         let Some(rules) = Rules::of(self.dialect) else {
             let message = "how this control leads the tool with compensation is not known";
-            return Err(error("compensation-unsupported", line, message)
+            return Err(error(Rule::CompensationUnsupported, line, message)
                 .help("leave the tool out of the tool table: compensation then stays a state")
                 .into());
         };
         if terms.around {
             let message = "KONT with compensation that is resolved into the path";
-            return Err(error("compensation-unsupported", line, message)
+            return Err(error(Rule::CompensationUnsupported, line, message)
                 .help("write NORM: the tool then goes straight to the contour")
                 .into());
         }
         if terms.outer == Some(Outer::Peak) {
             let message = "DISC= above 0 with compensation that is resolved into the path";
-            return Err(error("compensation-unsupported", line, message)
+            return Err(error(Rule::CompensationUnsupported, line, message)
                 .help("write DISC=0: the tool then goes around corners on an arc")
                 .into());
         }
         if !radius.is_finite() {
             let message = format!("the radius of the tool is {radius} mm");
-            return Err(error("compensation-radius", line, message).into());
+            return Err(error(Rule::CompensationRadius, line, message).into());
         }
         if self.inverse_time {
             return Err(inverse_time(line));
         }
         if self.leaving.is_some() {
             let message = "compensation is switched on again before the tool has left the contour";
-            return Err(error("compensation-change", line, message)
+            return Err(error(Rule::CompensationChange, line, message)
                 .help("a straight move in the plane must come between")
                 .into());
         }
@@ -240,20 +241,20 @@ impl<'a> Compensator<'a> {
 }
 
 /// An error of `rule` in `line`.
-fn error(rule: &'static str, line: u32, message: impl Into<String>) -> Diagnostic {
+fn error(rule: Rule, line: u32, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(rule, message).line(line)
 }
 
 /// Only LinuxCNC has a way for that, and it needs the radius.
 fn on_arc(line: u32) -> Box<Diagnostic> {
-    error("compensation-entry", line, "compensation is switched on in an arc")
+    error(Rule::CompensationEntry, line, "compensation is switched on in an arc")
         .help("switch it on in a straight move before the arc")
         .into()
 }
 
 /// Elements that corners add would take the time of a move once more.
 fn inverse_time(line: u32) -> Box<Diagnostic> {
-    error("compensation-feed", line, "compensation with the feed as inverse time (G93)")
+    error(Rule::CompensationFeed, line, "compensation with the feed as inverse time (G93)")
         .help("corners add moves, whose time is then not known: use G94")
         .into()
 }

@@ -8,7 +8,7 @@ use crate::Sink;
 use crate::event::{Action, ArcTo, Event, Orientation, Position};
 use crate::kernel::source::Fallible;
 use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
-use program::{Diagnostic, Feed};
+use program::{Diagnostic, Feed, Rule};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Most records between two elements of the contour.
@@ -116,13 +116,13 @@ impl Path {
             | Action::Cycle(_) => {
                 let message = "a tool change, a cycle, another frame or a move to a fixed position \
                                while compensation is on";
-                Err(error("compensation-on", line, message)
+                Err(error(Rule::CompensationOn, line, message)
                     .help("switch it off (G40, R0) with a straight move first")
                     .into())
             }
             action if action.position().is_some() || matches!(action, Action::Probe(_)) => {
                 let message = "only straight moves and arcs lead the tool while compensation is on";
-                Err(error("compensation-on", line, message).into())
+                Err(error(Rule::CompensationOn, line, message).into())
             }
             _ => self.pass(record, sink),
         }
@@ -135,7 +135,7 @@ impl Path {
             Stage::Entering(Piece { line, .. }) => {
                 let message = "compensation ends before a contour has begun: where this move ends \
                                depends on the next element";
-                Err(error("compensation-entry", line, message).into())
+                Err(error(Rule::CompensationEntry, line, message).into())
             }
             Stage::Following(piece) => {
                 self.send(piece.way(), sink)?;
@@ -151,7 +151,7 @@ impl Path {
     fn arrive(&mut self, line: u32, pose: &Position) -> Fallible<((Vec2, f64), (Vec2, f64))> {
         if pose.point.is_nan() || self.at.point.is_nan() {
             let message = "compensation, and where the tool stands is not known";
-            return Err(error("compensation-unknown-position", line, message)
+            return Err(error(Rule::CompensationUnknownPosition, line, message)
                 .help("move X, Y and Z to a known position before it is switched on")
                 .into());
         }
@@ -160,7 +160,7 @@ impl Path {
         }
         if !same(&self.at.orientation, &pose.orientation) {
             let message = "the tool is turned while compensation is on";
-            return Err(error("compensation-orientation", line, message)
+            return Err(error(Rule::CompensationOrientation, line, message)
                 .help("switch compensation off before a rotary axis moves")
                 .into());
         }
@@ -173,7 +173,7 @@ impl Path {
         let side = arc.normal.dot(self.plane.normal);
         if side.abs() < 1.0 - 1e-9 {
             let message = "an arc out of the plane of compensation";
-            return Err(error("compensation-plane", line, message).into());
+            return Err(error(Rule::CompensationPlane, line, message).into());
         }
         // How far the radii may differ is the control's affair, and it has looked.
         let (start, end) = (self.at.point, arc.end.point);
@@ -181,7 +181,7 @@ impl Path {
             Ok(arc) => Ok(arc.sweep * side.signum()),
             Err(_) => {
                 let message = "an arc without a radius, or from where the tool is not known to be";
-                Err(error("compensation-arc", line, message).into())
+                Err(error(Rule::CompensationArc, line, message).into())
             }
         }
     }
@@ -194,7 +194,7 @@ impl Path {
                 "the tool's radius of {:.4} mm does not fit into an arc of radius {radius:.4} mm",
                 self.left.abs()
             );
-            return Err(error("compensation-arc-radius", line, message)
+            return Err(error(Rule::CompensationArcRadius, line, message)
                 .help("take a smaller tool")
                 .into());
         };
@@ -214,7 +214,7 @@ impl Path {
                 let Piece { contour, parallel, .. } = &piece;
                 if self.rules.guarded && leaving::cuts(entry.contour.start, contour, parallel) {
                     let message = "the way to the contour cuts into it";
-                    return Err(error("compensation-gouge", entry.line, message)
+                    return Err(error(Rule::CompensationGouge, entry.line, message)
                         .help("begin on the tool's side of the contour, or behind its start")
                         .into());
                 }
@@ -266,7 +266,7 @@ impl Path {
                  {:.4} mm",
                 self.left.abs()
             );
-            return Err(error("compensation-entry", piece.line, message).into());
+            return Err(error(Rule::CompensationEntry, piece.line, message).into());
         }
         let center = end + inward * radius;
         let once = turn_angle((start - center) / radius, (end - center) / radius);
@@ -283,7 +283,7 @@ impl Path {
              longer than the tool's radius of {:.4} mm",
             self.left.abs()
         );
-        error("compensation-entry", line, message).into()
+        error(Rule::CompensationEntry, line, message).into()
     }
 
     /// Brings `last` to its end and the tool around the corner to the start of `next`.
@@ -370,7 +370,7 @@ impl Path {
             last.line,
             next.line
         );
-        error("compensation-inner-corner", next.line, message)
+        error(Rule::CompensationInnerCorner, next.line, message)
             .help("take a smaller tool, or leave out what is shorter than it")
             .into()
     }
@@ -385,7 +385,7 @@ impl Path {
         let mut points = match self.rules.outer {
             Outer::Intersection if turn <= Outer::SHARPEST && !lines => {
                 let message = "an outer corner of an arc that is left by the intersection (G451)";
-                return Err(error("compensation-unsupported", line, message)
+                return Err(error(Rule::CompensationUnsupported, line, message)
                     .help("write G450: the tool then goes around the corner")
                     .into());
             }
@@ -431,7 +431,7 @@ impl Path {
              and would cut the corner",
             self.rules.blind
         );
-        Err(error("compensation-look-ahead", line, message)
+        Err(error(Rule::CompensationLookAhead, line, message)
             .help("put them before or after the contour, or into one block")
             .into())
     }
@@ -444,7 +444,7 @@ impl Path {
         if self.waiting.len() >= LOOK_AHEAD {
             let message =
                 format!("{LOOK_AHEAD} records without a move in the plane of compensation");
-            return Err(error("compensation-look-ahead", record.line, message).into());
+            return Err(error(Rule::CompensationLookAhead, record.line, message).into());
         }
         self.waiting.push(record);
         Ok(())

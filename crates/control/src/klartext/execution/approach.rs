@@ -12,7 +12,7 @@ use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{CCA, FeedWord, LEN, LINEAR, PA, PR, RADIUS, Words, slot};
 use geom::Vec3;
-use program::{Compensation, Diagnostic};
+use program::{Compensation, Diagnostic, Rule};
 
 /// The shape of an approach or a departure.
 #[derive(Clone, Copy, PartialEq)]
@@ -51,7 +51,9 @@ impl Shape {
             b"LT" | b"LN" => LEN,
             b"CT" => CCA | RADIUS,
             b"LCT" => RADIUS,
-            _ => return Err(s.error("unknown-word", span, "LT, LN, CT or LCT is expected here")),
+            _ => {
+                return Err(s.error(Rule::UnknownWord, span, "LT, LN, CT or LCT is expected here"));
+            }
         };
         let words = Words::read(s, point | own, control)?;
         let positive = |slot| words.get(slot).filter(|value| *value > 0.0);
@@ -66,7 +68,7 @@ impl Shape {
         };
         let shape = shape.ok_or_else(|| {
             let message = "LT and LN need LEN, CT needs CCA up to 360° and R, LCT needs R";
-            s.error_block("missing-word", message)
+            s.error_block(Rule::MissingWord, message)
         })?;
         Ok((shape, polar, words))
     }
@@ -123,27 +125,27 @@ impl Control<'_, '_> {
             self.polar(s, &mut words)?;
         }
         if self.compensation != Compensation::Off {
-            return Err(s.error_block("compensation", "a contour is approached from R0"));
+            return Err(s.error_block(Rule::Compensation, "a contour is approached from R0"));
         }
         if words.is_rapid() || words.functions.at(When::End).next().is_some() {
             let message = "an approach takes a feed, and M functions of the start of a block";
-            return Err(s.error_block("contour", message));
+            return Err(s.error_block(Rule::Contour, message));
         }
         let compensation = words.compensation.unwrap_or(Compensation::Off);
         if compensation == Compensation::Off && !matches!(shape, Shape::Tangent(_)) {
             let message =
                 "an approach with R0 is one with RR on the iTNC 530 and an error on others";
-            return Err(s.error_block("compensation", message).help("say RL or RR").into());
+            return Err(s.error_block(Rule::Compensation, message).help("say RL or RR").into());
         }
         self.functions(s, words.functions, When::Start)?;
         let (end, _) = self.targets(s, &words)?;
         if !end.is_finite() {
             let message = "the point of the contour is not known: give X, Y and Z";
-            return Err(s.error_block("unknown-position", message));
+            return Err(s.error_block(Rule::UnknownPosition, message));
         }
         if matches!(shape, Shape::LineAndArc(_)) && end.z != self.here.z {
             let message = "where LCT goes down differs between controls";
-            return Err(s.error_block("unsupported", message).help("go to Z before").into());
+            return Err(s.error_block(Rule::Unsupported, message).help("go to Z before").into());
         }
         let (start, feed, rapid) = (self.here, words.feed, self.rapid);
         self.here = end;
@@ -162,7 +164,7 @@ impl Control<'_, '_> {
         let Approach { shape, start, compensation, feed, rapid } = *approach;
         let Some(along) = next.tangent_at_start() else {
             let message = "in which direction the contour begins is not known";
-            return Err(s.error_block("contour", message));
+            return Err(s.error_block(Rule::Contour, message));
         };
         let contour = next.start;
         let beside = side(compensation).unwrap_or(0.0);
@@ -224,17 +226,17 @@ impl Control<'_, '_> {
         {
             let message = "DEP LCT takes X and Y, other departures no point; none takes R or FMAX, and \
                            where Z is reached differs between controls";
-            return Err(s.error_block("contour", message));
+            return Err(s.error_block(Rule::Contour, message));
         }
         let path = self.path.filter(|path| path.end == self.here);
         let Some(along) = path.and_then(|path| path.tangent_at_end()) else {
             let message = "DEP goes on from the line or arc directly before it, and there is none";
-            return Err(s.error_block("contour", message));
+            return Err(s.error_block(Rule::Contour, message));
         };
         let beside = side(self.compensation);
         let Some(beside) = beside.or(matches!(shape, Shape::Tangent(_)).then_some(0.0)) else {
             let message = "on which side of the contour the tool leaves is said by RL or RR";
-            return Err(s.error_block("compensation", message));
+            return Err(s.error_block(Rule::Compensation, message));
         };
         self.functions(s, words.functions, When::Start)?;
         self.set_feed(s, words.feed)?;
@@ -285,12 +287,12 @@ impl Control<'_, '_> {
         }
         if self.transforms().scales() {
             let message = "the radius of the tool is not scaled, and the contour is";
-            return Err(s.error_block("transformation", message));
+            return Err(s.error_block(Rule::Transformation, message));
         }
         self.tool_radius.ok_or_else(|| {
             let message =
                 "where the tool is off the contour depends on its radius, which is not known";
-            let error: Box<Diagnostic> = s.error_block("tool", message);
+            let error: Box<Diagnostic> = s.error_block(Rule::Tool, message);
             error.help("give the tool in the tool table").into()
         })
     }
@@ -299,5 +301,5 @@ impl Control<'_, '_> {
 fn no_tangent(s: &Scanner) -> Box<Diagnostic> {
     let message = "no line touches the arc: its radius is not greater than that of the tool, or the \
                    point outside is within it";
-    s.error_block("contour", message)
+    s.error_block(Rule::Contour, message)
 }

@@ -6,7 +6,7 @@ use crate::kernel::corner::{self, Misfit, Shape};
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, RADIUS, Words, feed_word, slot};
 use geom::{Vec3, direction};
-use program::Feed;
+use program::{Feed, Rule};
 
 /// A straight line or an arc in the plane XY, in the coordinates of the blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,7 +113,7 @@ impl Control<'_, '_> {
         let Some(radius) = radius.filter(|_| {
             words.compensation.is_none() && words.functions.is_empty() && !words.is_rapid()
         }) else {
-            return Err(s.error_block("missing-word", "RND takes R with a radius, and F"));
+            return Err(s.error_block(Rule::MissingWord, "RND takes R with a radius, and F"));
         };
         self.cut(s, Cut { shape: Shape::Round(radius), feed: words.feed })
     }
@@ -127,7 +127,7 @@ impl Control<'_, '_> {
         };
         s.finish()?;
         if length <= 0.0 || feed == Some(FeedWord::Max) {
-            return Err(s.error_block("missing-word", "CHF takes a length, and F"));
+            return Err(s.error_block(Rule::MissingWord, "CHF takes a length, and F"));
         }
         self.cut(s, Cut { shape: Shape::ChamferSide(length), feed })
     }
@@ -140,7 +140,7 @@ impl Control<'_, '_> {
             }
             _ => {
                 let message = "RND and CHF stand directly behind a line or an arc at a feed";
-                Err(s.error_block("contour", message))
+                Err(s.error_block(Rule::Contour, message))
             }
         }
     }
@@ -170,7 +170,7 @@ impl Control<'_, '_> {
             Waiting::Approach(approach) => return self.finish_approach(s, &approach, next),
         };
         let corner = cut_off(&first, next, cut.shape)
-            .map_err(|message| s.error_block("contour", message))?;
+            .map_err(|message| s.error_block(Rule::Contour, message))?;
         self.tell(s, Element { end: corner.start, ..first })?;
         let feed = self.feed;
         self.set_feed(s, cut.feed)?;
@@ -204,6 +204,6 @@ impl Control<'_, '_> {
             return Ok(());
         }
         let message = "a line or an arc must follow RND, CHF and APPR directly";
-        Err(s.error_block("contour", message))
+        Err(s.error_block(Rule::Contour, message))
     }
 }

@@ -11,7 +11,7 @@ use crate::klartext::language::registers::{Parameter, Registers};
 use crate::klartext::language::scan::{Scanner, Word};
 use crate::klartext::language::words::{LINEAR, Words, slot};
 use geom::Vec3;
-use program::{Compensation, CycleKind, Diagnostic, Feed, PathMode, Spindle, WorkOffset};
+use program::{Compensation, CycleKind, Diagnostic, Feed, PathMode, Rule, Spindle, WorkOffset};
 
 /// Highest number of a cycle and of its parts.
 const MOST: u32 = 999;
@@ -36,7 +36,7 @@ impl Designation {
         if complete {
             return Ok(Designation { cycle, part });
         }
-        Err(s.error("syntax", (start, s.at()), "the number of a cycle is expected here"))
+        Err(s.error(Rule::Syntax, (start, s.at()), "the number of a cycle is expected here"))
     }
 }
 
@@ -89,9 +89,9 @@ impl Control<'_, '_> {
             Some(Defined::Older(_)) => {
                 let message =
                     "the older cycles start where the tool stands: they are not called at points";
-                Err(s.error_block("cycle", message))
+                Err(s.error_block(Rule::Cycle, message))
             }
-            None => Err(s.error_block("cycle", "no cycle is defined yet")),
+            None => Err(s.error_block(Rule::Cycle, "no cycle is defined yet")),
         }
     }
 
@@ -103,7 +103,7 @@ impl Control<'_, '_> {
         span: (usize, usize),
     ) -> Fallible<Definition> {
         let layout = layout::layout(number)
-            .ok_or_else(|| s.error("unsupported", span, layout::refusal(number)))?;
+            .ok_or_else(|| s.error(Rule::Unsupported, span, layout::refusal(number)))?;
         while !matches!(s.peek(), [] | [b'Q', b'0'..=b'9', ..]) {
             s.token();
         }
@@ -117,16 +117,16 @@ impl Control<'_, '_> {
             let parameter = s.parameter()?;
             let (Some(Parameter::Global(q)), true) = (parameter, s.take_symbol(b"=")) else {
                 let message = "a parameter of the cycle (Q200=...) is expected here";
-                return Err(from.clone().error_here("syntax", message));
+                return Err(from.clone().error_here(Rule::Syntax, message));
             };
             let span = (from.at(), s.at());
             let known = open.layout.needs.contains(&q) || open.layout.takes.contains(&q);
             if !known {
                 let message = format!("cycle {} has no parameter Q{q}", open.layout.number);
-                return Err(s.error("cycle-parameter", span, message));
+                return Err(s.error(Rule::CycleParameter, span, message));
             }
             if open.given.contains(&q) {
-                return Err(s.error("word-twice", span, format!("Q{q} is given twice")));
+                return Err(s.error(Rule::RepeatedWord, span, format!("Q{q} is given twice")));
             }
             let value = match s.peek() {
                 b"MAX" | b"FMAX" if matches!(q, 208 | 253) => {
@@ -137,7 +137,7 @@ impl Control<'_, '_> {
             };
             open.given.push(q);
             let assigned = self.registers.assign(Parameter::Global(q), value);
-            assigned.map_err(|message| s.error("cycle-parameter", span, message))?;
+            assigned.map_err(|message| s.error(Rule::CycleParameter, span, message))?;
         }
         Ok(())
     }
@@ -148,7 +148,7 @@ impl Control<'_, '_> {
         if let Some(q) = open.layout.needs.iter().find(|q| !open.given.contains(q)) {
             let message = format!("cycle {number} lacks its parameter Q{q}");
             let help = "parameters stand in its line and, where that ends in ~, in the next ones";
-            let error: Box<Diagnostic> = s.error_block("cycle-parameter", message);
+            let error: Box<Diagnostic> = s.error_block(Rule::CycleParameter, message);
             return Err(error.help(help).into());
         }
         match number {
@@ -171,7 +171,7 @@ impl Control<'_, '_> {
     /// A cycle that is ready to be called, if it was `checked` well.
     fn keep(&mut self, s: &Scanner, open: Definition, checked: Result<(), String>) -> Fallible<()> {
         checked.map_err(|message| {
-            s.error_block("cycle-parameter", format!("cycle {}: {message}", open.number()))
+            s.error_block(Rule::CycleParameter, format!("cycle {}: {message}", open.number()))
         })?;
         self.cycle = Some(Defined::Parameters(open));
         self.calls_modally = false;
@@ -181,15 +181,15 @@ impl Control<'_, '_> {
     /// Cycle 247: a preset becomes the datum, and the datum shift ends.
     fn set_datum(&mut self, s: &Scanner, preset: f64) -> Fallible<()> {
         if preset.fract() != 0.0 || !(0.0..=9999.0).contains(&preset) {
-            return Err(s.error_block("cycle-parameter", "Q339 is the number of a preset"));
+            return Err(s.error_block(Rule::CycleParameter, "Q339 is the number of a preset"));
         }
         if self.tilt.is_some() {
-            return Err(s.error_block("plane", "the datum is set in the untilted plane"));
+            return Err(s.error_block(Rule::TiltedPlane, "the datum is set in the untilted plane"));
         }
         if self.outside.is_more_than_a_shift() {
             let message =
                 "what a preset does to mirrored, rotated or scaled coordinates is not known";
-            return Err(s.error_block("transformation", message));
+            return Err(s.error_block(Rule::Transformation, message));
         }
         self.outside = super::transform::Transforms::default();
         self.forget_position();
@@ -218,14 +218,14 @@ impl Control<'_, '_> {
         let words = Words::read(s, LINEAR, self)?;
         if !words.has_all(LINEAR) || words.is_incremental(LINEAR) {
             let message = "CYCL CALL POS needs X, Y and Z, absolute";
-            return Err(s.error_block("missing-word", message));
+            return Err(s.error_block(Rule::MissingWord, message));
         }
         let at = |slot| words.target(slot, f64::NAN);
         self.functions(s, words.functions, When::Start)?;
         let rapid = self.set_feed(s, words.feed)?;
         if !rapid {
             let message = "CYCL CALL POS is approached with FMAX here";
-            return Err(s.error_block("unsupported", message));
+            return Err(s.error_block(Rule::Unsupported, message));
         }
         let hole = self.definition(s)?.hole(&self.registers);
         let (surface, clearance) = (hole.surface() + at(slot::Z), hole.get(200));
@@ -248,7 +248,7 @@ impl Control<'_, '_> {
     /// the height at which the tool ends where that is not the matter of the cycle.
     pub(super) fn drill(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Fallible<()> {
         if self.ended {
-            return Err(s.error_block("cycle", "no cycle is called where the program ends"));
+            return Err(s.error_block(Rule::Cycle, "no cycle is called where the program ends"));
         }
         self.may_call(s)?;
         if let Some(Defined::Parameters(definition)) = &self.cycle
@@ -265,7 +265,7 @@ impl Control<'_, '_> {
                 (hole.cycle(), hole.point() + rise)
             }
         };
-        let mut cycle = cycle.map_err(|message| s.error_block("cycle-parameter", message))?;
+        let mut cycle = cycle.map_err(|message| s.error_block(Rule::CycleParameter, message))?;
         let risk = match &self.cycle {
             Some(Defined::Parameters(definition)) => definition.hole(&self.registers).risk(&cycle),
             Some(Defined::Older(_)) | None => None,
@@ -280,7 +280,7 @@ impl Control<'_, '_> {
             if self.transforms().is_more_than_a_shift() {
                 let message = "which way the tool goes aside is not known in mirrored, rotated or \
                                scaled coordinates";
-                return Err(s.error_block("transformation", message));
+                return Err(s.error_block(Rule::Transformation, message));
             }
             cycle.kind = cycle.kind.with_aside(self.work_direction(withdrawal.aside));
         }
@@ -291,7 +291,7 @@ impl Control<'_, '_> {
         // Cycle 206 gives the feed: the pitch is what the running spindle makes of it.
         if let (CycleKind::Tap { .. }, Some(Feed::PerMinute(feed))) = (cycle.kind, cycle.feed) {
             let Some(speed) = running.filter(|speed| *speed > 0.0) else {
-                return Err(s.error_block("spindle", "cycle 206 needs a turning spindle"));
+                return Err(s.error_block(Rule::Spindle, "cycle 206 needs a turning spindle"));
             };
             let left = matches!(self.spindle, Spindle::CounterClockwise(_));
             cycle.kind = CycleKind::Tap { pitch: feed / speed, left };
@@ -310,20 +310,20 @@ impl Control<'_, '_> {
     /// Whether a cycle can be called as things stand.
     fn may_call(&self, s: &Scanner) -> Fallible<()> {
         if self.compensation != Compensation::Off {
-            return Err(s.error_block("cycle", "a cycle is called with R0"));
+            return Err(s.error_block(Rule::Cycle, "a cycle is called with R0"));
         }
         if self.per_turn {
-            return Err(s.error_block("cycle", "a cycle is not called while M136 is active"));
+            return Err(s.error_block(Rule::Cycle, "a cycle is not called while M136 is active"));
         }
         self.transforms_are_clear(s)?;
         if self.transforms().scales() {
             let message = "scaling changes the dimensions of cycles too, which is not followed";
-            return Err(s.error_block("transformation", message));
+            return Err(s.error_block(Rule::Transformation, message));
         }
         // The cycle drills along Z of the coordinates of the program.
         if self.tip != Tip::Free && self.tilt.is_none() && !self.stands_upright() {
             let message = "with M128 a cycle does not drill along an inclined tool";
-            return Err(s.error_block("cycle", message).help("use PLANE SPATIAL").into());
+            return Err(s.error_block(Rule::Cycle, message).help("use PLANE SPATIAL").into());
         }
         Ok(())
     }
@@ -339,7 +339,7 @@ impl Control<'_, '_> {
             s.skip();
             return Ok(());
         }
-        Err(s.error("unsupported", span, layout::refusal(cycle)))
+        Err(s.error(Rule::Unsupported, span, layout::refusal(cycle)))
     }
 
     /// A numbered part of an older cycle: `7.1 X+60`, `9.1 DWELL 1.5`, `32.1 T0.01`.
@@ -360,7 +360,7 @@ impl Control<'_, '_> {
             (19, 1) => self.working_plane(s),
             (26, 1) => self.axis_scale(s),
             (32, 1 | 2) => self.tolerance(s),
-            _ => Err(s.error_block("cycle-parameter", "the cycle has no such part")),
+            _ => Err(s.error_block(Rule::CycleParameter, "the cycle has no such part")),
         }
     }
 
@@ -370,7 +370,7 @@ impl Control<'_, '_> {
         let seconds = s.value(&self.registers)?;
         s.finish()?;
         if seconds < 0.0 {
-            return Err(s.error_block("dwell", "a dwell is not negative"));
+            return Err(s.error_block(Rule::Dwell, "a dwell is not negative"));
         }
         self.emit(Action::Dwell(seconds))
     }
@@ -381,7 +381,7 @@ impl Control<'_, '_> {
         s.finish()?;
         match seconds.filter(|seconds| *seconds >= 0.0) {
             Some(seconds) => self.emit(Action::Dwell(seconds)),
-            None => Err(s.error_block("dwell", "FUNCTION DWELL takes TIME with seconds")),
+            None => Err(s.error_block(Rule::Dwell, "FUNCTION DWELL takes TIME with seconds")),
         }
     }
 
@@ -402,7 +402,7 @@ impl Control<'_, '_> {
                 }
                 _ => {
                     let message = "cycle 32 takes T, HSC-MODE and TA";
-                    return Err(s.error_block("cycle-parameter", message));
+                    return Err(s.error_block(Rule::CycleParameter, message));
                 }
             }
         }

@@ -7,7 +7,7 @@ use crate::event::Action;
 use crate::kernel::Fallible;
 use crate::klartext::language::scan::Scanner;
 use geom::Vec3;
-use program::{Feed, Spindle};
+use program::{Feed, Rule, Spindle};
 
 /// The most turns of one bore.
 const MOST_TURNS: f64 = 10_000.0;
@@ -76,18 +76,18 @@ impl Control<'_, '_> {
     /// Runs cycle 208 where the tool stands: over the surface to the wall on an arc that touches it, down
     /// on the helix, once round at the bottom, to the axis and out by rapid.
     pub(super) fn mill_bore(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Fallible<()> {
-        let bad = |message| s.error_block("cycle-parameter", message);
+        let bad = |message| s.error_block(Rule::CycleParameter, message);
         let tool_radius = self.tool_radius.ok_or_else(|| {
             let error = bad("how wide the helix is depends on the tool, which is not known");
             error.help("give the tool in the tool table")
         })?;
         if !matches!(self.spindle, Spindle::Clockwise(_)) {
-            return Err(s.error_block("spindle", "cycle 208 counts climb and up-cut with M3"));
+            return Err(s.error_block(Rule::Spindle, "cycle 208 counts climb and up-cut with M3"));
         }
         let hole = self.definition(s)?.hole(&self.registers);
-        let helix = hole
-            .helix(Some(tool_radius))
-            .map_err(|message| s.error_block("cycle-parameter", format!("cycle 208: {message}")))?;
+        let helix = hole.helix(Some(tool_radius)).map_err(|message| {
+            s.error_block(Rule::CycleParameter, format!("cycle 208: {message}"))
+        })?;
         let surface = helix.surface + rise;
         let axis = self.here.with_z(surface);
         let at = |height: f64| axis + Vec3::Z * height;

@@ -11,7 +11,7 @@ use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
 use geom::{Arc, ArcError, Vec3, direction};
-use program::{Axes, Compensation, MachineMove};
+use program::{Axes, Compensation, MachineMove, Rule};
 
 /// By how much the radii at the two ends of an arc may differ, mm: the most that the machine
 /// parameter circleDeviation (MP7431) takes.
@@ -57,7 +57,10 @@ impl Control<'_, '_> {
         // At the pole there is no angle to keep.
         if kept && (spoke.is_nan() || spoke.length() < 1e-9) {
             let message = "PR and PA count on from a place that is not known, or is the pole";
-            return Err(s.error_block("unknown-position", message).help("give PR and PA").into());
+            return Err(s
+                .error_block(Rule::UnknownPosition, message)
+                .help("give PR and PA")
+                .into());
         }
         let radius = words.target(slot::PR, spoke.length());
         let angle = words.target(slot::PA, spoke.y.atan2(spoke.x).to_degrees());
@@ -76,7 +79,7 @@ impl Control<'_, '_> {
             let (end, degrees) = self.targets(s, words)?;
             if !moves || words.is_rapid() || words.has(ROTARY | VECTORS) {
                 let message = "a line or an arc at a feed must follow RND, CHF and APPR";
-                return Err(s.error_block("contour", message));
+                return Err(s.error_block(Rule::Contour, message));
             }
             self.meet(s, &Element { start: self.here, end, arc: None })?;
             to = Some((end, degrees));
@@ -111,7 +114,7 @@ impl Control<'_, '_> {
     ) -> Fallible<()> {
         if corner && (self.calls_modally || words.functions.at(When::End).next().is_some()) {
             let message = "nothing can happen at a corner that RND or CHF cuts off";
-            return Err(s.error_block("contour", message));
+            return Err(s.error_block(Rule::Contour, message));
         }
         self.functions(s, words.functions, When::End)?;
         if moves && self.calls_modally && !words.functions.contains(Function::CallCyclesModally) {
@@ -139,7 +142,7 @@ impl Control<'_, '_> {
                 let value = if i < 3 { to[i] } else { degrees[i - 3] };
                 if words.is_incremental(1 << i) && value.is_nan() {
                     let message = format!("I{} counts from a position that is not known", AXES[i]);
-                    return Err(s.error_block("unknown-position", message));
+                    return Err(s.error_block(Rule::UnknownPosition, message));
                 }
             }
             return Ok((to, degrees));
@@ -153,16 +156,18 @@ impl Control<'_, '_> {
         }
         let letter = AXES[slot::A + axis];
         if !self.settings.rotary[axis] && self.tip != Tip::KeptSpatial {
-            return Err(s.error_block("unknown-axis", format!("the machine has no axis {letter}")));
+            return Err(
+                s.error_block(Rule::UnknownAxis, format!("the machine has no axis {letter}"))
+            );
         }
         if self.tilt.as_ref().is_some_and(|tilt| tilt.turned) {
             let message = format!("{letter} would turn the tool out of the tilted plane");
-            return Err(s.error_block("plane", message).help("PLANE RESET first").into());
+            return Err(s.error_block(Rule::TiltedPlane, message).help("PLANE RESET first").into());
         }
         if self.mirrors() || (self.tip == Tip::KeptSpatial && self.outside.is_more_than_a_shift()) {
             let message =
                 format!("what {letter} is in mirrored or rotated coordinates is not known");
-            return Err(s.error_block("transformation", message));
+            return Err(s.error_block(Rule::Transformation, message));
         }
         Ok(())
     }
@@ -177,7 +182,7 @@ impl Control<'_, '_> {
     ) -> Fallible<()> {
         if corner && (rapid || words.has(ROTARY | VECTORS)) {
             let message = "RND and CHF cut off the corner of a contour, not that of this motion";
-            return Err(s.error_block("contour", message));
+            return Err(s.error_block(Rule::Contour, message));
         }
         let element = Element { start: self.here, end: to, arc: None };
         self.here = to;
@@ -185,7 +190,7 @@ impl Control<'_, '_> {
         if let Some(tool) = vector(s, words, slot::TX)? {
             if self.tip == Tip::Free {
                 let message = "TX TY TZ need M128 or FUNCTION TCPM";
-                return Err(s.error_block("tool-center", message));
+                return Err(s.error_block(Rule::ToolCenter, message));
             }
             let turns = self.vector != Some(tool);
             self.forget_rotary();
@@ -202,7 +207,7 @@ impl Control<'_, '_> {
             if self.tilt.is_some() {
                 if words.has(LINEAR) {
                     let message = "linear and rotary axes do not move together in a tilted plane";
-                    return Err(s.error_block("plane", message));
+                    return Err(s.error_block(Rule::TiltedPlane, message));
                 }
                 self.forget_position();
                 return self.emit(match rapid {
@@ -259,7 +264,7 @@ impl Control<'_, '_> {
         };
         if !self.transforms().keeps_circles() {
             let message = "an arc in coordinates that are scaled differently in X and Y";
-            return Err(s.error_block("transformation", message));
+            return Err(s.error_block(Rule::Transformation, message));
         }
         // In mirrored coordinates an arc turns the other way round.
         let sense = if self.mirrors() { -sense } else { sense };
@@ -279,7 +284,7 @@ impl Control<'_, '_> {
         if self.tilt.as_ref().is_some_and(|tilt| tilt.turned) && z.is_finite() && !known {
             let message =
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
-            return Err(s.error_block("unknown-position", message));
+            return Err(s.error_block(Rule::UnknownPosition, message));
         }
         Ok(())
     }
@@ -302,27 +307,27 @@ impl Control<'_, '_> {
             .map(|i| AXES[i].to_string())
             .collect();
         let message = format!("a cut where the position of {} is not known", unknown.join(", "));
-        Err(s.error_block("unknown-position", message).help("move there with FMAX first").into())
+        Err(s.error_block(Rule::UnknownPosition, message).help("move there with FMAX first").into())
     }
 
     /// `M91`, `M92`: the axes go to a place of the machine; where that is in the work is not known.
     fn machine_position(&mut self, s: &Scanner, words: &Words, builders: bool) -> Fallible<()> {
         if words.is_incremental(LINEAR | ROTARY) {
             let message = "an incremental word with M91 is not supported";
-            return Err(s.error_block("unsupported", message));
+            return Err(s.error_block(Rule::Unsupported, message));
         }
         if !matches!(words.compensation, None | Some(Compensation::Off))
             || self.compensation != Compensation::Off
         {
-            return Err(s.error_block("m-function", "M91 and M92 are used with R0"));
+            return Err(s.error_block(Rule::MFunction, "M91 and M92 are used with R0"));
         }
         if self.tip != Tip::Free {
             let message = "M128 is reset before positioning with M91 or M92";
-            return Err(s.error_block("tool-center", message).help("program M129 first").into());
+            return Err(s.error_block(Rule::ToolCenter, message).help("program M129 first").into());
         }
         let axes = Axes::of([0, 1, 2, 3, 4, 5].map(|i| words.has(1 << i)));
         if axes.is_empty() {
-            return Err(s.error_block("missing-word", "M91 and M92 need coordinates"));
+            return Err(s.error_block(Rule::MissingWord, "M91 and M92 need coordinates"));
         }
         // M91 leaves the tool length out. Where the datum of M92 is, only the builder knows.
         let datum = if builders { f64::NAN } else { 0.0 };
@@ -351,14 +356,16 @@ impl Control<'_, '_> {
     pub(crate) fn circle_center(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, PLANE, self)?;
         if !words.is_plain() {
-            return Err(s.error_block("unknown-word", "CC takes coordinates alone"));
+            return Err(s.error_block(Rule::UnknownWord, "CC takes coordinates alone"));
         }
         if words.has(PLANE) && !words.has_all(PLANE) {
-            return Err(s.error_block("missing-word", "CC needs X and Y, or neither"));
+            return Err(s.error_block(Rule::MissingWord, "CC needs X and Y, or neither"));
         }
         let pole = (words.target(slot::X, self.here.x), words.target(slot::Y, self.here.y));
         if !pole.0.is_finite() || !pole.1.is_finite() {
-            return Err(s.error_block("unknown-position", "the position of the tool is not known"));
+            return Err(
+                s.error_block(Rule::UnknownPosition, "the position of the tool is not known")
+            );
         }
         self.pole = Some(pole);
         Ok(())
@@ -370,7 +377,9 @@ impl Control<'_, '_> {
         let center = self.center(s)?;
         let (end, _) = self.targets(s, &words)?;
         if words.is_incremental(LINEAR) && end.is_nan() {
-            return Err(s.error_block("unknown-position", "the position of the tool is not known"));
+            return Err(
+                s.error_block(Rule::UnknownPosition, "the position of the tool is not known")
+            );
         }
         self.arc_to(s, &words, Bend { center, sense: words.turn, turns: 0 }, end, corner)
     }
@@ -380,16 +389,16 @@ impl Control<'_, '_> {
         let words = Words::read(s, LINEAR | RADIUS | TURN, self)?;
         let (end, _) = self.targets(s, &words)?;
         let Some(radius) = words.get(slot::R).filter(|r| *r != 0.0) else {
-            return Err(s.error_block("missing-word", "CR needs R+ or R- with a radius"));
+            return Err(s.error_block(Rule::MissingWord, "CR needs R+ or R- with a radius"));
         };
         let chord = (end - self.here).with_z(0.0);
         let half = chord.length() / 2.0;
         if half.is_nan() {
-            return Err(s.error_block("unknown-position", "where the arc begins is not known"));
+            return Err(s.error_block(Rule::UnknownPosition, "where the arc begins is not known"));
         }
         if half < 1e-9 {
             let message = "CR cannot make a full circle: its ends are the same point";
-            return Err(s.error_block("arc", message).help("use CC and C").into());
+            return Err(s.error_block(Rule::Arc, message).help("use CC and C").into());
         }
         if half > radius.abs() + ARC_TOLERANCE / 2.0 {
             let message = format!(
@@ -397,7 +406,7 @@ impl Control<'_, '_> {
                 half * 2.0,
                 radius.abs()
             );
-            return Err(s.error_block("arc", message));
+            return Err(s.error_block(Rule::Arc, message));
         }
         // The center is on the left of the chord for a short arc counter-clockwise.
         let away = (radius * radius - half * half).max(0.0).sqrt();
@@ -411,19 +420,19 @@ impl Control<'_, '_> {
         let words = Words::read(s, PA | 1 << slot::Z | TURN, self)?;
         let center = self.center(s)?;
         let Some(angle) = words.get(slot::PA) else {
-            return Err(s.error_block("missing-word", "CP needs PA or IPA"));
+            return Err(s.error_block(Rule::MissingWord, "CP needs PA or IPA"));
         };
         if angle.abs() > MAX_IPA {
-            return Err(s.error_block("arc", format!("a polar angle is at most {MAX_IPA}°")));
+            return Err(s.error_block(Rule::Arc, format!("a polar angle is at most {MAX_IPA}°")));
         }
         let spoke = (self.here - center).with_z(0.0);
         let height = words.target(slot::Z, self.here.z);
         if spoke.is_nan() || height.is_nan() {
-            return Err(s.error_block("unknown-position", "where the arc begins is not known"));
+            return Err(s.error_block(Rule::UnknownPosition, "where the arc begins is not known"));
         }
         let (end, turns) = if words.is_incremental(PA) {
             if angle * words.turn <= 0.0 {
-                return Err(s.error_block("arc", "IPA and DR must have the same sign"));
+                return Err(s.error_block(Rule::Arc, "IPA and DR must have the same sign"));
             }
             // What is left of a whole number of turns is a full turn.
             let turns = ((angle.abs() / 360.0).ceil() - 1.0).max(0.0);
@@ -443,9 +452,9 @@ impl Control<'_, '_> {
     }
 
     pub(super) fn center(&self, s: &Scanner) -> Fallible<Vec3> {
-        let (x, y) = self
-            .pole
-            .ok_or_else(|| s.error_block("missing-word", "no pole: a CC block must come before"))?;
+        let (x, y) = self.pole.ok_or_else(|| {
+            s.error_block(Rule::MissingWord, "no pole: a CC block must come before")
+        })?;
         Ok(Vec3::new(x, y, 0.0))
     }
 
@@ -468,17 +477,17 @@ impl Control<'_, '_> {
         let Some(tangent) = before.and_then(|path| path.tangent_at_end()) else {
             let message = "CT goes on in the direction of the line or arc directly before it, and there \
                            is none in the plane XY";
-            return Err(s.error_block("arc", message));
+            return Err(s.error_block(Rule::Arc, message));
         };
         if end.z != self.here.z {
-            return Err(s.error_block("arc", "CT stays in the plane XY"));
+            return Err(s.error_block(Rule::Arc, "CT stays in the plane XY"));
         }
         let chord = (end - self.here).with_z(0.0);
         let left = left_of(tangent);
         let sine = chord.dot(left) / chord.length();
         if sine.is_nan() || sine.abs() < 1e-9 {
             let message = "CT leads straight on, straight back or nowhere: that is no arc";
-            return Err(s.error_block("arc", message));
+            return Err(s.error_block(Rule::Arc, message));
         }
         let center = self.here + left * (chord.length() / (2.0 * sine));
         self.arc_to(s, words, Bend { center, sense: sine.signum(), turns: 0 }, end, corner)
@@ -495,15 +504,15 @@ impl Control<'_, '_> {
     ) -> Fallible<()> {
         if bend.sense == 0.0 {
             return Err(
-                s.error_block("missing-word", "the sense of rotation DR+ or DR- is missing")
+                s.error_block(Rule::MissingWord, "the sense of rotation DR+ or DR- is missing")
             );
         }
         if words.functions.machine_coordinates().is_some() {
-            return Err(s.error_block("m-function", "M91 and M92 belong to straight lines"));
+            return Err(s.error_block(Rule::MFunction, "M91 and M92 belong to straight lines"));
         }
         if words.compensation.is_some_and(|c| c != self.compensation) {
             let message = "radius compensation begins and ends in a straight line";
-            return Err(s.error_block("compensation", message));
+            return Err(s.error_block(Rule::Compensation, message));
         }
         let bend = Bend { center: bend.center.with_z(self.here.z), ..bend };
         let normal = Vec3::Z * bend.sense;
@@ -514,15 +523,17 @@ impl Control<'_, '_> {
                     "the end of the arc is off the circle: radius {start:.4} mm at the start, {end:.4} mm \
                      at the end, at most {ARC_TOLERANCE} mm apart"
                 );
-                return Err(s.error_block("arc", message));
+                return Err(s.error_block(Rule::Arc, message));
             }
             Err(_) if self.here.is_nan() || end.is_nan() => {
-                return Err(s.error_block("unknown-position", "where the arc begins is not known"));
+                return Err(
+                    s.error_block(Rule::UnknownPosition, "where the arc begins is not known")
+                );
             }
-            Err(_) => return Err(s.error_block("arc", "the arc begins at its own center")),
+            Err(_) => return Err(s.error_block(Rule::Arc, "the arc begins at its own center")),
         }
         if words.is_rapid() {
-            return Err(s.error_block("unsupported", "an arc at rapid is not supported"));
+            return Err(s.error_block(Rule::Unsupported, "an arc at rapid is not supported"));
         }
         self.meet(s, &Element { start: self.here, end, arc: Some(bend) })?;
         self.functions(s, words.functions, When::Start)?;
@@ -536,7 +547,10 @@ impl Control<'_, '_> {
         if rapid || self.feed.is_some() || !self.settings.setup.purpose.asks_technology() {
             return Ok(());
         }
-        Err(s.error_block("feed", "no feed is active").help("give F or FMAX in the block").into())
+        Err(s
+            .error_block(Rule::Feed, "no feed is active")
+            .help("give F or FMAX in the block")
+            .into())
     }
 }
 
@@ -548,10 +562,10 @@ fn vector(s: &Scanner, words: &Words, first: usize) -> Fallible<Option<Vec3>> {
     }
     let at = |i| words.get(first + i);
     let (Some(x), Some(y), Some(z)) = (at(0), at(1), at(2)) else {
-        return Err(s.error_block("missing-word", "a vector has three components"));
+        return Err(s.error_block(Rule::MissingWord, "a vector has three components"));
     };
     match direction(Vec3::new(x, y, z)) {
         Some(direction) => Ok(Some(direction)),
-        None => Err(s.error_block("zero-vector", "the vector has no length")),
+        None => Err(s.error_block(Rule::ZeroVector, "the vector has no length")),
     }
 }

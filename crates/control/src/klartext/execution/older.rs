@@ -4,7 +4,7 @@
 use super::state::{Control, TENTH_INCH};
 use crate::kernel::Fallible;
 use crate::klartext::language::scan::Scanner;
-use program::{Cycle, CycleKind, Feed};
+use program::{Cycle, CycleKind, Feed, Rule};
 
 /// An older cycle with the values of its parts, `1.1` first, in mm, mm/min and s.
 #[derive(Clone, Copy, Debug, Default)]
@@ -86,7 +86,7 @@ impl Control<'_, '_> {
             self.older = Older { number, ..Older::default() };
         }
         let Some(place) = self.older.values.get_mut((part as usize).wrapping_sub(1)) else {
-            return Err(s.error_block("cycle-parameter", "the cycle has no such part"));
+            return Err(s.error_block(Rule::CycleParameter, "the cycle has no such part"));
         };
         *place = value * unit;
         if part < parts_needed(number) {
@@ -94,7 +94,7 @@ impl Control<'_, '_> {
         }
         let checked = self.older.cycle();
         checked.map_err(|message| {
-            s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
+            s.error_block(Rule::CycleParameter, format!("cycle {number}: {message}"))
         })?;
         Ok(Some(self.older))
     }

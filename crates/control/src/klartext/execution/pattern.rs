@@ -8,6 +8,7 @@ use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::Words;
 use geom::Vec3;
+use program::Rule;
 
 /// Most points of a pattern.
 const MOST: f64 = 99_999.0;
@@ -46,7 +47,7 @@ impl Control<'_, '_> {
     pub(super) fn point_pattern(&mut self, s: &Scanner, pattern: &Definition) -> Fallible<()> {
         let q = pattern.hole(&self.registers);
         let bad = |message: &str| {
-            s.error_block("cycle-parameter", format!("cycle {}: {message}", pattern.number()))
+            s.error_block(Rule::CycleParameter, format!("cycle {}: {message}", pattern.number()))
         };
         if q.get(365) != 0.0 {
             return Err(bad(
@@ -102,14 +103,15 @@ impl Control<'_, '_> {
             let span = (from.at(), s.at());
             let Some(mut inside) = s.parenthesis() else {
                 let message = "a pattern such as POS1 (X+0 Y+0 Z+0) is expected here";
-                return Err(s.error("syntax", span, message));
+                return Err(s.error(Rule::Syntax, span, message));
             };
             let words = PatternWords::read(&mut inside, self)?;
-            let more = words.points(kind).map_err(|message| s.error("pattern", span, message))?;
+            let more =
+                words.points(kind).map_err(|message| s.error(Rule::Pattern, span, message))?;
             points.extend(more);
             if points.len() as f64 > MOST {
                 let message = format!("a pattern has at most {MOST} points");
-                return Err(s.error("pattern", span, message));
+                return Err(s.error(Rule::Pattern, span, message));
             }
         }
         Ok(())
@@ -118,7 +120,7 @@ impl Control<'_, '_> {
     /// The last line of `PATTERN DEF` is read.
     pub(crate) fn close_pattern(&mut self, s: &Scanner, points: Vec<Vec3>) -> Fallible<()> {
         if points.is_empty() {
-            return Err(s.error_block("pattern", "PATTERN DEF has no points"));
+            return Err(s.error_block(Rule::Pattern, "PATTERN DEF has no points"));
         }
         self.pattern = points;
         Ok(())
@@ -129,18 +131,18 @@ impl Control<'_, '_> {
     pub(super) fn pattern_call(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, 0, self)?;
         if self.pattern.is_empty() {
-            return Err(s.error_block("cycle", "no PATTERN DEF comes before"));
+            return Err(s.error_block(Rule::Cycle, "no PATTERN DEF comes before"));
         }
         if !words.is_rapid() {
             let message = "CYCL CALL PAT goes between the points with FMAX here";
-            return Err(s.error_block("unsupported", message));
+            return Err(s.error_block(Rule::Unsupported, message));
         }
         let hole = self.definition(s)?.hole(&self.registers);
         let (surface, second) = (hole.surface(), hole.get(204).max(hole.get(200)));
         let height = self.here.z;
         if height.is_nan() {
             let message = "the height at which the pattern is called is not known";
-            return Err(s.error_block("unknown-position", message));
+            return Err(s.error_block(Rule::UnknownPosition, message));
         }
         self.functions(s, words.functions, When::Start)?;
         let points = std::mem::take(&mut self.pattern);
@@ -189,7 +191,7 @@ impl PatternWords {
             };
             if words.find(word.address).is_some() {
                 return Err(s.error(
-                    "word-twice",
+                    Rule::RepeatedWord,
                     word.span,
                     "the word stands twice in the pattern",
                 ));

@@ -7,7 +7,7 @@ use crate::kernel::Fallible;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
 use geom::{Mat3, Vec3, direction};
-use program::Axes;
+use program::{Axes, Rule};
 
 /// A tilted plane of work.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,17 +52,19 @@ impl Control<'_, '_> {
                 let base = Vec3::from(self.numbers(s, [b"BX", b"BY", b"BZ"])?);
                 let normal = Vec3::from(self.numbers(s, [b"NX", b"NY", b"NZ"])?);
                 Some(upright(base, normal).ok_or_else(|| {
-                    s.error_block("plane", "the base and the normal vector must be at right angles")
+                    s.error_block(
+                        Rule::TiltedPlane,
+                        "the base and the normal vector must be at right angles",
+                    )
                 })?)
             }
             b"POINTS" => {
                 let first = Vec3::from(self.numbers(s, [b"P1X", b"P1Y", b"P1Z"])?);
                 let second = Vec3::from(self.numbers(s, [b"P2X", b"P2Y", b"P2Z"])?);
                 let third = Vec3::from(self.numbers(s, [b"P3X", b"P3Y", b"P3Z"])?);
-                Some(
-                    through(first, second, third)
-                        .ok_or_else(|| s.error_block("plane", "the three points lie on a line"))?,
-                )
+                Some(through(first, second, third).ok_or_else(|| {
+                    s.error_block(Rule::TiltedPlane, "the three points lie on a line")
+                })?)
             }
             b"RELATIV" => {
                 let turn = self.relative(s)?;
@@ -75,9 +77,12 @@ impl Control<'_, '_> {
                     b"AXIAL" => "the plane of axis angles follows from the machine's kinematics",
                     _ => "PLANE PROJECTED is not supported",
                 };
-                return Err(s.error("unsupported", span, message).help("use PLANE SPATIAL").into());
+                return Err(s
+                    .error(Rule::Unsupported, span, message)
+                    .help("use PLANE SPATIAL")
+                    .into());
             }
-            _ => return Err(s.error("unknown-word", span, "this kind of PLANE is not known")),
+            _ => return Err(s.error(Rule::UnknownWord, span, "this kind of PLANE is not known")),
         };
         let positioning = self.positioning_of_plane(s)?;
         self.may_tilt(s)?;
@@ -87,20 +92,20 @@ impl Control<'_, '_> {
     /// Whether a plane can be tilted as things stand.
     fn may_tilt(&self, s: &Scanner) -> Fallible<()> {
         if self.compensation != program::Compensation::Off {
-            return Err(s.error_block("plane", "a plane is tilted with R0"));
+            return Err(s.error_block(Rule::TiltedPlane, "a plane is tilted with R0"));
         }
         if !self.settings.rotary.contains(&true) {
-            return Err(s.error_block("plane", "the machine has no rotary axes"));
+            return Err(s.error_block(Rule::TiltedPlane, "the machine has no rotary axes"));
         }
         if self.outside.is_more_than_a_shift() {
             let message = "how mirrored, rotated or scaled coordinates are tilted is not known";
             let help = "set cycles 8, 10, 11 and 26 back before PLANE";
-            return Err(s.error_block("transformation", message).help(help).into());
+            return Err(s.error_block(Rule::Transformation, message).help(help).into());
         }
         if self.tilt.as_ref().is_some_and(|tilt| !tilt.inside.is_empty()) {
             let message = "the coordinates are transformed within the plane that is left";
             let help = "set the datum shift and cycles 8, 10, 11 and 26 back first";
-            return Err(s.error_block("plane", message).help(help).into());
+            return Err(s.error_block(Rule::TiltedPlane, message).help(help).into());
         }
         Ok(())
     }
@@ -109,7 +114,7 @@ impl Control<'_, '_> {
     /// Whether the rotary axes turn at once is up to the machine, so where they are is not known.
     pub(super) fn working_plane(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, ROTARY, self)?;
-        let bad = |message| Err(s.error_block("plane", message));
+        let bad = |message| Err(s.error_block(Rule::TiltedPlane, message));
         if !words.is_plain() || words.is_incremental(ROTARY) {
             return bad("cycle 19 takes A, B and C here, absolute");
         }
@@ -118,7 +123,7 @@ impl Control<'_, '_> {
         if tilted > 1 {
             let message = "whether several angles are spatial angles or positions of the rotary axes is \
                            up to the machine";
-            return Err(s.error_block("unsupported", message).help("use PLANE SPATIAL").into());
+            return Err(s.error_block(Rule::Unsupported, message).help("use PLANE SPATIAL").into());
         }
         self.may_tilt(s)?;
         // The positions that give the plane: that of the axis that it is tilted about.
@@ -136,7 +141,10 @@ impl Control<'_, '_> {
             let given = s.take_symbol(address).then(|| s.value(&self.registers)).transpose()?;
             let Some(given) = given else {
                 let address = String::from_utf8_lossy(address);
-                return Err(s.error_block("plane", format!("{address} with a number is missing")));
+                return Err(s.error_block(
+                    Rule::TiltedPlane,
+                    format!("{address} with a number is missing"),
+                ));
             };
             *value = given;
         }
@@ -152,7 +160,7 @@ impl Control<'_, '_> {
                 return Ok(spatial(angles));
             }
         }
-        Err(s.error_here("plane", "SPA, SPB or SPC with a number is missing"))
+        Err(s.error_here(Rule::TiltedPlane, "SPA, SPB or SPC with a number is missing"))
     }
 
     fn tilt_to(&mut self, turn: Option<Mat3>, positioning: Positioning) -> Fallible<()> {
@@ -204,7 +212,7 @@ impl Control<'_, '_> {
             };
             if !known {
                 return Err(s.error(
-                    "unknown-word",
+                    Rule::UnknownWord,
                     span,
                     "this word is not understood in a PLANE block",
                 ));
@@ -215,7 +223,7 @@ impl Control<'_, '_> {
         }
         positioning.ok_or_else(|| {
             let message = "the block must say what the rotary axes do";
-            s.error_block("plane", message).help("TURN FMAX, MOVE FMAX or STAY").into()
+            s.error_block(Rule::TiltedPlane, message).help("TURN FMAX, MOVE FMAX or STAY").into()
         })
     }
 
@@ -241,7 +249,7 @@ impl Control<'_, '_> {
             }
         }
         let rapid = rapid.ok_or_else(|| {
-            s.error_block("feed", "the turning of the rotary axes needs F or FMAX")
+            s.error_block(Rule::Feed, "the turning of the rotary axes needs F or FMAX")
         })?;
         Ok(Positioning::Turn { rapid, retract, choice: TiltChoice::ShorterWithin })
     }
@@ -263,19 +271,19 @@ impl Control<'_, '_> {
         }
         if !s.take(b"TCPM") {
             let message = "of FUNCTION blocks only TCPM, DWELL TIME and MODE MILL are supported";
-            return Err(s.error_here("unsupported", message));
+            return Err(s.error_here(Rule::Unsupported, message));
         }
         s.expect(b"F")?;
         if s.take(b"CONT") {
             let message = "F CONT (feed of the axes as programmed) is not supported yet";
-            return Err(s.error_block("unsupported", message).help("use F TCP").into());
+            return Err(s.error_block(Rule::Unsupported, message).help("use F TCP").into());
         }
         s.expect(b"TCP")?;
         s.expect(b"AXIS")?;
         let tip = match s.token() {
             (b"POS", _) => Tip::Kept,
             (b"SPAT", _) => Tip::KeptSpatial,
-            (_, span) => return Err(s.error("unknown-word", span, "AXIS takes POS or SPAT")),
+            (_, span) => return Err(s.error(Rule::UnknownWord, span, "AXIS takes POS or SPAT")),
         };
         s.expect(b"PATHCTRL")?;
         let great_circle = !s.take(b"AXIS");
@@ -298,7 +306,7 @@ impl Control<'_, '_> {
 
     pub(super) fn keep_tip(&mut self, s: &Scanner, tip: Tip) -> Fallible<()> {
         if !self.settings.rotary.contains(&true) {
-            return Err(s.error_block("tool-center", "the machine has no rotary axes"));
+            return Err(s.error_block(Rule::ToolCenter, "the machine has no rotary axes"));
         }
         self.change_tip(tip);
         Ok(())

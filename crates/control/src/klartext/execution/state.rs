@@ -15,7 +15,7 @@ use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, Readable};
 use geom::Vec3;
-use program::{Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Spindle};
+use program::{Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Rule, Spindle};
 
 use std::collections::HashMap;
 
@@ -175,7 +175,7 @@ impl<'a, 's> Control<'a, 's> {
     /// are refused.
     pub(crate) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Fallible<()> {
         let counted = self.channel.budget.again(bytes);
-        counted.map_err(|message| s.error_block("endless", message))
+        counted.map_err(|message| s.error_block(Rule::Endless, message))
     }
 
     /// A called program begins; answers how many there are within each other.
@@ -291,7 +291,7 @@ impl<'a, 's> Control<'a, 's> {
             }
             Some(FeedWord::Value(number)) => Feed::PerMinute(self.feed_value(number)),
             Some(FeedWord::PerTurn(_)) if self.per_turn => {
-                return Err(s.error_block("feed", "FU is not permitted while M136 is active"));
+                return Err(s.error_block(Rule::Feed, "FU is not permitted while M136 is active"));
             }
             Some(FeedWord::PerTurn(number)) => Feed::PerTurn(number * self.unit),
         };
@@ -360,7 +360,9 @@ impl<'a, 's> Control<'a, 's> {
 
     fn function(&mut self, s: &Scanner, function: Function) -> Fallible<()> {
         if self.ended {
-            return Err(s.error_block("program-frame", "nothing may follow M2 or M30 in its block"));
+            return Err(
+                s.error_block(Rule::ProgramFrame, "nothing may follow M2 or M30 in its block")
+            );
         }
         match function {
             Function::Clockwise { coolant } => {
@@ -389,7 +391,7 @@ impl<'a, 's> Control<'a, 's> {
             }
             Function::End if self.is_called() => {
                 let message = "a called program ends with END PGM: M2 and M30 would end all";
-                Err(s.error_block("program-frame", message))
+                Err(s.error_block(Rule::ProgramFrame, message))
             }
             Function::End => self.end(),
             Function::KeepTip => {
@@ -441,8 +443,9 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     fn needs_speed(&self, s: &Scanner) -> Fallible<f64> {
-        self.speed
-            .ok_or_else(|| s.error_block("spindle", "the spindle has no speed yet: no S before"))
+        self.speed.ok_or_else(|| {
+            s.error_block(Rule::Spindle, "the spindle has no speed yet: no S before")
+        })
     }
 
     /// Back along the tool axis by `distance` mm; infinite is to the end of the travel.
@@ -450,7 +453,7 @@ impl<'a, 's> Control<'a, 's> {
         if !self.has_tool {
             let message =
                 "M140 before the first TOOL CALL: along which axis it goes is not defined";
-            return Err(s.error_block("m-function", message).help("call the tool first").into());
+            return Err(s.error_block(Rule::MFunction, message).help("call the tool first").into());
         }
         if distance.is_infinite() {
             if self.may_lean_in_head() {
@@ -469,7 +472,7 @@ impl<'a, 's> Control<'a, 's> {
             None if self.stands_upright() => Vec3::Z,
             None => {
                 let message = "the direction of the tool axis is not known";
-                return Err(s.error_block("m-function", message).help("use M140 MB MAX").into());
+                return Err(s.error_block(Rule::MFunction, message).help("use M140 MB MAX").into());
             }
         };
         self.here += axis * distance;
@@ -514,12 +517,12 @@ impl<'a, 's> Control<'a, 's> {
             (Some(280), Some(1), _) => Some(if self.tip == Tip::Free { 0.0 } else { -1.0 }),
             _ => {
                 let message = "this datum of the control is not supported";
-                return Err(s.error("parameter", (from.at(), s.at()), message));
+                return Err(s.error(Rule::Parameter, (from.at(), s.at()), message));
             }
         };
         known.filter(|value| value.is_finite()).ok_or_else(|| {
             let message = "what it is depends on what the operator or the machine has done";
-            let error = s.error("parameter", (from.at(), s.at()), message);
+            let error = s.error(Rule::Parameter, (from.at(), s.at()), message);
             error.help("write the value that it had at the machine in its place").into()
         })
     }

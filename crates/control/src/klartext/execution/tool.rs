@@ -8,7 +8,7 @@ use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
 use geom::Vec3;
-use program::{Compensation, Diagnostic, Spindle, Tool};
+use program::{Compensation, Diagnostic, Rule, Spindle, Tool};
 
 impl Control<'_, '_> {
     /// `TOOL CALL` and `TOOL DEF`, from behind `TOOL`.
@@ -44,7 +44,7 @@ impl Control<'_, '_> {
             match (word.address, word.number) {
                 (b"Z", None) if !axis && word.sign == 0.0 => axis = true,
                 (b"X" | b"Y" | b"U" | b"V" | b"W", None) => {
-                    return Err(s.error("unsupported", word.span, "the tool axis must be Z"));
+                    return Err(s.error(Rule::Unsupported, word.span, "the tool axis must be Z"));
                 }
                 (b"S", Some(rpm)) if speed.is_none() && rpm >= 0.0 => speed = Some(rpm),
                 (b"F" | b"FU", Some(_)) if feed.is_none() => {
@@ -56,10 +56,10 @@ impl Control<'_, '_> {
             }
         }
         if called.is_some() && !axis {
-            return Err(s.error_block("missing-word", "TOOL CALL needs the tool axis Z"));
+            return Err(s.error_block(Rule::MissingWord, "TOOL CALL needs the tool axis Z"));
         }
         if called.is_none() && speed.is_none() && feed.is_none() {
-            return Err(s.error_block("missing-word", "TOOL CALL needs a tool, S or F"));
+            return Err(s.error_block(Rule::MissingWord, "TOOL CALL needs a tool, S or F"));
         }
         if let Some(tool) = called {
             self.change_tool(s, tool)?;
@@ -90,7 +90,7 @@ impl Control<'_, '_> {
             }
         }
         let (Some(length), Some(radius)) = (length, radius) else {
-            return Err(s.error_block("missing-word", "TOOL DEF with data takes L and R"));
+            return Err(s.error_block(Rule::MissingWord, "TOOL DEF with data takes L and R"));
         };
         if self
             .settings
@@ -100,14 +100,14 @@ impl Control<'_, '_> {
             .any(|tool| tool.number == number && (tool.radius != radius || tool.length != length))
         {
             let message = format!("tool {number} is another one in the tool table");
-            return Err(s.error_block("tool", message));
+            return Err(s.error_block(Rule::Tool, message));
         }
         let other = |tool: &ToolData| tool.radius != radius || tool.length != length;
         if self.defined_tools.get(&number).is_some_and(other) {
             let message = format!(
                 "tool {number} has been defined with another L or R before: two tools have one number"
             );
-            return Err(s.error_block("tool-twice", message));
+            return Err(s.error_block(Rule::ToolTwice, message));
         }
         self.emit(Action::Risk(Risk::OPERATOR_DATA.into()))?;
         self.defined_tools.insert(number, ToolData { number, name: String::new(), radius, length });
@@ -123,7 +123,7 @@ impl Control<'_, '_> {
             return Ok(number as u32);
         }
         let message = "the number of a tool is a whole number from 0";
-        Err(s.error("tool", (from.at(), s.at()), message))
+        Err(s.error(Rule::Tool, (from.at(), s.at()), message))
     }
 
     /// A name in a QS parameter.
@@ -134,17 +134,17 @@ impl Control<'_, '_> {
             _ => Err("a QS parameter is expected here".into()),
         };
         text.map(|name| String::from_utf8_lossy(name).into_owned())
-            .map_err(|message| s.error("parameter", (from.at(), s.at()), message))
+            .map_err(|message| s.error(Rule::Parameter, (from.at(), s.at()), message))
     }
 
     /// The change stops spindle and coolant, goes to a place of its own, and brings another length.
     fn change_tool(&mut self, s: &Scanner, tool: Tool) -> Fallible<()> {
         if self.compensation != Compensation::Off {
-            return Err(s.error_block("compensation", "a tool is called with R0"));
+            return Err(s.error_block(Rule::Compensation, "a tool is called with R0"));
         }
         if self.tip != Tip::Free {
             let message = "M128 is reset before a tool call";
-            let error: Box<Diagnostic> = s.error_block("tool-center", message);
+            let error: Box<Diagnostic> = s.error_block(Rule::ToolCenter, message);
             return Err(error.help("program M129 first").into());
         }
         self.stop_all()?;
@@ -183,12 +183,12 @@ impl Control<'_, '_> {
                 return Ok(());
             }
             (_, span) => {
-                return Err(s.error("unsupported", span, "this kind of BLK FORM is not known"));
+                return Err(s.error(Rule::Unsupported, span, "this kind of BLK FORM is not known"));
             }
         };
         let words = Words::read(s, LINEAR, self)?;
         if !words.has_all(LINEAR) || !words.is_plain() {
-            return Err(s.error_block("missing-word", "BLK FORM takes X, Y and Z"));
+            return Err(s.error_block(Rule::MissingWord, "BLK FORM takes X, Y and Z"));
         }
         let low = self.blank_low.take();
         let corner = |from: Vec3| {
@@ -197,28 +197,31 @@ impl Control<'_, '_> {
         if is_first {
             if words.is_incremental(LINEAR) {
                 let message = "BLK FORM 0.1 takes absolute coordinates";
-                return Err(s.error_block("blank", message));
+                return Err(s.error_block(Rule::Blank, message));
             }
             self.blank_low = Some(corner(Vec3::ZERO));
             return Ok(());
         }
         let Some(low) = low else {
             let message = "BLK FORM 0.2 without BLK FORM 0.1 before it";
-            return Err(s.error_block("blank", message).help("the MIN point comes first").into());
+            return Err(s
+                .error_block(Rule::Blank, message)
+                .help("the MIN point comes first")
+                .into());
         };
         if corner(low).cmpgt(low).all() {
             return Ok(());
         }
         let message = "the MAX point of BLK FORM is not above the MIN point in every axis";
         Err(s
-            .error_block("blank", message)
+            .error_block(Rule::Blank, message)
             .help("give the blank a thickness, or leave both out")
             .into())
     }
 }
 
 fn oversize(s: &Scanner, span: (usize, usize)) -> Box<Diagnostic> {
-    s.error("unsupported", span, "an oversize moves the tool off the programmed path")
+    s.error(Rule::Unsupported, span, "an oversize moves the tool off the programmed path")
         .help("put the wear into the tool table")
         .into()
 }

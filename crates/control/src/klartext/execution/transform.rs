@@ -5,7 +5,7 @@ use crate::kernel::Fallible;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{LINEAR, Words};
 use geom::Vec3;
-use program::Compensation;
+use program::{Compensation, Rule};
 
 /// One transformation, from the coordinates behind it to those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,12 +182,12 @@ impl Control<'_, '_> {
     fn transform(&mut self, s: &Scanner, step: Step) -> Fallible<()> {
         if self.compensation != Compensation::Off {
             let message = "coordinates are transformed with R0";
-            return Err(s.error_block("compensation", message));
+            return Err(s.error_block(Rule::Compensation, message));
         }
         if self.tilt.is_some() && !self.outside.is_empty() && matches!(step, Step::Shift(_)) {
             let message = "the datum was already shifted before the plane was tilted";
             let help = "shift the datum before PLANE";
-            return Err(s.error_block("plane", message).help(help).into());
+            return Err(s.error_block(Rule::TiltedPlane, message).help(help).into());
         }
         let transforms = self.tilt.as_mut().map_or(&mut self.outside, |tilt| &mut tilt.inside);
         let place = transforms.apply(self.here);
@@ -215,18 +215,18 @@ impl Control<'_, '_> {
         let message = "a transformation was changed while a later one is active: in which order they \
                        act is not known";
         let help = "set the later ones (mirror, rotation, scale) back before, and anew afterwards";
-        Err(s.error_block("transformation", message).help(help).into())
+        Err(s.error_block(Rule::Transformation, message).help(help).into())
     }
 
     /// `CYCL DEF 7.n`: `X+60`, `IY-5`.
     pub(super) fn datum_shift(&mut self, s: &mut Scanner) -> Fallible<()> {
         if s.peek().starts_with(b"#") {
             let message = "the datum is in a table of the control, which is not at hand";
-            return Err(s.error_here("unsupported", message));
+            return Err(s.error_here(Rule::Unsupported, message));
         }
         let words = Words::read(s, LINEAR, self)?;
         if !words.has(LINEAR) || !words.is_plain() {
-            return Err(s.error_block("cycle-parameter", "cycle 7 takes X, Y or Z here"));
+            return Err(s.error_block(Rule::CycleParameter, "cycle 7 takes X, Y or Z here"));
         }
         self.shift_datum(s, &words)
     }
@@ -245,7 +245,7 @@ impl Control<'_, '_> {
                 (b"X", _) if signs.x > 0.0 => signs.x = -1.0,
                 (b"Y", _) if signs.y > 0.0 => signs.y = -1.0,
                 (_, span) => {
-                    return Err(s.error("unsupported", span, "only X and Y are mirrored here"));
+                    return Err(s.error(Rule::Unsupported, span, "only X and Y are mirrored here"));
                 }
             }
         }
@@ -262,8 +262,9 @@ impl Control<'_, '_> {
             _ => None,
         };
         s.finish()?;
-        let degrees = degrees
-            .ok_or_else(|| s.error_block("cycle-parameter", "cycle 10 takes ROT with an angle"))?;
+        let degrees = degrees.ok_or_else(|| {
+            s.error_block(Rule::CycleParameter, "cycle 10 takes ROT with an angle")
+        })?;
         self.transform(s, Step::Rotation(degrees % 360.0))
     }
 
@@ -278,8 +279,9 @@ impl Control<'_, '_> {
         };
         s.finish()?;
         let factor = factor.filter(|factor| FACTORS.contains(factor));
-        let factor = factor
-            .ok_or_else(|| s.error_block("cycle-parameter", "cycle 11 takes SCL with a factor"))?;
+        let factor = factor.ok_or_else(|| {
+            s.error_block(Rule::CycleParameter, "cycle 11 takes SCL with a factor")
+        })?;
         self.transform(s, Step::Scale(factor))
     }
 
@@ -297,7 +299,11 @@ impl Control<'_, '_> {
                 (Some(center), Some(number)) => center[axis] = number * self.unit,
                 (None, Some(number)) if FACTORS.contains(&number) => factor[axis] = number,
                 _ => {
-                    return Err(s.error("cycle-parameter", word.span, "a factor is expected here"));
+                    return Err(s.error(
+                        Rule::CycleParameter,
+                        word.span,
+                        "a factor is expected here",
+                    ));
                 }
             }
         }
@@ -308,7 +314,7 @@ impl Control<'_, '_> {
     pub(crate) fn transformation(&mut self, s: &mut Scanner) -> Fallible<()> {
         let (kind, span) = s.token();
         if kind != b"DATUM" {
-            return Err(s.error("unsupported", span, "only TRANS DATUM is supported"));
+            return Err(s.error(Rule::Unsupported, span, "only TRANS DATUM is supported"));
         }
         if s.take(b"RESET") {
             s.finish()?;
@@ -316,14 +322,17 @@ impl Control<'_, '_> {
         }
         if !s.take(b"AXIS") {
             let message = "the datum is in a table of the control, which is not at hand";
-            return Err(s.error_here("unsupported", message).help("use TRANS DATUM AXIS").into());
+            return Err(s
+                .error_here(Rule::Unsupported, message)
+                .help("use TRANS DATUM AXIS")
+                .into());
         }
         let words = Words::read(s, LINEAR, self)?;
         let old = self.transforms().shift();
         let kept = (0..3).any(|i| old[i] != 0.0 && !words.has(1 << i));
         if !words.has(LINEAR) || !words.is_plain() || kept {
             let message = "TRANS DATUM AXIS must say every axis that is shifted";
-            return Err(s.error_block("missing-word", message).help("give X, Y and Z").into());
+            return Err(s.error_block(Rule::MissingWord, message).help("give X, Y and Z").into());
         }
         self.shift_datum(s, &words)
     }

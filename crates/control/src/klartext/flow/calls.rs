@@ -6,6 +6,7 @@ use crate::kernel::Fallible;
 use crate::kernel::flow;
 use crate::klartext::language::registers::{Numbers, Parameter, Registers};
 use crate::klartext::language::scan::Scanner;
+use program::Rule;
 use std::borrow::Cow;
 
 /// Deepest nesting of subprograms, and of programs (TNC 640; older controls have fewer).
@@ -137,16 +138,16 @@ impl<'t> Run<'t, '_, '_, '_> {
         if !s.take(b"REP") {
             s.finish()?;
             let back = self.source.place();
-            self.calls.call(back).map_err(|message| s.error_block("nesting", message))?;
+            self.calls.call(back).map_err(|message| s.error_block(Rule::Nesting, message))?;
             return self.jump(s, to);
         }
         let times = self.repetitions(s)?;
         if to.offset > place.offset {
             let message = "the label of a repetition stands before its call";
-            return Err(s.error_block("label", message));
+            return Err(s.error_block(Rule::Label, message));
         }
         let again = self.calls.repeat(to, place, times);
-        if again.map_err(|message| s.error_block("label", message))? {
+        if again.map_err(|message| s.error_block(Rule::Label, message))? {
             self.jump(s, to)?;
         }
         Ok(())
@@ -162,12 +163,16 @@ impl<'t> Run<'t, '_, '_, '_> {
             let times = times as u32;
             if s.take_symbol(b"/") && s.digits(65_534)? != times {
                 let message = "a repetition that has begun already cannot be followed";
-                return Err(s.error("label", span, message));
+                return Err(s.error(Rule::Label, span, message));
             }
             s.finish()?;
             return Ok(times);
         }
-        Err(s.error("label", span, "the number of repetitions is a whole number from 1 to 65534"))
+        Err(s.error(
+            Rule::Label,
+            span,
+            "the number of repetitions is a whole number from 1 to 65534",
+        ))
     }
 
     /// The place of a label that is called: `5`, `"NAME"`, or a Q parameter.
@@ -179,15 +184,15 @@ impl<'t> Run<'t, '_, '_, '_> {
             Some(parameter) => {
                 let span = (from.at(), s.at());
                 label_in(&self.control.registers, parameter)
-                    .map_err(|message| s.error("parameter", span, message))?
+                    .map_err(|message| s.error(Rule::Parameter, span, message))?
             }
         };
         let span = (from.at(), s.at());
         if label == Label::Number(0) {
-            return Err(s.error("label", span, "LBL 0 ends subprograms and cannot be called"));
+            return Err(s.error(Rule::Label, span, "LBL 0 ends subprograms and cannot be called"));
         }
         self.source.label(&label)?.ok_or_else(|| {
-            s.error("label", span, format!("there is no label {label} in this program"))
+            s.error(Rule::Label, span, format!("there is no label {label} in this program"))
         })
     }
 
@@ -198,7 +203,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         let depth = self.control.enter_program();
         if depth > NESTING {
             let message = format!("programs are nested more than {NESTING} deep");
-            return Err(s.error("nesting", span, message));
+            return Err(s.error(Rule::Nesting, span, message));
         }
         let folders = &self.control.settings.setup.folders;
         // The control does not tell capitals from small letters.
@@ -207,7 +212,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         let [_, _, written] = &names;
         let name = names.iter().rev().find(there).unwrap_or(written);
         let text =
-            folders.open(name).map_err(|message| s.error("called-program", span, message))?;
+            folders.open(name).map_err(|message| s.error(Rule::CalledProgram, span, message))?;
         self.control.count_jump(s, FILE.saturating_add(text.len()))?;
         let unit = self.control.unit;
         let local = self.control.registers.exchange_local(Numbers::default());
@@ -226,9 +231,11 @@ impl<'t> Run<'t, '_, '_, '_> {
             Some(Parameter::Text(index)) => {
                 let text = self.control.registers.text(index);
                 let text = text.map(|text| Cow::Owned(text.to_vec()));
-                text.map_err(|message| s.error("parameter", (from.at(), s.at()), message))?
+                text.map_err(|message| s.error(Rule::Parameter, (from.at(), s.at()), message))?
             }
-            Some(_) => return Err(s.error_here("syntax", "the name of a program is expected here")),
+            Some(_) => {
+                return Err(s.error_here(Rule::Syntax, "the name of a program is expected here"));
+            }
             None if s.peek().starts_with(b"\"") => Cow::Borrowed(s.quoted()?),
             None => Cow::Borrowed(s.token().0),
         };
@@ -245,7 +252,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         }
         if !name.to_ascii_uppercase().ends_with(".H") {
             return Err(s.error(
-                "called-program",
+                Rule::CalledProgram,
                 span,
                 "only Klartext programs (.H) can be called",
             ));

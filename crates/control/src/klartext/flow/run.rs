@@ -12,7 +12,7 @@ use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::Words;
-use program::{Diagnostic, encoding};
+use program::{Diagnostic, Rule, encoding};
 
 /// A program on its way through the control.
 pub(crate) struct Run<'t, 'c, 'a, 's> {
@@ -38,10 +38,10 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         let mut source = Source::new(file, text, control.settings.setup.block_delete);
         let Some(Line { scanner: mut s, .. }) = source.next()? else {
             let empty = Scanner::new(file, 1, text);
-            return Err(empty.error_block("program-frame", "the program is empty"));
+            return Err(empty.error_block(Rule::ProgramFrame, "the program is empty"));
         };
         if !s.take(b"BEGIN") {
-            let error = s.error_here("program-frame", "a program begins with BEGIN PGM");
+            let error = s.error_here(Rule::ProgramFrame, "a program begins with BEGIN PGM");
             return Err(error.help("take away what stands before it").into());
         }
         s.expect(b"PGM")?;
@@ -51,7 +51,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             (b"INCH", _) => geom::INCH,
             (_, span) => {
                 let message = "BEGIN PGM needs a name, then MM or INCH";
-                return Err(s.error("program-frame", span, message));
+                return Err(s.error(Rule::ProgramFrame, span, message));
             }
         };
         s.finish()?;
@@ -68,7 +68,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             let place = self.source.place();
             let Some(line) = self.source.next()? else {
                 let message = "the program ends without END PGM";
-                return Err(self.source.line_at(last).error_block("program-frame", message));
+                return Err(self.source.line_at(last).error_block(Rule::ProgramFrame, message));
             };
             last = place;
             if self.control.ended {
@@ -93,7 +93,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             _ if *subprograms => {}
             _ => {
                 let message = "a block after the end of the program (M2, M30) never runs";
-                return Err(s.error_block("program-frame", message));
+                return Err(s.error_block(Rule::ProgramFrame, message));
             }
         }
         let mut continued = line.continued;
@@ -120,7 +120,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         if let Some((cycle, next)) = part.filter(|(cycle, next)| *next <= parts_needed(*cycle)) {
             let message =
                 format!("cycle {cycle} is not complete: CYCL DEF {cycle}.{next} is expected");
-            return Err(s.error_block("cycle-parameter", message));
+            return Err(s.error_block(Rule::CycleParameter, message));
         }
         if keyword == b"PATTERN" {
             self.control.contour_is_closed(s)?;
@@ -128,9 +128,8 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         }
         if continued {
             let message = "this block cannot go on in the next line";
-            return Err(
-                refused(s, keyword, span).unwrap_or_else(|| s.error_block("unsupported", message))
-            );
+            return Err(refused(s, keyword, span)
+                .unwrap_or_else(|| s.error_block(Rule::Unsupported, message)));
         }
         let control = &mut *self.control;
         let source = &self.source;
@@ -208,7 +207,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             _ => Err(refused(s, keyword, span).unwrap_or_else(|| {
                 let shown: String = String::from_utf8_lossy(keyword).chars().take(40).collect();
                 let message = format!("a block that begins with {shown} is not understood");
-                s.error("unknown-block", span, message)
+                s.error(Rule::UnknownBlock, span, message)
             })),
         }
     }
@@ -216,7 +215,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     /// A comment: the words behind `;` or `*`.
     fn comment(&mut self, line: Line<'t>) -> Fallible<()> {
         if line.scanner.rest().is_empty() {
-            return Err(line.scanner.error_block("syntax", "the block is empty"));
+            return Err(line.scanner.error_block(Rule::Syntax, "the block is empty"));
         }
         let mut next = Some(line);
         while let Some(line) = next {
@@ -234,14 +233,15 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         s.expect(b"PGM")?;
         let (name, span) = s.token();
         if name != self.name {
-            return Err(s.error("program-frame", span, "END PGM names another program"));
+            return Err(s.error(Rule::ProgramFrame, span, "END PGM names another program"));
         }
         s.expect(if self.control.unit == 1.0 { b"MM" } else { b"INCH" })?;
         s.finish()?;
         if self.calls.is_open() && !self.control.ended {
-            return Err(
-                s.error_block("label", "the subprogram that runs has no end: LBL 0 is missing")
-            );
+            return Err(s.error_block(
+                Rule::Label,
+                "the subprogram that runs has no end: LBL 0 is missing",
+            ));
         }
         self.closed = true;
         if self.control.ended || self.control.is_called() { Ok(()) } else { self.control.end() }
@@ -261,7 +261,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                 registers.assign(parameter, value)
             }
         };
-        assigned.map_err(|message| s.error("parameter", span, message))?;
+        assigned.map_err(|message| s.error(Rule::Parameter, span, message))?;
         self.tell_kept(parameter)
     }
 
@@ -280,7 +280,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         let number = s.digits(99)?;
         let span = (from.at(), s.at());
         if !s.take_symbol(b":") {
-            return Err(s.error_here("syntax", ": is expected here"));
+            return Err(s.error_here(Rule::Syntax, ": is expected here"));
         }
         match number {
             0..=8 | 13 | 18 => {
@@ -296,7 +296,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                     _ => formula::calculated(s, number, &self.control.registers)?,
                 };
                 let assigned = self.control.registers.assign(parameter, value);
-                assigned.map_err(|message| s.error("parameter", span, message))?;
+                assigned.map_err(|message| s.error(Rule::Parameter, span, message))?;
                 self.tell_kept(parameter)
             }
             9..=12 => {
@@ -316,7 +316,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             14 => {
                 let shown = String::from_utf8_lossy(s.rest()).into_owned();
                 let message = format!("the program stops itself here: FN 14: {shown}");
-                Err(s.error_block("program-error", message))
+                Err(s.error_block(Rule::Alarm, message))
             }
             _ => {
                 let message = match number {
@@ -328,7 +328,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                     37 => "is for the cycles of the machine's builder",
                     _ => "is not supported",
                 };
-                Err(s.error("unsupported", span, format!("FN {number} {message}")))
+                Err(s.error(Rule::Unsupported, span, format!("FN {number} {message}")))
             }
         }
     }
@@ -349,7 +349,9 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             return self.cycle_parameters(s, designation.cycle, span, continued);
         };
         if continued {
-            return Err(s.error_block("unsupported", "this block cannot go on in the next line"));
+            return Err(
+                s.error_block(Rule::Unsupported, "this block cannot go on in the next line")
+            );
         }
         match part {
             Some((open, next)) if open == cycle && next == sub => {
@@ -359,7 +361,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             _ => {
                 let message =
                     format!("the parts of cycle {cycle} stand one after the other from {cycle}.0");
-                return Err(s.error("cycle-parameter", span, message));
+                return Err(s.error(Rule::CycleParameter, span, message));
             }
         }
         self.part = Some((cycle, sub.saturating_add(1)));
@@ -408,11 +410,11 @@ fn target(s: &mut Scanner) -> Fallible<(Parameter, (usize, usize))> {
     s.is_done();
     let from = s.at();
     let Some(parameter) = s.parameter()? else {
-        return Err(s.error_here("syntax", "a Q parameter is expected here"));
+        return Err(s.error_here(Rule::Syntax, "a Q parameter is expected here"));
     };
     let span = (from, s.at());
     if !s.take_symbol(b"=") {
-        return Err(s.error_here("syntax", "= is expected here"));
+        return Err(s.error_here(Rule::Syntax, "= is expected here"));
     }
     Ok((parameter, span))
 }
@@ -433,5 +435,5 @@ fn refused(s: &Scanner, keyword: &[u8], span: (usize, usize)) -> Option<Box<Diag
         _ => return None,
     };
     let shown = String::from_utf8_lossy(keyword);
-    Some(s.error("unsupported", span, format!("{shown}: {reason}")))
+    Some(s.error(Rule::Unsupported, span, format!("{shown}: {reason}")))
 }

@@ -2,7 +2,7 @@
 
 use crate::kernel::Fallible;
 use crate::klartext::language::scan::Scanner;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
@@ -207,7 +207,7 @@ impl<'t> Source<'t> {
     pub(super) fn close(&mut self) -> Fallible<()> {
         while let Some(line) = self.text.line(&mut self.at) {
             if !line.rest().is_empty() {
-                return Err(line.error_block("program-frame", "nothing may follow END PGM"));
+                return Err(line.error_block(Rule::ProgramFrame, "nothing may follow END PGM"));
             }
         }
         Ok(())
@@ -224,7 +224,7 @@ impl<'t> Source<'t> {
         let label = written_label(&mut s)?;
         if label != Label::Number(0) && self.labels.contains_key(&label) {
             let message = format!("label {label} is set twice in this program");
-            return Err(s.error_block("label", message));
+            return Err(s.error_block(Rule::Label, message));
         }
         self.labels.insert(label, place);
         Ok(())
@@ -258,6 +258,6 @@ fn wrong_number(mut s: Scanner, least: u32) -> Box<Diagnostic> {
     let (_, span) = s.token();
     let message = format!("a block number of at least {least} is expected here");
     let help = "number the blocks ascending, or leave all numbers out";
-    let error: Box<Diagnostic> = s.error("block-number", span, message);
+    let error: Box<Diagnostic> = s.error(Rule::BlockNumber, span, message);
     error.help(help).into()
 }

@@ -7,6 +7,7 @@ use super::registers::{LONGEST, Parameter, Registers};
 use super::scan::Scanner;
 use crate::kernel::Fallible;
 use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
+use program::Rule;
 use std::f64::consts::PI;
 
 /// A formula to the end of its block.
@@ -20,7 +21,7 @@ pub(crate) fn formula(s: &mut Scanner, registers: &Registers) -> Fallible<f64> {
 pub(super) fn operand(s: &mut Scanner, registers: &Registers) -> Fallible<f64> {
     s.is_done();
     let (_, number) = s.number_or_parameter(registers)?;
-    number.ok_or_else(|| s.error_here("syntax", "a number or a Q parameter is expected here"))
+    number.ok_or_else(|| s.error_here(Rule::Syntax, "a number or a Q parameter is expected here"))
 }
 
 /// A text that is put together: `"A" || QS5`, to the end of its block.
@@ -31,21 +32,21 @@ pub(crate) fn text(s: &mut Scanner, registers: &Registers) -> Fallible<Vec<u8>> 
         match s.parameter()? {
             Some(Parameter::Text(index)) => match registers.text(index) {
                 Ok(more) => text.extend_from_slice(more),
-                Err(message) => return Err(s.error("parameter", (from.at(), s.at()), message)),
+                Err(message) => return Err(s.error(Rule::Parameter, (from.at(), s.at()), message)),
             },
             Some(_) => {
-                return Err(s.error("syntax", (from.at(), s.at()), "a text is expected here"));
+                return Err(s.error(Rule::Syntax, (from.at(), s.at()), "a text is expected here"));
             }
             None if s.peek().starts_with(b"\"") => text.extend_from_slice(s.quoted()?),
             None => {
                 let message = "a text in quotes or a QS parameter is expected here";
                 let help = "the functions of texts (TOCHAR, SUBSTR ...) are not supported";
-                return Err(s.error_here("unsupported", message).help(help).into());
+                return Err(s.error_here(Rule::Unsupported, message).help(help).into());
             }
         }
         if text.len() > LONGEST {
             let message = format!("the text is longer than {LONGEST} characters");
-            return Err(s.error_block("parameter", message));
+            return Err(s.error_block(Rule::Parameter, message));
         }
         if !s.take_symbol(b"||") {
             s.finish()?;
@@ -74,21 +75,20 @@ impl Formula<'_, '_, '_> {
             if self.s.take_symbol(b")") {
                 return Ok(value);
             }
-            return Err(self.s.error_here("syntax", "a closing parenthesis is expected here"));
+            return Err(self.s.error_here(Rule::Syntax, "a closing parenthesis is expected here"));
         }
         let from = *self.s;
         if let Some(parameter) = self.s.parameter()? {
-            return self
-                .registers
-                .number(parameter)
-                .map_err(|message| self.s.error("parameter", (from.at(), self.s.at()), message));
+            return self.registers.number(parameter).map_err(|message| {
+                self.s.error(Rule::Parameter, (from.at(), self.s.at()), message)
+            });
         }
         let name = self.s.letters();
         if !name.is_empty() {
             return self.function(from, name);
         }
         let (_, number) = self.s.number();
-        number.ok_or_else(|| self.s.error_here("syntax", "a value is expected here"))
+        number.ok_or_else(|| self.s.error_here(Rule::Syntax, "a value is expected here"))
     }
 
     fn function(&mut self, from: Scanner, name: &[u8]) -> Fallible<f64> {
@@ -98,7 +98,7 @@ impl Formula<'_, '_, '_> {
         let Some(function) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
             let shown = String::from_utf8_lossy(name);
             let message = format!("{shown} is not a function of formulas");
-            return Err(self.s.error("unknown-word", (from.at(), self.s.at()), message));
+            return Err(self.s.error(Rule::UnknownWord, (from.at(), self.s.at()), message));
         };
         let argument = self.nested(Self::signed)?;
         let value = (function.1)(argument);
@@ -110,7 +110,7 @@ impl Formula<'_, '_, '_> {
     }
 
     fn wrong(&self, from: Scanner, message: &str) -> Box<program::Diagnostic> {
-        self.s.error("formula", (from.at(), self.s.at()), message)
+        self.s.error(Rule::Expression, (from.at(), self.s.at()), message)
     }
 }
 
@@ -140,7 +140,7 @@ impl Grammar for Formula<'_, '_, '_> {
 
     fn too_deep(&mut self) -> Self::Error {
         let message = format!("the formula is nested more than {} deep", Self::DEEPEST);
-        self.s.error_here("formula", message)
+        self.s.error_here(Rule::Expression, message)
     }
 
     fn start(&mut self) -> usize {
@@ -172,7 +172,8 @@ impl Grammar for Formula<'_, '_, '_> {
 
     fn apply(&mut self, operator: u8, [left, right]: [Number; 2], span: Span) -> Fallible<Number> {
         let (a, b) = (left.value, right.value);
-        let wrong = |from, message: &str| Err(self.s.error("formula", (from, span.end), message));
+        let wrong =
+            |from, message: &str| Err(self.s.error(Rule::Expression, (from, span.end), message));
         let (value, points, remainder) = match operator {
             b'+' => (a + b, false, false),
             b'-' => (a - b, false, false),
@@ -234,7 +235,7 @@ pub(crate) fn calculated(s: &mut Scanner, number: u32, registers: &Registers) ->
     let one = |s: &mut Scanner, word: &[u8]| {
         if !s.take_symbol(word) {
             let message = format!("{} is expected here", String::from_utf8_lossy(word));
-            return Err(s.error_here("syntax", message));
+            return Err(s.error_here(Rule::Syntax, message));
         }
         operand(s, registers)
     };
@@ -264,7 +265,10 @@ pub(crate) fn calculated(s: &mut Scanner, number: u32, registers: &Registers) ->
     if value.is_finite() {
         return Ok(value);
     }
-    Err(s.error_block("formula", format!("FN {number} cannot be calculated with these values")))
+    Err(s.error_block(
+        Rule::Expression,
+        format!("FN {number} cannot be calculated with these values"),
+    ))
 }
 
 /// What an `IF` of `FN 9` to `FN 12` says: whether the jump is made. The scanner ends before GOTO.
@@ -279,7 +283,7 @@ pub(crate) fn condition(s: &mut Scanner, number: u32, registers: &Registers) -> 
     };
     if !s.take_symbol(word) {
         let message = format!("{} is expected here", String::from_utf8_lossy(word));
-        return Err(s.error_here("syntax", message));
+        return Err(s.error_here(Rule::Syntax, message));
     }
     let second = operand(s, registers)?;
     Ok(match number {

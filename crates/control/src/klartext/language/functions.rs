@@ -3,6 +3,7 @@
 use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
 use crate::kernel::Fallible;
+use program::Rule;
 
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,7 +157,7 @@ impl Function {
             Some(reason) => format!("M{number} is not supported: it {reason}"),
             None => format!("M{number} is not understood"),
         };
-        Err(s.error("m-function", word.span, message))
+        Err(s.error(Rule::MFunction, word.span, message))
     }
 
     /// When it acts (TNC manuals, table of the M functions).
@@ -182,11 +183,11 @@ fn retract(s: &mut Scanner, control: &dyn Readable) -> Fallible<Function> {
     } else {
         match s.word(control.registers())? {
             Some(Word { address: b"MB", number: Some(distance), .. }) => distance,
-            _ => return Err(s.error_block("m-function", "M140 needs MB with a distance or MAX")),
+            _ => return Err(s.error_block(Rule::MFunction, "M140 needs MB with a distance or MAX")),
         }
     };
     if distance <= 0.0 {
-        return Err(s.error_block("m-function", "M140 retracts: MB must be greater than 0"));
+        return Err(s.error_block(Rule::MFunction, "M140 retracts: MB must be greater than 0"));
     }
     Ok(Function::Retract(distance * control.unit(), own_feed(s, control)?))
 }

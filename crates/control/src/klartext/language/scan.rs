@@ -2,7 +2,7 @@
 
 use super::registers::{Parameter, Registers};
 use crate::kernel::{Fallible, decimal};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// A place in a line.
 #[derive(Clone, Copy)]
@@ -126,7 +126,7 @@ impl<'t> Scanner<'t> {
             return Ok(());
         }
         let expected = String::from_utf8_lossy(expected);
-        Err(self.error_here("syntax", format!("{expected} is expected here")))
+        Err(self.error_here(Rule::Syntax, format!("{expected} is expected here")))
     }
 
     /// Takes the next word, a Q parameter as its value; `None` at the end of the block.
@@ -184,7 +184,7 @@ impl<'t> Scanner<'t> {
             Some(number) if !done && self.is_between_words() => Ok(number),
             _ => {
                 self.at = start;
-                Err(self.error_here("syntax", "a number is expected here"))
+                Err(self.error_here(Rule::Syntax, "a number is expected here"))
             }
         }
     }
@@ -199,7 +199,7 @@ impl<'t> Scanner<'t> {
                 self.at += length + 2;
                 Ok(&text[..length])
             }
-            _ => Err(self.error_here("syntax", "a name in quotes is expected here")),
+            _ => Err(self.error_here(Rule::Syntax, "a name in quotes is expected here")),
         }
     }
 
@@ -211,15 +211,11 @@ impl<'t> Scanner<'t> {
     /// The word here is not understood.
     pub(super) fn unknown(&mut self) -> Box<Diagnostic> {
         let shown = String::from_utf8_lossy(self.peek()).chars().take(40).collect::<String>();
-        self.error_here("unknown-word", format!("{shown} is not understood here"))
+        self.error_here(Rule::UnknownWord, format!("{shown} is not understood here"))
     }
 
     /// An error at the next token.
-    pub(crate) fn error_here(
-        &mut self,
-        rule: &'static str,
-        message: impl Into<String>,
-    ) -> Box<Diagnostic> {
+    pub(crate) fn error_here(&mut self, rule: Rule, message: impl Into<String>) -> Box<Diagnostic> {
         let length = self.peek().len();
         self.error(rule, (self.at, self.at + length), message)
     }
@@ -227,7 +223,7 @@ impl<'t> Scanner<'t> {
     /// An error at bytes `span` of the line.
     pub(crate) fn error(
         &self,
-        rule: &'static str,
+        rule: Rule,
         span: (usize, usize),
         message: impl Into<String>,
     ) -> Box<Diagnostic> {
@@ -236,11 +232,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// An error about the whole block.
-    pub(crate) fn error_block(
-        &self,
-        rule: &'static str,
-        message: impl Into<String>,
-    ) -> Box<Diagnostic> {
+    pub(crate) fn error_block(&self, rule: Rule, message: impl Into<String>) -> Box<Diagnostic> {
         self.error(rule, (self.start, self.end), message)
     }
 
@@ -287,7 +279,7 @@ impl<'t> Scanner<'t> {
         let number = std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok());
         number.filter(|number| *number <= most).ok_or_else(|| {
             let message = format!("a whole number from 0 to {most} is expected here");
-            self.error("syntax", (start, self.at), message)
+            self.error(Rule::Syntax, (start, self.at), message)
         })
     }
 
@@ -321,7 +313,7 @@ impl<'t> Scanner<'t> {
         self.at += usize::from(kind.is_some());
         let Some((make, most)) = Parameter::kind(kind) else {
             return Err(self.error(
-                "unknown-word",
+                Rule::UnknownWord,
                 (start, self.at),
                 "there is no such Q parameter",
             ));
@@ -373,7 +365,7 @@ impl<'t> Scanner<'t> {
         let Some(parameter) = self.parameter()? else { return Err(self.unknown()) };
         let value = registers
             .number(parameter)
-            .map_err(|message| self.error("parameter", (start, self.at), message))?;
+            .map_err(|message| self.error(Rule::Parameter, (start, self.at), message))?;
         Ok(if sign < 0.0 { 0.0 - value } else { value })
     }
 

@@ -4,7 +4,7 @@ use super::functions::{Function, Functions};
 use super::registers::Registers;
 use super::scan::{Scanner, Word};
 use crate::kernel::Fallible;
-use program::Compensation;
+use program::{Compensation, Rule};
 
 /// Where a word's value is kept. The first six are the axes in the order of their coordinates.
 pub(crate) mod slot {
@@ -219,7 +219,9 @@ impl Words {
         control: &dyn Readable,
     ) -> Fallible<()> {
         let function = Function::read(s, word, control)?;
-        self.functions.push(function).map_err(|message| s.error("m-function", word.span, message))
+        self.functions
+            .push(function)
+            .map_err(|message| s.error(Rule::MFunction, word.span, message))
     }
 }
 
@@ -235,7 +237,7 @@ pub(crate) fn feed_word(
         (b"F", None) if word.sign == 0.0 && s.take(b"MAX") => Ok(FeedWord::Max),
         (b"F" | b"FU", Some(number)) => {
             if number <= 0.0 {
-                return Err(s.error("feed", word.span, "a feed must be greater than 0"));
+                return Err(s.error(Rule::Feed, word.span, "a feed must be greater than 0"));
             }
             Ok(if word.address == b"F" {
                 FeedWord::Value(number)
@@ -245,16 +247,20 @@ pub(crate) fn feed_word(
         }
         (b"FAUTO", None) | (b"F", None) if word.address == b"FAUTO" || s.take(b"AUTO") => automatic
             .ok_or_else(|| {
-                s.error("feed", word.span, "F AUTO takes the feed of a TOOL CALL, which gave none")
-                    .help("write the feed as a number")
-                    .into()
+                s.error(
+                    Rule::Feed,
+                    word.span,
+                    "F AUTO takes the feed of a TOOL CALL, which gave none",
+                )
+                .help("write the feed as a number")
+                .into()
             }),
         (b"FZ", _) => {
             let message = "FZ is the feed of a tooth, and how many teeth the tool has is not known";
-            Err(s.error("feed", word.span, message).help("write the feed in mm/min").into())
+            Err(s.error(Rule::Feed, word.span, message).help("write the feed in mm/min").into())
         }
         (b"FT" | b"FMAXT", _) => {
-            Err(s.error("feed", word.span, "FT gives a time, which is not supported"))
+            Err(s.error(Rule::Feed, word.span, "FT gives a time, which is not supported"))
         }
         _ => Err(unknown(s, word)),
     }
@@ -271,10 +277,10 @@ fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Fallibl
 pub(crate) fn unknown(s: &Scanner, word: &Word) -> Box<program::Diagnostic> {
     let address = String::from_utf8_lossy(word.address);
     let message = format!("the word {address} is not understood here");
-    s.error("unknown-word", word.span, message)
+    s.error(Rule::UnknownWord, word.span, message)
 }
 
 fn twice(s: &Scanner, word: &Word) -> Box<program::Diagnostic> {
     let address = String::from_utf8_lossy(word.address);
-    s.error("word-twice", word.span, format!("{address} stands twice in the block"))
+    s.error(Rule::RepeatedWord, word.span, format!("{address} stands twice in the block"))
 }

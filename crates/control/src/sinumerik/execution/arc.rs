@@ -8,6 +8,7 @@ use crate::kernel::{Fallible, arc};
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, Motion};
 use geom::{Arc, ArcError, Vec3, direction, rotate};
+use program::Rule;
 
 /// How far the radii at the ends of an arc may be apart: mm for small arcs, part of the radius for
 /// large ones (MD21000, MD21010 as delivered; alarm 14040).
@@ -40,7 +41,7 @@ struct Ends {
 impl Interpreter<'_, '_> {
     /// An arc from where the tool is.
     pub fn arc(&mut self, source: &Source, block: &Block) -> Fallible<()> {
-        let error = |message: &str| Err(source.block_error("arc", message));
+        let error = |message: &str| Err(source.block_error(Rule::Arc, message));
         if block.has_rotary() || block.has_vector() {
             return error("the tool turns during an arc, which is not supported");
         }
@@ -103,7 +104,7 @@ impl Interpreter<'_, '_> {
                     "the end is not on the circle: its radius is {at_start:.4} mm at the start and \
                      {at_end:.4} mm at the end (alarm 14040)"
                 );
-                return Err(source.block_error("arc-radius", message));
+                return Err(source.block_error(Rule::ArcRadius, message));
             }
             Err(_) => return error("the arc has no radius"),
         }
@@ -129,7 +130,7 @@ impl Interpreter<'_, '_> {
             let Some(coordinate) = block.center[i] else { continue };
             if i == ends.across {
                 let message = format!("{} is not in the plane of the arc", CENTER_NAMES[i]);
-                return Err(source.block_error("arc", message));
+                return Err(source.block_error(Rule::Arc, message));
             }
             let count = match coordinate.count {
                 Count::Modal => Count::Incremental,
@@ -143,7 +144,7 @@ impl Interpreter<'_, '_> {
 
     /// `CT`: goes on in the direction of the last move in the plane.
     fn tangential(&self, source: &Source, block: &Block, ends: &Ends) -> Fallible<Circle> {
-        let error = |message: &str| Err(source.block_error("arc", message));
+        let error = |message: &str| Err(source.block_error(Rule::Arc, message));
         if block.has_arc_word() {
             return error("CT takes the end of the arc only");
         }
@@ -164,7 +165,7 @@ impl Interpreter<'_, '_> {
 
     /// `CIP`: through `I1= J1= K1=`, which count like the end (`G90`, `G91`), in any plane.
     fn through_point(&self, source: &Source, block: &Block, ends: &Ends) -> Fallible<Circle> {
-        let error = |message: &str| Err(source.block_error("arc", message));
+        let error = |message: &str| Err(source.block_error(Rule::Arc, message));
         let other_word = block.center.iter().any(Option::is_some)
             || block.radius.is_some()
             || block.opening.is_some()
@@ -204,7 +205,7 @@ fn check_helix(source: &Source, block: &Block, ends: &Ends) -> Fallible<()> {
                 "an arc that moves {} too must have {}, also where it does not change",
                 AXIS_NAMES[ends.across], AXIS_NAMES[i]
             );
-            return Err(source.block_error("helix-end-point", message));
+            return Err(source.block_error(Rule::HelixEndPoint, message));
         }
     }
     Ok(())
@@ -216,7 +217,7 @@ fn chord(source: &Source, ends: &Ends) -> Fallible<(Vec3, f64, Vec3)> {
     let length = chord.length();
     if length <= 1e-9 {
         let message = "a full circle needs its centre (I J K): start and end are one point";
-        return Err(source.block_error("arc", message));
+        return Err(source.block_error(Rule::Arc, message));
     }
     Ok((ends.start + chord / 2.0, length / 2.0, ends.normal.cross(chord / length)))
 }
@@ -231,7 +232,7 @@ fn by_radius(source: &Source, ends: &Ends, radius: f64) -> Fallible<Circle> {
             "the radius of {size} mm does not reach: start and end are {:.4} mm apart (alarm 14040)",
             2.0 * half
         );
-        return Err(source.block_error("arc-radius", message));
+        return Err(source.block_error(Rule::ArcRadius, message));
     }
     let height = (size * size - half * half).max(0.0).sqrt().copysign(radius);
     Ok(Circle { center: middle + left * height, normal: ends.normal })
@@ -256,7 +257,7 @@ fn opened(
     check_opening(source, opening)?;
     if (0..3).any(|i| i != ends.across && block.axes[i].is_some()) {
         let message = "the arc has an end point, a centre and an opening angle";
-        return Err(source.block_error("arc", message));
+        return Err(source.block_error(Rule::Arc, message));
     }
     let spoke = ends.start - circle.center;
     let mut end = circle.center + rotate(spoke, ends.normal, opening.to_radians());
@@ -268,7 +269,7 @@ fn check_opening(source: &Source, opening: f64) -> Fallible<()> {
     if opening > 0.0 && opening < 360.0 {
         return Ok(());
     }
-    Err(source.block_error("arc", "the opening angle AR= is between 0 and 360 degrees"))
+    Err(source.block_error(Rule::Arc, "the opening angle AR= is between 0 and 360 degrees"))
 }
 
 fn turns(source: &Source, block: &Block) -> Fallible<u32> {
@@ -277,6 +278,6 @@ fn turns(source: &Source, block: &Block) -> Fallible<u32> {
         Some(turns) if turns.fract() == 0.0 && (0.0..=MOST_TURNS).contains(&turns) => {
             Ok(turns as u32)
         }
-        Some(_) => Err(source.block_error("arc", "TURN= is a whole number from 0 to 999")),
+        Some(_) => Err(source.block_error(Rule::Arc, "TURN= is a whole number from 0 to 999")),
     }
 }

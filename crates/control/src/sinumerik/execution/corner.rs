@@ -12,7 +12,7 @@ use crate::kernel::corner::{self, Joint, Misfit, Shape};
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Corner};
 use geom::Vec3;
-use program::{Diagnostic, Feed};
+use program::{Diagnostic, Feed, Rule};
 
 /// Most records between the two blocks of a corner; our own limit.
 const MOST_BETWEEN: usize = 100;
@@ -73,7 +73,7 @@ impl Interpreter<'_, '_> {
         {
             let message = "a corner belongs to a cut in the plane, from a known place, without further \
                            turns";
-            return Err(source.block_error("corner", message));
+            return Err(source.block_error(Rule::Corner, message));
         }
         let corner = match corner {
             Corner::Chamfer(length) => Corner::Chamfer(length * unit),
@@ -83,7 +83,7 @@ impl Interpreter<'_, '_> {
         };
         let (Corner::Chamfer(size) | Corner::ChamferSide(size) | Corner::Round(size)) = corner;
         if size < 0.0 {
-            return Err(source.block_error("corner", "the size of a corner has no sign"));
+            return Err(source.block_error(Rule::Corner, "the size of a corner has no sign"));
         }
         let feed = block.rare.as_ref().and_then(|rare| rare.corner_feed);
         let feed = feed.or(self.state.corner_feed).filter(|feed| *feed > 0.0);
@@ -143,7 +143,7 @@ impl Interpreter<'_, '_> {
                     "the corner of line {} needs a cut in the plane behind it; RNDM=0 ends rounding",
                     held.line
                 );
-                return Err(source.block_error("corner", message));
+                return Err(source.block_error(Rule::Corner, message));
             }
             self.held = Some(Box::new(held));
             self.release(source)?;
@@ -165,7 +165,7 @@ impl Interpreter<'_, '_> {
             (Some(feed), Some(Feed::PerMinute(_))) => Some(Feed::PerMinute(feed)),
             (Some(feed), Some(Feed::PerTurn(_))) => Some(Feed::PerTurn(feed)),
             (Some(_), _) => {
-                return Err(source.block_error("feed", "FRC= needs G94 or G95"));
+                return Err(source.block_error(Rule::Feed, "FRC= needs G94 or G95"));
             }
             (None, _) => None,
         };
@@ -202,7 +202,7 @@ impl Interpreter<'_, '_> {
                     )
                 }
             };
-            source.block_error("corner", message)
+            source.block_error(Rule::Corner, message)
         })
     }
 
@@ -212,7 +212,7 @@ impl Interpreter<'_, '_> {
         let Some((center, normal)) = element.circle else { return Ok(Action::Line(end)) };
         let Some(normal) = self.state.frames.circle_normal(normal) else {
             let message = "the arc is no arc in this frame: its plane is scaled unevenly";
-            return Err(source.block_error("arc", message));
+            return Err(source.block_error(Rule::Arc, message));
         };
         let center = self.state.frames.in_work_frame(center);
         Ok(Action::Arc(ArcTo { end, center, normal, turns: 0 }.into()))
@@ -222,5 +222,5 @@ impl Interpreter<'_, '_> {
 fn no_second_side(source: &Source, line: u32) -> Box<Diagnostic> {
     let message =
         format!("the corner of line {line} has no second side: a cut must follow at once");
-    source.block_error("corner", message)
+    source.block_error(Rule::Corner, message)
 }

@@ -11,7 +11,7 @@ use crate::sinumerik::language::call::Call;
 use crate::sinumerik::language::commands::FeedType;
 use crate::sinumerik::language::forms::{Form, Operation};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Diagnostic, Feed, Spindle, Withdrawal};
+use program::{Cycle, CycleKind, Diagnostic, Feed, Rule, Spindle, Withdrawal};
 
 /// Parameters that may only be left out or have one of these values: others change what the cycle
 /// does in a way that is not modelled. `_AXN` 0 and 3 are the axis perpendicular to the plane, 0 in
@@ -118,7 +118,7 @@ struct Arguments<'a> {
 }
 
 impl Arguments<'_> {
-    fn error(&self, rule: &'static str, message: impl AsRef<str>) -> Box<Diagnostic> {
+    fn error(&self, rule: Rule, message: impl AsRef<str>) -> Box<Diagnostic> {
         let message = format!("{}: {}", self.form.name, message.as_ref());
         self.source.block_error(rule, message)
     }
@@ -131,7 +131,8 @@ impl Arguments<'_> {
     }
 
     fn required(&self, name: &str) -> Fallible<f64> {
-        self.get(name)?.ok_or_else(|| self.error("cycle-parameter", format!("{name} is missing")))
+        self.get(name)?
+            .ok_or_else(|| self.error(Rule::CycleParameter, format!("{name} is missing")))
     }
 
     fn or_zero(&self, name: &str) -> Fallible<f64> {
@@ -146,7 +147,7 @@ impl Arguments<'_> {
     fn unsigned(&self, name: &str) -> Fallible<Option<f64>> {
         let value = self.length(name)?;
         if value.is_some_and(|v| v < 0.0) {
-            return Err(self.error("cycle-parameter", format!("{name} has no sign")));
+            return Err(self.error(Rule::CycleParameter, format!("{name} has no sign")));
         }
         Ok(value)
     }
@@ -154,14 +155,16 @@ impl Arguments<'_> {
     fn check(&self) -> Fallible<()> {
         if self.call.arguments.len() > self.form.parameters.len() {
             let most = self.form.parameters.len();
-            return Err(self.error("cycle-parameter", format!("it has at most {most} parameters")));
+            return Err(
+                self.error(Rule::CycleParameter, format!("it has at most {most} parameters"))
+            );
         }
         for (name, allowed) in FIXED {
             if let Some(value) = self.get(name)?
                 && !allowed.contains(&value)
             {
                 let message = format!("{name} = {value} is not supported");
-                return Err(self.error("unsupported", message));
+                return Err(self.error(Rule::Unsupported, message));
             }
         }
         Ok(())
@@ -175,7 +178,7 @@ impl Arguments<'_> {
         let from_relative = self.unsigned(relative)?.filter(|depth| *depth > 0.0);
         match (from_absolute, from_relative) {
             (Some(a), Some(r)) if (a - r).abs() > 1e-6 => Err(self.error(
-                "cycle-depth",
+                Rule::CycleDepth,
                 format!("{absolute} says a depth of {a} mm and {relative} one of {r} mm"),
             )),
             (a, r) => Ok(r.or(a)),
@@ -202,16 +205,16 @@ impl Drilling {
         let relative = arguments.length("DP")?.is_none();
         if retract < 0.0 || retract == 0.0 && relative {
             return Err(arguments.error(
-                "reference-plane",
+                Rule::ReferencePlane,
                 "the retraction plane RTP must lie above the reference plane RFP (alarm 61101)",
             ));
         }
         let Some(depth) = depth else {
-            return Err(arguments.error("cycle-depth", "there is neither DP nor DPR"));
+            return Err(arguments.error(Rule::CycleDepth, "there is neither DP nor DPR"));
         };
         if depth <= 0.0 {
             return Err(
-                arguments.error("cycle-depth", "the depth is not below the reference plane")
+                arguments.error(Rule::CycleDepth, "the depth is not below the reference plane")
             );
         }
         let mut drilling = Drilling {
@@ -241,7 +244,7 @@ impl Drilling {
             Operation::Bore => drilling.bore(&arguments, state)?,
             Operation::StopInHole => {
                 let message = "it stops the program in the hole; use CYCLE86";
-                return Err(arguments.error("unsupported", message));
+                return Err(arguments.error(Rule::Unsupported, message));
             }
         }
         Ok(drilling)
@@ -250,26 +253,26 @@ impl Drilling {
     fn peck(&mut self, arguments: &Arguments) -> Fallible<()> {
         let Some(first) = arguments.depth("FDEP", "FDPR", self.surface)? else {
             let message = "there is neither FDEP nor FDPR (alarm 61107)";
-            return Err(arguments.error("cycle-depth", message));
+            return Err(arguments.error(Rule::CycleDepth, message));
         };
         if first <= 0.0 || first > self.cycle.depth + 1e-9 {
             let message = format!(
                 "the first depth of {first} mm is not between 0 and {} mm (alarm 61107)",
                 self.cycle.depth
             );
-            return Err(arguments.error("cycle-depth", message));
+            return Err(arguments.error(Rule::CycleDepth, message));
         }
         let single = first >= self.cycle.depth - 1e-9;
         if !single && arguments.or_zero("DAM")? != 0.0 {
             let message = "pecks that grow less (DAM) are not supported; leave DAM at 0";
-            return Err(arguments.error("unsupported", message));
+            return Err(arguments.error(Rule::Unsupported, message));
         }
         self.cycle.kind = match arguments.or_zero("VARI")? {
             0.0 => CycleKind::BreakChip,
             1.0 => CycleKind::Deep,
             other => {
                 let message = format!("VARI is 0 or 1, not {other}");
-                return Err(arguments.error("cycle-parameter", message));
+                return Err(arguments.error(Rule::CycleParameter, message));
             }
         };
         // The dwell at the final depth is DTB unless _DTD says another.
@@ -291,7 +294,7 @@ impl Drilling {
     /// The pitch in mm and whether the thread is left-handed.
     fn pitch(arguments: &Arguments) -> Fallible<(f64, bool)> {
         if arguments.unit != 1.0 {
-            return Err(arguments.error("unsupported", "tapping in inches is not supported"));
+            return Err(arguments.error(Rule::Unsupported, "tapping in inches is not supported"));
         }
         let size = arguments.get("MPIT")?.filter(|size| *size != 0.0);
         let pitch = arguments.get("PIT")?.filter(|pitch| *pitch != 0.0);
@@ -300,18 +303,18 @@ impl Drilling {
                 let entry = COARSE_PITCH.iter().find(|(diameter, _)| *diameter == size.abs());
                 let Some((_, pitch)) = entry else {
                     let message = format!("MPIT {size} is no thread from M3 to M48");
-                    return Err(arguments.error("cycle-parameter", message));
+                    return Err(arguments.error(Rule::CycleParameter, message));
                 };
                 pitch * size.signum()
             }
             (None, Some(pitch)) => pitch,
             (None, None) => {
                 let message = "there is neither MPIT nor PIT";
-                return Err(arguments.error("cycle-parameter", message));
+                return Err(arguments.error(Rule::CycleParameter, message));
             }
             (Some(_), Some(_)) => {
                 let message = "MPIT and PIT contradict each other; give one";
-                return Err(arguments.error("cycle-parameter", message));
+                return Err(arguments.error(Rule::CycleParameter, message));
             }
         };
         Ok((signed.abs(), signed < 0.0))
@@ -321,14 +324,14 @@ impl Drilling {
     fn direction(arguments: &Arguments, name: &str, speed: Option<f64>) -> Fallible<Spindle> {
         let given = || {
             let message = format!("{name} starts the spindle and no speed has been given by S");
-            speed.ok_or_else(|| arguments.error("spindle", message))
+            speed.ok_or_else(|| arguments.error(Rule::Spindle, message))
         };
         match arguments.or_zero(name)? {
             3.0 => Ok(Spindle::Clockwise(given()?)),
             4.0 => Ok(Spindle::CounterClockwise(given()?)),
             5.0 if name == "SDAC" => Ok(Spindle::Off),
             other => Err(arguments.error(
-                "cycle-parameter",
+                Rule::CycleParameter,
                 format!("{name} = {other} is no direction of the spindle (alarm 61102)"),
             )),
         }
@@ -338,11 +341,13 @@ impl Drilling {
         let (pitch, left) = Drilling::pitch(arguments)?;
         let speed = arguments.required("SST")?;
         if speed <= 0.0 {
-            return Err(arguments.error("cycle-parameter", "the tapping speed SST must be above 0"));
+            return Err(
+                arguments.error(Rule::CycleParameter, "the tapping speed SST must be above 0")
+            );
         }
         let back = arguments.or_zero("SST1")?;
         if back < 0.0 {
-            return Err(arguments.error("cycle-parameter", "SST1 has no sign"));
+            return Err(arguments.error(Rule::CycleParameter, "SST1 has no sign"));
         }
         if back != 0.0 && back != speed {
             self.risks.push(Risk::TAP_RETURN);
@@ -367,17 +372,17 @@ impl Drilling {
         let encoder = arguments.or_zero("ENC")?;
         if ![0.0, 11.0, 20.0].contains(&encoder) {
             let message = format!("ENC = {encoder}, a pitch from the feed, is not supported");
-            return Err(arguments.error("unsupported", message));
+            return Err(arguments.error(Rule::Unsupported, message));
         }
         if arguments.or_zero("SDR")? != 0.0 {
             let message = "SDR must be 0: the cycle turns the spindle round by itself";
-            return Err(arguments.error("unsupported", message));
+            return Err(arguments.error(Rule::Unsupported, message));
         }
         let (pitch, negative) = Drilling::pitch(arguments)?;
         let left = matches!(state.spindle, Spindle::CounterClockwise(_));
         if negative || state.spindle == Spindle::Off {
             let message = "the running spindle (M3, M4) gives the hand of the thread, not a sign";
-            return Err(arguments.error("cycle-parameter", message));
+            return Err(arguments.error(Rule::CycleParameter, message));
         }
         self.cycle.kind = CycleKind::Tap { pitch, left };
         self.needs_feed = false;
@@ -389,11 +394,11 @@ impl Drilling {
         let feed = arguments.get("FFR")?;
         let back = arguments.get("RFF")?;
         if feed.is_some_and(|f| f <= 0.0) || back.is_some_and(|f| f <= 0.0) {
-            return Err(arguments.error("cycle-parameter", "FFR and RFF must be above 0"));
+            return Err(arguments.error(Rule::CycleParameter, "FFR and RFF must be above 0"));
         }
         if back != feed {
             let message = "feeds in (FFR) and out (RFF) that differ are not supported";
-            return Err(arguments.error("unsupported", message));
+            return Err(arguments.error(Rule::Unsupported, message));
         }
         if let Some(feed) = feed {
             self.needs_feed = false;
@@ -402,7 +407,7 @@ impl Drilling {
                 FeedType::PerTurn => Some(Feed::PerTurn(feed * state.feed_unit)),
                 FeedType::InverseTime => {
                     let message = "a feed in a cycle needs G94 or G95";
-                    return Err(arguments.error("cycle-parameter", message));
+                    return Err(arguments.error(Rule::CycleParameter, message));
                 }
             };
         }

@@ -21,7 +21,7 @@ use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{ELEMENTS_IN_A_TURN, Place};
-use program::{Auxiliary, Compensation, Coolant, Cycle, Diagnostic, Feed, Spindle, Tool};
+use program::{Auxiliary, Compensation, Coolant, Cycle, Diagnostic, Feed, Rule, Spindle, Tool};
 
 /// Runs blocks.
 pub(crate) struct Interpreter<'a, 's> {
@@ -100,12 +100,18 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// Turns of loops, jumps and calls, of which there may not be too many between two records.
     pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
-        self.channel.budget.spend(turns).map_err(|message| source.block_error("endless", message))
+        self.channel
+            .budget
+            .spend(turns)
+            .map_err(|message| source.block_error(Rule::Endless, message))
     }
 
     /// So many bytes are read, again or in a called program.
     pub fn reads(&mut self, source: &Source, bytes: usize) -> Fallible<()> {
-        self.channel.budget.read(bytes).map_err(|message| source.block_error("endless", message))
+        self.channel
+            .budget
+            .read(bytes)
+            .map_err(|message| source.block_error(Rule::Endless, message))
     }
 
     /// Sets what a block or a loop assigns to.
@@ -216,13 +222,13 @@ impl<'a, 's> Interpreter<'a, 's> {
         for group in [STOPS, SPINDLE, COOLANT] {
             if block.m.iter().flatten().filter(|m| group.contains(m)).count() > 1 {
                 let message = "two M functions of one kind in a block contradict each other";
-                return Err(source.block_error("group-conflict", message));
+                return Err(source.block_error(Rule::ModalGroup, message));
             }
         }
         for m in block.m.iter().flatten() {
             if !is_own(*m) && !self.settings.auxiliary.contains(m) {
                 let message = format!("M{m} is not an M function of the control");
-                let mut error = source.block_error("unknown-m", message);
+                let mut error = source.block_error(Rule::UnknownM, message);
                 error.help =
                     "a function of the machine's builder that moves no axis belongs in the \
                               list of auxiliary functions of the machine"
@@ -246,7 +252,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         if let Some(peak) = block.rare.as_ref().and_then(|rare| rare.peak) {
             if !(0.0..=100.0).contains(&peak) {
-                return Err(source.block_error("compensation", "DISC= takes 0 to 100"));
+                return Err(source.block_error(Rule::Compensation, "DISC= takes 0 to 100"));
             }
             state.peak = peak > 0.0;
         }
@@ -254,7 +260,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             && before != (state.corner, state.peak, state.goes_around)
         {
             let message = "how the tool goes around corners changes while compensation is active";
-            let mut error = source.block_error("compensation", message);
+            let mut error = source.block_error(Rule::Compensation, message);
             error.help = "write NORM, KONT, G450, G451 and DISC= before or with G41, G42".into();
             return Err(error);
         }
@@ -287,11 +293,11 @@ impl<'a, 's> Interpreter<'a, 's> {
             let state = &self.state;
             if normal != state.plane_normal && state.compensation != Compensation::Off {
                 let message = "the plane changes while cutter radius compensation is active";
-                return Err(source.block_error("compensation", message));
+                return Err(source.block_error(Rule::Compensation, message));
             }
             if normal != state.plane_normal && self.held.is_some() {
                 let message = "the plane changes between the two sides of a corner";
-                return Err(source.block_error("corner", message));
+                return Err(source.block_error(Rule::Corner, message));
             }
             self.state.select_plane(normal);
         }
@@ -354,7 +360,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         if !matches!(self.state.motion, Motion::Rapid | Motion::Line) {
             let message = "cutter radius compensation is switched in a block with G0 or G1 \
                            (alarms 10753, 10754)";
-            return Err(source.block_error("compensation", message));
+            return Err(source.block_error(Rule::Compensation, message));
         }
         self.state.compensation = compensation;
         Ok(())
@@ -390,7 +396,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         if block.has_m(6) {
             let Some(tool) = self.state.selected.clone() else {
                 return Err(
-                    source.block_error("tool", "M6 changes the tool, but no T has chosen one")
+                    source.block_error(Rule::Tool, "M6 changes the tool, but no T has chosen one")
                 );
             };
             self.state.tool = Some(tool.clone());
@@ -414,7 +420,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     fn feed(&mut self, source: &Source, value: f64) -> Fallible<()> {
         if value <= 0.0 {
             let message = "the feed must be above 0 (alarm 14800)";
-            return Err(source.block_error("feed", message));
+            return Err(source.block_error(Rule::Feed, message));
         }
         let state = &mut self.state;
         let unit = if state.feed_type == FeedType::InverseTime { 1.0 } else { state.feed_unit };
@@ -439,7 +445,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             if !self.settings.setup.purpose.asks_technology() {
                 return Ok(());
             }
-            let mut error = source.block_error("missing-feed", "there is no feed (alarm 10860)");
+            let mut error = source.block_error(Rule::NoFeed, "there is no feed (alarm 10860)");
             error.help = "give F: once after G94 or G95, in every block under G93".into();
             return Err(error);
         }
@@ -453,7 +459,9 @@ impl<'a, 's> Interpreter<'a, 's> {
     fn spindle_and_coolant(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         if let Some(speed) = block.speed {
             if speed < 0.0 {
-                return Err(source.block_error("spindle", "the speed of the spindle has no sign"));
+                return Err(
+                    source.block_error(Rule::Spindle, "the speed of the spindle has no sign")
+                );
             }
             self.state.speed = Some(speed);
         }
@@ -490,7 +498,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     fn given_speed(&self, source: &Source) -> Fallible<f64> {
         self.state.speed.ok_or_else(|| {
             let message = "the spindle starts and no speed has been given by S";
-            let mut error = source.block_error("spindle", message);
+            let mut error = source.block_error(Rule::Spindle, message);
             error.help = "write S next to M3 or M4, or before".into();
             error
         })
@@ -515,7 +523,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             if !(low..=high).contains(&speed) {
                 let message =
                     format!("the speed of {speed} 1/min is not within G25 S{low} and G26 S{high}");
-                return Err(source.block_error("spindle", message));
+                return Err(source.block_error(Rule::Spindle, message));
             }
         }
         self.state.spindle = spindle;
@@ -529,7 +537,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.emit(source, Action::Risk(Risk::LIMITS_WRITTEN.into()))?;
         if !block.only_group(3) || block.feed.is_some() || block.has_rotary() {
             let message = format!("{} stands in a block of its own", block.command(3));
-            return Err(source.block_error("syntax", message));
+            return Err(source.block_error(Rule::Syntax, message));
         }
         if let Some(speed) = block.speed {
             self.state.speed_limits[usize::from(upper)] = speed;
@@ -576,15 +584,15 @@ impl<'a, 's> Interpreter<'a, 's> {
         let pause = match (block.feed, block.speed) {
             (Some(seconds), None) => Pause::Seconds(seconds),
             (None, Some(turns)) => Pause::Turns(turns),
-            _ => return Err(source.block_error("dwell", "G4 needs F (seconds) or S (turns)")),
+            _ => return Err(source.block_error(Rule::Dwell, "G4 needs F (seconds) or S (turns)")),
         };
         if !block.only_group(2) || block.has_position() {
-            return Err(source.block_error("dwell", "G4 stands in a block of its own"));
+            return Err(source.block_error(Rule::Dwell, "G4 stands in a block of its own"));
         }
         match pause.seconds(self.state.spindle) {
             Some(seconds) if seconds >= 0.0 => self.emit(source, Action::Dwell(seconds)),
-            Some(_) => Err(source.block_error("dwell", "a dwell has no sign")),
-            None => Err(source.block_error("dwell", "turns of a spindle that stands")),
+            Some(_) => Err(source.block_error(Rule::Dwell, "a dwell has no sign")),
+            None => Err(source.block_error(Rule::Dwell, "turns of a spindle that stands")),
         }
     }
 
@@ -596,7 +604,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             && block.speed.is_none();
         if !alone {
             let message = format!("{} stands in a block of its own", call.name);
-            return Err(source.block_error("syntax", message));
+            return Err(source.block_error(Rule::Syntax, message));
         }
         match call.procedure {
             Procedure::NoMotion => Ok(()),
@@ -606,7 +614,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 None | Some(1.0) => Ok(()),
                 Some(_) => {
                     let message = "SETMS is not supported: another master spindle than the first";
-                    Err(source.block_error("unsupported", message))
+                    Err(source.block_error(Rule::Unsupported, message))
                 }
             },
             Procedure::HighSpeed => self.high_speed(source, call),
@@ -633,7 +641,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 }
                 if self.state.modal.waits() {
                     let message = "a cycle is called while MCALL is active";
-                    return Err(source.block_error("cycle", message));
+                    return Err(source.block_error(Rule::Cycle, message));
                 }
                 self.drill(source, &drilling)?;
                 self.cycle_off(source)
@@ -653,7 +661,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 if kind > 9999.0 {
                     let message =
                         "the older form of CYCLE832, which can switch TRAORI, is not supported";
-                    return Err(source.block_error("unsupported", message));
+                    return Err(source.block_error(Rule::Unsupported, message));
                 }
                 let (tens, units) = (kind.div_euclid(10.0), kind.rem_euclid(10.0));
                 if kind.fract() != 0.0 || top > 2.0 || tens > 1.0 || units > 4.0 {
@@ -679,7 +687,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             _ => {
                 let message =
                     "this kind of CYCLE832 needs the tolerance of the orientation, in degrees";
-                let mut error = source.block_error("cycle-parameter", message);
+                let mut error = source.block_error(Rule::CycleParameter, message);
                 error.help = "CYCLE832(0.01,_ORI_FINISH,0.05), or CYCLE832(0.01,_FINISH,1)".into();
                 Err(error)
             }
@@ -703,11 +711,11 @@ impl<'a, 's> Interpreter<'a, 's> {
             let name = if let Argument::Text(name) = argument { name.as_str() } else { "" };
             let Some(index) = AXIS_NAMES.iter().position(|axis| *axis == name) else {
                 let message = "FGROUP takes the names of axes: FGROUP(X,Y,Z)";
-                return Err(source.block_error("feed-group", message));
+                return Err(source.block_error(Rule::FeedGroup, message));
             };
             if index >= 3 && !self.settings.rotary[index - 3] {
                 let message = format!("the machine has no axis {name}");
-                return Err(source.block_error("unknown-axis", message));
+                return Err(source.block_error(Rule::UnknownAxis, message));
             }
             named[index] = true;
         }
@@ -718,7 +726,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 "FGROUP without {}: F would not be the speed of the tool where that axis moves",
                 AXIS_NAMES[missing]
             );
-            return Err(source.block_error("feed-group", message));
+            return Err(source.block_error(Rule::FeedGroup, message));
         }
         let before = self.state.feed_path();
         self.state.feed_group = [named[3], named[4], named[5]];
@@ -748,7 +756,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
 fn unknown_kind(source: &Source) -> Box<Diagnostic> {
     let message = "this kind of machining of CYCLE832 is not known";
-    let mut error = source.block_error("cycle-parameter", message);
+    let mut error = source.block_error(Rule::CycleParameter, message);
     error.help = "one of _OFF _FINISH _SEMIFIN _ROUGH _PRECISION, or _ORI_FINISH and its kin with a tolerance of the \
                   orientation"
         .into();
@@ -766,7 +774,7 @@ fn group(source: &Source, call: &Call) -> Fallible<()> {
         return Ok(());
     }
     let message = format!("{} with a way or code of the control's own is not supported", call.name);
-    let mut error = source.block_error("unsupported", message);
+    let mut error = source.block_error(Rule::Unsupported, message);
     error.help = "set its arguments behind the level to 0 or a text".into();
     Err(error)
 }

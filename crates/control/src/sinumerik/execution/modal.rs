@@ -7,7 +7,7 @@ use crate::kernel::Fallible;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::statement::ProgramCall;
 use geom::Vec3;
-use program::Cycle;
+use program::{Cycle, Rule};
 
 /// What `MCALL` has after each block with a motion.
 pub(crate) enum Modal {
@@ -60,7 +60,7 @@ impl Interpreter<'_, '_> {
     pub fn may_change_modal(&self, source: &Source) -> Fallible<()> {
         if let Modal::Running = self.state.modal {
             let message = "MCALL in a program that MCALL calls";
-            return Err(source.block_error("call", message));
+            return Err(source.block_error(Rule::Call, message));
         }
         Ok(())
     }
@@ -69,15 +69,15 @@ impl Interpreter<'_, '_> {
         let state = &self.state;
         if state.plane_normal != 2 {
             let message = "drilling along X or Y (G18, G19) is not supported";
-            return Err(source.block_error("unsupported", message));
+            return Err(source.block_error(Rule::Unsupported, message));
         }
         if !state.frames.moved_only() && state.frames.sense_about(2).is_none() {
             let message = "drilling in a frame that is scaled, or mirrored along the hole";
-            return Err(source.block_error("unsupported", message));
+            return Err(source.block_error(Rule::Unsupported, message));
         }
         if state.position.x.is_nan() || state.position.y.is_nan() {
             let message = "the place of the hole is not known: no block has said X and Y";
-            return Err(source.block_error("unknown-position", message));
+            return Err(source.block_error(Rule::UnknownPosition, message));
         }
         if drilling.needs_feed {
             self.use_feed(source)?;
@@ -87,7 +87,7 @@ impl Interpreter<'_, '_> {
         }
         let Some(dwell) = drilling.dwell.seconds(self.state.spindle) else {
             let message = "the dwell counts turns of a spindle that stands";
-            return Err(source.block_error("dwell", message));
+            return Err(source.block_error(Rule::Dwell, message));
         };
         let mut cycle = Cycle { dwell, ..drilling.cycle };
         if let Some(withdrawal) = cycle.kind.withdrawal() {

@@ -13,7 +13,7 @@ use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::system::AXIS_NAMES;
 use geom::{Vec3, direction};
-use program::{Axes, Compensation, MachineMove};
+use program::{Axes, Compensation, MachineMove, Rule};
 
 impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
@@ -24,7 +24,7 @@ impl Interpreter<'_, '_> {
             || block.machine_axes.contains(&true)
         {
             let message = "RPL=, FP= and machine axes belong to ROT, G75 and G74";
-            return Err(source.block_error("syntax", message));
+            return Err(source.block_error(Rule::Syntax, message));
         }
         if block.code(9) == Some(Code::MachineCoordinates) {
             return self.machine_position(source, block);
@@ -38,13 +38,13 @@ impl Interpreter<'_, '_> {
         let round = !straight && !thread;
         if straight && block.has_arc_word() {
             let message = "words of an arc without G2, G3 or CIP";
-            return Err(source.block_error("arc", message));
+            return Err(source.block_error(Rule::Arc, message));
         }
         if !(block.has_position() || round && block.has_arc_word()) {
             let path_word = |rare: &Rare| rare.angle.is_some() || rare.corner.is_some();
             if block.rare.as_deref().is_some_and(path_word) {
                 let message = "ANG=, CHF=, CHR= and RND= belong to a block that moves";
-                return Err(source.block_error("syntax", message));
+                return Err(source.block_error(Rule::Syntax, message));
             }
             return self.no_motion(source, block);
         }
@@ -69,7 +69,7 @@ impl Interpreter<'_, '_> {
             if self.state.frames.turned() && z.is_finite() && !over {
                 let message =
                     "Z in a turned frame before X and Y: where the tool goes down is not known";
-                return Err(source.block_error("unknown-position", message));
+                return Err(source.block_error(Rule::UnknownPosition, message));
             }
             self.state.head_for(position);
             let start = std::mem::replace(&mut self.state.position, position);
@@ -101,7 +101,7 @@ impl Interpreter<'_, '_> {
         if drills && self.state.modal.waits() {
             let message = "F, S or a motion command without a position drills or calls once more \
                            while MCALL is active";
-            return Err(source.block_error("cycle", message));
+            return Err(source.block_error(Rule::Cycle, message));
         }
         Ok(())
     }
@@ -156,7 +156,7 @@ impl Interpreter<'_, '_> {
         angle: f64,
         position: &mut Vec3,
     ) -> Fallible<()> {
-        let error = |message: &str| Err(source.block_error("angle", message));
+        let error = |message: &str| Err(source.block_error(Rule::Angle, message));
         let (first, second) = axes_of_plane(self.state.plane_normal);
         let start = self.state.position;
         if !matches!(self.state.motion, Motion::Rapid | Motion::Line) || block.has_polar() {
@@ -200,7 +200,7 @@ impl Interpreter<'_, '_> {
             Count::Incremental => true,
             Count::Shorter | Count::Positive | Count::Negative => {
                 let message = format!("DC, ACP and ACN are for rotary axes, not for {name}");
-                return Err(source.block_error("syntax", message));
+                return Err(source.block_error(Rule::Syntax, message));
             }
         };
         if !incremental {
@@ -208,7 +208,7 @@ impl Interpreter<'_, '_> {
         }
         if base.is_nan() {
             let message = format!("{name} is incremental, but it is not known from where");
-            let mut error = source.block_error("unknown-position", message);
+            let mut error = source.block_error(Rule::UnknownPosition, message);
             error.help = format!(
                 "write an absolute position of {name} before it (G90, or {name}=AC()), also behind ROT, SCALE and \
                  MIRROR"
@@ -229,7 +229,7 @@ impl Interpreter<'_, '_> {
         }
         if self.state.frames.swivel().is_some() {
             let message = "a rotary axis moves in a plane swivelled by CYCLE800";
-            return Err(source.block_error("orientation", message));
+            return Err(source.block_error(Rule::Orientation, message));
         }
         let (before, axis) = (self.state.rotary, self.state.tool_axis);
         for i in 0..3 {
@@ -266,7 +266,7 @@ impl Interpreter<'_, '_> {
             || coordinate.count == Count::Modal && !self.state.absolute;
         if incremental && from.is_nan() {
             let message = format!("{name} is incremental, but it is not known from where");
-            return Err(source.block_error("unknown-position", message));
+            return Err(source.block_error(Rule::UnknownPosition, message));
         }
         let is_modulo =
             matches!(coordinate.count, Count::Shorter | Count::Positive | Count::Negative);
@@ -274,7 +274,7 @@ impl Interpreter<'_, '_> {
             let message = format!(
                 "{name} is counted modulo 360°, and {value} is not within 0 to 359.999 (alarm 16830)"
             );
-            return Err(source.block_error("modulo-position", message));
+            return Err(source.block_error(Rule::ModuloPosition, message));
         }
         Ok(match coordinate.count {
             _ if incremental => from + value,
@@ -327,7 +327,7 @@ impl Interpreter<'_, '_> {
             || coordinate.count == Count::Modal && !self.state.absolute;
         if let (true, Some(index)) = (incremental, coordinate.offset) {
             let message = format!("{name} is incremental, and R{index} would be added once more");
-            return Err(source.block_error("operator-offset", message));
+            return Err(source.block_error(Rule::OperatorOffset, message));
         }
         if incremental {
             return Ok(());
@@ -345,7 +345,7 @@ impl Interpreter<'_, '_> {
             with(coordinate.offset),
             with(first)
         );
-        let mut error = source.block_error("operator-offset", message);
+        let mut error = source.block_error(Rule::OperatorOffset, message);
         error.help = format!("write every position of {name} with the same one");
         Err(error)
     }
@@ -355,27 +355,27 @@ impl Interpreter<'_, '_> {
             return Ok(());
         }
         let message = format!("the machine has no axis {}", AXIS_NAMES[index + 3]);
-        Err(source.block_error("unknown-axis", message))
+        Err(source.block_error(Rule::UnknownAxis, message))
     }
 
     /// `A3= B3= C3=`: any length, what is left out is 0 (Programming Guide Advanced 04.00, 7.1).
     fn orient_by_vector(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         if block.has_rotary() {
             let message = "positions of rotary axes and a vector of the tool in one block";
-            return Err(source.block_error("orientation", message));
+            return Err(source.block_error(Rule::Orientation, message));
         }
         if !self.state.tool_center {
             let message = "A3= B3= C3= need TRAORI";
-            return Err(source.block_error("orientation", message));
+            return Err(source.block_error(Rule::Orientation, message));
         }
         if !self.state.vectors_in_work_frame {
             let message = "a vector of the tool in machine coordinates (ORIMKS) is not supported";
-            return Err(source.block_error("unsupported", message));
+            return Err(source.block_error(Rule::Unsupported, message));
         }
         let [x, y, z] = block.vector.map(|v| v.unwrap_or(0.0));
         let Some(axis) = direction(self.state.frames.direction(Vec3::new(x, y, z))) else {
             let message = "the vector of the tool (A3= B3= C3=) has no length";
-            return Err(source.block_error("zero-vector", message));
+            return Err(source.block_error(Rule::ZeroVector, message));
         };
         let turns = !matches!(self.state.tool_axis, ToolAxis::Vector(before) if before == axis);
         self.state.tool_axis = ToolAxis::Vector(axis);
@@ -394,11 +394,11 @@ impl Interpreter<'_, '_> {
         if round {
             let message =
                 "cutter radius compensation starts or ends in an arc (alarms 10753, 10754)";
-            return Err(source.block_error("compensation", message));
+            return Err(source.block_error(Rule::Compensation, message));
         }
         if state.compensation != Compensation::Off && state.edge.is_none() {
             let message = "cutter radius compensation without a tool edge D (alarm 10750)";
-            return Err(source.block_error("compensation", message));
+            return Err(source.block_error(Rule::Compensation, message));
         }
         // A mirrored contour has the tool on its other side.
         let mirrored = match state.frames.sense_about(normal) {
@@ -407,7 +407,7 @@ impl Interpreter<'_, '_> {
             None => {
                 let message = "cutter radius compensation in a frame that is scaled, or mirrored \
                                across its plane";
-                return Err(source.block_error("unsupported", message));
+                return Err(source.block_error(Rule::Unsupported, message));
             }
         };
         state.compensation_in_effect = state.compensation;
@@ -446,7 +446,7 @@ impl Interpreter<'_, '_> {
     fn position_axes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         if block.has_position() || block.has_arc_word() {
             let message = "POS and a way of the tool in one block";
-            return Err(source.block_error("syntax", message));
+            return Err(source.block_error(Rule::Syntax, message));
         }
         self.check_free(source, "POS")?;
         let mut alone = Block::empty();
@@ -464,7 +464,7 @@ impl Interpreter<'_, '_> {
         }
         if block.has_polar() {
             let message = format!("{} with polar coordinates", block.command(9));
-            return Err(source.block_error("machine-position", message));
+            return Err(source.block_error(Rule::MachinePosition, message));
         }
         if !matches!(self.state.motion, Motion::Rapid | Motion::Line)
             || block.has_arc_word()
@@ -472,7 +472,7 @@ impl Interpreter<'_, '_> {
         {
             let name = block.command(9);
             let message = format!("{name} is for straight moves of axes");
-            return Err(source.block_error("machine-position", message));
+            return Err(source.block_error(Rule::MachinePosition, message));
         }
         self.check_free(source, block.command(9))?;
         if self.state.motion == Motion::Line {
@@ -511,11 +511,11 @@ impl Interpreter<'_, '_> {
             *named |= axis.is_some();
         }
         if !named.contains(&true) {
-            return Err(source.block_error("home", format!("{name} needs the names of axes")));
+            return Err(source.block_error(Rule::Home, format!("{name} needs the names of axes")));
         }
         if block.has_arc_word() || block.has_vector() || block.rotation.is_some() {
             let message = format!("{name} takes axes and FP= only");
-            return Err(source.block_error("home", message));
+            return Err(source.block_error(Rule::Home, message));
         }
         self.check_free(source, name)?;
         self.leave_for(source, named, Action::Home(Axes::of(named)))
@@ -528,15 +528,15 @@ impl Interpreter<'_, '_> {
             || self.state.compensation_in_effect != Compensation::Off
         {
             let message = format!("{name} while cutter radius compensation is active");
-            return Err(source.block_error("compensation", message));
+            return Err(source.block_error(Rule::Compensation, message));
         }
         if self.state.modal.waits() {
             let message = format!("{name} while MCALL is active, which would drill or call");
-            return Err(source.block_error("cycle", message));
+            return Err(source.block_error(Rule::Cycle, message));
         }
         if self.state.tool_center {
             let message = format!("{name} while TRAORI is active; switch it off (TRAFOOF) first");
-            return Err(source.block_error("home", message));
+            return Err(source.block_error(Rule::Home, message));
         }
         Ok(())
     }

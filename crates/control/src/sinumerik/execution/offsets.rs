@@ -6,7 +6,7 @@ use crate::event::Action;
 use crate::kernel::Fallible;
 use crate::kernel::source::Source;
 use geom::Vec3;
-use program::{Compensation, WorkOffset};
+use program::{Compensation, Rule, WorkOffset};
 use std::collections::HashMap;
 
 /// Values of the settable work offsets, mm; NaN where a component is not known.
@@ -72,7 +72,7 @@ impl Interpreter<'_, '_> {
                 "work offset {number} has been moved in with a value that is not known, and is now \
                  changed"
             );
-            let mut error = source.block_error("work-offset", message);
+            let mut error = source.block_error(Rule::WorkOffset, message);
             error.help = "write its value before the first move in it".into();
             return Err(error);
         }
@@ -107,7 +107,7 @@ impl Interpreter<'_, '_> {
         {
             let message = "the return of a program with SAVE changes frame, plane or corners while \
                            cutter radius compensation is active";
-            return Err(source.block_error("compensation", message));
+            return Err(source.block_error(Rule::Compensation, message));
         }
         if modes.feed_type != state.feed_type || modes.units.1 != state.feed_unit {
             state.feed = None;

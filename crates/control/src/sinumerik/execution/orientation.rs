@@ -8,7 +8,7 @@ use crate::kernel::Fallible;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::call::{Argument, Call};
 use geom::{Frame, Vec3};
-use program::{Axes, Compensation};
+use program::{Axes, Compensation, Rule};
 
 /// Places of the parameters of `CYCLE800`: `_FR _TC _ST _MODE _X0 _Y0 _Z0 _A _B _C _X1 _Y1 _Z1 _DIR
 /// _FR_I _DMODE`.
@@ -32,11 +32,11 @@ impl Interpreter<'_, '_> {
         };
         if !plain {
             let message = "TRAORI is supported without arguments and as TRAORI(1)";
-            return Err(source.block_error("unsupported", message));
+            return Err(source.block_error(Rule::Unsupported, message));
         }
         if !self.settings.rotary.contains(&true) {
             let message = "TRAORI on a machine without rotary axes";
-            return Err(source.block_error("orientation", message));
+            return Err(source.block_error(Rule::Orientation, message));
         }
         self.check_compensation_off(source, call.name)?;
         if !self.state.tool_center {
@@ -66,7 +66,7 @@ impl Interpreter<'_, '_> {
             return Ok(());
         }
         let message = format!("{name} while cutter radius compensation is active");
-        Err(source.block_error("compensation", message))
+        Err(source.block_error(Rule::Compensation, message))
     }
 
     /// `CYCLE800`: turns the plane and the machine's rotary axes with it. Where the axes are then is
@@ -75,13 +75,13 @@ impl Interpreter<'_, '_> {
         let error = |rule, message: &str| Err(source.block_error(rule, message));
         self.check_compensation_off(source, call.name)?;
         if self.state.modal.waits() {
-            return error("cycle", "CYCLE800 while MCALL is active");
+            return error(Rule::Cycle, "CYCLE800 while MCALL is active");
         }
         if call.arguments.is_empty() {
             return self.end_swivel();
         }
         if call.arguments.len() > PARAMETERS {
-            return error("cycle-parameter", "CYCLE800 has at most 16 parameters");
+            return error(Rule::CycleParameter, "CYCLE800 has at most 16 parameters");
         }
         let number =
             |index: usize| -> Fallible<f64> { Ok(call.number(source, index)?.unwrap_or(0.0)) };
@@ -92,7 +92,7 @@ impl Interpreter<'_, '_> {
             Some(Argument::Text(name)) if name == "0" => return self.end_swivel(),
             None | Some(Argument::None | Argument::Text(_)) => {}
             Some(Argument::Number(_)) => {
-                return error("cycle-parameter", "_TC is a name in quotes");
+                return error(Rule::CycleParameter, "_TC is a name in quotes");
             }
         }
         let whole = |index: usize, name: &str| -> Fallible<u32> {
@@ -101,11 +101,11 @@ impl Interpreter<'_, '_> {
                 return Ok(value as u32);
             }
             let message = format!("{name} = {value} is not a whole number from 0");
-            Err(source.block_error("cycle-parameter", message))
+            Err(source.block_error(Rule::CycleParameter, message))
         };
         let Some(order) = swivel_order(whole(MODE, "_MODE")?) else {
             return error(
-                "unsupported",
+                Rule::Unsupported,
                 "_MODE of CYCLE800 must swivel axis by axis (57 is X Y Z, 27 is Z Y X)",
             );
         };
@@ -115,7 +115,7 @@ impl Interpreter<'_, '_> {
             other => {
                 let message =
                     format!("_ST = {other} of CYCLE800 (tool alignment) is not supported");
-                return Err(source.block_error("unsupported", message));
+                return Err(source.block_error(Rule::Unsupported, message));
             }
         };
         let retract = whole(RETRACT, "_FR")?;
@@ -128,14 +128,14 @@ impl Interpreter<'_, '_> {
             2 => Axes::LINEAR,
             other => {
                 let message = format!("_FR = {other} of CYCLE800 is not supported");
-                return Err(source.block_error("unsupported", message));
+                return Err(source.block_error(Rule::Unsupported, message));
             }
         };
         let direction = number(DIRECTION)?;
         if !matches!(direction, -1.0 | 1.0) {
             let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
                            machine";
-            return error("unsupported", message);
+            return error(Rule::Unsupported, message);
         }
         let data_set = match call.arguments.get(DATA_SET) {
             Some(Argument::Text(name)) => name.as_str(),

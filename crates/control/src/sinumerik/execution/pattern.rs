@@ -8,6 +8,7 @@ use crate::kernel::source::Source;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::forms::Pattern;
 use geom::Vec3;
+use program::Rule;
 
 /// Most holes of a pattern; our own limit.
 const MOST_HOLES: f64 = 10_000.0;
@@ -26,14 +27,14 @@ impl Interpreter<'_, '_> {
         };
         if !matches!(self.state.modal, Modal::Cycle(_)) {
             return error(
-                "cycle",
+                Rule::Cycle,
                 "there is no modal cycle (MCALL) that it could drill with".into(),
             );
         }
         let count = if pattern == Pattern::Grid { 7 } else { 6 };
         let further = call.arguments.iter().skip(count);
         if further.clone().any(|a| !matches!(a, Argument::None | Argument::Number(0.0))) {
-            return error("unsupported", format!("parameters beyond the first {count}"));
+            return error(Rule::Unsupported, format!("parameters beyond the first {count}"));
         }
         let mut values = [0.0; 7];
         for (index, value) in values.iter_mut().enumerate() {
@@ -46,7 +47,7 @@ impl Interpreter<'_, '_> {
             || numbers.iter().product::<f64>() > MOST_HOLES
         {
             return error(
-                "cycle-parameter",
+                Rule::CycleParameter,
                 format!("the number of holes is from 1 to {MOST_HOLES}"),
             );
         }
@@ -65,7 +66,7 @@ impl Interpreter<'_, '_> {
             }
             Pattern::Circle => {
                 if c <= 0.0 {
-                    return error("cycle-parameter", "the radius RAD is above 0".into());
+                    return error(Rule::CycleParameter, "the radius RAD is above 0".into());
                 }
                 let step = if e == 0.0 { 360.0 / f } else { e };
                 self.drill_each(source, f, |index| origin + under(d + index * step) * (c * unit))

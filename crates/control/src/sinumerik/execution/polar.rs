@@ -8,6 +8,7 @@ use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Count};
 use crate::sinumerik::language::commands::{Diameter, Origin};
 use geom::Vec3;
+use program::Rule;
 
 /// The two axes of the plane, the first and the second, by the axis perpendicular to it.
 pub(super) fn axes_of_plane(normal: usize) -> (usize, usize) {
@@ -24,7 +25,7 @@ impl Interpreter<'_, '_> {
         let name = block.command(3);
         if !block.only_group(3) || block.feed.is_some() || block.speed.is_some() {
             let message = format!("{name} stands in a block of its own with X, Y, Z");
-            return Err(source.block_error("polar", message));
+            return Err(source.block_error(Rule::Polar, message));
         }
         let values = plain_values(source, block)?;
         let from = match origin {
@@ -46,7 +47,7 @@ impl Interpreter<'_, '_> {
         block: &Block,
         position: &mut Vec3,
     ) -> Fallible<()> {
-        let error = |message: &str| Err(source.block_error("polar", message));
+        let error = |message: &str| Err(source.block_error(Rule::Polar, message));
         let Some(rare) = &block.rare else { return Ok(()) };
         let (first, second) = axes_of_plane(self.state.plane_normal);
         if block.axes[first].is_some() || block.axes[second].is_some() {

@@ -7,7 +7,7 @@ use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, FrameCommand};
 use geom::{Frame, Vec3};
-use program::Compensation;
+use program::{Compensation, Rule};
 
 impl Interpreter<'_, '_> {
     /// A command of the programmable frame, in a block of its own. The absolute ones delete what is
@@ -25,17 +25,17 @@ impl Interpreter<'_, '_> {
             || block.speed.is_some()
             || block.has_rotary()
         {
-            return error("frame", format!("{name} stands in a block of its own with X, Y, Z"));
+            return error(Rule::Frame, format!("{name} stands in a block of its own with X, Y, Z"));
         }
         if self.state.compensation_in_effect != Compensation::Off {
             let message = format!("{name} while cutter radius compensation is active");
-            return error("compensation", message);
+            return error(Rule::Compensation, message);
         }
         if self.state.diameter != Diameter::Off && block.axes[0].is_some() {
-            return error("unsupported", format!("{name} of X while X is a diameter"));
+            return error(Rule::Unsupported, format!("{name} of X while X is a diameter"));
         }
         if block.rotation.is_some() && !matches!(command, FrameCommand::Rotate(_)) {
-            return error("frame", "RPL= belongs to ROT and AROT".into());
+            return error(Rule::Frame, "RPL= belongs to ROT and AROT".into());
         }
         let values = plain_values(source, block)?;
         let vector = |unit: f64, missing: f64| {
@@ -48,7 +48,7 @@ impl Interpreter<'_, '_> {
             FrameCommand::Rotate(on_top) => {
                 let turned = match block.rotation {
                     Some(_) if block.has_linear() => {
-                        return error("frame", "RPL= and X, Y, Z in one rotation".into());
+                        return error(Rule::Frame, "RPL= and X, Y, Z in one rotation".into());
                     }
                     Some(degrees) => about(self.state.plane_normal, degrees),
                     None => roll_pitch_yaw(vector(1.0, 0.0)),
@@ -58,7 +58,7 @@ impl Interpreter<'_, '_> {
             FrameCommand::Scale(on_top) => {
                 let factors = vector(1.0, 1.0);
                 if factors.min_element() <= 0.0 {
-                    return error("frame", format!("{name}: a factor is above 0"));
+                    return error(Rule::Frame, format!("{name}: a factor is above 0"));
                 }
                 (Frame::from_scale(factors), on_top)
             }
@@ -93,7 +93,7 @@ impl Interpreter<'_, '_> {
         let mut fine = self.state.frames.fine();
         if frame.matrix3 != geom::Mat3::IDENTITY {
             let message = "G58 and G59 in a turned, scaled or mirrored frame";
-            return Err(source.block_error("unsupported", message));
+            return Err(source.block_error(Rule::Unsupported, message));
         }
         for (i, value) in values.iter().enumerate() {
             let Some(value) = value.map(|value| value * self.state.unit) else { continue };
@@ -117,7 +117,7 @@ pub(super) fn plain_values(source: &Source, block: &Block) -> Fallible<[Option<f
             Some(Coordinate { count: Count::Modal, value, .. }) => Some(*value),
             Some(_) => {
                 let message = format!("{} takes plain values", block.command(3));
-                return Err(source.block_error("frame", message));
+                return Err(source.block_error(Rule::Frame, message));
             }
             None => None,
         };

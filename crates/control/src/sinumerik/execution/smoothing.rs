@@ -7,6 +7,7 @@ use crate::kernel::Fallible;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, TOLERANCES};
 use crate::sinumerik::language::commands::{Code, Smoothing};
+use program::Rule;
 
 /// What a program has said of the smoothing of the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,7 +75,7 @@ impl Interpreter<'_, '_> {
             let Some(value) = value.map(|value| value * self.state.unit) else { continue };
             let takes_back = value < 0.0 && name == TOLERANCES[CONTOUR];
             if value < 0.0 && !takes_back {
-                return Err(source.block_error("number", format!("{name}= has no sign")));
+                return Err(source.block_error(Rule::Number, format!("{name}= has no sign")));
             }
             if name == TOLERANCES[CONTOUR] {
                 self.state.smoothed.bound(!takes_back);
@@ -88,7 +89,7 @@ impl Interpreter<'_, '_> {
     pub fn cycle_tolerance(&mut self, source: &Source, name: &str, mm: f64) -> Fallible<()> {
         if mm < 0.0 {
             let message = format!("{name}: the tolerance has no sign");
-            let error = source.block_error("cycle-parameter", message);
+            let error = source.block_error(Rule::CycleParameter, message);
             return Err(error.help("write a tolerance above 0, or CYCLE832(0,_OFF,1)").into());
         }
         self.path_tolerance(source, name, mm)?;
@@ -106,7 +107,7 @@ impl Interpreter<'_, '_> {
             "{name} lets the control leave the path by {tolerance} mm, the machine file allows {most} \
              mm"
         );
-        let mut error = source.block_error("path-tolerance", message);
+        let mut error = source.block_error(Rule::PathTolerance, message);
         error.help = "path_tolerance in [options] of the machine file says how far".into();
         Err(error)
     }

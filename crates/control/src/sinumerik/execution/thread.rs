@@ -6,14 +6,14 @@ use crate::kernel::Fallible;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::commands::Motion;
-use program::Spindle;
+use program::{Rule, Spindle};
 
 impl Interpreter<'_, '_> {
     /// `G33`, `G331`, `G332`: a straight way along one axis in step with the spindle; `I J K` is the pitch
     /// along X, Y, Z.
     #[cold]
     pub fn thread(&mut self, source: &Source, block: &Block) -> Fallible<()> {
-        let error = |message: &str| Err(source.block_error("thread", message));
+        let error = |message: &str| Err(source.block_error(Rule::Thread, message));
         let motion = self.state.motion;
         if block.has_rotary() || block.has_vector() || block.has_polar() {
             return error("a thread runs along X, Y or Z");
@@ -66,7 +66,7 @@ impl Interpreter<'_, '_> {
         let modal = std::mem::replace(&mut self.state.motion, Motion::Line);
         if self.state.spindle == Spindle::Off {
             let message = "G63 needs a running spindle";
-            return Err(source.block_error("thread", message));
+            return Err(source.block_error(Rule::Thread, message));
         }
         self.motion(source, block)?;
         self.state.motion = modal;

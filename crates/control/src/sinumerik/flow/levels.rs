@@ -12,6 +12,7 @@ use crate::sinumerik::language::expression::Evaluator;
 use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::statement::ProgramCall;
 use crate::sinumerik::language::variables::{Locals, Variable};
+use program::Rule;
 
 /// Most program levels, that of the main program included (Programming Manual 12/2019, 3.2.1.3).
 pub(super) const LEVELS: usize = 16;
@@ -44,7 +45,7 @@ impl Run<'_, '_> {
         self.turn(source)?;
         let error = |rule, message: String| source.block_error(rule, message);
         let program = self.library.find(&call.program).map_err(|message| {
-            let mut error = error("unknown-program", message);
+            let mut error = error(Rule::CalledProgram, message);
             error.message =
                 format!("'{}' is no word of this control, and {}", call.program, error.message);
             error
@@ -53,11 +54,11 @@ impl Run<'_, '_> {
         let signature = self.signature(&program)?;
         let (bound, references) = self
             .bind(&signature, &call)
-            .map_err(|message| error("call", format!("{}: {message}", call.program)))?;
+            .map_err(|message| error(Rule::Call, format!("{}: {message}", call.program)))?;
         let again = (call.times - 1, if call.times > 1 { bound.clone() } else { Vec::new() });
         if again.0 > 0 && !references.is_empty() {
             let message = "a repeated call with VAR parameters is not supported";
-            return Err(error("unsupported", message.into()));
+            return Err(error(Rule::Unsupported, message.into()));
         }
         let state = &mut self.interpreter.state;
         let locals = std::mem::replace(&mut state.locals, enter(bound));
@@ -69,7 +70,7 @@ impl Run<'_, '_> {
         let level = Level::new(program, Some(caller));
         self.callers.enter(std::mem::replace(&mut self.level, level)).map_err(|_| {
             let message = format!("calls nest deeper than {LEVELS} program levels (alarm 12620)");
-            error("call-depth", message)
+            error(Rule::Nesting, message)
         })?;
         self.interpreter.called = true;
         Ok(())
@@ -83,7 +84,7 @@ impl Run<'_, '_> {
         };
         if state.ended {
             let message = "the program ends in a block with a motion while MCALL is active";
-            return Err(source.block_error("call", message));
+            return Err(source.block_error(Rule::Call, message));
         }
         self.call(source, call.clone())?;
         if let Some(caller) = &mut self.level.caller {

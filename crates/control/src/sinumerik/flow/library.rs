@@ -6,7 +6,7 @@ use crate::kernel::flow::Place;
 use crate::kernel::folders::Folders;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::scan::{Name, Scanner};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -189,7 +189,7 @@ fn check_header(source: &Source) -> Fallible<(Name, bool)> {
         Some((Name::of(main.or(bare.strip_suffix("_SPF"))?)?, main.is_some()))
     });
     named.ok_or_else(|| {
-        source.block_error("header", "the header is % and a name that ends with _MPF or _SPF")
+        source.block_error(Rule::Header, "the header is % and a name that ends with _MPF or _SPF")
     })
 }
 

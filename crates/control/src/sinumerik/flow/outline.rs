@@ -6,6 +6,7 @@ use crate::kernel::flow::{Labels, Place, Structures};
 use crate::kernel::source::Source;
 use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::structure::Word;
+use program::Rule;
 
 /// How deep control structures nest on each level (Job Planning 04.00, 1.13).
 const DEEPEST: usize = 16;
@@ -41,7 +42,7 @@ impl Outline {
         let text = program.block(mark.place.at, mark.place.line).map_or(&[][..], |b| b.0.text);
         let source = Source { line: mark.place.line, text };
         let message = format!("{} has no end (alarm 12640)", mark.word.name());
-        Err(source.block_error("control-structure", message))
+        Err(source.block_error(Rule::ControlStructure, message))
     }
 
     fn add(&mut self, source: &Source, place: Place, after: Place) -> Fallible<()> {
@@ -66,7 +67,7 @@ impl Outline {
         if jump || section {
             return Ok(());
         }
-        let error = |message: String| Err(source.block_error("control-structure", message));
+        let error = |message: String| Err(source.block_error(Rule::ControlStructure, message));
         let (structures, places) = (&mut self.structures, [place, after]);
         let Some(opener) = word.opener() else {
             if structures.unclosed().len() >= DEEPEST {

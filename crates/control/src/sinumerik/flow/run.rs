@@ -17,7 +17,7 @@ use crate::sinumerik::language::statement::{Count, Jump, Search, Section, Statem
 use crate::sinumerik::language::structure::Word;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::hash::Hash;
 use std::rc::Rc;
 
@@ -164,7 +164,7 @@ impl<'a, 's> Run<'a, 's> {
         }
         let message = "the program has no end: M30, M2, M17 or RET is missing";
         let line = here.line.saturating_sub(1).max(program.first_line - 1);
-        Err(Diagnostic::error("program-end", message).line(line).into())
+        Err(Diagnostic::error(Rule::ProgramEnd, message).line(line).into())
     }
 
     /// Another turn of a loop, a jump or a call.
@@ -183,7 +183,7 @@ impl<'a, 's> Run<'a, 's> {
     ) -> Fallible<Place> {
         let partner = || -> Fallible<(Place, Place)> {
             let mark = program.outline()?.structures.partner(here.at).ok_or_else(|| {
-                source.block_error("control-structure", "the control structure is not complete")
+                source.block_error(Rule::ControlStructure, "the control structure is not complete")
             })?;
             Ok((mark.place, mark.after))
         };
@@ -191,7 +191,7 @@ impl<'a, 's> Run<'a, 's> {
             if self.level.working {
                 let message = "definitions stand before the first block that does something (alarm \
                                14500)";
-                return Err(source.block_error("definition", message));
+                return Err(source.block_error(Rule::Definition, message));
             }
         } else {
             self.level.working = true;
@@ -203,7 +203,7 @@ impl<'a, 's> Run<'a, 's> {
                     let locals = &mut self.interpreter.state.locals;
                     locals
                         .define(name, variable)
-                        .map_err(|message| source.block_error("definition", message))?;
+                        .map_err(|message| source.block_error(Rule::Definition, message))?;
                 }
                 Ok(after)
             }
@@ -254,8 +254,9 @@ impl<'a, 's> Run<'a, 's> {
 
     fn set(&mut self, source: &Source, count: &Count, value: f64) -> Fallible<()> {
         let (kind, _) = Evaluator::new(&self.interpreter.state, &[]).room(count.place);
-        let value =
-            kind.keep(Value::Real(value)).map_err(|message| source.block_error("type", message))?;
+        let value = kind
+            .keep(Value::Real(value))
+            .map_err(|message| source.block_error(Rule::Type, message))?;
         self.interpreter.assign(source, count.place, value)
     }
 
@@ -281,7 +282,7 @@ impl<'a, 's> Run<'a, 's> {
                 end.unwrap_or(f64::NAN),
                 count.end
             );
-            return Err(source.block_error("control-structure", message));
+            return Err(source.block_error(Rule::ControlStructure, message));
         }
         let value = self.interpreter.state.value_of(count.place).unwrap_or(f64::NAN) + 1.0;
         self.set(&source, &count, value)?;
@@ -297,7 +298,7 @@ impl<'a, 's> Run<'a, 's> {
         jump: &Jump,
     ) -> Fallible<Place> {
         let outline = program.outline()?;
-        let error = |message: String| Err(source.block_error("jump", message));
+        let error = |message: String| Err(source.block_error(Rule::Jump, message));
         // A block in front of the jump, or the one in which it stands, and one behind it.
         fn both<K: Eq + Hash>(labels: &Labels<K>, label: &K, at: usize) -> [Option<Place>; 2] {
             [labels.before(label, at + 1), labels.behind(label, at + 1)]
@@ -337,12 +338,12 @@ impl<'a, 's> Run<'a, 's> {
     ) -> Fallible<Place> {
         if !program.outline()?.structures.may_jump(here.at, target.at) {
             let message = format!("the jump to line {} enters a control structure", target.line);
-            return Err(source.block_error("jump", message));
+            return Err(source.block_error(Rule::Jump, message));
         }
         let inside = |section: &Repetition| (section.from.at..section.end).contains(&target.at);
         if self.level.sections.last().is_some_and(|section| !inside(section)) {
             let message = format!("the jump to line {} leaves a repeated section", target.line);
-            return Err(source.block_error("jump", message));
+            return Err(source.block_error(Rule::Jump, message));
         }
         Ok(target)
     }
@@ -364,7 +365,7 @@ impl<'a, 's> Run<'a, 's> {
         };
         let missing = |name: &Name| {
             let message = format!("the label {} is not there (alarm 14080)", name.as_str());
-            source.block_error("jump", message)
+            source.block_error(Rule::Jump, message)
         };
         let behind = |place: Place| program.block(place.at, place.line).map_or(place.at, |b| b.1);
         let from = find(&section.from).ok_or_else(|| missing(&section.from))?;
@@ -379,7 +380,7 @@ impl<'a, 's> Run<'a, 's> {
         let end = if from.at <= here.at && end > here.at { here.at } else { end };
         if end <= from.at || end == usize::MAX {
             let message = "the section to be repeated has no end: a second label or ENDLABEL";
-            return Err(source.block_error("jump", message));
+            return Err(source.block_error(Rule::Jump, message));
         }
         if section.times == 0 {
             return Ok(after);
@@ -387,7 +388,7 @@ impl<'a, 's> Run<'a, 's> {
         self.land(program, source, here, from)?;
         if self.level.sections.len() >= LEVELS {
             let message = format!("repeated sections nest deeper than {LEVELS}");
-            return Err(source.block_error("jump", message));
+            return Err(source.block_error(Rule::Jump, message));
         }
         let left = section.times - 1;
         self.level.sections.push(Repetition { from, end, left, back: after });
@@ -420,7 +421,7 @@ fn check_length(source: &Source) -> Fallible<()> {
         return Ok(());
     }
     let message = format!("a block has at most {LONGEST_BLOCK} characters with its end");
-    Err(source.error("block-length", LONGEST_BLOCK - 1..source.text.len(), message))
+    Err(source.error(Rule::BlockLength, LONGEST_BLOCK - 1..source.text.len(), message))
 }
 
 /// Only comments follow the end of a program without jumps.
@@ -431,7 +432,7 @@ pub(super) fn check_rest(program: &Program, mut place: Place) -> Fallible<bool> 
         let mut scanner = Scanner::new(source);
         if !scanner.take_word("GROUP_END") && !scanner.rests() {
             let message = "there are blocks behind the end of the program";
-            return Err(source.block_error("program-end", message));
+            return Err(source.block_error(Rule::ProgramEnd, message));
         }
         place = Place { at: next, line: place.line.saturating_add(1) };
     }

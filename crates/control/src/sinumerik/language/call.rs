@@ -6,7 +6,7 @@ use super::scan::Scanner;
 use super::value::Value;
 use crate::kernel::Fallible;
 use crate::kernel::source::Source;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 
 /// What a call does.
 #[derive(Clone, Copy)]
@@ -206,7 +206,7 @@ impl Call {
             None => Ok(None),
             Some((name, reason)) => {
                 let message = format!("{name} is not supported: {reason}");
-                Err(scanner.error_since(start, "unsupported", message))
+                Err(scanner.error_since(start, Rule::Unsupported, message))
             }
         }
     }
@@ -229,7 +229,7 @@ impl Call {
             }
             _ => {
                 let message = "MCALL takes a drilling cycle or a program";
-                Err(scanner.error_since(start, "unsupported", message))
+                Err(scanner.error_since(start, Rule::Unsupported, message))
             }
         }
     }
@@ -243,7 +243,7 @@ impl Call {
             None | Some(Argument::None) => Ok(None),
             Some(Argument::Number(value)) => Ok(Some(*value)),
             Some(Argument::Text(text)) => Err(source.block_error(
-                "cycle-parameter",
+                Rule::CycleParameter,
                 format!("argument {} of {} is a number, not '{text}'", index + 1, self.name),
             )),
         }
@@ -269,7 +269,7 @@ fn read_arguments(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<
 }
 
 fn too_many(scanner: &Scanner) -> Box<Diagnostic> {
-    scanner.error_here("syntax", "a call has at most 127 arguments")
+    scanner.error_here(Rule::Syntax, "a call has at most 127 arguments")
 }
 
 /// An argument: left out, a value, or a name that is none (a constant of the cycle).
@@ -297,7 +297,7 @@ fn read_argument(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Argum
         Value::Text(text) => Ok(Argument::Text(text.to_string())),
         value => match value.number() {
             Some(number) => Ok(Argument::Number(number)),
-            None => Err(scanner.error_since(start, "type", "an axis is no argument here")),
+            None => Err(scanner.error_since(start, Rule::Type, "an axis is no argument here")),
         },
     }
 }

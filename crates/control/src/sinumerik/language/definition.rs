@@ -6,6 +6,7 @@ use super::value::{Kind, LONGEST_TEXT, Value};
 use super::variables::{MOST_ELEMENTS, Variable};
 use super::words::reserved;
 use crate::kernel::Fallible;
+use program::Rule;
 
 /// Most dimensions of an array.
 const DIMENSIONS: usize = 3;
@@ -98,12 +99,12 @@ fn kind(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Kind> {
         }
         "FRAME" => {
             let message = "variables of the type FRAME are not supported";
-            return Err(scanner.error_since(start, "unsupported", message));
+            return Err(scanner.error_since(start, Rule::Unsupported, message));
         }
         other => {
             let message =
                 format!("'{other}' is not a type: REAL, INT, BOOL, CHAR, STRING[n], AXIS");
-            return Err(scanner.error_since(start, "definition", message));
+            return Err(scanner.error_since(start, Rule::Definition, message));
         }
     })
 }
@@ -114,12 +115,12 @@ fn new_name(scanner: &mut Scanner) -> Fallible<Name> {
     let start = scanner.at;
     if !scanner.name_next() {
         let message = "the name of a variable begins with two letters or underscores";
-        return Err(scanner.error_here("definition", message));
+        return Err(scanner.error_here(Rule::Definition, message));
     }
     let name = scanner.name()?;
     if reserved(name.as_str()) {
         let message = format!("{} is a word of the language (alarm 12170)", name.as_str());
-        return Err(scanner.error_since(start, "definition", message));
+        return Err(scanner.error_since(start, Rule::Definition, message));
     }
     Ok(name)
 }
@@ -137,7 +138,7 @@ fn sizes(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<usize>> {
         }
         scanner.expect(b',')?;
         if sizes.len() == DIMENSIONS {
-            return Err(scanner.error_here("definition", "an array has at most 3 dimensions"));
+            return Err(scanner.error_here(Rule::Definition, "an array has at most 3 dimensions"));
         }
     }
 }
@@ -157,7 +158,7 @@ pub(super) fn define(
         let count = sizes.iter().try_fold(1usize, |all, size| all.checked_mul(*size));
         let Some(count) = count.filter(|count| *count <= MOST_ELEMENTS) else {
             let message = format!("an array has at most {MOST_ELEMENTS} elements");
-            return Err(scanner.error_since(start, "definition", message));
+            return Err(scanner.error_since(start, Rule::Definition, message));
         };
         let mut variable = Variable { kind, sizes, values: vec![kind.initial(); count] };
         if scanner.take(b'=') {
@@ -170,7 +171,7 @@ pub(super) fn define(
             };
             let elements = filling
                 .elements(kind, count)
-                .map_err(|message| scanner.error_since(start, "type", message))?;
+                .map_err(|message| scanner.error_since(start, Rule::Type, message))?;
             for (place, value) in elements {
                 if let Some(element) = variable.values.get_mut(place) {
                     *element = Some(value);
@@ -232,7 +233,7 @@ impl Signature {
                 other => {
                     let message = format!("'{other}' is not an attribute of a program known here");
                     let end = scanner.at.max(start + 1);
-                    return Err(scanner.source.error("unsupported", start..end, message));
+                    return Err(scanner.source.error(Rule::Unsupported, start..end, message));
                 }
             }
         }
@@ -262,14 +263,14 @@ impl Formal {
             true => {
                 let start = scanner.at;
                 let value = kind.keep(evaluator.value(scanner)?);
-                Some(value.map_err(|message| scanner.error_since(start, "type", message))?)
+                Some(value.map_err(|message| scanner.error_since(start, Rule::Type, message))?)
             }
             false => kind.initial(),
         };
         // EXTERN names no names.
         let name = name
             .or_else(|| Name::of("_"))
-            .ok_or_else(|| scanner.error_here("definition", "the parameter has no name"))?;
+            .ok_or_else(|| scanner.error_here(Rule::Definition, "the parameter has no name"))?;
         Ok(Formal { name, kind, by_reference, dimensions, default })
     }
 }

@@ -15,7 +15,7 @@ use super::value::Value;
 use super::variables::{Place, Readable};
 use crate::kernel::Fallible;
 use crate::kernel::expression::{self, Grammar, Next, Rank, Span, Stack};
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::rc::Rc;
 
 /// Evaluates the expressions of one block.
@@ -73,7 +73,7 @@ impl<'a> Evaluator<'a> {
         let value = self.value(scanner)?;
         value.truth().ok_or_else(|| {
             let message = format!("a condition is a number or a BOOL, not {}", value.name());
-            scanner.error_since(start, "type", message)
+            scanner.error_since(start, Rule::Type, message)
         })
     }
 
@@ -84,7 +84,7 @@ impl<'a> Evaluator<'a> {
             Value::Text(text) => Ok(text),
             other => {
                 let message = format!("a text must stand here, not {}", other.name());
-                Err(scanner.error_since(start, "type", message))
+                Err(scanner.error_since(start, Rule::Type, message))
             }
         }
     }
@@ -107,7 +107,7 @@ impl<'a> Evaluator<'a> {
             range.start(),
             range.end()
         );
-        Err(scanner.error_since(start, "number", message))
+        Err(scanner.error_since(start, Rule::Number, message))
     }
 
     fn finite(&self, scanner: &mut Scanner) -> Fallible<Operand> {
@@ -116,7 +116,7 @@ impl<'a> Evaluator<'a> {
         if found.value.number().is_none_or(f64::is_finite) {
             return Ok(found);
         }
-        Err(scanner.error_since(start, "arithmetic", "the result is not a finite number"))
+        Err(scanner.error_since(start, Rule::Arithmetic, "the result is not a finite number"))
     }
 }
 
@@ -200,15 +200,14 @@ impl Expression<'_, '_, '_, '_> {
                 }
                 self.scanner.at = back;
                 let truth = value.truth();
-                Value::Bool(
-                    !truth.ok_or_else(|| {
-                        self.scanner.error_since(start, "type", no_number(&value))
-                    })?,
-                )
+                Value::Bool(!truth.ok_or_else(|| {
+                    self.scanner.error_since(start, Rule::Type, no_number(&value))
+                })?)
             }
             (_, value) => {
-                let bits = bits(&value)
-                    .ok_or_else(|| self.scanner.error_since(start, "type", no_number(&value)))?;
+                let bits = bits(&value).ok_or_else(|| {
+                    self.scanner.error_since(start, Rule::Type, no_number(&value))
+                })?;
                 Value::Int(!bits)
             }
         }))
@@ -231,7 +230,7 @@ impl Expression<'_, '_, '_, '_> {
             }
             b'$' => system::read(self.evaluator, self.evaluator.state, scanner)?,
             b'A'..=b'Z' | b'_' => self.named()?,
-            _ => return Err(scanner.error_here("syntax", "a value is missing here")),
+            _ => return Err(scanner.error_here(Rule::Syntax, "a value is missing here")),
         };
         Ok(value.into())
     }
@@ -256,7 +255,7 @@ impl Expression<'_, '_, '_, '_> {
         let name = name.as_str();
         let Some(function) = functions::named(name) else {
             let message = format!("'{name}' is not a value that is known here (alarm 12550)");
-            let mut error = scanner.error_since(start, "unknown-word", message);
+            let mut error = scanner.error_since(start, Rule::UnknownWord, message);
             error.help = "a variable needs its DEF in the same program".into();
             return Err(error);
         };
@@ -277,7 +276,7 @@ impl Expression<'_, '_, '_, '_> {
             _ => Ok(value),
         });
         value.map_err(|message| {
-            self.scanner.error_since(start, "arithmetic", format!("{name}: {message}"))
+            self.scanner.error_since(start, Rule::Arithmetic, format!("{name}: {message}"))
         })
     }
 }
@@ -291,12 +290,12 @@ fn calculated(
     a: &Value,
     b: &Value,
     span: Span,
-) -> Result<Value, (&'static str, usize, String)> {
-    let number = |v: &Value| v.number().ok_or_else(|| ("type", span.start, no_number(v)));
+) -> Result<Value, (Rule, usize, String)> {
+    let number = |v: &Value| v.number().ok_or_else(|| (Rule::Type, span.start, no_number(v)));
     let (x, y) = (number(a)?, number(b)?);
     let divides = !matches!(operator, Operator::Plus | Operator::Minus | Operator::Times);
     if divides && y == 0.0 {
-        return Err(("arithmetic", span.operator, "division by zero".into()));
+        return Err((Rule::Arithmetic, span.operator, "division by zero".into()));
     }
     let Some((m, n)) = a.whole().zip(b.whole()) else {
         return Ok(Value::Real(match operator {
@@ -317,9 +316,9 @@ fn calculated(
         Operator::Remainder => Some((x % y) as i64),
         _ => return Ok(Value::Real(x / y)),
     };
-    whole
-        .map(Value::Int)
-        .ok_or_else(|| ("arithmetic", span.start, "the result is beyond the whole numbers".into()))
+    whole.map(Value::Int).ok_or_else(|| {
+        (Rule::Arithmetic, span.start, "the result is beyond the whole numbers".into())
+    })
 }
 
 impl Grammar for Expression<'_, '_, '_, '_> {
@@ -333,7 +332,7 @@ impl Grammar for Expression<'_, '_, '_, '_> {
     }
 
     fn too_deep(&mut self) -> Box<Diagnostic> {
-        self.scanner.error_here("syntax", "brackets and signs nest too deep")
+        self.scanner.error_here(Rule::Syntax, "brackets and signs nest too deep")
     }
 
     fn start(&mut self) -> usize {
@@ -372,12 +371,12 @@ impl Grammar for Expression<'_, '_, '_, '_> {
                 Some(index)
             }
             (_, Some(index)) | (Some(index), None) => {
-                return Err(error(("operator-offset", span.start, only_added(index))));
+                return Err(error((Rule::OperatorOffset, span.start, only_added(index))));
             }
         };
         let (a, b) = (left.value, right.value);
         let value = match operator.is_logic() {
-            true => operator.apply(a, b).map_err(|message| ("type", span.start, message)),
+            true => operator.apply(a, b).map_err(|message| (Rule::Type, span.start, message)),
             false => calculated(operator, &a, &b, span),
         };
         Ok(Operand { value: value.map_err(error)?, offset })
@@ -385,7 +384,7 @@ impl Grammar for Expression<'_, '_, '_, '_> {
 }
 
 fn number(scanner: &Scanner, start: usize, value: &Value) -> Fallible<f64> {
-    value.number().ok_or_else(|| scanner.error_since(start, "type", no_number(value)))
+    value.number().ok_or_else(|| scanner.error_since(start, Rule::Type, no_number(value)))
 }
 
 #[cold]
@@ -397,7 +396,7 @@ fn no_number(value: &Value) -> String {
 fn rank_in_doubt(scanner: &Scanner, start: usize) -> Box<Diagnostic> {
     let message = "comparisons rank below AND, OR, XOR and NOT on this control, and here that gives \
                    another result than reading them first";
-    let mut error = scanner.error_since(start, "operator-rank", message);
+    let mut error = scanner.error_since(start, Rule::OperatorRank, message);
     error.help = "put every comparison in brackets: (R1==1) AND (R2==2)".into();
     error
 }
@@ -432,7 +431,7 @@ fn based_constant(scanner: &mut Scanner) -> Fallible<Value> {
         _ => {
             let message =
                 "a number in quotes is 'H' with hexadecimal digits or 'B' with binary ones";
-            Err(scanner.error_since(start, "number", message))
+            Err(scanner.error_since(start, Rule::Number, message))
         }
     }
 }
@@ -441,7 +440,7 @@ fn based_constant(scanner: &mut Scanner) -> Fallible<Value> {
 pub(super) fn without_offset(scanner: &Scanner, start: usize, found: Operand) -> Fallible<Value> {
     match found.offset {
         None => Ok(found.value),
-        Some(index) => Err(scanner.error_since(start, "operator-offset", only_added(index))),
+        Some(index) => Err(scanner.error_since(start, Rule::OperatorOffset, only_added(index))),
     }
 }
 

@@ -6,6 +6,7 @@ use super::system;
 use super::value::{Kind, LONGEST_TEXT, Value};
 use super::variables::{Parameter, Place, R_PARAMETERS, Variable};
 use crate::kernel::Fallible;
+use program::Rule;
 
 impl Evaluator<'_> {
     /// Whether that name is a variable of the program.
@@ -28,7 +29,7 @@ impl Evaluator<'_> {
                 let variable = index.and_then(|i| Some((i, self.state.locals().get(i)?)));
                 let Some((index, variable)) = variable else {
                     let message = format!("'{}' is not a variable (alarm 12550)", name.as_str());
-                    let mut error = scanner.error_since(start, "unknown-word", message);
+                    let mut error = scanner.error_since(start, Rule::UnknownWord, message);
                     error.help = "a variable needs its DEF in the same program".into();
                     return Err(error);
                 };
@@ -88,7 +89,7 @@ impl Evaluator<'_> {
         if index < R_PARAMETERS {
             return Ok(index);
         }
-        Err(scanner.error_since(start, "r-parameter", "there are R0 to R999"))
+        Err(scanner.error_since(start, Rule::RParameter, "there are R0 to R999"))
     }
 
     /// Takes the element in brackets of a variable, where it is an array.
@@ -101,7 +102,7 @@ impl Evaluator<'_> {
             let index = Evaluator::new(self.state, self.assigned).expression(scanner)?;
             if index.fract() != 0.0 || !(0.0..*size as f64).contains(&index) {
                 let message = format!("index {index} of an array that goes from 0 to {}", size - 1);
-                return Err(scanner.error_since(at, "array-index", message));
+                return Err(scanner.error_since(at, Rule::ArrayIndex, message));
             }
             element = element * size + index as usize;
         }
@@ -111,7 +112,7 @@ impl Evaluator<'_> {
         if element < variable.values.len() {
             return Ok(element);
         }
-        Err(scanner.error_since(start, "array-index", "the array has no such element"))
+        Err(scanner.error_since(start, Rule::ArrayIndex, "the array has no such element"))
     }
 
     /// Takes an R parameter: its value. That of the operator is added where it is named by its number.
@@ -124,7 +125,7 @@ impl Evaluator<'_> {
         let back = scanner.at;
         if scanner.name_goes_on() && !operator.iter().any(|word| scanner.take_word(word)) {
             return Err(scanner.error_here(
-                "syntax",
+                Rule::Syntax,
                 "a blank is missing: letters behind an R parameter would read as its name",
             ));
         }
@@ -143,7 +144,7 @@ impl Evaluator<'_> {
         if self.assigned.iter().any(|(place, _)| *place == Place::Parameter(index)) {
             return Err(scanner.error_since(
                 start,
-                "r-parameter",
+                Rule::RParameter,
                 format!("R{index} is set and read in one block"),
             ));
         }
@@ -152,7 +153,7 @@ impl Evaluator<'_> {
             Parameter::Operator => Ok(Operand { value: Value::Real(0.0), offset: Some(index) }),
             Parameter::Unknown => {
                 let message = format!("R{index} is read, and no block before has set it");
-                let mut error = scanner.error_since(start, "r-parameter", message);
+                let mut error = scanner.error_since(start, Rule::RParameter, message);
                 error.help = format!(
                     "set it in the program; or, where the operator sets it, write \
                      operator_parameters = [\"R{index}\"] into the machine file"
@@ -165,12 +166,12 @@ impl Evaluator<'_> {
     /// The value of the variable `index`, whose name stands from `start`, or of one of its elements.
     pub fn variable(&self, scanner: &mut Scanner, start: usize, index: usize) -> Fallible<Value> {
         let Some(variable) = self.state.locals().get(index) else {
-            return Err(scanner.error_since(start, "unknown-word", "there is no such variable"));
+            return Err(scanner.error_since(start, Rule::UnknownWord, "there is no such variable"));
         };
         let element = self.element(scanner, variable)?;
         if self.assigned.iter().any(|(place, _)| *place == Place::Element(index, element)) {
             let message = "the variable is set and read in one block";
-            return Err(scanner.error_since(start, "variable", message));
+            return Err(scanner.error_since(start, Rule::Variable, message));
         }
         match variable.values.get(element) {
             Some(Some(Value::Text(text))) if scanner.peek() == b'[' => {
@@ -181,13 +182,13 @@ impl Evaluator<'_> {
                 let byte = text.as_bytes().get(at as usize).copied();
                 byte.map(Value::Char).ok_or_else(|| {
                     let message = format!("character {at} of a text of {}", text.len());
-                    scanner.error_since(start, "array-index", message)
+                    scanner.error_since(start, Rule::ArrayIndex, message)
                 })
             }
             Some(Some(value)) => Ok(value.clone()),
             _ => {
                 let message = "the variable is read, and no block before has set it";
-                Err(scanner.error_since(start, "variable", message))
+                Err(scanner.error_since(start, Rule::Variable, message))
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::kernel::Fallible;
 use crate::kernel::source::Source;
-use program::Diagnostic;
+use program::{Diagnostic, Rule};
 use std::ops::Range;
 
 /// Largest number that a word takes, mm, degrees or 1/min (the range of the axis addresses in the
@@ -92,12 +92,12 @@ impl<'a> Scanner<'a> {
             return Ok(());
         }
         self.blanks();
-        Err(self.error_here("syntax", format!("'{}' is missing here", byte as char)))
+        Err(self.error_here(Rule::Syntax, format!("'{}' is missing here", byte as char)))
     }
 
     /// An error about the next character.
     #[cold]
-    pub fn error_here(&self, rule: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
+    pub fn error_here(&self, rule: Rule, message: impl Into<String>) -> Box<Diagnostic> {
         self.source.error(rule, self.at..self.at + 1, message)
     }
 
@@ -106,7 +106,7 @@ impl<'a> Scanner<'a> {
     pub fn error_since(
         &self,
         start: usize,
-        rule: &'static str,
+        rule: Rule,
         message: impl Into<String>,
     ) -> Box<Diagnostic> {
         self.source.error(rule, start..self.at, message)
@@ -134,7 +134,7 @@ impl<'a> Scanner<'a> {
             self.at += 1;
         }
         if name.length > LONGEST_NAME {
-            return Err(self.error_since(start, "syntax", "a name has at most 32 characters"));
+            return Err(self.error_since(start, Rule::Syntax, "a name has at most 32 characters"));
         }
         Ok(name)
     }
@@ -212,10 +212,10 @@ impl<'a> Scanner<'a> {
             value = value
                 .checked_mul(10)
                 .and_then(|v| v.checked_add(digit))
-                .ok_or_else(|| self.error_since(start, "number", "the number is too large"))?;
+                .ok_or_else(|| self.error_since(start, Rule::Number, "the number is too large"))?;
         }
         if self.at == start {
-            return Err(self.error_here("number", "a whole number is missing here"));
+            return Err(self.error_here(Rule::Number, "a whole number is missing here"));
         }
         Ok(value)
     }
@@ -228,7 +228,7 @@ impl<'a> Scanner<'a> {
         if value.abs() <= LARGEST {
             return Ok(value);
         }
-        Err(self.error_since(start, "number", "the number is beyond 99999999.9999"))
+        Err(self.error_since(start, Rule::Number, "the number is beyond 99999999.9999"))
     }
 
     /// Takes a number: sign, digits, point, digits, exponent (`EX`).
@@ -256,7 +256,7 @@ impl<'a> Scanner<'a> {
             self.at += 1;
         }
         if digits == 0 {
-            return Err(self.error_here("number", "a number is missing here"));
+            return Err(self.error_here(Rule::Number, "a number is missing here"));
         }
         let exponent = self.peek() == b'E' && self.peek_at(1) == b'X';
         // Below 2^53 and 10^22 both are exact, so that the quotient is rounded correctly.
@@ -283,7 +283,7 @@ impl<'a> Scanner<'a> {
                 self.at += 1;
             }
             if self.at == digits {
-                return Err(self.error_here("number", "the exponent has no digits"));
+                return Err(self.error_here(Rule::Number, "the exponent has no digits"));
             }
         }
         let text = self.source.text;
@@ -293,7 +293,7 @@ impl<'a> Scanner<'a> {
             number.push('e');
             number.push_str(&piece(end_of_mantissa + 2..self.at));
         }
-        number.parse().map_err(|_| self.error_since(start, "number", "this is not a number"))
+        number.parse().map_err(|_| self.error_since(start, Rule::Number, "this is not a number"))
     }
 
     /// Takes a text in quotes.
@@ -303,7 +303,7 @@ impl<'a> Scanner<'a> {
         let rest = self.source.text.get(start..).unwrap_or(&[]);
         let Some(length) = rest.iter().position(|&b| b == b'"') else {
             return Err(self.source.error(
-                "syntax",
+                Rule::Syntax,
                 start.saturating_sub(1)..self.source.text.len(),
                 "the text has no closing quote",
             ));

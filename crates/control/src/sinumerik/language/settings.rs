@@ -5,6 +5,7 @@ use super::expression::Evaluator;
 use super::value::Value;
 use super::words::Reader;
 use crate::kernel::Fallible;
+use program::Rule;
 
 /// An address of several letters.
 #[derive(Clone, Copy)]
@@ -164,7 +165,7 @@ impl Reader<'_, '_> {
         let at = self.scanner.at;
         let evaluator = Evaluator::new(self.state, &self.block.assigned);
         let Value::Axis(axis) = evaluator.value(&mut self.scanner)? else {
-            return Err(self.scanner.error_since(at, "type", "an axis must stand here"));
+            return Err(self.scanner.error_since(at, Rule::Type, "an axis must stand here"));
         };
         self.scanner.expect(b']')?;
         self.scanner.expect(b'=')?;
@@ -177,11 +178,11 @@ impl Reader<'_, '_> {
         let radius = self.expression()?;
         let Some(axis) = axis.checked_sub(3) else {
             let message = "FGREF is the radius of a rotary axis";
-            return Err(self.scanner.error_since(start, "feed-group", message));
+            return Err(self.scanner.error_since(start, Rule::FeedGroup, message));
         };
         if radius <= 0.0 {
             let message = "the radius of FGREF must be above 0";
-            return Err(self.scanner.error_since(start, "feed-group", message));
+            return Err(self.scanner.error_since(start, Rule::FeedGroup, message));
         }
         let place = self.block.rare.get_or_insert_default().feed_reference.get_mut(axis);
         let repeated = place.is_some_and(|place| place.replace(radius).is_some());
@@ -198,7 +199,7 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let message = format!("{said}[] takes more than 0 and at most 200 percent");
-        Err(self.scanner.error_since(start, "number", message))
+        Err(self.scanner.error_since(start, Rule::Number, message))
     }
 
     /// `POS[X]=...`.

@@ -9,6 +9,7 @@ use super::structure::Word;
 use super::value::Value;
 use super::variables::{Place, Variable};
 use crate::kernel::Fallible;
+use program::Rule;
 use std::rc::Rc;
 
 /// Most repetitions of a call or a section (`P`; Job Planning 04.00, 1.15 and 2.5).
@@ -170,7 +171,7 @@ pub(super) fn read(
     let message = format!("{} stands in a block of its own", name.as_str());
     let at = scanner.at;
     scanner.at = start;
-    Err(scanner.source.error("syntax", at..at + 1, message))
+    Err(scanner.source.error(Rule::Syntax, at..at + 1, message))
 }
 
 /// Whether `name` is the word of a statement, or belongs to one.
@@ -224,7 +225,7 @@ fn jump_word(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Jump> {
         Some(search) => jump(scanner, evaluator, search),
         None => {
             let message = "a jump must stand here: GOTO, GOTOF, GOTOB, GOTOC or GOTOS";
-            Err(scanner.error_since(start, "syntax", message))
+            Err(scanner.error_since(start, Rule::Syntax, message))
         }
     }
 }
@@ -252,7 +253,7 @@ fn jump(scanner: &mut Scanner, evaluator: &Evaluator, search: Search) -> Fallibl
         Some(target) => Ok(Jump { search, target }),
         None => {
             let message = "the target of a jump is a label or a block number";
-            Err(scanner.error_since(start, "jump", message))
+            Err(scanner.error_since(start, Rule::Jump, message))
         }
     }
 }
@@ -267,7 +268,7 @@ fn target(text: &str) -> Option<Target> {
 fn case(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Statement> {
     let value = evaluator.expression(scanner)?;
     if !scanner.take_word("OF") {
-        return Err(scanner.error_here("syntax", "OF is missing here"));
+        return Err(scanner.error_here(Rule::Syntax, "OF is missing here"));
     }
     let mut taken = None;
     while !scanner.rests() {
@@ -290,7 +291,7 @@ fn count(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Count> {
     scanner.expect(b'=')?;
     let start = evaluator.expression(scanner)?;
     if !scanner.take_word("TO") {
-        return Err(scanner.error_here("syntax", "TO is missing here"));
+        return Err(scanner.error_here(Rule::Syntax, "TO is missing here"));
     }
     let end = evaluator.expression(scanner)?;
     Ok(Count { place, start, end })
@@ -302,7 +303,9 @@ fn section(scanner: &mut Scanner, evaluator: &Evaluator, one_block: bool) -> Fal
     scanner.blanks();
     let to = scanner.name_next().then(|| label(scanner)).transpose()?;
     if one_block && to.is_some() {
-        return Err(scanner.error_here("syntax", "REPEATB repeats one block: it takes one label"));
+        return Err(
+            scanner.error_here(Rule::Syntax, "REPEATB repeats one block: it takes one label")
+        );
     }
     let times = times(scanner, evaluator)?;
     Ok(Section { from, to, one_block, times })
@@ -312,7 +315,7 @@ fn label(scanner: &mut Scanner) -> Fallible<Name> {
     if scanner.name_next() {
         return scanner.name();
     }
-    Err(scanner.error_here("syntax", "a label must stand here"))
+    Err(scanner.error_here(Rule::Syntax, "a label must stand here"))
 }
 
 /// `P3`, `P=n`; once where there is none.
@@ -332,7 +335,7 @@ fn times(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<u32> {
         return Ok(times);
     }
     let message = format!("a program is repeated at most {MOST_TIMES} times");
-    Err(scanner.error_since(start, "number", message))
+    Err(scanner.error_since(start, Rule::Number, message))
 }
 
 /// `PCALL /_N_WKS_DIR/NAME(arguments)`: the path is not in quotes.
@@ -370,12 +373,16 @@ fn modal_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Option<P
     }
     let mut call = named_call(scanner, evaluator, start)?;
     if call.times != 1 {
-        return Err(scanner.error_since(start, "call", "MCALL calls the program once each time"));
+        return Err(scanner.error_since(
+            start,
+            Rule::Call,
+            "MCALL calls the program once each time",
+        ));
     }
     for actual in &mut call.arguments {
         if actual.variable.take().is_some() && actual.value.is_none() {
             let message = "MCALL with a whole array is not supported";
-            return Err(scanner.error_since(start, "unsupported", message));
+            return Err(scanner.error_since(start, Rule::Unsupported, message));
         }
     }
     Ok(Some(call))
@@ -389,7 +396,7 @@ fn named_call(scanner: &mut Scanner, evaluator: &Evaluator, start: usize) -> Fal
     let times = times(scanner, evaluator)?;
     if !scanner.rests() {
         let message = "a call of a program stands in a block of its own";
-        return Err(scanner.error_here("syntax", message));
+        return Err(scanner.error_here(Rule::Syntax, message));
     }
     Ok(ProgramCall { program, arguments, times })
 }
@@ -415,7 +422,7 @@ fn arguments(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<Actua
         }
         scanner.expect(b',')?;
         if arguments.len() >= MOST_ARGUMENTS {
-            return Err(scanner.error_here("syntax", "a call has at most 127 arguments"));
+            return Err(scanner.error_here(Rule::Syntax, "a call has at most 127 arguments"));
         }
     }
 }

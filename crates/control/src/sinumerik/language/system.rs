@@ -5,7 +5,7 @@ use super::scan::Scanner;
 use super::value::Value;
 use super::variables::{Place, Readable};
 use crate::kernel::Fallible;
-use program::{Diagnostic, Feed};
+use program::{Diagnostic, Feed, Rule};
 
 /// The names of the axes, in the order of their numbers.
 pub(crate) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
@@ -33,10 +33,10 @@ pub(super) fn read(
     if !state.counts_plainly() && lengths.contains(&name.as_str()) {
         let message =
             format!("${} while inches or diameters are programmed is not supported", name.as_str());
-        return Err(scanner.error_since(start, "unsupported", message));
+        return Err(scanner.error_since(start, Rule::Unsupported, message));
     }
     let unknown = |scanner: &Scanner, what: &str| {
-        scanner.error_since(start, "unknown-position", format!("{what} is not known here"))
+        scanner.error_since(start, Rule::UnknownPosition, format!("{what} is not known here"))
     };
     let known = |scanner: &Scanner, value: f64, what: &str| {
         if value.is_nan() { Err(unknown(scanner, what)) } else { Ok(Value::Real(value)) }
@@ -114,7 +114,7 @@ fn not_known(scanner: &Scanner, start: usize, name: &str) -> Box<Diagnostic> {
     } else {
         format!("${name} is a system variable whose value is not known here")
     };
-    scanner.error_since(start, "unsupported", message)
+    scanner.error_since(start, Rule::Unsupported, message)
 }
 
 /// `[X]`.
@@ -132,7 +132,7 @@ fn take_axis(evaluator: &Evaluator, scanner: &mut Scanner) -> Fallible<usize> {
         Value::Axis(axis) => Ok(axis),
         other => {
             let message = format!("an axis must stand here, not {}", other.name());
-            Err(scanner.error_since(start, "type", message))
+            Err(scanner.error_since(start, Rule::Type, message))
         }
     }
 }
@@ -157,12 +157,12 @@ fn frame_component(
     let axis = take_axis(evaluator, scanner)?;
     if axis > 2 {
         let message = "the offset of a rotary axis is not supported";
-        return Err(scanner.error_since(start, "unsupported", message));
+        return Err(scanner.error_since(start, Rule::Unsupported, message));
     }
     scanner.expect(b',')?;
     if !scanner.take_word("TR") {
         let message = "of a frame the translation (TR) is supported, not its other components";
-        return Err(scanner.error_here("unsupported", message));
+        return Err(scanner.error_here(Rule::Unsupported, message));
     }
     scanner.expect(b']')?;
     Ok((number, axis))

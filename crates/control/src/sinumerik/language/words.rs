@@ -13,6 +13,7 @@ use super::structure::Word;
 use super::variables::{Place, Readable};
 use crate::kernel::Fallible;
 use crate::kernel::source::Source;
+use program::Rule;
 
 impl Block {
     /// Reads a block. Expressions have the values before it.
@@ -63,7 +64,7 @@ impl Reader<'_, '_> {
                 b'(' => "a comment starts with ';'",
                 _ => "this character does not belong in a block",
             };
-            return Err(self.scanner.error_here("syntax", message));
+            return Err(self.scanner.error_here(Rule::Syntax, message));
         }
         let next = self.scanner.peek_at(1);
         if letter == b'_' || next == b'_' || next.is_ascii_alphabetic() {
@@ -130,16 +131,16 @@ impl Reader<'_, '_> {
             }
             b'H' => {
                 let message = "H is not supported: it tells the builder's program a number";
-                Err(self.scanner.error_since(start, "unsupported", message))
+                Err(self.scanner.error_since(start, Rule::Unsupported, message))
             }
             b'N' => Err(self.scanner.error_since(
                 start,
-                "syntax",
+                Rule::Syntax,
                 "a block number stands once, at the start of the block",
             )),
             _ => {
                 let message = format!("there is no address {}", letter as char);
-                Err(self.scanner.error_since(start, "unknown-word", message))
+                Err(self.scanner.error_since(start, Rule::UnknownWord, message))
             }
         }
     }
@@ -186,13 +187,13 @@ impl Reader<'_, '_> {
                 let number = self.whole(start)?;
                 if !matches!(number, 3..=5) {
                     let message = format!("M1={number}: only M1=3, M1=4, M1=5 concern the spindle");
-                    return Err(self.scanner.error_since(start, "unknown-word", message));
+                    return Err(self.scanner.error_since(start, Rule::UnknownWord, message));
                 }
                 self.m_function(start, number)
             }
             _ => {
                 let message = format!("there is no address {}{extension}", letter as char);
-                Err(self.scanner.error_since(start, "unknown-word", message))
+                Err(self.scanner.error_since(start, Rule::UnknownWord, message))
             }
         }
     }
@@ -209,7 +210,7 @@ impl Reader<'_, '_> {
             0 | 1 => None,
             _ => Filling::read(&mut self.scanner, &evaluator)?,
         };
-        let wrong = |scanner: &Scanner, message| scanner.error_since(at, "type", message);
+        let wrong = |scanner: &Scanner, message| scanner.error_since(at, Rule::Type, message);
         let repeated = self.block.assigned.iter().any(|(p, _)| *p == place);
         match (filling, place) {
             (Some(filling), Place::Element(index, element)) => {
@@ -314,7 +315,7 @@ impl Reader<'_, '_> {
         if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
             return Ok(value as u32);
         }
-        Err(self.scanner.error_since(start, "number", "a whole number from 0 must stand here"))
+        Err(self.scanner.error_since(start, Rule::Number, "a whole number from 0 must stand here"))
     }
 
     fn tool(&mut self, start: usize) -> Fallible<ToolCall> {
@@ -325,7 +326,7 @@ impl Reader<'_, '_> {
             if name.trim().is_empty() {
                 return Err(self.scanner.error_since(
                     start,
-                    "tool",
+                    Rule::Tool,
                     "the name of the tool is empty",
                 ));
             }
@@ -339,7 +340,7 @@ impl Reader<'_, '_> {
         let repeated = self.block.has_m(number);
         let Some(place) = self.block.m.iter_mut().find(|m| m.is_none()) else {
             let message = "a block has at most five M functions";
-            return Err(self.scanner.error_since(start, "syntax", message));
+            return Err(self.scanner.error_since(start, Rule::Syntax, message));
         };
         *place = Some(number);
         self.once(start, repeated)
@@ -350,7 +351,7 @@ impl Reader<'_, '_> {
         let is_828d = self.state.is_828d();
         if is_828d && matches!(number, 505 | 506) {
             let message = format!("there is no G{number} on an 828D: write G{}", number - 447);
-            return Err(self.scanner.error_since(start, "unknown-word", message));
+            return Err(self.scanner.error_since(start, Rule::UnknownWord, message));
         }
         if commands::settable_offset(number) || is_828d && matches!(number, 58 | 59) {
             let repeated = self.block.further_offset.replace(number).is_some();
@@ -360,7 +361,7 @@ impl Reader<'_, '_> {
             Some(index) => self.command(start, index),
             None => {
                 let message = format!("there is no G{number}");
-                Err(self.scanner.error_since(start, "unknown-word", message))
+                Err(self.scanner.error_since(start, Rule::UnknownWord, message))
             }
         }
     }
@@ -369,7 +370,7 @@ impl Reader<'_, '_> {
         let command = commands::at(index);
         if let Code::Unsupported(reason) = command.code {
             let message = format!("{} is not supported: {reason}", command.name);
-            return Err(self.scanner.error_since(start, "unsupported", message));
+            return Err(self.scanner.error_since(start, Rule::Unsupported, message));
         }
         let place = &mut self.block.groups[usize::from(command.group) % GROUPS];
         let before = std::mem::replace(place, index + 1);
@@ -378,7 +379,7 @@ impl Reader<'_, '_> {
                 "{} and another command of G group {} in one block",
                 command.name, command.group
             );
-            return Err(self.scanner.error_since(start, "group-conflict", message));
+            return Err(self.scanner.error_since(start, Rule::ModalGroup, message));
         }
         Ok(())
     }
@@ -428,7 +429,7 @@ impl Reader<'_, '_> {
                 )
             }
         };
-        let mut error = self.scanner.error_since(start, "unknown-word", message);
+        let mut error = self.scanner.error_since(start, Rule::UnknownWord, message);
         if assigned {
             error.help = "a variable needs its DEF in the same program (alarm 12550)".into();
         }
@@ -449,7 +450,7 @@ impl Reader<'_, '_> {
         // What the alarms of cycles do: 62000 to 62999 and 66000 to 66999 are shown and no more.
         if !matches!(number, 62_000..=62_999 | 66_000..=66_999) {
             let message = format!("the program ends itself here with {message}");
-            return Err(self.scanner.error_since(start, "alarm", message));
+            return Err(self.scanner.error_since(start, Rule::Alarm, message));
         }
         let repeated = self.block.message.replace(message).is_some();
         self.once(start, repeated)
@@ -477,7 +478,11 @@ impl Reader<'_, '_> {
         if !repeated {
             return Ok(());
         }
-        Err(self.scanner.error_since(start, "repeated-word", "this word stands twice in the block"))
+        Err(self.scanner.error_since(
+            start,
+            Rule::RepeatedWord,
+            "this word stands twice in the block",
+        ))
     }
 }
 
