@@ -150,7 +150,7 @@ def _error(text):
 
 
 def _save(files):
-    """Write each file under a temporary name in its folder, then rename them: all of them, or none at all."""
+    """Write each file under a temporary name in its folder, then rename all, or none at all."""
     try:
         with contextlib.ExitStack() as made, contextlib.ExitStack() as undo:
             ready = {}

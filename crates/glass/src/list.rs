@@ -2,6 +2,7 @@
 
 use crate::mesh::{Fault, lines, number};
 use glam::DVec3;
+use program::Rule;
 
 /// In which columns the coordinates stand, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +14,13 @@ impl Default for Columns {
     }
 }
 
+/// Whether commas cannot be told from decimal ones: with semicolons in the line, or where blanks alone part words of it.
+fn may_hold_decimal_commas(line: &str) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let parts_alone = |pair: &[&str]| !pair[0].ends_with(',') && !pair[1].starts_with(',');
+    line.contains(',') && (line.contains(';') || words.windows(2).any(parts_alone))
+}
+
 /// Reads the points (mm). Lines that begin with `#`, `;` or `//` are comments; a first line without a number is a head.
 pub(crate) fn read(bytes: &[u8], columns: Columns) -> Result<Vec<DVec3>, Fault> {
     let mut points = Vec::new();
@@ -21,6 +29,10 @@ pub(crate) fn read(bytes: &[u8], columns: Columns) -> Result<Vec<DVec3>, Fault> 
         let line = line.trim();
         if line.is_empty() || ["#", ";", "//"].iter().any(|mark| line.starts_with(mark)) {
             continue;
+        }
+        if may_hold_decimal_commas(line) {
+            let message = "commas next to another separator may be decimal commas: write points";
+            return Err(Fault::new(Rule::Number, message).line(at));
         }
         let words: Vec<&str> = line
             .split(|c: char| c.is_whitespace() || c == ',' || c == ';')

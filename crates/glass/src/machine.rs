@@ -132,6 +132,19 @@ pub enum Format {
     Gcode,
 }
 
+/// Whether words may be those that fire the laser: nothing that moves, ends, stops or calls, or changes how numbers count.
+fn fires(words: &str) -> bool {
+    let number = |word: &str, letters: &str| {
+        let mut word = word.chars();
+        let letter = word.next().filter(|letter| letters.contains(*letter));
+        letter.and_then(|_| word.as_str().parse::<f64>().ok())
+    };
+    let mut words = words.split(' ');
+    let own = |number: f64| ![0.0, 1.0, 2.0, 6.0, 30.0, 98.0, 99.0].contains(&number);
+    words.next().and_then(|word| number(word, "M")).is_some_and(own)
+        && words.all(|word| number(word, "PQRS").is_some())
+}
+
 impl Machine {
     /// The machine that `text` describes, which is the file `file`.
     ///
@@ -193,6 +206,9 @@ impl Machine {
             (Some(_), Format::Numbered | Format::Points) => {
                 Err(String::from("program.fire is for G-code only"))
             }
+            (Some(word), Format::Gcode) if !fires(word) => Err(format!(
+                "program.fire = \"{word}\" does more than fire: it is an M word other than M0 to M2, M6, M30, M98 and M99, with P, Q, R or S"
+            )),
             _ => Ok(()),
         }
     }

@@ -172,3 +172,31 @@ fn lists_of_points_are_read_from_any_columns() {
         matches!(read(cloud, Form::Ply, "").unwrap(), Shape::Points(points) if points == [DVec3::new(1.0, 2.0, 3.0)])
     );
 }
+
+/// An L: from its corner at the origin a fan stays inside, from the one that is next along X it does not.
+#[test]
+fn a_face_that_is_not_convex_is_refused_where_its_fan_leaves_it() {
+    let corners = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
+    let inside = format!("{corners}f 1 2 3 4 5 6\n");
+    assert_eq!(mesh(inside.as_bytes(), Form::Obj).triangles.len(), 4);
+    let outside = format!("{corners}f 2 3 4 5 6 1\n");
+    assert_eq!(refused(outside.as_bytes(), Form::Obj), ("face", 7));
+}
+
+#[test]
+fn a_decimal_comma_is_no_separator() {
+    for line in ["1,5 2,5 3,5", "1,5;2,5;3,5", "1,5\t2,5\t3,5"] {
+        assert_eq!(
+            refused(line.as_bytes(), Form::List(Columns::default())),
+            ("number", 1),
+            "{line}"
+        );
+    }
+    for line in ["1,2,3", "1, 2, 3", "1 , 2 ,3", "1;2;3", "1 2 3"] {
+        let read = read(line.as_bytes(), Form::List(Columns::default()), "p.xyz").unwrap();
+        assert!(
+            matches!(read, Shape::Points(points) if points == [DVec3::new(1.0, 2.0, 3.0)]),
+            "{line}"
+        );
+    }
+}

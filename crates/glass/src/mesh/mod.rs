@@ -122,6 +122,33 @@ impl Fault {
     }
 }
 
+/// The triangles of a flat face, all from its first corner.
+///
+/// # Errors
+/// Where one of them turns against the face: it would lie outside of a face that is not convex. Corners that no vertex has are
+/// left to the check of their numbers.
+fn fan(corners: &[u32], vertices: &[DVec3]) -> Result<Vec<[u32; 3]>, Fault> {
+    let triangles: Vec<[u32; 3]> = (1..corners.len().saturating_sub(1))
+        .map(|i| [corners[0], corners[i], corners[i + 1]])
+        .collect();
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|corner| vertices.get(corner as usize).copied());
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return DVec3::ZERO };
+        (b - a).cross(c - a)
+    };
+    let face: DVec3 = triangles.iter().map(area).sum();
+    // What rounding leaves of a flat triangle turns neither way.
+    let least = -1e-9 * face.length_squared();
+    if triangles.iter().any(|triangle| area(triangle).dot(face) < least) {
+        let message = format!(
+            "a face of {} corners is not convex: let the program that made the body write triangles",
+            corners.len()
+        );
+        return Err(Fault::new(Rule::Face, message));
+    }
+    Ok(triangles)
+}
+
 /// The number that a word is.
 pub(crate) fn number(word: Option<&str>, line: usize) -> Result<f64, Fault> {
     let word = word.unwrap_or("");

@@ -1,6 +1,6 @@
 //! Wavefront OBJ: vertices and faces. Textures, normals, groups and materials are passed over.
 
-use super::{Fault, MOST, Mesh, lines, number};
+use super::{Fault, MOST, Mesh, fan, lines, number};
 use glam::DVec3;
 use program::Rule;
 
@@ -25,8 +25,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
                         Fault::new(Rule::Face, "a face needs three corners or more").line(at)
                     );
                 }
-                let fan = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]);
-                mesh.triangles.extend(fan);
+                let triangles = fan(&corners, &mesh.vertices).map_err(|fault| fault.line(at))?;
+                mesh.triangles.extend(triangles);
             }
             _ => {}
         }

@@ -1,6 +1,6 @@
 //! PLY: vertices and faces, as text or in binary. A file without faces is a cloud of points.
 
-use super::{Fault, MOST, Mesh, Shape};
+use super::{Fault, MOST, Mesh, Shape, fan};
 use glam::DVec3;
 use program::Rule;
 
@@ -149,10 +149,11 @@ fn item(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(),
             corners.push(numbers.next(*kind)?);
         }
         if element.name == "face" && (name == "vertex_indices" || name == "vertex_index") {
+            if let Some(corner) = corners.iter().find(|corner| **corner < 0.0) {
+                return Err(Fault::new(Rule::Face, format!("a face names the vertex {corner}")));
+            }
             let corners: Vec<u32> = corners.into_iter().map(|corner| corner as u32).collect();
-            let fan = (1..corners.len().saturating_sub(1))
-                .map(|i| [corners[0], corners[i], corners[i + 1]]);
-            mesh.triangles.extend(fan);
+            mesh.triangles.extend(fan(&corners, &mesh.vertices)?);
         }
     }
     if element.name == "vertex" {

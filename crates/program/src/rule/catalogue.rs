@@ -556,7 +556,7 @@ rules! {
         "report this with the toolpath: the program differs from it"
         "Two `M6` for one `LOAD/TOOL`";
     Face "face" []
-        "A face names a vertex that is not there, or has fewer than three corners."
+        "A face names a vertex that is not there, has fewer than three corners, or is not convex."
         "export the body again"
         "OBJ: `f 1 2 9` after three vertices";
     Facet "facet" []
