@@ -318,7 +318,6 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     for line in [
         "safe_height = 0",
         "work_zero = [0, 0, 0]",
-        "path_tolerance = 0.01",
         "length_along_z = false",
         "tool_radius = \"full\"",
         "point = [0, 0, 0]",
@@ -334,7 +333,7 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     assert!(said.out.contains("\ntip_kinematics = 428\n"), "{}", said.out);
     assert!(said.out.contains("\naxis_kinematics = 429\n"), "{}", said.out);
     let new = format!(
-        "extends = \"sinumerik-840d\"\nsafe_height = 0\nwork_zero = [0, 0, 0]\n[options]\npath_tolerance = 0.01\n[settings]\n\
+        "extends = \"sinumerik-840d\"\nsafe_height = 0\nwork_zero = [0, 0, 0]\n[settings]\n\
          length_along_z = false\ntool_radius = \"full\"\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}point = [0, 0, 0]\nmodulo = true\n"
     );
     folder.write("new.toml", &new);
