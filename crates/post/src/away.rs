@@ -7,7 +7,7 @@ use crate::walk::{Done, Walk, motion, refuse};
 use geom::Vec3;
 use machine::plan::Step;
 use machine::{Mount, RotaryAxis};
-use program::{Coolant, Diagnostic, Op, Pose, Record, Rule, Spindle};
+use program::{Coolant, Diagnostic, Op, Pose, Rule, Spindle};
 
 /// How far beside the tool axis a cut may end that has drawn the tool back along it, mm.
 const ALONG: f64 = 1e-3;
@@ -61,16 +61,12 @@ impl Walk<'_> {
     }
 
     /// Whether the last motion of the source is a cut that has not drawn the tool back along its axis.
-    fn stands_in_cut(&self) -> bool {
-        let mut before = self.source().records[..self.index].iter().rev();
-        let ends = |record: &&Record| {
-            let parts = matches!(record.op, Op::Tool(_) | Op::Home | Op::WorkOffset(_));
-            parts || record.op.pose().is_some()
-        };
-        let Some(last) = before.find(ends) else { return false };
+    fn stands_in_cut(&mut self) -> bool {
+        let records = &self.source().records;
+        let Some((last, from)) = self.around.last_motion(records, self.index) else { return false };
         let cut = matches!(last.op, Op::Line(_) | Op::Arc(_) | Op::Thread(_));
         let (true, Op::Line(to)) = (cut, &last.op) else { return cut };
-        let Some(from) = before.find_map(|record| record.op.pose()) else { return true };
+        let Some(from) = from else { return true };
         let way: Vec3 = to.point() - from.point();
         let out = way.dot(to.axis());
         out <= 0.0 || (way - to.axis() * out).length() > ALONG

@@ -15,6 +15,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod arcs;
+mod around;
 mod away;
 mod catalogue;
 mod contour;

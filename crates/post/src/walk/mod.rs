@@ -5,6 +5,7 @@ mod technology;
 
 pub(crate) use technology::{Cut, Turn};
 
+use crate::around::Around;
 use crate::catalogue::{BlockName, WordName};
 use crate::contour::Contour;
 use crate::findings::Findings;
@@ -93,14 +94,14 @@ pub(crate) struct Walk<'a> {
     radii: OnceCell<BTreeMap<u32, f64>>,
     /// Where in its records we are.
     pub(crate) index: usize,
+    /// What the source says before and behind that record.
+    pub(crate) around: Around,
     /// Source line of the record at hand.
     pub(crate) line: u32,
     /// What the source wants, what the control has been sent, and where the tool is.
     pub(crate) wanted: Wanted<'a>,
     pub(crate) sent: Sent,
     pub(crate) position: ToolPosition,
-    /// Up to which record no cut needs the spindle.
-    idle_until: usize,
     /// The contour at hand, where the control offsets it and the radius of the tool is known.
     contour: Option<Box<Contour>>,
     /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
@@ -161,7 +162,7 @@ impl<'a> Walk<'a> {
             wanted: Wanted::nothing(machine.path_tolerance()),
             sent: Sent::at_start(machine.path_tolerance()),
             position: ToolPosition::default(),
-            idle_until: 0,
+            around: Around::default(),
             contour: None,
             goes_on: false,
             place: Place::start(machine),
@@ -445,7 +446,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    pub(crate) fn source(&self) -> &'_ Program {
+    pub(crate) fn source(&self) -> &'a Program {
         self.source
     }
 

@@ -5,9 +5,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, tool_value};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, OptionValue};
-use program::{
-    Compensation, Coolant, Diagnostic, Feed, Op, PathMode, Rule, Spindle, Tool, lowering,
-};
+use program::{Compensation, Coolant, Diagnostic, Feed, PathMode, Rule, Spindle, Tool, lowering};
 
 /// Entries of the code word `feed_mode`.
 pub(super) mod feed_mode {
@@ -106,12 +104,8 @@ impl Walk<'_> {
         if let Some(speed) = self.coming_speed() {
             self.writer.set(WordName::S, speed);
         }
-        self.scope.tool = tool_value(
-            self.machine,
-            tool,
-            self.wanted.tool().is_none(),
-            self.next_tool(tool.number),
-        );
+        let next = self.around.other_tool(&self.source.records, self.index, tool.number);
+        self.scope.tool = tool_value(self.machine, tool, self.wanted.tool().is_none(), next);
         let upright = self.upright();
         self.place.turned = self.say_unturned(BlockName::ToolChange);
         self.required(BlockName::ToolChange)?;
@@ -132,23 +126,9 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The tool that is called behind tool `number`, which is called here: behind the last the first, for the next part.
-    fn next_tool(&self, number: u32) -> Option<u32> {
-        let called = |record: &program::Record| {
-            let Op::Tool(tool) = &record.op else { return None };
-            Some(tool.number).filter(|other| *other != number)
-        };
-        let records = &self.source.records;
-        let coming = records[self.index..].iter().find_map(called);
-        coming.or_else(|| records[..self.index].iter().find_map(called))
-    }
-
     /// Whether the source calls tool `number` before it moves again: made ready, it would be called at once.
-    pub(super) fn calls_next(&self, number: u32) -> bool {
-        let coming = self.source.records[self.index..].iter().map(|record| &record.op);
-        let mut still = coming.take_while(|op| op.pose().is_none());
-        still.find_map(|op| if let Op::Tool(tool) = op { Some(tool.number) } else { None })
-            == Some(number)
+    pub(super) fn calls_next(&mut self, number: u32) -> bool {
+        self.around.tool_before_motion(&self.source.records, self.index) == Some(number)
     }
 
     /// The control has no word for the register that the source names for the `what` of the tool.
@@ -160,13 +140,9 @@ impl Walk<'_> {
     }
 
     /// The speed at which the tool that is called now will cut first.
-    fn coming_speed(&self) -> Option<f64> {
-        let coming = self.source.records[self.index..].iter().map(|record| &record.op);
-        let mut until_cut = coming
-            .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
-        let next = until_cut
-            .find_map(|op| if let Op::Spindle(spindle) = op { speed(*spindle) } else { None });
-        next.or(speed(self.wanted.spindle()))
+    fn coming_speed(&mut self) -> Option<f64> {
+        let coming = self.around.spindle_before_cut(&self.source.records, self.index);
+        speed(coming.unwrap_or(self.wanted.spindle()))
     }
 
     /// The source calls no tool: the machine file may say which one that means.
@@ -203,38 +179,12 @@ impl Walk<'_> {
 
     /// Switches the spindle as the source wants it, where something needs it before it stops again.
     pub(crate) fn expect_spindle(&mut self) -> Done {
-        if self.wanted.spindle() == Spindle::Off || self.is_spindle_needed() {
+        if self.wanted.spindle() == Spindle::Off
+            || self.around.needs_spindle(&self.source.records, self.index)
+        {
             return self.sync_spindle();
         }
         Ok(())
-    }
-
-    /// Whether the source cuts, or dwells, before it stops the spindle or gives it another speed.
-    fn is_spindle_needed(&mut self) -> bool {
-        if self.index < self.idle_until {
-            return false;
-        }
-        let needs = |op: &Op| {
-            matches!(
-                op,
-                Op::Line(_)
-                    | Op::Arc(_)
-                    | Op::Thread(_)
-                    | Op::Hole(_)
-                    | Op::Probe(_)
-                    | Op::Dwell(_)
-            )
-        };
-        let ends = |op: &Op| {
-            matches!(op, Op::Spindle(_) | Op::Tool(_) | Op::Stop | Op::OptionalStop | Op::End)
-        };
-        let coming = &self.source.records[self.index..];
-        let next = coming.iter().position(|record| needs(&record.op) || ends(&record.op));
-        if next.is_some_and(|next| needs(&coming[next].op)) {
-            return true;
-        }
-        self.idle_until = self.index + next.unwrap_or(coming.len());
-        false
     }
 
     /// Switches the spindle as the source wants it.

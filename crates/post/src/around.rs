@@ -1,0 +1,202 @@
+//! What the source says before and behind the record at hand. Records come in their order, and each answer is kept for as long as it
+//! holds: however often somebody asks, each record is looked at a few times altogether.
+
+use program::{Op, Pose, Record, Spindle};
+
+/// What is known of the records around the one at hand, whose index never becomes less.
+#[derive(Debug, Default)]
+pub(crate) struct Around {
+    /// No record before this one needs the spindle.
+    idle_until: usize,
+    /// So many records have been looked at for the last motion.
+    seen: usize,
+    /// The last of them that has a pose, changes the tool, sends it home or changes the work offset.
+    last: Option<usize>,
+    /// The last one with a pose before that.
+    before: Option<usize>,
+    /// The next record that has a pose or calls a tool; how many there are where none does.
+    next: Option<usize>,
+    /// The next record that cuts or starts the spindle; how many there are where none does.
+    start: Option<usize>,
+    /// A tool, the record up to which the answer holds, and the other tool that is called behind it.
+    other: Option<(u32, usize, Option<u32>)>,
+}
+
+impl Around {
+    /// Whether the source cuts, or dwells, before it stops the spindle or gives it another speed.
+    pub(crate) fn needs_spindle(&mut self, records: &[Record], index: usize) -> bool {
+        if index < self.idle_until {
+            return false;
+        }
+        let needs = |op: &Op| {
+            matches!(
+                op,
+                Op::Line(_)
+                    | Op::Arc(_)
+                    | Op::Thread(_)
+                    | Op::Hole(_)
+                    | Op::Probe(_)
+                    | Op::Dwell(_)
+            )
+        };
+        let ends = |op: &Op| {
+            matches!(op, Op::Spindle(_) | Op::Tool(_) | Op::Stop | Op::OptionalStop | Op::End)
+        };
+        let next = position(records, index, |op| needs(op) || ends(op));
+        if records.get(next).is_some_and(|record| needs(&record.op)) {
+            return true;
+        }
+        self.idle_until = next;
+        false
+    }
+
+    /// How the spindle is started before the next cut.
+    pub(crate) fn spindle_before_cut(
+        &mut self,
+        records: &[Record],
+        index: usize,
+    ) -> Option<Spindle> {
+        let ends = |op: &Op| {
+            matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_))
+                || started(op).is_some()
+        };
+        let find = || position(records, index, ends);
+        let start = self.start.filter(|start| *start >= index).unwrap_or_else(find);
+        self.start = Some(start);
+        records.get(start).and_then(|record| started(&record.op))
+    }
+
+    /// The last motion, tool change, home position or change of the work offset before the record at hand, and the pose before it.
+    pub(crate) fn last_motion<'r>(
+        &mut self,
+        records: &'r [Record],
+        index: usize,
+    ) -> Option<(&'r Record, Option<&'r Pose>)> {
+        let pose = |at: usize| records.get(at).and_then(|record| record.op.pose());
+        for (at, record) in records.iter().enumerate().take(index).skip(self.seen) {
+            let parts = matches!(record.op, Op::Tool(_) | Op::Home | Op::WorkOffset(_));
+            if parts || record.op.pose().is_some() {
+                self.before = self.last.filter(|last| pose(*last).is_some()).or(self.before);
+                self.last = Some(at);
+            }
+        }
+        self.seen = self.seen.max(index);
+        Some((records.get(self.last?)?, self.before.and_then(pose)))
+    }
+
+    /// The tool that is called before anything moves.
+    pub(crate) fn tool_before_motion(&mut self, records: &[Record], index: usize) -> Option<u32> {
+        let find = || position(records, index, |op| op.pose().is_some() || tool(op).is_some());
+        let next = self.next.filter(|next| *next >= index).unwrap_or_else(find);
+        self.next = Some(next);
+        records.get(next).and_then(|record| tool(&record.op))
+    }
+
+    /// The tool that is called next and is not `number`; behind the last one the first.
+    pub(crate) fn other_tool(
+        &mut self,
+        records: &[Record],
+        index: usize,
+        number: u32,
+    ) -> Option<u32> {
+        if let Some((asked, until, answer)) = self.other
+            && asked == number
+            && index <= until
+        {
+            return answer;
+        }
+        let called = |op: &Op| tool(op).filter(|other| *other != number);
+        let until = position(records, index, |op| called(op).is_some());
+        let first = || records.iter().take(index).find_map(|record| called(&record.op));
+        let answer = records.get(until).and_then(|record| called(&record.op)).or_else(first);
+        self.other = Some((number, until, answer));
+        answer
+    }
+}
+
+/// The first record from `index` on that `is` one, or how many there are.
+fn position(records: &[Record], index: usize, is: impl Fn(&Op) -> bool) -> usize {
+    let mut coming = records.iter().enumerate().skip(index);
+    coming.find(|(_, record)| is(&record.op)).map_or(records.len(), |(at, _)| at)
+}
+
+fn started(op: &Op) -> Option<Spindle> {
+    if let Op::Spindle(spindle) = op { Some(*spindle) } else { None }
+        .filter(|spindle| *spindle != Spindle::Off)
+}
+
+fn tool(op: &Op) -> Option<u32> {
+    if let Op::Tool(tool) = op { Some(tool.number) } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geom::Vec3;
+    use program::{Program, Tool, WorkOffset};
+    use proptest::prelude::*;
+
+    fn op(kind: u8, number: u8) -> Op {
+        let pose = Pose::upright(Vec3::new(f64::from(number), 0.0, 0.0)).unwrap();
+        match kind {
+            0 => Op::Line(pose),
+            1 => Op::Rapid(pose),
+            2 | 3 => Op::Tool(Box::new(Tool { number: u32::from(number % 3), ..Tool::default() })),
+            4 => Op::Home,
+            5 => Op::WorkOffset(WorkOffset::FIRST),
+            6 => Op::Stop,
+            7 if number < 3 => Op::Spindle(Spindle::Off),
+            7 => Op::Spindle(Spindle::Clockwise(f64::from(number))),
+            8 => Op::Dwell(1.0),
+            _ => Op::Preselect(u32::from(number)),
+        }
+    }
+
+    proptest! {
+        /// Whoever asks again and again hears what a search through all records finds.
+        #[test]
+        fn what_is_kept_is_what_a_search_finds(
+            ops in prop::collection::vec((0_u8..10, 0_u8..6), 0..40),
+            asked in prop::collection::vec((any::<bool>(), 0_u32..4), 40),
+        ) {
+            let mut program = Program::new("t");
+            for (kind, number) in ops {
+                program.push(1, op(kind, number));
+            }
+            let records = &program.records;
+            let mut around = Around::default();
+            for (index, &(asks, number)) in (0..=records.len()).zip(&asked) {
+                if !asks {
+                    continue;
+                }
+                let (behind, coming) = records.split_at(index);
+                let called = |record: &Record| tool(&record.op).filter(|other| *other != number);
+                let other = coming.iter().find_map(called).or_else(|| behind.iter().find_map(called));
+                prop_assert_eq!(around.other_tool(records, index, number), other);
+                let mut still = coming.iter().take_while(|record| record.op.pose().is_none());
+                let next = still.find_map(|record| tool(&record.op));
+                prop_assert_eq!(around.tool_before_motion(records, index), next);
+                let mut before = behind.iter().rev();
+                let ends = |record: &&Record| {
+                    let parts = matches!(record.op, Op::Tool(_) | Op::Home | Op::WorkOffset(_));
+                    parts || record.op.pose().is_some()
+                };
+                let last = before.find(ends);
+                let from = before.find_map(|record| record.op.pose());
+                prop_assert_eq!(around.last_motion(records, index), last.map(|last| (last, from)));
+                let mut until_cut =
+                    coming.iter().take_while(|record| !matches!(record.op, Op::Line(_)));
+                let start = until_cut.find_map(|record| {
+                    let Op::Spindle(spindle) = record.op else { return None };
+                    Some(spindle).filter(|spindle| *spindle != Spindle::Off)
+                });
+                prop_assert_eq!(around.spindle_before_cut(records, index), start);
+                let needs = |record: &Record| matches!(record.op, Op::Line(_) | Op::Dwell(_));
+                let mut deciding = coming.iter().filter(|record| {
+                    needs(record) || matches!(record.op, Op::Spindle(_) | Op::Tool(_) | Op::Stop)
+                });
+                prop_assert_eq!(around.needs_spindle(records, index), deciding.next().is_some_and(needs));
+            }
+        }
+    }
+}
