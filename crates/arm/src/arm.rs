@@ -1,6 +1,6 @@
 //! What an arm is.
 
-use geom::{Frame, wrap};
+use geom::{Euler, Frame, Vec3, wrap};
 use std::f64::consts::TAU;
 use std::fmt;
 
@@ -9,6 +9,9 @@ pub type Joints = [f64; 6];
 
 /// Joint positions farther from zero than this are no arm's, radians: ten revolutions.
 pub const FARTHEST: f64 = 10.0 * TAU;
+
+/// How far the reach of the lengths may be from the stated one, as a part of it.
+const REACH: f64 = 0.02;
 
 /// An arm of six revolute joints.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +76,16 @@ pub struct Dh {
 /// What the factory has measured of one arm: the frame of each joint in the one before it, with all joints at zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration(pub [Frame; 6]);
+
+impl Calibration {
+    /// Of a row for each joint as a machine file has it: x, y, z in mm, and the turns about the fixed X, Y and Z axes in degrees.
+    pub fn of_rows(rows: [[f64; 6]; 6]) -> Calibration {
+        Calibration(rows.map(|[x, y, z, roll, pitch, yaw]| {
+            let turns = [roll, pitch, yaw].map(f64::to_radians);
+            Frame::from_mat3_translation(Euler::FixedXyz.matrix(turns), Vec3::new(x, y, z))
+        }))
+    }
+}
 
 /// A joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,6 +202,11 @@ impl Arm {
             Structure::Spherical(arm) => arm.a1 + arm.c2 + arm.a2.hypot(arm.c3),
             Structure::Ur(dh, _) => dh.a2.abs() + dh.a3.abs(),
         }
+    }
+
+    /// Whether [`Arm::reach`] is what a data sheet states, mm, within 2 %.
+    pub fn reaches(&self, stated: f64) -> bool {
+        (self.reach() - stated).abs() <= REACH * stated
     }
 
     /// Joints as the controller shows them; `None` where it is not known how it counts joint 3.

@@ -4,8 +4,7 @@
 
 use super::{Read, fail};
 use crate::Import;
-use arm::{Arm, Calibration, Dh, Frame, Joint, Joints, Structure, Vec3};
-use geom::Euler;
+use arm::{Arm, Calibration, Dh, Joint, Joints, Structure};
 use program::{Diagnostic, Rule, nearest};
 use std::fmt::Write as _;
 
@@ -43,7 +42,7 @@ pub fn import(file: &str, bytes: &[u8], extends: Option<&str>) -> Result<Import,
     }
     let message = format!("the arm as measured is up to {off:.3} mm from `{name}`");
     let findings = vec![Diagnostic::warning(Rule::ArmCalibration, message).file(file).help(
-        "programs of joints hang on it, programs of poses do not; it is true of this one arm",
+        "programs of joints depend on it, programs of poses do not; it is true of this one arm",
     )];
     Ok(Import { text: write(file, name, &rows), extends: name.to_owned(), findings })
 }
@@ -130,17 +129,13 @@ fn read(text: &str) -> Read<[[f64; 6]; 6]> {
 /// The farthest that the measured flange is from the nominal one, mm, over joints of the whole range.
 fn off(dh: &Dh, rows: &[[f64; 6]; 6]) -> Read<f64> {
     let joint = Joint { min: -1.0, max: 1.0, speed: 1.0, acceleration: None };
-    let frames = rows.map(|[x, y, z, roll, pitch, yaw]| {
-        let turns = [roll, pitch, yaw].map(f64::to_radians);
-        Frame::from_mat3_translation(Euler::FixedXyz.matrix(turns), Vec3::new(x, y, z))
-    });
     let arm = |calibration| Arm::new(Structure::Ur(*dh, calibration), [joint; 6], None, 0.0);
     let wrong = |why: arm::Misfit| {
         Diagnostic::error(Rule::Calibration, why.to_string())
             .help("take the file as the driver saves it")
     };
     let nominal = arm(None).map_err(wrong)?;
-    let measured = arm(Some(Box::new(Calibration(frames)))).map_err(wrong)?;
+    let measured = arm(Some(Box::new(Calibration::of_rows(*rows)))).map_err(wrong)?;
     let mut most: f64 = 0.0;
     for i in 0..32_u32 {
         let joints: Joints =

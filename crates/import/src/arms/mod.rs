@@ -39,8 +39,7 @@ pub fn import_urdf(
     let source = text(bytes).map_err(refused)?;
     let read = urdf::read(source).map_err(refused)?;
     let found = geometry::find(&read.chain).map_err(refused)?;
-    if let Some(stated) = reach.filter(|stated| (found.arm.reach() - stated).abs() > 0.02 * stated)
-    {
+    if let Some(stated) = reach.filter(|stated| !found.arm.reaches(*stated)) {
         let made = found.arm.reach();
         let message =
             format!("the arm reaches {made:.1} mm to the wrist centre, and {stated} mm are stated");

@@ -2,16 +2,10 @@
 
 use super::Result;
 use super::file::SheetFile;
-use crate::sheet::{ArmSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet};
-use arm::{
-    Arm, Calibration, Coupling, CouplingLimit, Dh, Frame, Joint, Spherical, Structure, Vec3,
-};
-use geom::Euler;
+use crate::sheet::{Angle, ArmSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet, Position};
+use arm::{Arm, Calibration, Coupling, CouplingLimit, Dh, Joint, Spherical, Structure};
 use program::Diagnostic;
 use toml::Spanned;
-
-/// How far lengths may be from the stated reach, as a part of it.
-const REACH: f64 = 0.02;
 
 /// An `[arm]` of a file, with the place to report where it turns out wrong after merging.
 pub(super) struct PlacedArm {
@@ -58,7 +52,7 @@ fn arm(sheet: &ArmSheet) -> Said<Arm> {
     let structure = match (&sheet.lengths, &sheet.dh) {
         (Some(lengths), None) => spherical(sheet, lengths.get_ref())?,
         (None, Some(dh)) => ur(sheet, dh.get_ref())?,
-        _ => {
+        (Some(_), Some(_)) | (None, None) => {
             return Err(String::from(
                 "one of `lengths` and `dh` says how its links are put together",
             ));
@@ -72,8 +66,9 @@ fn arm(sheet: &ArmSheet) -> Said<Arm> {
     let height = needed("world_height", sheet.world_height)?.0;
     let arm =
         Arm::new(structure, joints(sheet)?, coupling, height).map_err(|why| why.to_string())?;
-    if let Some(stated) = sheet.reach {
-        check_reach(&arm, stated.0)?;
+    if let Some(stated) = sheet.reach.map(|mm| mm.0).filter(|stated| !arm.reaches(*stated)) {
+        let made = arm.reach();
+        return Err(format!("its lengths reach {made:.1} mm, and `reach` states {stated} mm"));
     }
     match (sheet.coupled_min, sheet.coupled_max) {
         (None, None) => Ok(arm),
@@ -84,15 +79,9 @@ fn arm(sheet: &ArmSheet) -> Said<Arm> {
             let limit = CouplingLimit { min: min.0.to_radians(), max: max.0.to_radians() };
             arm.with_coupling_limit(limit).map_err(|why| why.to_string())
         }
-        _ => Err(String::from("`coupled_min` and `coupled_max` are given both or not at all")),
-    }
-}
-
-fn check_reach(arm: &Arm, stated: f64) -> Said<()> {
-    let made = arm.reach();
-    match (made - stated).abs() <= REACH * stated {
-        true => Ok(()),
-        false => Err(format!("its lengths reach {made:.1} mm, and `reach` states {stated} mm")),
+        (Some(_), None) | (None, Some(_)) => {
+            Err(String::from("`coupled_min` and `coupled_max` are given both or not at all"))
+        }
     }
 }
 
@@ -100,9 +89,7 @@ fn spherical(sheet: &ArmSheet, lengths: &LengthsSheet) -> Said<Structure> {
     if sheet.calibration.is_some() {
         return Err(String::from("a `calibration` is that of an arm with `dh`"));
     }
-    let length = |name: &str, value: Option<crate::sheet::Position>| {
-        needed(&format!("lengths.{name}"), value).map(|mm| mm.0)
-    };
+    let length = |name: &str, value| length("lengths", name, value);
     let offsets = needed("offsets", sheet.offsets)?.0.map(f64::to_radians);
     let signs = needed("signs", sheet.signs)?;
     Ok(Structure::Spherical(Spherical {
@@ -122,9 +109,7 @@ fn ur(sheet: &ArmSheet, dh: &DhSheet) -> Said<Structure> {
     if sheet.offsets.is_some() || sheet.signs.is_some() {
         return Err(String::from("`offsets` and `signs` are those of an arm with `lengths`"));
     }
-    let length = |name: &str, value: Option<crate::sheet::Position>| {
-        needed(&format!("dh.{name}"), value).map(|mm| mm.0)
-    };
+    let length = |name: &str, value| length("dh", name, value);
     let nominal = Dh {
         d1: length("d1", dh.d1)?,
         a2: length("a2", dh.a2)?,
@@ -138,15 +123,17 @@ fn ur(sheet: &ArmSheet, dh: &DhSheet) -> Said<Structure> {
     Ok(Structure::Ur(nominal, measured.map(Box::new)))
 }
 
+/// A length of `table` that has to be there, mm.
+fn length(table: &str, name: &str, value: Option<Position>) -> Said<f64> {
+    needed(&format!("{table}.{name}"), value).map(|mm| mm.0)
+}
+
 fn calibration(rows: &[[f64; 6]]) -> Said<Calibration> {
     let good = rows.iter().flatten().all(|number| number.abs() <= 1e5);
-    match <[[f64; 6]; 6]>::try_from(rows) {
-        Ok(rows) if good => Ok(Calibration(rows.map(|[x, y, z, roll, pitch, yaw]| {
-            let turns = [roll, pitch, yaw].map(f64::to_radians);
-            Frame::from_mat3_translation(Euler::FixedXyz.matrix(turns), Vec3::new(x, y, z))
-        }))),
-        _ => Err(String::from("`calibration` has six rows of six numbers from -100000 to 100000")),
-    }
+    let rows = <[[f64; 6]; 6]>::try_from(rows).ok().filter(|_| good);
+    rows.map(Calibration::of_rows).ok_or_else(|| {
+        String::from("`calibration` has six rows of six numbers from -100000 to 100000")
+    })
 }
 
 fn joints(sheet: &ArmSheet) -> Said<[Joint; 6]> {
@@ -160,7 +147,7 @@ fn joints(sheet: &ArmSheet) -> Said<[Joint; 6]> {
 }
 
 fn finish_joint(number: usize, sheet: &JointSheet) -> Said<Joint> {
-    let angle = |key: &str, value: Option<crate::sheet::Angle>| {
+    let angle = |key: &str, value: Option<Angle>| {
         needed(&format!("{key}` of joint {number} in `joints"), value)
             .map(|degrees| degrees.0.to_radians())
     };
