@@ -1,6 +1,6 @@
 //! How texts begin, whoever has saved them.
 
-use crate::{Diagnostic, Rule};
+use crate::{Diagnostic, Outcome, Rule};
 
 /// U+FEFF in UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -24,4 +24,18 @@ pub fn is_utf_16(text: &[u8]) -> bool {
 pub fn utf_16() -> Diagnostic {
     Diagnostic::error(Rule::Encoding, "this file is in UTF-16")
         .help("save it as plain text (ASCII, Latin-1 or UTF-8)")
+}
+
+/// A text that has to be UTF-8, without its byte order mark.
+///
+/// # Errors
+/// It is in UTF-16, or anything else.
+pub fn utf_8(text: &[u8]) -> Outcome<&str> {
+    if is_utf_16(text) {
+        return Err(utf_16().into());
+    }
+    std::str::from_utf8(without_mark(text)).map_err(|_| {
+        let found = Diagnostic::error(Rule::Encoding, "this file is not UTF-8");
+        found.help("save it as UTF-8").into()
+    })
 }

@@ -11,7 +11,7 @@ use ::glass::order::Effort;
 use ::glass::{cloud, material, source};
 use app::files::{self, Target};
 use app::{Account, Stop, Verdict, Watch};
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Rule, encoding};
 use serde_json::json;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -76,10 +76,8 @@ fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
 
 /// The text of a file that must be UTF-8.
 fn text(path: &Path) -> Result<String, Stop> {
-    String::from_utf8(files::text(path)?).map_err(|_| {
-        let found = Diagnostic::error(Rule::Encoding, "is not UTF-8").file(files::name(path));
-        found.help("save it as UTF-8").into()
-    })
+    let bytes = files::read(path)?;
+    Ok(encoding::utf_8(&bytes).map_err(|found| found.file(files::name(path)))?.to_owned())
 }
 
 /// Checks the distances of a list of points.

@@ -7,7 +7,7 @@ use app::files::{self, Target};
 use app::toolpath::{self, describe};
 use app::{Stop, Verdict, summary};
 use machine::{Machine, library};
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Rule, encoding};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -124,9 +124,8 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     }
     let is_file = from.contains(['/', '\\']) || from.ends_with(".toml");
     let text = if is_file {
-        let bytes = files::text(Path::new(from))?;
-        String::from_utf8(bytes)
-            .map_err(|_| Diagnostic::error(Rule::Encoding, "this file is not UTF-8").file(from))?
+        let bytes = files::read(Path::new(from))?;
+        encoding::utf_8(&bytes).map_err(|found| found.file(from))?.to_owned()
     } else {
         library_text(from)?.to_owned()
     };

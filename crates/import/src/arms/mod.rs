@@ -64,11 +64,5 @@ fn text(bytes: &[u8]) -> Read<&str> {
             Diagnostic::error(Rule::Import, message).help("leave meshes in files of their own"),
         );
     }
-    if encoding::is_utf_16(bytes) {
-        return Err(encoding::utf_16().into());
-    }
-    let text = std::str::from_utf8(bytes).map_err(|_| {
-        Diagnostic::error(Rule::Encoding, "this file is not UTF-8").help("save it as UTF-8")
-    })?;
-    Ok(text.trim_start_matches('\u{feff}'))
+    encoding::utf_8(bytes)
 }
