@@ -72,10 +72,11 @@ pub(super) fn read(text: &str) -> Read<Urdf> {
                 .help("expand xacro first: `xacro arm.xacro > arm.urdf`"),
         );
     }
+    let lines = Lines::of(text);
     let mut findings = Vec::new();
     let mut joints = Vec::new();
     for node in robot.children().filter(|node| node.has_tag_name("joint")) {
-        joints.push(joint(node, &mut findings)?);
+        joints.push(joint(node, &lines, &mut findings)?);
     }
     let tree = Tree::new(&joints)?;
     let tip = tree.tip()?;
@@ -87,13 +88,28 @@ pub(super) fn read(text: &str) -> Read<Urdf> {
     Ok(Urdf { name, chain, findings })
 }
 
-/// The line on which an element begins.
+/// Where the lines of a description end. The document itself counts from its start for every line that it is asked for.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn of(text: &str) -> Lines {
+        Lines(text.match_indices('\n').map(|(at, _)| at).collect())
+    }
+
+    /// The line on which an element begins.
+    fn line_of(&self, node: Node<'_, '_>) -> u32 {
+        let before = self.0.partition_point(|end| *end < node.range().start);
+        u32::try_from(before + 1).unwrap_or(u32::MAX)
+    }
+}
+
+/// The line on which an element begins, for the one error that ends the reading.
 fn line_of(node: Node<'_, '_>) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }
 
-fn joint<'a>(node: Node<'a, 'a>, findings: &mut Vec<Diagnostic>) -> Read<Joint<'a>> {
-    let line = line_of(node);
+fn joint<'a>(node: Node<'a, 'a>, lines: &Lines, findings: &mut Vec<Diagnostic>) -> Read<Joint<'a>> {
+    let line = lines.line_of(node);
     let name = node.attribute("name").unwrap_or_default();
     let link = |tag: &str| {
         let found = node.children().find(|child| child.has_tag_name(tag));
@@ -112,12 +128,17 @@ fn joint<'a>(node: Node<'a, 'a>, findings: &mut Vec<Diagnostic>) -> Read<Joint<'
         };
         return fail(wrong(line, format!("joint `{name}` is of no type `{kind}`")).help(help));
     }
-    let frame = origin(node, name, findings)?;
+    let frame = origin(node, name, lines, findings)?;
     Ok(Joint { name, kind, parent: link("parent")?, child: link("child")?, frame, node, line })
 }
 
 /// The frame of a joint in that of the link before it.
-fn origin(node: Node<'_, '_>, name: &str, findings: &mut Vec<Diagnostic>) -> Read<Frame> {
+fn origin(
+    node: Node<'_, '_>,
+    name: &str,
+    lines: &Lines,
+    findings: &mut Vec<Diagnostic>,
+) -> Read<Frame> {
     let Some(origin) = node.children().find(|child| child.has_tag_name("origin")) else {
         return Ok(Frame::IDENTITY);
     };
@@ -131,7 +152,9 @@ fn origin(node: Node<'_, '_>, name: &str, findings: &mut Vec<Diagnostic>) -> Rea
                 (right.to_degrees()).round()
             );
             findings.push(
-                Diagnostic::warning(Rule::ArmSnapped, message).line(line_of(origin)).help(SNAPPED),
+                Diagnostic::warning(Rule::ArmSnapped, message)
+                    .line(lines.line_of(origin))
+                    .help(SNAPPED),
             );
         }
         *turn = right;
@@ -235,9 +258,9 @@ impl<'a> Tree<'a> {
         if let Some(joint) = self.by_child.get("tool0") {
             return Ok(joint.child);
         }
-        let is_parent = |link: &str| self.joints.iter().any(|joint| joint.parent == link);
+        let parents: BTreeSet<&str> = self.joints.iter().map(|joint| joint.parent).collect();
         let mut tips = Vec::new();
-        for joint in self.joints.iter().filter(|joint| !is_parent(joint.child)) {
+        for joint in self.joints.iter().filter(|joint| !parents.contains(joint.child)) {
             if self.way(joint.child)?.iter().filter(|joint| joint.kind != "fixed").count() == 6 {
                 tips.push(joint.child);
             }
@@ -261,7 +284,7 @@ impl<'a> Tree<'a> {
         let moves = |joint: &&Joint<'a>| joint.kind != "fixed" && !on_way.contains(joint.name);
         let said = |joint: &Joint<'a>| {
             let message = format!(
-                "joint `{}` with link `{}` is beside the chain from `{}` to the flange, and left out",
+                "joint `{}` with link `{}` is not in the chain from `{}` to the flange, and left out",
                 joint.name, joint.child, self.root
             );
             Diagnostic::warning(Rule::ArmBranch, message)
