@@ -209,7 +209,7 @@ impl Machine {
             (Some(word), Format::Gcode) if !fires(word) => Err(format!(
                 "program.fire = \"{word}\" does more than fire: it is an M word other than M0 to M2, M6, M30, M98 and M99, with P, Q, R or S"
             )),
-            _ => Ok(()),
+            (Some(_), Format::Gcode) | (None, Format::Numbered | Format::Points) => Ok(()),
         }
     }
 

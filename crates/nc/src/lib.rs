@@ -788,12 +788,11 @@ impl<'a> Conversion<'a> {
         let pose = self.partial_pose(end);
         let start = self.tool_at.pose().filter(|_| self.home.is_none());
         let nowhere = PartialPose { tip: Vec3::NAN, axis: Vec3::Z };
-        match start.copied().unwrap_or(nowhere) {
-            start if start.complete().is_none() => {
-                Err(self.lost("the start of a cut", end, &start))
-            }
-            _ => pose.complete().ok_or_else(|| self.lost("the end of a cut", end, &pose)),
+        let start = start.copied().unwrap_or(nowhere);
+        if start.complete().is_none() {
+            return Err(self.lost("the start of a cut", end, &start));
         }
+        pose.complete().ok_or_else(|| self.lost("the end of a cut", end, &pose))
     }
 
     /// The refusal of a block that goes to `end` because `pose` is not known.

@@ -9,7 +9,7 @@ use machine::plan::Step;
 use machine::{Mount, RotaryAxis};
 use program::{Coolant, Diagnostic, Op, Pose, Rule, Spindle};
 
-/// How far beside the tool axis a cut may end that has drawn the tool back along it, mm.
+/// How far off the tool axis a cut may end that has drawn the tool back along it, mm.
 const ALONG: f64 = 1e-3;
 
 /// How far the tool is drawn back along its axis before the control stops keeping its tip, mm.
@@ -84,7 +84,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Out of a cut along the tool axis, while the control keeps the tip: it gives the tip up a little beside the wall.
+    /// Out of a cut along the tool axis, while the control keeps the tip: it gives the tip up a little off the wall.
     pub(crate) fn draw_back(&mut self) -> Done {
         let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
         let tables = self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table);

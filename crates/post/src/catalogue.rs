@@ -104,7 +104,7 @@ names! {
         Clamp Block "clamp", "", "The clamps of the rotary axes close: behind `rotate`, where the axes then stand in the cut.";
         PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling. Which solution the control takes is said by {{sequence}}, by {{DIR}}, or by a move of the rotary axes to it before, where the block places their words.";
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off. The rotary axes stay where they are; a block that places their words turns them to 0.";
-        PlaneOrigin Block "plane_origin", "", "Where the origin of a tilted plane ({{OX}} {{OY}} {{OZ}}) is told by a block of its own: before `plane_tilt` where it is another than the last one, and with 0 where the tool stands upright again.";
+        PlaneOrigin Block "plane_origin", "", "Where the origin of a tilted plane ({{OX}} {{OY}} {{OZ}}) is written in a block of its own: before `plane_tilt` where it is another than the last one, and with 0 where the tool stands upright again.";
         LookAheadOn Block "look_ahead_on", "", "Before the first line or arc that cuts: the control looks ahead from here on.";
         LookAheadOff Block "look_ahead_off", "", "Before what look-ahead must not be on for: a hole cycle, a thread, a probing move, a tool change, a turn of the rotary axes, a work offset, the end.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";

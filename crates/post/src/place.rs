@@ -38,7 +38,7 @@ pub(crate) struct Place {
     set_up: Frame,
     /// Rotary positions that the control may take for the tilted plane that is on.
     solutions: Vec<Solution>,
-    /// The origin of the tilted plane that the control has been told last, as it is written.
+    /// The origin of the tilted plane that has been written last.
     origin: Vec3,
     /// Whether a rotary axis that the block places has to turn.
     pub(crate) turned: bool,
@@ -436,7 +436,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The control is told another origin of the tilted plane, where it has a block of its own for that.
+    /// Writes another origin of the tilted plane, where the control has a block of its own for that.
     pub(crate) fn plane_origin(&mut self, origin: Vec3) -> Done {
         if !self.templates.has(BlockName::PlaneOrigin) {
             return Ok(());

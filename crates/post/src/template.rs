@@ -432,7 +432,9 @@ pub(crate) fn program_number(
     let said = match machine.options.get("program_number") {
         Some(OptionValue::Text(text)) if !text.trim().is_empty() => text.trim().to_owned(),
         Some(OptionValue::Number(number)) => number.to_string(),
-        _ => return Ok(number_of(name).filter(|_| name.len() <= 5)),
+        Some(OptionValue::Text(_) | OptionValue::Flag(_)) | None => {
+            return Ok(number_of(name).filter(|_| name.len() <= 5));
+        }
     };
     if let Some(number) = number_of(&said) {
         return Ok(Some(number));

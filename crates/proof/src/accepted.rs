@@ -23,7 +23,7 @@ pub const ACCEPTABLE: [(Rule, &str); 25] = [
     ),
     (Rule::OrientationWay, "how the tool turns within a block while the control keeps its tip"),
     (Rule::PathTolerance, "corners may be cut by more than the machine's file allows"),
-    (Rule::RapidPath, "room for the tool where it goes by rapid beside the way of the source"),
+    (Rule::RapidPath, "room for the tool where it goes by rapid on another path than the source"),
     (Rule::ReplacementTool, "where and how the control changes a tool whose life is over"),
     (Rule::RotaryWay, "which way the rotary axes turn"),
     (Rule::StopRunning, "M0 and M1 of the machine stop spindle and coolant"),

@@ -38,7 +38,7 @@ rules! {
     ArcChord "arc-chord" []
         "An arc turns by a whole circle or more and does not end where it began, or a long arc has nearly equal ends."
         "give the same point for a full circle"
-        "`CIRCLE/0,0,0,0,0,1,10,TIMES,2` and a GOTO beside the start";
+        "`CIRCLE/0,0,0,0,0,1,10,TIMES,2` and a GOTO off the start";
     ArcDirection "arc-direction" []
         "The direction in which the tool leaves does not fit the circle."
         "give the direction in which the tool leaves, tangent to the circle"
@@ -74,7 +74,7 @@ rules! {
     ArmBranch "arm-branch" []
         "A joint of an arm carries nothing that leads to the flange."
         "compare the reach of the new file with the data sheet"
-        "A joint for a hose beside the six of the arm";
+        "A joint for a hose, besides the six of the arm";
     ArmCalibration "arm-calibration" []
         "The calibration of an arm differs from the arm that it is for."
         "give the calibration of this very arm, and compare the difference that the message names"
@@ -598,7 +598,7 @@ rules! {
     FileOlder "file-older" []
         "A program that is there already is older than the new one, and is not written anew."
         "remove the old file, or write all programs"
-        "`front.nc` of an earlier run beside the new `drill.nc`";
+        "`front.nc` of an earlier run next to the new `drill.nc`";
     FileSize "file-size" []
         "The file is larger than is read."
         "divide the file"
@@ -606,7 +606,7 @@ rules! {
     FileUnused "file-unused" []
         "A file of the folder was not used."
         "name the file as the layer that it holds, if it should be cut (see `toolpost pcb --help`)"
-        "A text file beside the Gerber files";
+        "A text file among the Gerber files";
     Fill "fill" []
         "A shape of a KiCad board says in an unknown way whether it is filled."
         "write yes or no"
@@ -666,7 +666,7 @@ rules! {
     Gap "gap" []
         "The ends of a contour are apart."
         "close the gap, or allow a larger one"
-        "A profile that ends 0.5 mm beside its start";
+        "A profile that ends 0.5 mm from its start";
     Gear "gear" []
         "The program chooses a gear of the spindle."
         "leave it out or write M40; a machine with gears lists the number in `auxiliary`"

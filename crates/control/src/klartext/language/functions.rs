@@ -84,7 +84,7 @@ const FUNCTIONS: [(u16, Function); 26] = [
 ];
 
 /// Functions that change neither where the tool goes nor what it does there: the speed in corners
-/// (M90, M134, M135), feed in arcs as it is without (M111), the ends of what is told or refused (M102, M108, M117, M121,
+/// (M90, M134, M135), feed in arcs as it is without (M111), the ends of what is reported or refused (M102, M108, M117, M121,
 /// M145, M149).
 const NEUTRAL: [u16; 10] = [90, 102, 108, 111, 117, 121, 134, 135, 145, 149];
 
