@@ -422,7 +422,7 @@ impl Risk {
         refused: true,
     };
 
-    /// Turns over the part whose way the program does not say ([`way`](crate::kernel::way)).
+    /// Turns over the part whose way the program does not say ([`modulo`](crate::kernel::modulo)).
     pub(crate) const ROTARY_WAY: Risk = Risk {
         rule: Rule::RotaryWay,
         what: "turns a rotary axis, and by which way hangs on whether the control counts it modulo 360°",

@@ -8,7 +8,7 @@ use crate::Settings;
 use crate::event::{Action, Position};
 use crate::kernel::decimal;
 use crate::kernel::source::Source;
-use crate::kernel::{Channel, Fallible};
+use crate::kernel::{Channel, Outcome};
 use geom::{Vec3, direction};
 use program::{Diagnostic, Rule};
 
@@ -16,7 +16,7 @@ use program::{Diagnostic, Rule};
 const MOST: usize = 4;
 
 /// Runs a list.
-pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fallible<()> {
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
     let text = text.strip_suffix(b"\n").unwrap_or(text);
     let mut width = 0;
     let mut last = 0;
@@ -49,7 +49,7 @@ struct Line<'a>(Source<'a>);
 
 impl Line<'_> {
     /// Reads two or four numbers into `values`; how many there are.
-    fn read(&self, values: &mut [f64; MOST]) -> Fallible<usize> {
+    fn read(&self, values: &mut [f64; MOST]) -> Outcome<usize> {
         let blanks = |at: usize| {
             let rest = self.0.text.get(at..).unwrap_or_default();
             at + rest.iter().take_while(|b| matches!(b, b' ' | b'\t')).count()
@@ -87,7 +87,7 @@ impl Line<'_> {
         [x, y, u, v]: [f64; MOST],
         count: usize,
         height: Option<f64>,
-    ) -> Fallible<Position> {
+    ) -> Outcome<Position> {
         let lower = Vec3::new(x, y, 0.0);
         if count == 2 {
             return Ok(Position::new(lower, Vec3::Z));

@@ -5,9 +5,9 @@ use geom::Vec3;
 use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 use toolpost_control::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
-use toolpost_control::kernel::flow::{Calls, Labels, Place, Structures, line, lines};
+use toolpost_control::kernel::flow::{BlockLocation, Calls, Labels, Structures, line, lines};
 use toolpost_control::kernel::source::Source;
-use toolpost_control::kernel::{Channel, Fallible, arc, decimal};
+use toolpost_control::kernel::{Channel, Outcome, arc, decimal};
 use toolpost_control::{Action, ArcTo, Dialect, Event, Position, Settings, kernel};
 
 /// A block, read from left to right.
@@ -43,13 +43,13 @@ impl Block<'_, '_> {
         self.source.error(Rule::Syntax, self.at..self.at + 1, message)
     }
 
-    fn number(&mut self) -> Fallible<f64> {
+    fn number(&mut self) -> Outcome<f64> {
         let value = evaluate(self)?;
         if value.is_finite() { Ok(value) } else { Err(self.wrong("the number is beyond all")) }
     }
 
     /// Takes points, each `X, Y, Z`, and then nothing may follow.
-    fn points<const N: usize>(&mut self) -> Fallible<[Vec3; N]> {
+    fn points<const N: usize>(&mut self) -> Outcome<[Vec3; N]> {
         let mut points = [Vec3::ZERO; N];
         for index in 0..3 * N {
             if index > 0 && !self.take(b',') {
@@ -60,7 +60,7 @@ impl Block<'_, '_> {
         Ok(points)
     }
 
-    fn ends(&mut self) -> Fallible<()> {
+    fn ends(&mut self) -> Outcome {
         if self.byte().is_none() { Ok(()) } else { Err(self.wrong("nothing may follow here")) }
     }
 }
@@ -88,7 +88,7 @@ impl Grammar for Block<'_, '_> {
         self.at
     }
 
-    fn operand(&mut self) -> Fallible<f64> {
+    fn operand(&mut self) -> Outcome<f64> {
         if self.take(b'-') {
             return self.nested(Self::operand).map(|value| -value);
         }
@@ -118,7 +118,7 @@ impl Grammar for Block<'_, '_> {
         Some(Next { operator, rank, at })
     }
 
-    fn apply(&mut self, operator: u8, [a, b]: [f64; 2], span: Span) -> Fallible<f64> {
+    fn apply(&mut self, operator: u8, [a, b]: [f64; 2], span: Span) -> Outcome<f64> {
         Ok(match operator {
             b'<' => f64::from(u8::from(a < b)),
             b'>' => f64::from(u8::from(a > b)),
@@ -144,12 +144,12 @@ struct Run<'t, 'c, 's> {
     /// `WHILE` and `ENDWHILE`, `SUB` and `ENDSUB`.
     structures: Structures<&'static str>,
     variables: HashMap<String, f64>,
-    calls: Calls<Place>,
+    calls: Calls<BlockLocation>,
     at: Vec3,
     channel: &'c mut Channel<'s>,
 }
 
-fn run(text: &[u8], channel: &mut Channel) -> Fallible<()> {
+fn run(text: &[u8], channel: &mut Channel) -> Outcome {
     let (mut labels, mut structures) = (Labels::default(), Structures::default());
     for (place, after, block) in lines(text) {
         let variables = &HashMap::new();
@@ -182,8 +182,8 @@ fn run(text: &[u8], channel: &mut Channel) -> Fallible<()> {
 }
 
 impl Run<'_, '_, '_> {
-    fn all(&mut self) -> Fallible<()> {
-        let mut place = Place { at: 0, line: 1 };
+    fn all(&mut self) -> Outcome {
+        let mut place = BlockLocation { at: 0, line: 1 };
         while let Some((text, after)) = line(self.text, place) {
             let source = Source { line: place.line, text };
             let Some(to) = self.block(source, place, after)? else { return Ok(()) };
@@ -197,7 +197,12 @@ impl Run<'_, '_, '_> {
     }
 
     /// Carries out a block; which comes next, if any does.
-    fn block(&mut self, source: Source, here: Place, after: Place) -> Fallible<Option<Place>> {
+    fn block(
+        &mut self,
+        source: Source,
+        here: BlockLocation,
+        after: BlockLocation,
+    ) -> Outcome<Option<BlockLocation>> {
         let mut block = Block { source, at: 0, depth: 0, variables: &self.variables };
         let first = block.name();
         let name = if block.take(b':') { block.name() } else { first };
@@ -257,7 +262,7 @@ impl Run<'_, '_, '_> {
     }
 }
 
-fn events(text: &str) -> Fallible<Vec<Event>> {
+fn events(text: &str) -> Outcome<Vec<Event>> {
     let mut events = Vec::new();
     let mut sink = |event| {
         events.push(event);

@@ -29,7 +29,7 @@ mod foreign;
 mod items;
 mod moves;
 mod parameters;
-mod places;
+mod placeholders;
 mod text;
 mod vectric;
 mod write;

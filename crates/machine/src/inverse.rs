@@ -125,22 +125,22 @@ impl Turn {
 
 /// What a tool axis says about the positions, before one of the two solutions is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Bearings {
+pub(crate) struct RotaryAngles {
     /// Where the tool axis stands about the outer axis.
     around: Turn,
     /// By how much the inner axis is turned out of the plane of the two axes, in either direction.
     inner: Turn,
-    /// What that makes about the outer axis: 0 to half a turn, or [`Bearings::FREE`].
+    /// What that makes about the outer axis: 0 to half a turn, or [`RotaryAngles::FREE`].
     outer: Turn,
 }
 
-impl Bearings {
+impl RotaryAngles {
     /// The outer axis may stand anywhere.
     const FREE: Turn = Turn(-1);
 
     /// Whether the outer axis may stand anywhere.
     pub(crate) fn free(&self) -> bool {
-        self.outer == Bearings::FREE
+        self.outer == RotaryAngles::FREE
     }
 }
 
@@ -232,24 +232,28 @@ impl Chain {
     }
 
     /// Solves for the tool axis `v`, a unit vector.
-    pub(crate) fn bearings(&self, v: Vec3) -> Result<Bearings, Unreachable> {
+    pub(crate) fn bearings(&self, v: Vec3) -> Result<RotaryAngles, Unreachable> {
         match &self.solver {
             Solver::Fixed { tool, still } => {
                 within(angle_between(*tool, v))?;
-                Ok(Bearings { inner: *still, outer: Bearings::FREE, ..Bearings::default() })
+                Ok(RotaryAngles {
+                    inner: *still,
+                    outer: RotaryAngles::FREE,
+                    ..RotaryAngles::default()
+                })
             }
             Solver::One { k, x, y, polar, still } => {
                 within(angle_between(*k, v) - polar)?;
                 let around = Turn::of_radians(v.dot(*y).atan2(v.dot(*x)));
-                Ok(Bearings { around, inner: *still, ..Bearings::default() })
+                Ok(RotaryAngles { around, inner: *still, ..RotaryAngles::default() })
             }
             Solver::Two(pair) => pair.bearings(v),
         }
     }
 
     /// The positions of the outer and the inner axis in solution `family` (0 or 1).
-    pub(crate) fn solution(&self, bearings: &Bearings, family: usize) -> [Turn; 2] {
-        let Bearings { around, inner, outer } = *bearings;
+    pub(crate) fn solution(&self, bearings: &RotaryAngles, family: usize) -> [Turn; 2] {
+        let RotaryAngles { around, inner, outer } = *bearings;
         let turned = match &self.solver {
             Solver::Two(Pair { in_plane, .. }) if family == 0 => {
                 [around.minus(outer), in_plane.minus(inner)]
@@ -316,7 +320,7 @@ impl Pair {
 
     /// Where the tool axis goes when the inner axis turns it, c, makes the angle of v with k₁ and the
     /// angle of Z with k₂, so c = α k₁ + β k₂ ± γ k₁ × k₂ with one γ for both solutions.
-    fn bearings(&self, v: Vec3) -> Result<Bearings, Unreachable> {
+    fn bearings(&self, v: Vec3) -> Result<RotaryAngles, Unreachable> {
         let mut along = v.dot(self.k1);
         let (x, y) = (v.dot(self.x), v.dot(self.y));
         let free = x * x + y * y < ANGLE_EPSILON * ANGLE_EPSILON * self.s2;
@@ -334,10 +338,10 @@ impl Pair {
             gamma2 = 0.0;
         }
         let gamma = (gamma2 / self.s2).sqrt();
-        Ok(Bearings {
+        Ok(RotaryAngles {
             around: Turn::of_radians(y.atan2(x)),
             inner: Turn::of_radians(gamma.atan2(alpha)),
-            outer: if free { Bearings::FREE } else { Turn::of_radians(gamma.atan2(beta)) },
+            outer: if free { RotaryAngles::FREE } else { Turn::of_radians(gamma.atan2(beta)) },
         })
     }
 

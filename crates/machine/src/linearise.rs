@@ -17,7 +17,7 @@ use program::{Diagnostic, Rule};
 
 /// Tool tip and rotary positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stance {
+pub struct RotaryPose {
     /// Tool tip, mm, work frame.
     pub tip: Vec3,
     /// Degrees of A, B, C.
@@ -35,11 +35,11 @@ impl Machine {
     /// `linearisation` where it takes more than [`MAX_POINTS`], or a number is not finite.
     pub fn linearise(
         &self,
-        from: Stance,
-        to: Stance,
+        from: RotaryPose,
+        to: RotaryPose,
         tool_length: Option<f64>,
         tolerance: f64,
-    ) -> Result<impl ExactSizeIterator<Item = Stance> + use<>, Box<Diagnostic>> {
+    ) -> Result<impl ExactSizeIterator<Item = RotaryPose> + use<>, Box<Diagnostic>> {
         let chords = (self.bend(&from, &to, tool_length) / (8.0 * tolerance)).sqrt().ceil();
         let sound = chords <= MAX_POINTS as f64 && to.tip.is_finite();
         if !sound {
@@ -55,7 +55,7 @@ impl Machine {
     }
 
     /// A bound of |L″|, mm, for the whole move.
-    fn bend(&self, from: &Stance, to: &Stance, tool_length: Option<f64>) -> f64 {
+    fn bend(&self, from: &RotaryPose, to: &RotaryPose, tool_length: Option<f64>) -> f64 {
         let zero = self.work_zero.unwrap_or(Vec3::ZERO);
         let hanging = Vec3::new(0.0, 0.0, -tool_length.unwrap_or(0.0));
         let path = [from.tip + zero, to.tip + zero];
@@ -68,7 +68,7 @@ impl Machine {
     /// With an outer rotation R₁ about c₁, an inner one R₂ about c₂, and p on the path, it comes to
     /// R₁ R₂ (p − c₂) + R₁ (c₂ − c₁) + c₁. Each prime on a rotation is a factor of its angle, and takes
     /// what stands along its axis out of what it turns; p″ is zero.
-    fn bend_of(&self, mount: Mount, path: [Vec3; 2], from: &Stance, to: &Stance) -> f64 {
+    fn bend_of(&self, mount: Mount, path: [Vec3; 2], from: &RotaryPose, to: &RotaryPose) -> f64 {
         let mut side = self.rotary.iter().filter(|axis| axis.on == mount);
         let angle = |axis: &RotaryAxis| {
             let i = axis.index();
@@ -99,14 +99,14 @@ impl Machine {
     }
 }
 
-impl Stance {
+impl RotaryPose {
     /// The stance after `i` of `count` equal steps to `to`.
-    fn toward(&self, to: &Stance, i: usize, count: usize) -> Stance {
+    fn toward(&self, to: &RotaryPose, i: usize, count: usize) -> RotaryPose {
         let part = i as f64 / count as f64;
         let mut degrees = self.degrees;
         for (here, there) in degrees.iter_mut().zip(to.degrees) {
             *here += (there - *here) * part;
         }
-        Stance { tip: self.tip.lerp(to.tip, part), degrees }
+        RotaryPose { tip: self.tip.lerp(to.tip, part), degrees }
     }
 }

@@ -24,7 +24,7 @@ pub struct Machine {
     /// `grbl`, `klartext`); empty for an arm of which the kinematics alone are known.
     pub reader: String,
     /// Where that is said.
-    pub reader_place: Place,
+    pub reader_place: FileLocation,
     /// Ending of its programs, without the dot.
     pub extension: String,
     /// What the control can do.
@@ -463,12 +463,12 @@ pub struct Word {
     /// number.
     pub codes: BTreeMap<String, String>,
     /// Where its nearest table stands.
-    pub place: Place,
+    pub place: FileLocation,
 }
 
 /// A line of a machine's files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct FileLocation {
     /// The file.
     pub file: String,
     /// The line, from 1.

@@ -58,7 +58,7 @@ pub struct Clock<'a> {
     /// What has been spent so far.
     pub times: Times,
     inverse: Inverse<'a>,
-    here: Option<Spot>,
+    here: Option<TipPose>,
     /// Degrees of A, B, C.
     degrees: [f64; 3],
     /// Length of the tool, mm, where it is known.
@@ -154,18 +154,18 @@ impl<'a> Clock<'a> {
         }
     }
 
-    fn line(&mut self, to: Spot) {
+    fn line(&mut self, to: TipPose) {
         let length = self.here.map_or(0.0, |here| to.point.distance(here.point));
         self.cut(to, length);
     }
 
     fn arc(&mut self, to: &ArcTo) {
-        let end: Spot = (&to.end).into();
+        let end: TipPose = (&to.end).into();
         let arc = self.here.and_then(|here| to.circle.arc(here.point, end.point, f64::MAX).ok());
         self.cut(end, arc.map_or(0.0, |arc| arc.length()));
     }
 
-    fn rapid(&mut self, to: Spot) {
+    fn rapid(&mut self, to: TipPose) {
         let (way, turn) = self.go(to);
         let linear = self.machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
             from_rest_to_rest(way, rapid_of(axis) / 60.0, axis.acceleration * 1000.0)
@@ -176,7 +176,7 @@ impl<'a> Clock<'a> {
         self.times.rapid += linear.chain(rotary).fold(0.0, f64::max);
     }
 
-    fn cut(&mut self, to: Spot, length: f64) {
+    fn cut(&mut self, to: TipPose, length: f64) {
         let (way, turn) = self.go(to);
         let speed = match self.spindle {
             Spindle::Off => 0.0,
@@ -224,7 +224,7 @@ impl<'a> Clock<'a> {
     fn hole(&mut self, pose: &Pose) {
         let Some(cycle) = self.cycle else { return self.rapid(pose.into()) };
         let axis = pose.axis();
-        let at = |height: f64| Spot { point: pose.point() + axis * height, axis };
+        let at = |height: f64| TipPose { point: pose.point() + axis * height, axis };
         self.rapid(at(cycle.clearance));
         let feed = self.feed;
         if let Some(feed) = cycle.feed {
@@ -238,7 +238,7 @@ impl<'a> Clock<'a> {
             self.times.dwell += cycle.dwell;
             self.rapid(at(cycle.retract));
         } else if let Some(way) = cycle.kind.withdrawal() {
-            let moved = |height: f64| Spot { point: at(height).point + way.aside, axis };
+            let moved = |height: f64| TipPose { point: at(height).point + way.aside, axis };
             if let CycleKind::BackBore { through, .. } = cycle.kind {
                 let bored = self.feed;
                 self.rapid(moved(cycle.clearance));
@@ -265,7 +265,7 @@ impl<'a> Clock<'a> {
     }
 
     /// Moves to a pose; returns how far the linear axes move, mm, and A, B, C, degrees.
-    fn go(&mut self, to: Spot) -> (Vec3, [f64; 3]) {
+    fn go(&mut self, to: TipPose) -> (Vec3, [f64; 3]) {
         let degrees = match self.here.is_some_and(|here| here.axis == to.axis) {
             true => self.degrees,
             false => self.nearest(to.axis),
@@ -305,14 +305,14 @@ impl<'a> Clock<'a> {
 
 /// The pose of the tool: tip and axis.
 #[derive(Clone, Copy, Debug)]
-struct Spot {
+struct TipPose {
     point: Vec3,
     axis: Vec3,
 }
 
-impl From<&Pose> for Spot {
-    fn from(pose: &Pose) -> Spot {
-        Spot { point: pose.point(), axis: pose.axis() }
+impl From<&Pose> for TipPose {
+    fn from(pose: &Pose) -> TipPose {
+        TipPose { point: pose.point(), axis: pose.axis() }
     }
 }
 

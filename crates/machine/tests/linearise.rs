@@ -5,18 +5,18 @@ mod common;
 use common::{axis, machine, table_ac};
 use geom::{Vec3, nearest_on_segment};
 use proptest::prelude::*;
-use toolpost_machine::linearise::Stance;
+use toolpost_machine::linearise::RotaryPose;
 use toolpost_machine::{Machine, Mount, RotaryAxis};
 
 /// How far the tip leaves the line from `a` to `b` while all axes go straight through the points.
 fn largest_deviation(
     machine: &Machine,
-    a: Stance,
-    b: Stance,
+    a: RotaryPose,
+    b: RotaryPose,
     length: f64,
-    points: &[Stance],
+    points: &[RotaryPose],
 ) -> f64 {
-    let axes = |s: &Stance| (machine.linear_for(s.tip, s.degrees, length), s.degrees);
+    let axes = |s: &RotaryPose| (machine.linear_for(s.tip, s.degrees, length), s.degrees);
     let mut worst: f64 = 0.0;
     let mut last = axes(&a);
     for point in points {
@@ -34,8 +34,8 @@ fn largest_deviation(
 
 #[test]
 fn a_line_without_turning_needs_no_point() {
-    let from = Stance { tip: Vec3::ZERO, degrees: [30.0, 0.0, 40.0] };
-    let to = Stance { tip: Vec3::X * 500.0, ..from };
+    let from = RotaryPose { tip: Vec3::ZERO, degrees: [30.0, 0.0, 40.0] };
+    let to = RotaryPose { tip: Vec3::X * 500.0, ..from };
     let points: Vec<_> = table_ac().linearise(from, to, Some(100.0), 1e-6).unwrap().collect();
     assert_eq!(points, [to]);
 }
@@ -43,8 +43,8 @@ fn a_line_without_turning_needs_no_point() {
 #[test]
 fn turning_about_a_tip_at_rest_takes_the_chords_of_its_circle() {
     // The table turns by 90° under a tip 100 mm out: chords of an arc of that radius.
-    let from = Stance { tip: Vec3::X * 100.0, degrees: [0.0; 3] };
-    let to = Stance { degrees: [0.0, 0.0, 90.0], ..from };
+    let from = RotaryPose { tip: Vec3::X * 100.0, degrees: [0.0; 3] };
+    let to = RotaryPose { degrees: [0.0, 0.0, 90.0], ..from };
     let count = table_ac().linearise(from, to, Some(0.0), 0.01).unwrap().len();
     let step = 2.0 * (1.0 - 0.01 / 100.0f64).acos().to_degrees();
     assert_eq!(count, (90.0 / step).ceil() as usize);
@@ -52,18 +52,19 @@ fn turning_about_a_tip_at_rest_takes_the_chords_of_its_circle() {
 
 #[test]
 fn a_line_without_end_is_refused() {
-    let from = Stance { tip: Vec3::X * 1e6, degrees: [0.0; 3] };
-    let to = Stance { degrees: [0.0, 0.0, 170.0], ..from };
+    let from = RotaryPose { tip: Vec3::X * 1e6, degrees: [0.0; 3] };
+    let to = RotaryPose { degrees: [0.0, 0.0, 170.0], ..from };
     let refusal =
-        |to: Stance, tolerance: f64| match table_ac().linearise(from, to, Some(0.0), tolerance) {
+        |to: RotaryPose, tolerance: f64| match table_ac().linearise(from, to, Some(0.0), tolerance)
+        {
             Ok(points) => panic!("{} points", points.len()),
             Err(refused) => refused.rule,
         };
     assert_eq!(refusal(to, 1e-9), "linearisation");
     assert_eq!(refusal(to, 0.0), "linearisation");
     assert_eq!(refusal(to, -1.0), "linearisation");
-    assert_eq!(refusal(Stance { tip: Vec3::NAN, ..to }, 0.01), "linearisation");
-    assert_eq!(refusal(Stance { degrees: [f64::NAN; 3], ..to }, 0.01), "linearisation");
+    assert_eq!(refusal(RotaryPose { tip: Vec3::NAN, ..to }, 0.01), "linearisation");
+    assert_eq!(refusal(RotaryPose { degrees: [f64::NAN; 3], ..to }, 0.01), "linearisation");
 }
 
 fn any_vector(size: f64) -> impl Strategy<Value = Vec3> {
@@ -103,8 +104,8 @@ proptest! {
         tolerance in prop_oneof![Just(0.1), Just(0.005)],
     ) {
         let machine = Machine { work_zero: Some(zero), ..machine(rotary) };
-        let a = Stance { tip: ends[0], degrees: from };
-        let b = Stance { tip: ends[1], degrees: [0, 1, 2].map(|k| from[k] + turn[k]) };
+        let a = RotaryPose { tip: ends[0], degrees: from };
+        let b = RotaryPose { tip: ends[1], degrees: [0, 1, 2].map(|k| from[k] + turn[k]) };
         let points: Vec<_> = machine.linearise(a, b, Some(length), tolerance).unwrap().collect();
         prop_assert_eq!(points.last(), Some(&b));
         let worst = largest_deviation(&machine, a, b, length, &points);

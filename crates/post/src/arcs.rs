@@ -1,10 +1,10 @@
 //! Arcs: written as arcs where the control takes them, also after rounding; as lines where not.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop};
+use crate::coordinate_mode::{Kind, Stop};
 use crate::surface::LEVEL_FIRST;
 use crate::template::bit;
-use crate::walk::{Cut, Done, PLANE_XY, Walk, motion, refuse};
+use crate::walk::{Cut, Outcome, PLANE_XY, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
 use machine::Plane;
 use program::{ArcTo, Diagnostic, Rule};
@@ -93,7 +93,7 @@ struct Block {
 
 impl Walk<'_> {
     /// An arc of the source.
-    pub(crate) fn arc(&mut self, to: &ArcTo, stop: &Stop) -> Done {
+    pub(crate) fn arc(&mut self, to: &ArcTo, stop: &Stop) -> Outcome {
         if self.compensation_pending() {
             let help = "a straight move in the plane between CUTCOM and the arc";
             let message = "cutter compensation cannot be switched on an arc";
@@ -183,7 +183,7 @@ impl Walk<'_> {
 
     /// An arc by the point half way, in parts of a half circle at most; as lines where the decimals leave
     /// another circle than the source's.
-    fn arc_through(&mut self, arc: &Arc, local: &Arc, to: &ArcTo, stop: &Stop) -> Done {
+    fn arc_through(&mut self, arc: &Arc, local: &Arc, to: &ArcTo, stop: &Stop) -> Outcome {
         let parts = (arc.sweep / PI - 1e-9).ceil().max(1.0) as usize;
         for part in 0..parts {
             let [from, until] = [part, part + 1].map(|part| part as f64 / parts as f64);
@@ -220,9 +220,10 @@ impl Walk<'_> {
     fn plane_of(&self, arc: &Arc) -> Option<&'static Facts> {
         // Under tool center point control the plane turns with the tool.
         let upright = match self.place.kind {
-            Kind::ToolCenter | Kind::Vectors => {
-                self.position.pose().is_some_and(|here| crate::place::same(here.axis(), Vec3::Z))
-            }
+            Kind::ToolCenter | Kind::Vectors => self
+                .position
+                .pose()
+                .is_some_and(|here| crate::coordinate_mode::same(here.axis(), Vec3::Z)),
             Kind::Bare | Kind::Plain | Kind::Tilted(..) | Kind::Machine => true,
         };
         PLANES.iter().filter(|_| upright).find(|facts| {
@@ -343,7 +344,7 @@ impl Walk<'_> {
         legal(c).or_else(|| legal(even))
     }
 
-    fn arc_block(&mut self, arc: &Arc, form: &Form, block: &Block) -> Done {
+    fn arc_block(&mut self, arc: &Arc, form: &Form, block: &Block) -> Outcome {
         let &Form { facts, rises, ccw, name, by_angle, .. } = form;
         let [u, v, w] = facts.axes;
         let start = self.stands(|| self.local(arc.start));
@@ -427,7 +428,7 @@ impl Walk<'_> {
         to: &ArcTo,
         stop: &Stop,
         what: &'static str,
-    ) -> Done {
+    ) -> Outcome {
         let tolerance = self.machine.capabilities.lowering_tolerance;
         // Over a surface only one line ends where the arc does; round a quarter or less it cannot turn back.
         let bulge = arc.radius() * (1.0 - (arc.sweep / 2.0).cos());
@@ -449,7 +450,7 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// It is not `whole`.
-    fn followed(&self, arc: &Arc, whole: bool, what: &str) -> Done {
+    fn followed(&self, arc: &Arc, whole: bool, what: &str) -> Outcome {
         if whole || !self.follows(arc) {
             return Ok(());
         }
@@ -465,7 +466,7 @@ impl Walk<'_> {
     }
 
     /// Back to the plane XY, which cutter compensation and cycles need.
-    pub(crate) fn plane_xy(&mut self) -> Done {
+    pub(crate) fn plane_xy(&mut self) -> Outcome {
         self.writer.code(WordName::Plane, PLANE_XY);
         if self.writer.changes(bit(WordName::Plane)) {
             return self.required(BlockName::PlaneSelect);

@@ -1,9 +1,9 @@
 //! Away from the part: for a stop of the program, for a tool change and at the end; and back to it.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop, rotary_word};
+use crate::coordinate_mode::{Kind, Stop, rotary_word};
 use crate::template::{LENGTH_OFFSET, bit};
-use crate::walk::{Done, Walk, motion, refuse};
+use crate::walk::{Outcome, Walk, motion, refuse};
 use geom::Vec3;
 use machine::plan::Step;
 use machine::{Mount, RotaryAxis};
@@ -18,7 +18,7 @@ pub(crate) const DRAWN_BACK: f64 = 5.0;
 impl Walk<'_> {
     /// A stop, for which somebody opens the door, jogs, or puts his hands in: not every control stops spindle and coolant for it.
     /// So the tool goes home before it, both are off, and what the source does next begins at home.
-    pub(crate) fn stop(&mut self, name: BlockName) -> Done {
+    pub(crate) fn stop(&mut self, name: BlockName) -> Outcome {
         self.end_cycle()?;
         if self.wire.is_some() {
             return self.required(name);
@@ -38,7 +38,7 @@ impl Walk<'_> {
     }
 
     /// Spindle and coolant off, where they are not known to be.
-    fn halt(&mut self) -> Done {
+    fn halt(&mut self) -> Outcome {
         if !self.sent.has_spindle(Spindle::Off) {
             self.required(BlockName::SpindleOff)?;
             self.sent.switch_spindle(Spindle::Off);
@@ -51,7 +51,7 @@ impl Walk<'_> {
     }
 
     /// From home behind a stop back to where the tool has been, before a cut that begins there.
-    pub(crate) fn come_back(&mut self, stop: Option<&Stop>) -> Done {
+    pub(crate) fn come_back(&mut self, stop: Option<&Stop>) -> Outcome {
         let back = self.position.come_back();
         let (Some(back), Some(stop)) = (back, stop) else { return Ok(()) };
         let held = self.place.degrees().map(|degrees| Step { degrees, rewind: None });
@@ -85,7 +85,7 @@ impl Walk<'_> {
     }
 
     /// Out of a cut along the tool axis, while the control keeps the tip: it gives the tip up a little off the wall.
-    pub(crate) fn draw_back(&mut self) -> Done {
+    pub(crate) fn draw_back(&mut self) -> Outcome {
         let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
         let tables = self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table);
         let Some(here) = self.position.known().filter(|_| keeps_tip && tables) else {
@@ -99,7 +99,7 @@ impl Walk<'_> {
     }
 
     /// By rapid to a place from which the tool goes home, with the rotary axes as they stand.
-    pub(crate) fn rapid_out(&mut self, out: &Pose) -> Done {
+    pub(crate) fn rapid_out(&mut self, out: &Pose) -> Outcome {
         let (mode, degrees) = (self.machine.orientation.positioned, self.place.degrees());
         let step = degrees.map(|degrees| Step { degrees, rewind: None });
         self.aim(out, &Stop { mode, turning: false, first: false, step });

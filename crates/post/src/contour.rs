@@ -6,7 +6,7 @@
 //! cross, and nowhere nearer than the radius to the elements on both sides of it. Elements are those of the blocks, after
 //! rounding. What controls do differently, `[capabilities]` says (`compensation_start`, `compensation_blind`).
 
-use crate::walk::{Done, refuse};
+use crate::walk::{Outcome, refuse};
 use geom::{Element, Turn, Vec2, turn_angle};
 use machine::{CompensationStart, Machine};
 use program::{Diagnostic, Rule};
@@ -51,12 +51,12 @@ enum Stage {
     On,
     /// The move that switches compensation on, from here.
     Entering(Vec2),
-    Following(Beside),
+    Following(OffsetElement),
 }
 
 /// An element of the contour, and the way beside it.
 #[derive(Clone, Copy)]
-struct Beside {
+struct OffsetElement {
     element: Element,
     parallel: Element,
     /// Where on `parallel` the tool comes to it, 0 to 1.
@@ -85,7 +85,7 @@ impl Contour {
     ///
     /// # Errors
     /// The control cannot lead it so.
-    pub fn go(&mut self, to: Vec2, turn: Option<Turn>, rapid: bool) -> Done {
+    pub fn go(&mut self, to: Vec2, turn: Option<Turn>, rapid: bool) -> Outcome {
         let element = Element { start: self.at, end: to, turn };
         if element.length() < NOWHERE {
             return Ok(());
@@ -107,7 +107,7 @@ impl Contour {
             Stage::Following(last) => {
                 let mut next = self.beside(element)?;
                 self.corner(last, &mut next, rapid, between)?;
-                Stage::Following(Beside { before: Some(last.element), ..next })
+                Stage::Following(OffsetElement { before: Some(last.element), ..next })
             }
         };
         Ok(())
@@ -117,7 +117,7 @@ impl Contour {
     ///
     /// # Errors
     /// The control cannot end the contour so.
-    pub fn leave(self, to: Vec2) -> Done {
+    pub fn leave(self, to: Vec2) -> Outcome {
         let last = match &self.stage {
             Stage::On => return Ok(()),
             Stage::Entering(_) => {
@@ -155,7 +155,7 @@ impl Contour {
     }
 
     /// The way beside an element.
-    fn beside(&self, element: Element) -> Result<Beside, Box<Diagnostic>> {
+    fn beside(&self, element: Element) -> Result<OffsetElement, Box<Diagnostic>> {
         let Some(parallel) = element.parallel(self.left) else {
             let message = format!(
                 "with cutter compensation a tool of radius {} mm does not fit into this arc of radius {} mm",
@@ -164,11 +164,11 @@ impl Contour {
             );
             return Err(refuse(Rule::CompensationArcRadius, message).help(SMALLER).into());
         };
-        Ok(Beside { element, parallel, from: 0.0, leads_in: false, before: None })
+        Ok(OffsetElement { element, parallel, from: 0.0, leads_in: false, before: None })
     }
 
     /// The move that switches compensation on, where it counts as an element.
-    fn first(&self, element: Element) -> Result<Beside, Box<Diagnostic>> {
+    fn first(&self, element: Element) -> Result<OffsetElement, Box<Diagnostic>> {
         let (length, radius) = (element.length(), self.radius());
         if length <= radius {
             let message = format!(
@@ -180,11 +180,17 @@ impl Contour {
             let help = "a longer way to the contour";
             return Err(refuse(Rule::CompensationEntry, message).help(help).into());
         }
-        Ok(Beside { leads_in: true, ..self.beside(element)? })
+        Ok(OffsetElement { leads_in: true, ..self.beside(element)? })
     }
 
     /// From `last` to `next`, with so many blocks between.
-    fn corner(&self, last: Beside, next: &mut Beside, rapid: bool, between: usize) -> Done {
+    fn corner(
+        &self,
+        last: OffsetElement,
+        next: &mut OffsetElement,
+        rapid: bool,
+        between: usize,
+    ) -> Outcome {
         let turn = turn_angle(last.element.tangent(1.0), next.element.tangent(0.0));
         if turn.abs() <= self.smooth() {
             self.join(&last, next, turn)?;
@@ -212,7 +218,7 @@ impl Contour {
     }
 
     /// Two elements join without a corner: the next way begins where the last one ends.
-    fn join(&self, last: &Beside, next: &mut Beside, turn: f64) -> Done {
+    fn join(&self, last: &OffsetElement, next: &mut OffsetElement, turn: f64) -> Outcome {
         let deep = self.radius() * (1.0 - turn.cos());
         if deep > self.joint && turn.abs() > SMOOTH {
             let message = format!(
@@ -239,7 +245,7 @@ impl Contour {
 
     /// # Errors
     /// The control does not see as far as the next element.
-    fn sees(&self, between: usize) -> Done {
+    fn sees(&self, between: usize) -> Outcome {
         match self.blind {
             Some(most) if between > most as usize => {
                 let message = format!(
@@ -254,7 +260,11 @@ impl Contour {
     }
 
     /// At an inner corner both ways end where they cross. Answers where on the last one.
-    fn shorten(&self, last: &Beside, next: &mut Beside) -> Result<f64, Box<Diagnostic>> {
+    fn shorten(
+        &self,
+        last: &OffsetElement,
+        next: &mut OffsetElement,
+    ) -> Result<f64, Box<Diagnostic>> {
         let crossings = last.parallel.crossings(&next.parallel);
         let mut crossings: Vec<_> = crossings.filter(|found| found.on_first > last.from).collect();
         crossings.sort_by(|a, b| a.cut.total_cmp(&b.cut));
@@ -269,7 +279,7 @@ impl Contour {
     }
 
     /// The ways around an outer corner, on an arc or along the tangents, keep off what follows and what came before.
-    fn around(&self, last: &Beside, next: &Beside, turn: f64) -> Done {
+    fn around(&self, last: &OffsetElement, next: &OffsetElement, turn: f64) -> Outcome {
         let (corner, from, to) = (next.element.start, last.parallel.end, next.parallel.start);
         let on = last.element.tangent(1.0) * self.radius();
         let back = next.element.tangent(0.0) * self.radius();
@@ -286,7 +296,7 @@ impl Contour {
     }
 
     /// The way beside `last` ends at `to`: there is one, and it keeps off the elements before and behind it.
-    fn complete(&self, last: &Beside, to: f64, next: Option<&Element>) -> Done {
+    fn complete(&self, last: &OffsetElement, to: f64, next: Option<&Element>) -> Outcome {
         if self.left == 0.0 {
             return Ok(());
         }
@@ -309,7 +319,7 @@ impl Contour {
 
     /// # Errors
     /// A way of the tool's centre comes nearer to an element than its radius.
-    fn holds_off(&self, way: &Element, elements: [Option<&Element>; 2]) -> Done {
+    fn holds_off(&self, way: &Element, elements: [Option<&Element>; 2]) -> Outcome {
         let least = self.radius() - self.near();
         let near = |element: &Element| samples(way).any(|point| element.away(point) < least);
         match elements.into_iter().flatten().any(near) {

@@ -1,10 +1,10 @@
 //! Hole cycles: the control's own where it has them, moves where not.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop, same};
+use crate::coordinate_mode::{Kind, Stop, same};
 use crate::rapid::corner;
 use crate::template::bit;
-use crate::walk::{Cut, Done, Walk, motion, refuse};
+use crate::walk::{Cut, Outcome, Walk, motion, refuse};
 use geom::Vec3;
 use machine::CycleName;
 use program::lowering::{self, HoleMove};
@@ -28,7 +28,7 @@ struct Levels {
 
 impl Walk<'_> {
     /// One hole of the source.
-    pub(crate) fn hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn hole(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         let Some(cycle) = self.wanted.cycle() else {
             return Err(refuse(Rule::NoCycle, "a hole without a cycle"));
         };
@@ -72,7 +72,7 @@ impl Walk<'_> {
     }
 
     /// The thread of a tap goes into the hole as the spindle turns: counter-clockwise for one that is left-handed.
-    fn turns_into(&self, left: bool) -> Done {
+    fn turns_into(&self, left: bool) -> Outcome {
         let (hand, way, help) = match (left, self.wanted.spindle()) {
             (true, Spindle::Clockwise(_)) => ("left", "clockwise", "SPINDL/ with CCLW before it"),
             (false, Spindle::CounterClockwise(_)) => {
@@ -119,7 +119,7 @@ impl Walk<'_> {
         (known && self.templates.has(name) && says_all).then_some(name)
     }
 
-    fn native(&mut self, name: BlockName, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
+    fn native(&mut self, name: BlockName, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Outcome {
         let at = self.local(pose.point());
         let level = |word, height: f64| self.writer.rounded(word, at.z + height);
         let levels = Levels {
@@ -166,7 +166,7 @@ impl Walk<'_> {
     }
 
     /// Checks the levels of a hole that a cycle makes against the limits.
-    fn check_hole(&mut self, cycle: &Cycle, pose: &Pose) -> Done {
+    fn check_hole(&mut self, cycle: &Cycle, pose: &Pose) -> Outcome {
         let above = self.machine.settings.retract_above_r.filter(|_| cycle.kind == CycleKind::Deep);
         let cleared = above.map(|above| cycle.clearance + above);
         for height in [-cycle.depth, cycle.clearance, cycle.retract].into_iter().chain(cleared) {
@@ -179,7 +179,7 @@ impl Walk<'_> {
 
     /// To the retract level over the first hole: up first and then across, or across and then down. A tool that turns on
     /// the way has no corner at which both legs are along its axis or across it: it goes there beyond all cuts, or from home.
-    fn go_over(&mut self, over: &Pose, stop: &Stop) -> Done {
+    fn go_over(&mut self, over: &Pose, stop: &Stop) -> Outcome {
         let Some(here) = self.position.known() else {
             return self.rapid_to_hole(over, stop);
         };
@@ -217,7 +217,7 @@ impl Walk<'_> {
         self.writer.code(WordName::Motion, motion::RAPID);
     }
 
-    fn say_cycle(&mut self, cycle: &Cycle, levels: &Levels) -> Done {
+    fn say_cycle(&mut self, cycle: &Cycle, levels: &Levels) -> Outcome {
         let w = &mut self.writer;
         w.forget(bit(WordName::Bottom) | bit(WordName::Clear) | bit(WordName::Motion));
         w.forget(bit(WordName::RPlane) | bit(WordName::Retract) | bit(WordName::Lead));
@@ -263,7 +263,7 @@ impl Walk<'_> {
 
     /// The control's cycle goes off.
     #[inline]
-    pub(crate) fn end_cycle(&mut self) -> Done {
+    pub(crate) fn end_cycle(&mut self) -> Outcome {
         let Some(open) = self.sent.end_cycle() else { return Ok(()) };
         self.block(BlockName::CycleOff)?;
         // Controls differ in whether the spindle turns after these.
@@ -278,7 +278,7 @@ impl Walk<'_> {
     }
 
     /// One hole as moves.
-    fn expand(&mut self, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
+    fn expand(&mut self, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Outcome {
         let Some(moves) = lowering::hole(cycle, pose, self.wanted.spindle()) else {
             return Err(refuse(Rule::CyclePeck, "the pecks of this cycle have no end"));
         };
@@ -308,7 +308,7 @@ impl Walk<'_> {
 }
 
 /// What no cycle makes sense without.
-fn check(cycle: &Cycle) -> Done {
+fn check(cycle: &Cycle) -> Outcome {
     let levels = [cycle.depth, cycle.clearance, cycle.retract, cycle.dwell];
     let possible = levels.iter().all(|level| level.is_finite())
         && cycle.depth > 0.0

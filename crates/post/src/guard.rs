@@ -121,7 +121,7 @@ pub(crate) struct Refusal {
     pub(crate) place: Range<usize>,
 }
 
-type Held<T> = Result<T, Box<Refusal>>;
+type Checked<T> = Result<T, Box<Refusal>>;
 
 /// Why a template is not compiled.
 pub(crate) enum Fault {
@@ -178,11 +178,11 @@ struct Guard<'m> {
 }
 
 impl Guard<'_> {
-    fn statements(&mut self, all: &[Stmt]) -> Held<()> {
+    fn statements(&mut self, all: &[Stmt]) -> Checked<()> {
         all.iter().try_for_each(|statement| self.statement(statement))
     }
 
-    fn statement(&mut self, statement: &Stmt) -> Held<()> {
+    fn statement(&mut self, statement: &Stmt) -> Checked<()> {
         match statement {
             Stmt::Template(template) => self.statements(&template.children),
             Stmt::EmitRaw(_) => Ok(()),
@@ -209,7 +209,7 @@ impl Guard<'_> {
         }
     }
 
-    fn turns(&mut self, turns: &ForLoop) -> Held<()> {
+    fn turns(&mut self, turns: &ForLoop) -> Checked<()> {
         let over = match &turns.iter {
             Expr::Call(call) if matches!(&call.expr, Expr::Var(name) if name.id == "range") => {
                 self.arguments(&call.args, call.span())?;
@@ -235,7 +235,7 @@ impl Guard<'_> {
     }
 
     /// Gives a value a name. One that is named in two branches is what both have in common.
-    fn name(&mut self, target: &Expr, (kind, parts): Shape) -> Held<()> {
+    fn name(&mut self, target: &Expr, (kind, parts): Shape) -> Checked<()> {
         let Expr::Var(name) = target else {
             return refuse(Rule::Template, "a single name is needed here", "", target.span());
         };
@@ -251,12 +251,12 @@ impl Guard<'_> {
     }
 
     /// The parts of a value that can be written: a number or a text.
-    fn plain(&mut self, expression: &Expr) -> Held<Shape> {
+    fn plain(&mut self, expression: &Expr) -> Checked<Shape> {
         let shape = self.shape(expression)?;
         written(shape, expression.span())
     }
 
-    fn shape(&mut self, expression: &Expr) -> Held<Shape> {
+    fn shape(&mut self, expression: &Expr) -> Checked<Shape> {
         let span = expression.span();
         self.depth += 1;
         if self.depth > DEEPEST {
@@ -267,7 +267,7 @@ impl Guard<'_> {
         Ok(shape)
     }
 
-    fn nested(&mut self, expression: &Expr, span: Span) -> Held<Shape> {
+    fn nested(&mut self, expression: &Expr, span: Span) -> Checked<Shape> {
         match expression {
             Expr::Const(value) => {
                 let kind = if value.value.is_number() { Kind::Number } else { Kind::Text };
@@ -360,7 +360,7 @@ impl Guard<'_> {
     }
 
     /// What stands behind `in`: a text, or a list of values.
-    fn members(&mut self, expression: &Expr) -> Held<Shape> {
+    fn members(&mut self, expression: &Expr) -> Checked<Shape> {
         let items = match expression {
             Expr::List(list) => &list.items,
             Expr::Tuple(tuple) => &tuple.items,
@@ -370,7 +370,7 @@ impl Guard<'_> {
         Ok((Kind::Text, 1))
     }
 
-    fn member(&self, group: &'static str, name: &str, span: Span) -> Held<Shape> {
+    fn member(&self, group: &'static str, name: &str, span: Span) -> Checked<Shape> {
         let kind = match (group, name) {
             ("program", "tools") => Kind::Tools,
             ("tool", "number" | "diameter" | "corner_radius" | "length") => Kind::Number,
@@ -389,7 +389,7 @@ impl Guard<'_> {
         Ok((kind, 1))
     }
 
-    fn number(&mut self, expression: &Expr, sign: &str) -> Held<Shape> {
+    fn number(&mut self, expression: &Expr, sign: &str) -> Checked<Shape> {
         if self.shape(expression)?.0 == Kind::Number {
             return Ok((Kind::Number, 1));
         }
@@ -399,7 +399,7 @@ impl Guard<'_> {
         refuse(Rule::TemplateOutput, message, help, expression.span())
     }
 
-    fn filter(&mut self, filter: &Filter, span: Span) -> Held<Shape> {
+    fn filter(&mut self, filter: &Filter, span: Span) -> Checked<Shape> {
         known("filter", filter.name, FILTERS, span)?;
         let Some(on) = &filter.expr else { return unknown(span) };
         let (kind, parts) = self.shape(on)?;
@@ -425,14 +425,14 @@ impl Guard<'_> {
         })
     }
 
-    fn test(&mut self, test: &Test, span: Span) -> Held<Shape> {
+    fn test(&mut self, test: &Test, span: Span) -> Checked<Shape> {
         known("test", test.name, TESTS, span)?;
         self.shape(&test.expr)?;
         self.arguments(&test.args, span)?;
         Ok((Kind::Text, 1))
     }
 
-    fn arguments(&mut self, arguments: &[CallArg], span: Span) -> Held<Vec<Shape>> {
+    fn arguments(&mut self, arguments: &[CallArg], span: Span) -> Checked<Vec<Shape>> {
         let shapes = arguments.iter().map(|argument| match argument {
             CallArg::Pos(value) => self.plain(value),
             _ => refuse(Rule::Template, "arguments are given without names", "", span),
@@ -442,7 +442,7 @@ impl Guard<'_> {
 }
 
 /// A value that can be written: a number or a text, not too long.
-fn written((kind, parts): Shape, span: Span) -> Held<Shape> {
+fn written((kind, parts): Shape, span: Span) -> Checked<Shape> {
     let help = match kind {
         Kind::Group(_) => "name the member that is meant, such as `tool.number`",
         Kind::Tools => "`{% for t in program.tools %}` goes over them",
@@ -465,7 +465,7 @@ fn either(one: Shape, other: Shape) -> Shape {
     (kind, one.1.max(other.1))
 }
 
-fn known(what: &str, name: &str, table: &[(&str, Install)], span: Span) -> Held<()> {
+fn known(what: &str, name: &str, table: &[(&str, Install)], span: Span) -> Checked<()> {
     let names = || table.iter().map(|(name, _)| *name);
     if names().any(|known| known == name) {
         return Ok(());
@@ -477,14 +477,14 @@ fn known(what: &str, name: &str, table: &[(&str, Install)], span: Span) -> Held<
     refuse(Rule::TemplateName, format!("there is no {what} `{name}`"), help, span)
 }
 
-fn unknown<T>(span: Span) -> Held<T> {
+fn unknown<T>(span: Span) -> Checked<T> {
     refuse(Rule::Template, "templates have no such statement", STATEMENTS, span)
 }
 
 /// The way out where a statement is not one of these.
 pub(crate) const STATEMENTS: &str = "the statements are `if`, `for` and `set`";
 
-fn no_members<T>(span: Span) -> Held<T> {
+fn no_members<T>(span: Span) -> Checked<T> {
     refuse(Rule::TemplateName, "this has no such member", "`toolpost explain` lists them", span)
 }
 
@@ -493,7 +493,7 @@ fn refuse<T>(
     message: impl Into<String>,
     help: impl Into<String>,
     span: Span,
-) -> Held<T> {
+) -> Checked<T> {
     let place = span.start_offset as usize..span.end_offset as usize;
     Err(Box::new(Refusal { rule, message: message.into(), help: help.into(), place }))
 }

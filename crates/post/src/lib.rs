@@ -19,13 +19,13 @@ mod around;
 mod away;
 mod catalogue;
 mod contour;
+mod coordinate_mode;
 mod cycles;
 mod findings;
 #[expect(clippy::wildcard_enum_match_arm, reason = "what is not named is refused")]
 mod guard;
 mod motion;
 mod number;
-mod place;
 mod position;
 mod promises;
 mod rapid;

@@ -1,13 +1,13 @@
 //! Straight cuts, and the words of any straight move: where it goes, and whether the axes may go there.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop, same};
+use crate::coordinate_mode::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words};
 use crate::vectors::{self, Followed};
-use crate::walk::{Cut, Done, Turn, Walk, motion, refuse};
+use crate::walk::{AxisPositions, Cut, Outcome, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
-use machine::linearise::Stance;
+use machine::linearise::RotaryPose;
 use machine::plan::{NEAR, Step};
 use program::{Diagnostic, Feed, Pose, Rule};
 
@@ -19,7 +19,7 @@ const SWING: f64 = 1.0;
 
 impl Walk<'_> {
     /// A straight cut of the source.
-    pub(crate) fn line(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn line(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         self.not_from_probe("a cut")?;
         self.end_cycle()?;
         self.before_cut()?;
@@ -107,7 +107,7 @@ impl Walk<'_> {
     /// A straight cut of the source that goes on from another one: `cut`, where nothing that it asks for can have
     /// changed.
     #[inline]
-    pub(crate) fn line_on(&mut self, pose: &Pose) -> Done {
+    pub(crate) fn line_on(&mut self, pose: &Pose) -> Outcome {
         self.position.go_to(*pose);
         self.writer.repeat();
         self.writer.code(WordName::Motion, motion::LINEAR);
@@ -125,7 +125,7 @@ impl Walk<'_> {
 
     /// The travel of a rotary axis ends in a cut: out along the tool axis, beyond every point of the
     /// source, to where the machine may turn, and in again at the same point.
-    fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Done {
+    fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Outcome {
         let Some(here) = self.position.pose() else { return Ok(()) };
         let axis = here.axis();
         let way = self.reach(axis) - here.point().dot(axis) + CLEAR;
@@ -140,7 +140,7 @@ impl Walk<'_> {
     }
 
     /// A straight cut in the orientation at hand.
-    pub(crate) fn line_to(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn line_to(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         let from = self.position.go_to(*pose);
         let length = from.map_or(0.0, |from| from.point().distance(pose.point()));
         self.switch_plane(pose.axis())?;
@@ -152,9 +152,9 @@ impl Walk<'_> {
         if let (Kind::Machine, Some(from), Some(step), Some(degrees)) =
             (&self.place.kind, from, stop.step, self.place.degrees())
         {
-            let to = Stance { tip: pose.point(), degrees: self.written(step.degrees) };
+            let to = RotaryPose { tip: pose.point(), degrees: self.written(step.degrees) };
             if to.degrees != degrees {
-                return self.turning_line(Stance { tip: from.point(), degrees }, to, length);
+                return self.turning_line(RotaryPose { tip: from.point(), degrees }, to, length);
             }
         }
         let pieces = match from.and_then(|from| self.half_way(&from, pose, stop)) {
@@ -170,7 +170,7 @@ impl Walk<'_> {
     }
 
     /// Holds the tool axis on its way in a cut that could not be split finely enough.
-    fn keeps_to_its_way(&self, degrees: [[f64; 3]; 2], axes: [Vec3; 2]) -> Done {
+    fn keeps_to_its_way(&self, degrees: [[f64; 3]; 2], axes: [Vec3; 2]) -> Outcome {
         let turn: f64 = (0..3).map(|i| (degrees[1][i] - degrees[0][i]).abs()).sum();
         if turn <= NEAR {
             return Ok(());
@@ -188,7 +188,7 @@ impl Walk<'_> {
 
     /// The place half way of a cut in which an axis that may be counted modulo 360° turns by half a turn: which way it
     /// would go in one block nobody knows.
-    fn half_way(&self, from: &Pose, to: &Pose, stop: &Stop) -> Option<Stance> {
+    fn half_way(&self, from: &Pose, to: &Pose, stop: &Stop) -> Option<RotaryPose> {
         let (Kind::ToolCenter, Some(step)) = (&self.place.kind, stop.step) else { return None };
         let (here, there) = (self.place.degrees()?, self.written(step.degrees));
         let step = self.machine.rotary_resolution();
@@ -197,27 +197,27 @@ impl Walk<'_> {
             axis.modulo != Some(false) && ((there[i] - here[i]).abs() - 180.0).abs() < step
         });
         let degrees = [0, 1, 2].map(|i| (here[i] + there[i]) / 2.0);
-        halves.then(|| Stance { tip: from.point().lerp(to.point(), 0.5), degrees })
+        halves.then(|| RotaryPose { tip: from.point().lerp(to.point(), 0.5), degrees })
     }
 
     /// A straight cut while rotary axes turn that the control moves on their own: with as many points
     /// between as keep the tool tip on the line.
-    fn turning_line(&mut self, from: Stance, to: Stance, length: f64) -> Done {
+    fn turning_line(&mut self, from: RotaryPose, to: RotaryPose, length: f64) -> Outcome {
         let tolerance = self.machine.orientation.tolerance;
         let stances = self.machine.linearise(from, to, self.tool_length(), tolerance)?;
         let count = stances.len();
         let (length_of_tool, start) = (self.tool_length().unwrap_or(0.0), from.degrees);
         let start = self.machine.linear_for(from.tip, start, length_of_tool);
-        let mut here = Turn { linear: self.rounded(start), degrees: from.degrees };
+        let mut here = AxisPositions { linear: self.rounded(start), degrees: from.degrees };
         // The way of the tip for which no block was written: its axes have not changed by a step.
         let mut owed = 0.0;
         for stance in stances {
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
             let degrees = self.place.degrees().unwrap_or(stance.degrees);
-            let there = Turn { linear: self.rounded(self.position.said()), degrees };
+            let there = AxisPositions { linear: self.rounded(self.position.said()), degrees };
             let way = here.to(&there);
             let length = length / count as f64 + owed;
-            owed = if way == Turn::default() { length } else { 0.0 };
+            owed = if way == AxisPositions::default() { length } else { 0.0 };
             self.cut(length, count, Cut::Turning(way))?;
             here = there;
         }
@@ -239,7 +239,7 @@ impl Walk<'_> {
 
     /// Writes the straight cut that has been aimed, `length` mm long, one of so many pieces of the source's.
     #[inline]
-    fn cut(&mut self, length: f64, pieces: usize, cut: Cut) -> Done {
+    fn cut(&mut self, length: f64, pieces: usize, cut: Cut) -> Outcome {
         if !self.writer.changes(POSITION | ORIENTATION) {
             self.writer.unset(Words::MAX);
             return Ok(());
@@ -350,7 +350,7 @@ impl Walk<'_> {
 
     /// Checks the position that has been aimed against the limits of the axes.
     #[inline]
-    pub(crate) fn check_limits(&mut self) -> Done {
+    pub(crate) fn check_limits(&mut self) -> Outcome {
         let degrees = self.place.degrees().unwrap_or_default();
         let length = self.tool_length();
         let linear = match self.place.kind {

@@ -227,7 +227,7 @@ const PAIRS: [u8; 200] = {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use machine::Place;
+    use machine::FileLocation;
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
@@ -248,7 +248,7 @@ mod tests {
             scale: 1.0,
             max: f64::INFINITY,
             codes: BTreeMap::new(),
-            place: Place::default(),
+            place: FileLocation::default(),
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
-use machine::{COMMA, CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
+use machine::{COMMA, CycleName, FileLocation, HARMLESS_SIGNS, Machine, OrientationMode};
 use program::{Diagnostic, Findings, Rule, nearest};
 
 /// The first parameter that can keep a height: those below are a subroutine's own (LinuxCNC, "Numbered Parameters": #1 to
@@ -21,7 +21,8 @@ const MOST_GUESSED: usize = 20;
 pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Findings::default();
     let file = |error: Diagnostic| error.file(machine.file.clone());
-    let at = |error: Diagnostic, place: &Place| error.file(place.file.clone()).line(place.line);
+    let at =
+        |error: Diagnostic, place: &FileLocation| error.file(place.file.clone()).line(place.line);
     let unknown = machine.words.iter().filter(|(name, _)| WordName::named(name).is_none());
     for (i, (name, word)) in unknown.enumerate() {
         let near = match i < MOST_GUESSED {

@@ -6,11 +6,11 @@
 //! corner, by feed, or from home, whichever keeps the tool on the way.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop, same};
+use crate::coordinate_mode::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words, bit};
-use crate::walk::{ByFeed, Done, Walk, motion, refuse};
+use crate::walk::{ByFeed, Outcome, Walk, motion, refuse};
 use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
-use machine::linearise::Stance;
+use machine::linearise::RotaryPose;
 use machine::plan::Step;
 use machine::{Mount, Unsaid};
 use program::{Diagnostic, Feed, Pose, Rule};
@@ -35,13 +35,13 @@ const MOST_PIECES: usize = 200;
 const RAPID_PATH_HELP: &str = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
 
 /// How a rapid is written.
-enum Course {
+enum RapidMoves {
     /// In one block.
     AtOnce,
     /// By a corner from which, or to which, the tool goes along its axis.
     Corner(Pose),
     /// In pieces while axes turn.
-    Pieces(Vec<Stance>),
+    Pieces(Vec<RotaryPose>),
     /// By feed, which is straight on every control.
     Feed,
     /// From home, where the axes turn.
@@ -67,7 +67,7 @@ struct Entry {
 
 impl Walk<'_> {
     /// A rapid of the source.
-    pub(crate) fn rapid(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn rapid(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         self.end_cycle()?;
         self.wire_for(false, "a rapid")?;
         self.same_taper("a rapid")?;
@@ -80,24 +80,24 @@ impl Walk<'_> {
             return self.by_home(pose, stop);
         }
         match self.course(&from, pose, stop, true)? {
-            Course::AtOnce => self.rapid_at_once(pose, stop),
-            Course::Corner(corner) => {
+            RapidMoves::AtOnce => self.rapid_at_once(pose, stop),
+            RapidMoves::Corner(corner) => {
                 self.rapid_at_once(&corner, stop)?;
                 self.rapid_at_once(pose, stop)
             }
-            Course::Pieces(stances) => self.in_pieces(pose, &stances),
-            Course::Feed => self.by_feed(pose, stop),
-            Course::Home => self.by_home(pose, stop),
+            RapidMoves::Pieces(stances) => self.in_pieces(pose, &stances),
+            RapidMoves::Feed => self.by_feed(pose, stop),
+            RapidMoves::Home => self.by_home(pose, stop),
         }
     }
 
     /// A rapid to a hole or in it: what the cycle of a control would do, axes that turn apart.
-    pub(crate) fn rapid_to_hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn rapid_to_hole(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         let Some(from) = self.position.known() else {
             return self.approach(pose, stop);
         };
         let at_once = match self.turns(stop) {
-            true => matches!(self.course(&from, pose, stop, false)?, Course::AtOnce),
+            true => matches!(self.course(&from, pose, stop, false)?, RapidMoves::AtOnce),
             false => !self.vector_strays(pose.axis()) && self.vector_is_beyond(&from, pose),
         };
         if !at_once {
@@ -138,7 +138,7 @@ impl Walk<'_> {
     }
 
     /// A rapid in one block, from a known position.
-    pub(crate) fn rapid_at_once(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn rapid_at_once(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         self.switch_plane(pose.axis())?;
         self.aim(pose, stop);
         self.position.go_to(*pose);
@@ -149,7 +149,7 @@ impl Walk<'_> {
     ///
     /// X and Y may stand anywhere. Where the Z of the program is that of the machine, they go first, at the height of
     /// home; otherwise all axes go together to a place above all cuts. What is left is a way along the tool axis.
-    pub(crate) fn approach(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    pub(crate) fn approach(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         let axis = pose.axis();
         let in_order = self.machine.approach.iter().map(String::as_str);
         if self.wire.is_some() {
@@ -187,7 +187,7 @@ impl Walk<'_> {
         pose: &Pose,
         stop: &Stop,
         groups: impl IntoIterator<Item = &'g str>,
-    ) -> Done {
+    ) -> Outcome {
         for group in groups {
             self.aim(pose, stop);
             let words = group.chars().filter_map(|c| WordName::named(c.encode_utf8(&mut [0; 4])));
@@ -230,7 +230,7 @@ impl Walk<'_> {
 
     /// Z goes home from here, straight up: a tilted tool first goes out along its axis, until it is beyond all cuts on its
     /// way up until it is above them.
-    pub(crate) fn go_out(&mut self) -> Done {
+    pub(crate) fn go_out(&mut self) -> Outcome {
         let Some(here) = self.position.known() else { return Ok(()) };
         if self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
             return self.draw_back();
@@ -302,7 +302,7 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// `home-height`.
-    fn home_clears(&mut self, axis: Vec3, stop: &Stop) -> Done {
+    fn home_clears(&mut self, axis: Vec3, stop: &Stop) -> Outcome {
         let (machine, length) = (self.machine, self.tool_length());
         let home = machine.safe_height.unwrap_or(machine.linear[2].max);
         let (Some(zero), Some(measured)) = (machine.work_zero, length) else { return Ok(()) };
@@ -371,7 +371,7 @@ impl Walk<'_> {
     }
 
     /// Writes the rapid that has been aimed.
-    fn rapid_block(&mut self) -> Done {
+    fn rapid_block(&mut self) -> Outcome {
         if !self.writer.changes(POSITION | ORIENTATION) {
             self.writer.unset(Words::MAX);
             return Ok(());
@@ -383,7 +383,7 @@ impl Walk<'_> {
         self.follow(true)
     }
 
-    fn in_pieces(&mut self, pose: &Pose, stances: &[Stance]) -> Done {
+    fn in_pieces(&mut self, pose: &Pose, stances: &[RotaryPose]) -> Outcome {
         self.switch_plane(pose.axis())?;
         for stance in stances {
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
@@ -420,7 +420,7 @@ impl Walk<'_> {
         Some(found)
     }
 
-    fn by_feed(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    fn by_feed(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         let Some(feed) = self.known_feed() else {
             let message = "a rapid near the part, where each axis of the machine goes at its own speed, and no feed is known \
                            by which it could be written instead";
@@ -439,7 +439,7 @@ impl Walk<'_> {
         done
     }
 
-    fn by_home(&mut self, pose: &Pose, stop: &Stop) -> Done {
+    fn by_home(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         self.turn(pose.axis(), stop)?;
         self.approach(pose, stop)
     }
@@ -473,27 +473,27 @@ impl Walk<'_> {
         to: &Pose,
         stop: &Stop,
         is_straight: bool,
-    ) -> Result<Course, Box<Diagnostic>> {
+    ) -> Result<RapidMoves, Box<Diagnostic>> {
         let machine = self.machine;
         let linear = machine.has_straight_rapids() || machine.wire.is_some();
         match (self.turns(stop), linear) {
-            (true, false) => return Ok(Course::Home),
-            (false, true) => return Ok(Course::AtOnce),
+            (true, false) => return Ok(RapidMoves::Home),
+            (false, true) => return Ok(RapidMoves::AtOnce),
             (false, false) => return self.one_axis_at_a_time(from, to),
             (true, true) => {}
         }
         let (Some(step), Some(degrees)) = (stop.step, self.place.degrees()) else {
-            return Ok(Course::AtOnce);
+            return Ok(RapidMoves::AtOnce);
         };
-        let here = Stance { tip: from.point(), degrees };
-        let there = Stance { tip: to.point(), degrees: self.written(step.degrees) };
+        let here = RotaryPose { tip: from.point(), degrees };
+        let there = RotaryPose { tip: to.point(), degrees: self.written(step.degrees) };
         let length = self.tool_length();
         let own = matches!(self.place.kind, Kind::Machine);
         if own
             && (machine.unsaid(degrees, length).or(machine.unsaid(there.degrees, length))).is_some()
         {
             // What its place hangs on is asked for where the block is written.
-            return Ok(Course::AtOnce);
+            return Ok(RapidMoves::AtOnce);
         }
         let most = (0..3).map(|i| (there.degrees[i] - degrees[i]).abs()).fold(0.0, f64::max);
         let count = (most / SAMPLE).ceil().max(8.0) as usize;
@@ -521,19 +521,23 @@ impl Walk<'_> {
             in_pieces &= own && aligned;
         }
         if at_once {
-            return Ok(Course::AtOnce);
+            return Ok(RapidMoves::AtOnce);
         }
         if in_pieces {
             let stances = machine.linearise(here, there, length, corridor)?;
             if stances.len() <= MOST_PIECES {
-                return Ok(Course::Pieces(stances.collect()));
+                return Ok(RapidMoves::Pieces(stances.collect()));
             }
         }
-        Ok(Course::Home)
+        Ok(RapidMoves::Home)
     }
 
     /// How a rapid is written while no axis turns, and each goes at its own speed: anywhere in the box between the ends.
-    fn one_axis_at_a_time(&mut self, from: &Pose, to: &Pose) -> Result<Course, Box<Diagnostic>> {
+    fn one_axis_at_a_time(
+        &mut self,
+        from: &Pose,
+        to: &Pose,
+    ) -> Result<RapidMoves, Box<Diagnostic>> {
         let axis = to.axis();
         let degrees = match &self.place.kind {
             Kind::Bare | Kind::Plain => Some([0.0; 3]),
@@ -541,7 +545,7 @@ impl Walk<'_> {
             Kind::Tilted(..) | Kind::Vectors => None,
         };
         let Some(degrees) = degrees.filter(|_| same(from.axis(), axis)) else {
-            return Ok(Course::Feed);
+            return Ok(RapidMoves::Feed);
         };
         let corridor = USED * self.machine.capabilities.rapid_corridor;
         let machine = self.machine;
@@ -554,11 +558,11 @@ impl Walk<'_> {
         let [along, across] = if goes_up { legs } else { [legs[1], legs[0]] };
         let mut is_beyond = |(a, b)| wandering(a, b).iter().all(|tip| self.is_beyond(*tip, axis));
         Ok(if is_straight(a, b) || is_beyond((a, b)) {
-            Course::AtOnce
+            RapidMoves::AtOnce
         } else if is_straight(along.0, along.1) && is_beyond(across) {
-            Course::Corner(to.at(corner)?)
+            RapidMoves::Corner(to.at(corner)?)
         } else {
-            Course::Feed
+            RapidMoves::Feed
         })
     }
 

@@ -2,7 +2,7 @@
 //! file has a block for them; nothing of them is left out without a word.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::walk::{Done, Walk, refuse};
+use crate::walk::{Outcome, Walk, refuse};
 use program::{Auxiliary, Diagnostic, Input, Output, OutputValue, Rule, Until};
 
 /// Entries of the code word `output`.
@@ -30,7 +30,7 @@ mod until {
 
 impl Walk<'_> {
     /// An output of the machine.
-    pub(crate) fn output(&mut self, output: &Output) -> Done {
+    pub(crate) fn output(&mut self, output: &Output) -> Outcome {
         self.end_cycle()?;
         let number = f64::from(output.number);
         match output.value {
@@ -58,7 +58,7 @@ impl Walk<'_> {
     }
 
     /// An input of the machine, for which the program waits or which it reads.
-    pub(crate) fn input(&mut self, input: &Input) -> Done {
+    pub(crate) fn input(&mut self, input: &Input) -> Outcome {
         self.end_cycle()?;
         let number = f64::from(input.number);
         let code = match input.until {
@@ -87,7 +87,7 @@ impl Walk<'_> {
 
     /// A function that the builder of the machine has added. What its number does at the machine of the source, it
     /// does at another one only where that one's file says that it has it.
-    pub(crate) fn auxiliary(&mut self, function: &Auxiliary) -> Done {
+    pub(crate) fn auxiliary(&mut self, function: &Auxiliary) -> Outcome {
         let Auxiliary { number, values } = *function;
         if self.machine.leaves_out(BlockName::Auxiliary.name()) {
             let message = format!("M{number} of the source is left out: `auxiliary` is empty");
@@ -125,7 +125,7 @@ impl Walk<'_> {
 
     /// # Errors
     /// The control has no text for this entry of a code word.
-    fn has_code(&self, word: WordName, code: usize) -> Done {
+    fn has_code(&self, word: WordName, code: usize) -> Outcome {
         let name = word.codes().nth(code).unwrap_or_default();
         let texts = self.machine.words.get(word.name()).map(|word| &word.codes);
         if texts.is_some_and(|texts| texts.contains_key(name)) {

@@ -1,14 +1,14 @@
 //! Threads and probing moves: each is one block of the control.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop, same};
+use crate::coordinate_mode::{Kind, Stop, same};
 use crate::template::{POSITION, Words, bit};
-use crate::walk::{Cut, Done, Walk, refuse};
+use crate::walk::{Cut, Outcome, Walk, refuse};
 use program::{Feed, Probe, Rule, Thread};
 
 impl Walk<'_> {
     /// A thread of the source.
-    pub(crate) fn thread(&mut self, thread: &Thread, stop: &Stop) -> Done {
+    pub(crate) fn thread(&mut self, thread: &Thread, stop: &Stop) -> Outcome {
         if self.writer.rounded(WordName::Lead, thread.pitch()) <= 0.0 {
             return Err(refuse(
                 Rule::Thread,
@@ -43,7 +43,7 @@ impl Walk<'_> {
     }
 
     /// A probing move of the source. The axes that it moves are where only the machine knows.
-    pub(crate) fn probe(&mut self, probe: &Probe) -> Done {
+    pub(crate) fn probe(&mut self, probe: &Probe) -> Outcome {
         self.single(BlockName::Probe, "a probing move")?;
         let kind = 2 * usize::from(probe.away) + usize::from(!probe.must_answer);
         let texts = self.machine.words.get(WordName::ProbeMode.name()).map(|word| &word.codes);
@@ -83,7 +83,7 @@ impl Walk<'_> {
     }
 
     /// What holds for `what`, which is one block of the control.
-    fn single(&mut self, block: BlockName, what: &str) -> Done {
+    fn single(&mut self, block: BlockName, what: &str) -> Outcome {
         self.not_over_surface(what)?;
         self.not_from_probe(what)?;
         if !self.templates.has(block) {
@@ -106,7 +106,7 @@ impl Walk<'_> {
     }
 
     /// Where a probe has answered, only the machine knows: a rapid leads away from there.
-    pub(crate) fn not_from_probe(&self, what: &str) -> Done {
+    pub(crate) fn not_from_probe(&self, what: &str) -> Outcome {
         if self.position.is_probed() {
             let message = format!("{what} from where the probe has answered, which is not known");
             return Err(refuse(Rule::Probe, message).help("a rapid before it").into());

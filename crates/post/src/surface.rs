@@ -1,7 +1,7 @@
 //! Moves over a surface that the control finds: what Z counts from it, and how.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::walk::{Done, Walk, refuse};
+use crate::walk::{Outcome, Walk, refuse};
 use geom::{Vec2, Vec3};
 use program::{Rule, Surface};
 
@@ -22,7 +22,7 @@ pub(crate) struct Part {
 
 impl<'a> Walk<'a> {
     /// From here on moves count from `surface`.
-    pub(crate) fn set_surface(&mut self, surface: &'a Surface) -> Done {
+    pub(crate) fn set_surface(&mut self, surface: &'a Surface) -> Outcome {
         let message = if !self.templates.has(BlockName::KeepHeight) {
             "the control keeps no heights that a probe finds"
         } else if !self.machine.rotary.is_empty() {
@@ -38,7 +38,7 @@ impl<'a> Walk<'a> {
 
     /// # Errors
     /// `what` is not done over a surface.
-    pub(crate) fn not_over_surface(&self, what: &str) -> Done {
+    pub(crate) fn not_over_surface(&self, what: &str) -> Outcome {
         match self.wanted.surface() {
             None => Ok(()),
             Some(_) => {
@@ -69,7 +69,7 @@ impl<'a> Walk<'a> {
     }
 
     /// What the probe has found is kept for a place of the surface.
-    pub(crate) fn keep_height(&mut self, place: u32) -> Done {
+    pub(crate) fn keep_height(&mut self, place: u32) -> Outcome {
         self.writer.set(WordName::Height, f64::from(self.first().saturating_add(place)));
         self.required(BlockName::KeepHeight)?;
         Ok(())

@@ -2,10 +2,10 @@
 //! and each that the control may take is within the travel.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, rotary_word};
+use crate::coordinate_mode::{Kind, rotary_word};
 use crate::sweep::short_way;
 use crate::template::ORIENTATION;
-use crate::walk::{Done, Walk, motion};
+use crate::walk::{Outcome, Walk, motion};
 use geom::{Arc, Frame, Mat3, Vec3};
 use machine::plan::{self, Target, TargetKind};
 use machine::{Machine, Mount, RotaryAxis};
@@ -32,7 +32,7 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// No position within the travel gives that tool axis.
-    pub(crate) fn choose_solution(&mut self, axis: Vec3) -> Done {
+    pub(crate) fn choose_solution(&mut self, axis: Vec3) -> Outcome {
         let target = Target { axis, line: self.line, kind: TargetKind::Rapid };
         let plan = plan::plan(self.machine, self.place.degrees(), [target])?;
         let wanted = plan.iter().next().map_or([0.0; 3], |step| step.degrees);
@@ -122,7 +122,7 @@ impl Walk<'_> {
     }
 
     /// Checks a tip in a tilted plane against the limits, for each solution that the control may take.
-    pub(crate) fn check_in_plane(&mut self, tip: Vec3) -> Done {
+    pub(crate) fn check_in_plane(&mut self, tip: Vec3) -> Outcome {
         let length = self.tool_length();
         for Solution { degrees, into_axes } in self.place.solutions() {
             let linear = into_axes.map_or(Vec3::NAN, |into| into.transform_point3(tip));
@@ -132,7 +132,7 @@ impl Walk<'_> {
     }
 
     /// Checks an arc (work frame) where blocks do not give positions of the axes.
-    pub(crate) fn check_arc(&mut self, arc: &Arc) -> Done {
+    pub(crate) fn check_arc(&mut self, arc: &Arc) -> Outcome {
         let length = self.tool_length();
         let here;
         let solutions = match self.place.kind {
@@ -198,7 +198,7 @@ fn other_turns(machine: &Machine, mut degrees: [f64; 3]) -> Option<[f64; 3]> {
     Some(degrees)
 }
 
-/// Place (in A, B, C) of the rotary axis whose sign a control is told: the first from the tool, or the last from the table.
+/// Index (in A, B, C) of the rotary axis whose sign is output to a control: the first from the tool, or the last from the table.
 fn main_axis(machine: &Machine) -> usize {
     let head = machine.rotary.iter().rev().find(|axis| axis.on == Mount::Head);
     head.or(machine.rotary.first()).map_or(0, RotaryAxis::index)

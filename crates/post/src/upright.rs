@@ -1,6 +1,6 @@
 //! Toolpaths that tilt the tool, on machines that cannot.
 
-use crate::place::same;
+use crate::coordinate_mode::same;
 use geom::Vec3;
 use machine::{Machine, library};
 use program::{Diagnostic, Program, Rule};

@@ -1,7 +1,7 @@
 //! The wire of a machine for wire EDM: where it is threaded and cut, and how far it leans.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::walk::{Done, Walk, refuse};
+use crate::walk::{Outcome, Walk, refuse};
 use geom::{Vec2, Vec3};
 use machine::Machine;
 use program::{Diagnostic, Pose, Program, Rule};
@@ -43,7 +43,7 @@ impl Wire {
 
 impl Walk<'_> {
     /// The wire is threaded where it stands.
-    pub(crate) fn thread_wire(&mut self) -> Done {
+    pub(crate) fn thread_wire(&mut self) -> Outcome {
         let told = !self.machine.leaves_out(BlockName::ThreadWire.name());
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
         if wire.threaded {
@@ -60,7 +60,7 @@ impl Walk<'_> {
     }
 
     /// The wire is cut.
-    pub(crate) fn cut_wire(&mut self) -> Done {
+    pub(crate) fn cut_wire(&mut self) -> Outcome {
         self.uncompensated("the end of the opening")?;
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
         if wire.active_taper != 0.0 {
@@ -74,7 +74,7 @@ impl Walk<'_> {
     }
 
     /// The control is to lean the wire from the next straight cut on.
-    pub(crate) fn set_taper(&mut self, degrees: f64) -> Done {
+    pub(crate) fn set_taper(&mut self, degrees: f64) -> Outcome {
         let told = self.templates.places(BlockName::Linear, WordName::Taper);
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
         if degrees != 0.0 && !told {
@@ -111,7 +111,7 @@ impl Walk<'_> {
 
     /// # Errors
     /// The lean by the control is about to change, and `what` cannot do it.
-    pub(crate) fn same_taper(&self, what: &str) -> Done {
+    pub(crate) fn same_taper(&self, what: &str) -> Outcome {
         match &self.wire {
             Some(wire) if wire.taper != wire.active_taper => Err(refuse(
                 Rule::Taper,
@@ -122,7 +122,7 @@ impl Walk<'_> {
     }
 
     /// Holds the wire against what comes next: a cut needs it threaded, a rapid or the end needs it cut.
-    pub(crate) fn wire_for(&self, cut: bool, what: &str) -> Done {
+    pub(crate) fn wire_for(&self, cut: bool, what: &str) -> Outcome {
         match &self.wire {
             Some(wire) if wire.threaded && !cut => {
                 let message =
@@ -138,7 +138,7 @@ impl Walk<'_> {
     }
 
     /// Whether the wire can stand at `pose`.
-    pub(crate) fn wire_stands(&self, wire: &Wire, pose: &Pose) -> Done {
+    pub(crate) fn wire_stands(&self, wire: &Wire, pose: &Pose) -> Outcome {
         if pose.point().z.abs() > FLAT {
             let message = format!("Z{:.4}: a wire crosses the lower plane at Z0", pose.point().z);
             let help = "`toolpost wire` makes the way of a wire from a contour at any height";

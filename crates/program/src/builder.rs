@@ -41,8 +41,7 @@ pub struct Builder {
     tip: Option<Vec3>,
 }
 
-/// A step that may be refused.
-type Done = Result<(), Box<Diagnostic>>;
+use crate::Outcome;
 
 impl Builder {
     /// A program of this name with nothing in it.
@@ -66,7 +65,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for a coordinate that is not finite, `zero-vector` for an axis without a direction.
-    pub fn rapid(&mut self, point: [f64; 3], axis: Option<[f64; 3]>) -> Done {
+    pub fn rapid(&mut self, point: [f64; 3], axis: Option<[f64; 3]>) -> Outcome {
         let pose = self.go(point, axis)?;
         self.push(Op::Rapid(pose));
         Ok(())
@@ -76,7 +75,7 @@ impl Builder {
     ///
     /// # Errors
     /// As [`Builder::rapid`].
-    pub fn line(&mut self, point: [f64; 3], axis: Option<[f64; 3]>) -> Done {
+    pub fn line(&mut self, point: [f64; 3], axis: Option<[f64; 3]>) -> Outcome {
         let pose = self.go(point, axis)?;
         self.push(Op::Line(pose));
         Ok(())
@@ -88,7 +87,13 @@ impl Builder {
     /// # Errors
     /// `no-start` where the tool is nowhere yet; `off-the-circle` where both ends are not equally far from the
     /// centre (0.005 mm), or there is no radius; and as [`Builder::rapid`].
-    pub fn arc(&mut self, end: [f64; 3], center: [f64; 3], normal: [f64; 3], turns: u32) -> Done {
+    pub fn arc(
+        &mut self,
+        end: [f64; 3],
+        center: [f64; 3],
+        normal: [f64; 3],
+        turns: u32,
+    ) -> Outcome {
         let center = point("the centre", center)?;
         let normal = direction("the normal", normal)?;
         let Some(start) = self.tip else {
@@ -115,7 +120,7 @@ impl Builder {
     ///
     /// # Errors
     /// What [`Cycle::checked`] refuses; and as [`Builder::rapid`].
-    pub fn drill(&mut self, cycle: Cycle, points: &[[f64; 3]], axis: Option<[f64; 3]>) -> Done {
+    pub fn drill(&mut self, cycle: Cycle, points: &[[f64; 3]], axis: Option<[f64; 3]>) -> Outcome {
         let cycle = cycle.checked()?;
         let axis = axis.map_or(Ok(self.axis), |axis| direction("the tool axis", axis))?;
         let poses = points.iter().map(|at| Ok(Pose::new(point("the point", *at)?, axis)?));
@@ -134,7 +139,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for tool 0, or a length that is none.
-    pub fn tool(&mut self, tool: Tool) -> Done {
+    pub fn tool(&mut self, tool: Tool) -> Outcome {
         if tool.number == 0 {
             let found = Diagnostic::error(Rule::Number, "tool 0 is no tool");
             return Err(found.help("tools count from 1").into());
@@ -151,7 +156,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for a feed that is not greater than 0.
-    pub fn feed(&mut self, feed: Feed) -> Done {
+    pub fn feed(&mut self, feed: Feed) -> Outcome {
         positive("feed", feed.value())?;
         self.push(Op::Feed(feed));
         Ok(())
@@ -161,7 +166,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for a speed that is not greater than 0.
-    pub fn spindle(&mut self, spindle: Spindle) -> Done {
+    pub fn spindle(&mut self, spindle: Spindle) -> Outcome {
         if let Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) = spindle {
             positive("speed", speed)?;
         }
@@ -183,7 +188,7 @@ impl Builder {
     ///
     /// # Errors
     /// `compensated-path` where the other has been said before.
-    pub fn compensated_path(&mut self, path: CompensatedPath) -> Done {
+    pub fn compensated_path(&mut self, path: CompensatedPath) -> Outcome {
         if self.program.compensated_path.is_some_and(|known| known != path) {
             let message = "compensation with coordinates of the tool's centre and of the contour in one program";
             let found = Diagnostic::error(Rule::CompensatedPath, message);
@@ -209,7 +214,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for a time that is not greater than 0.
-    pub fn dwell(&mut self, seconds: f64) -> Done {
+    pub fn dwell(&mut self, seconds: f64) -> Outcome {
         positive("dwell", seconds)?;
         self.push(Op::Dwell(seconds));
         Ok(())
@@ -224,7 +229,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for an analog value that is not finite.
-    pub fn output(&mut self, output: Output) -> Done {
+    pub fn output(&mut self, output: Output) -> Outcome {
         if let OutputValue::Analog(value) = output.value {
             finite("value", value)?;
         }
@@ -236,7 +241,7 @@ impl Builder {
     ///
     /// # Errors
     /// `number` for a time that is not finite, or below 0.
-    pub fn input(&mut self, input: Input) -> Done {
+    pub fn input(&mut self, input: Input) -> Outcome {
         if input.timeout != 0.0 {
             positive("timeout", input.timeout)?;
         }
@@ -322,14 +327,14 @@ impl Cycle {
     }
 }
 
-fn finite(what: &str, value: f64) -> Done {
+fn finite(what: &str, value: f64) -> Outcome {
     match value.is_finite() {
         true => Ok(()),
         false => Err(Diagnostic::error(Rule::Number, format!("{what} is {value}")).into()),
     }
 }
 
-fn positive(what: &str, value: f64) -> Done {
+fn positive(what: &str, value: f64) -> Outcome {
     finite(what, value)?;
     match value > 0.0 {
         true => Ok(()),
@@ -388,7 +393,7 @@ mod tests {
             first_peck: None,
             peck: None,
         };
-        let wrong: [(&str, Done); 9] = [
+        let wrong: [(&str, Outcome); 9] = [
             ("number", builder.line([0.0, f64::NAN, 0.0], Some([1.0, 0.0, 0.0]))),
             ("zero-vector", builder.line([0.0; 3], Some([0.0; 3]))),
             ("off-the-circle", builder.arc([0.0, 2.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], 0)),

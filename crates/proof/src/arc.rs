@@ -1,9 +1,9 @@
 //! An arc of the source against the arcs, or the lowered lines, of the program.
 
-use crate::expected::Goal;
+use crate::expected::ExpectedMotion;
 use crate::gauge::Gauge;
 use crate::line::{Followed, turn, within};
-use crate::place::{Place, Station};
+use crate::resolved_pose::{PartialPose, ResolvedPose};
 use control::{ArcTo, Position};
 use geom::{Arc, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -17,9 +17,9 @@ const ROUNDINGS: f64 = 3.0;
 pub(crate) const PAST: f64 = 4.0;
 
 /// The arc that a block of the program makes, in the work frame, or `None` where it makes none.
-pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo) -> Option<Arc> {
+pub(crate) fn of_block(gauge: &Gauge, here: &ResolvedPose, to: &ArcTo) -> Option<Arc> {
     let tip = |point: Vec3| {
-        Place::of(gauge.machine, &Position { point, ..to.end }, gauge.tool_length).tip
+        PartialPose::of(gauge.machine, &Position { point, ..to.end }, gauge.tool_length).tip
     };
     let center = tip(to.center);
     let normal = tip(to.center + to.normal) - center;
@@ -35,11 +35,11 @@ pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo) -> Option<Arc>
 pub(crate) fn follow(
     gauge: &Gauge,
     arc: &Arc,
-    goal: &Goal,
+    goal: &ExpectedMotion,
     t: f64,
     block: &Arc,
-    here: &Station,
-    to: &Station,
+    here: &ResolvedPose,
+    to: &ResolvedPose,
 ) -> Result<Followed, String> {
     let slack = gauge.slack(to);
     let aligned = arc.normal.dot(block.normal);
@@ -72,10 +72,10 @@ pub(crate) fn follow(
 pub(crate) fn follow_chord(
     gauge: &Gauge,
     arc: &Arc,
-    goal: &Goal,
+    goal: &ExpectedMotion,
     t: f64,
-    here: &Station,
-    to: &Station,
+    here: &ResolvedPose,
+    to: &ResolvedPose,
 ) -> Result<Followed, String> {
     let spoke = |p: Vec3| (p - arc.center).reject_from_normalized(arc.normal);
     let (a, b) = (spoke(here.place.tip), spoke(to.place.tip));
@@ -138,7 +138,12 @@ fn arc_point(arc: &Arc, t: f64) -> Vec3 {
 }
 
 /// Holds the tool axis against the source, in which it stands still during an arc.
-fn axis(gauge: &Gauge, goal: &Goal, here: &Station, to: &Station) -> Result<(), String> {
+fn axis(
+    gauge: &Gauge,
+    goal: &ExpectedMotion,
+    here: &ResolvedPose,
+    to: &ResolvedPose,
+) -> Result<(), String> {
     if turn(&here.position, &to.position).is_some() {
         return Err("turns a rotary axis during an arc".into());
     }

@@ -1,7 +1,7 @@
 //! What the source says comes next.
 
 use crate::compensation;
-use crate::place::Place;
+use crate::resolved_pose::PartialPose;
 use geom::{Arc, Vec3};
 use machine::Machine;
 use program::{
@@ -11,14 +11,14 @@ use program::{
 
 /// A motion of the source, from where the one before it ends.
 #[derive(Clone, Debug)]
-pub(crate) struct Goal {
+pub(crate) struct ExpectedMotion {
     /// Line of the source.
     pub line: u32,
     pub kind: Kind,
     /// Where the tool is before it; nothing before the first motion.
-    pub from: Option<Place>,
+    pub from: Option<PartialPose>,
     /// Where it goes; for a hole the point of the hole.
-    pub to: Place,
+    pub to: PartialPose,
     /// Whether the tool is changed before it.
     pub tool_change: bool,
     /// Whether the set-up changes before it.
@@ -46,7 +46,7 @@ pub(crate) enum Kind {
 /// What comes next.
 #[derive(Clone, Debug)]
 pub(crate) enum Step {
-    Move(Goal),
+    Move(ExpectedMotion),
     /// A dwell in s.
     Dwell(f64),
     Stop,
@@ -64,7 +64,7 @@ pub(crate) enum Step {
 
 /// What holds at a step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wanted<'a> {
+pub(crate) struct ExpectedState<'a> {
     pub feed: Option<Feed>,
     pub spindle: Spindle,
     /// Constant surface speed, m/min.
@@ -85,11 +85,11 @@ pub(crate) struct Cursor<'a> {
     machine: &'a Machine,
     records: &'a [Record],
     next: usize,
-    here: Option<Place>,
+    here: Option<PartialPose>,
     /// Line of the source of the step.
     pub line: u32,
     pub step: Step,
-    pub wanted: Wanted<'a>,
+    pub wanted: ExpectedState<'a>,
     tool_change: bool,
     reset: bool,
     homed: bool,
@@ -100,7 +100,7 @@ pub(crate) struct Cursor<'a> {
 impl<'a> Cursor<'a> {
     /// A walk that stands at the first step.
     pub fn new(machine: &'a Machine, source: &'a Program) -> Cursor<'a> {
-        let wanted = Wanted {
+        let wanted = ExpectedState {
             feed: None,
             spindle: Spindle::Off,
             surface_speed: None,
@@ -223,7 +223,7 @@ impl<'a> Cursor<'a> {
 
     /// The next motion, whatever dwells and stops come before it.
     fn motion(&self, kind: Kind, pose: &Pose) -> Step {
-        Step::Move(Goal {
+        Step::Move(ExpectedMotion {
             line: self.line,
             kind,
             from: self.here,
@@ -304,9 +304,9 @@ impl<'a> Cursor<'a> {
     }
 }
 
-impl Goal {
+impl ExpectedMotion {
     /// Where the tool is after it.
-    pub fn end(&self) -> Place {
+    pub fn end(&self) -> PartialPose {
         match &self.kind {
             Kind::Hole(cycle) => self.to.lifted(cycle.retract),
             Kind::Probe { .. } => self.answered(),
@@ -315,11 +315,11 @@ impl Goal {
     }
 
     /// Where a probe stands after it has answered: only what it has not moved along is known.
-    fn answered(&self) -> Place {
+    fn answered(&self) -> PartialPose {
         let unknown = Vec3::splat(f64::NAN);
         let moved = self.from.map_or(unknown, |from| self.to.tip - from.tip);
         let tip = Vec3::select(moved.cmpeq(Vec3::ZERO), self.to.tip, unknown);
-        Place { tip, ..self.to }
+        PartialPose { tip, ..self.to }
     }
 
     /// Length of the way of the tip, mm; 0 from an unknown start.

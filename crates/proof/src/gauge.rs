@@ -1,6 +1,6 @@
 //! What every comparison needs to know: the machine, the tolerances, the length of the tool.
 
-use crate::place::{Place, Station};
+use crate::resolved_pose::{PartialPose, ResolvedPose};
 use crate::tolerance::Applied;
 use control::Position;
 use machine::Machine;
@@ -18,29 +18,33 @@ pub(crate) struct Gauge<'a> {
 
 impl Gauge<'_> {
     /// The place that a block says.
-    pub fn station(&self, line: u32, position: Position) -> Station {
-        Station { line, position, place: Place::of(self.machine, &position, self.tool_length) }
+    pub fn station(&self, line: u32, position: Position) -> ResolvedPose {
+        ResolvedPose {
+            line,
+            position,
+            place: PartialPose::of(self.machine, &position, self.tool_length),
+        }
     }
 
     /// How far the tip may be from where it should be at `station`, mm.
-    pub fn slack(&self, station: &Station) -> f64 {
+    pub fn slack(&self, station: &ResolvedPose) -> f64 {
         self.allowed.tip(self.machine, &station.position, &station.place, self.tool_length)
     }
 
     /// Whether `station` is at `place`: tip and axis. Never where a coordinate is not known.
-    pub fn at(&self, station: &Station, place: &Place) -> bool {
+    pub fn at(&self, station: &ResolvedPose, place: &PartialPose) -> bool {
         let (tip, axis) = station.place.apart(place);
         tip <= self.slack(station) && axis <= self.allowed.axis_degrees
     }
 
     /// Whether two places of the program are one: each is rounded for itself.
-    pub fn meet(&self, a: &Station, b: &Station) -> bool {
+    pub fn meet(&self, a: &ResolvedPose, b: &ResolvedPose) -> bool {
         let (tip, axis) = a.place.apart(&b.place);
         tip <= self.slack(a) + self.slack(b) && axis <= 2.0 * self.allowed.axis_degrees
     }
 
     /// How far `station` stands above `place` along its axis, where it stands on that axis.
-    pub fn height_over(&self, place: &Place, station: &Station) -> Option<f64> {
+    pub fn height_over(&self, place: &PartialPose, station: &ResolvedPose) -> Option<f64> {
         let (height, beside) = place.above(station.place.tip);
         (beside <= self.slack(station)).then_some(height)
     }

@@ -4,7 +4,7 @@
 
 use crate::gauge::Gauge;
 use crate::line::within;
-use crate::place::{Number, Place, Station};
+use crate::resolved_pose::{Number, PartialPose, ResolvedPose};
 use crate::state::Difference;
 use control::{Orientation, Position};
 use geom::Vec3;
@@ -14,7 +14,7 @@ use program::{Cycle, CycleKind, Rule, Withdrawal};
 pub(crate) struct Hole<'a> {
     pub gauge: &'a Gauge<'a>,
     /// The point of the hole and its axis.
-    pub point: &'a Place,
+    pub point: &'a PartialPose,
     pub cycle: &'a Cycle,
 }
 
@@ -45,27 +45,27 @@ const REST: f64 = 1e-3;
 
 impl Hole<'_> {
     /// Whether `station` stands over the hole, at the R plane or higher.
-    pub fn is_over(&self, station: &Station) -> bool {
+    pub fn is_over(&self, station: &ResolvedPose) -> bool {
         let aligned = station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees;
         let height = self.gauge.height_over(self.point, station);
         aligned && height.is_some_and(|h| h >= self.cycle.clearance - self.gauge.slack(station))
     }
 
     /// Whether a move goes down beside the hole, with the tool along its axis. What is not known is not.
-    pub fn beside_and_down(&self, from: &Station, to: &Station) -> bool {
-        let aligned = |station: &Station| {
+    pub fn beside_and_down(&self, from: &ResolvedPose, to: &ResolvedPose) -> bool {
+        let aligned = |station: &ResolvedPose| {
             station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees
         };
         let ((high, _), (low, _)) =
             (self.point.above(from.place.tip), self.point.above(to.place.tip));
         // Both ends are rounded, each for itself.
         let slack = self.gauge.slack(from) + self.gauge.slack(to);
-        let beside = |station: &Station| self.point.above(station.place.tip).1 > slack;
+        let beside = |station: &ResolvedPose| self.point.above(station.place.tip).1 > slack;
         aligned(from) && aligned(to) && high - low > slack && (beside(from) || beside(to))
     }
 
     /// The height of a station on the axis of the hole.
-    fn height(&self, station: &Station) -> Result<f64, String> {
+    fn height(&self, station: &ResolvedPose) -> Result<f64, String> {
         let angle = station.place.apart(self.point).1;
         within("tilts the tool in the hole", angle, self.gauge.allowed.axis_degrees, "°")?;
         let (height, beside) = self.point.above(station.place.tip);
@@ -120,8 +120,8 @@ impl Run {
     pub fn rapid(
         &mut self,
         hole: &Hole,
-        here: &Station,
-        to: &Station,
+        here: &ResolvedPose,
+        to: &ResolvedPose,
         spindle_stopped: bool,
     ) -> Result<bool, String> {
         let (from, height) = (hole.height(here)?, hole.height(to)?);
@@ -154,7 +154,12 @@ impl Run {
     ///
     /// # Errors
     /// How the move is not one of this hole.
-    pub fn feed(&mut self, hole: &Hole, here: &Station, to: &Station) -> Result<bool, String> {
+    pub fn feed(
+        &mut self,
+        hole: &Hole,
+        here: &ResolvedPose,
+        to: &ResolvedPose,
+    ) -> Result<bool, String> {
         let (from, height) = (hole.height(here)?, hole.height(to)?);
         let (cycle, slack) = (hole.cycle, hole.gauge.slack(to));
         if matches!(cycle.kind, CycleKind::Tap { .. }) {
@@ -177,7 +182,7 @@ impl Run {
     }
 
     /// A dwell of `seconds` while the tool stands at `here`: whether it is that of the cycle.
-    pub fn dwell(&mut self, hole: &Hole, here: &Station, seconds: f64) -> bool {
+    pub fn dwell(&mut self, hole: &Hole, here: &ResolvedPose, seconds: f64) -> bool {
         let (cycle, slack) = (hole.cycle, hole.gauge.slack(here));
         let height = hole.height(here).unwrap_or(f64::INFINITY);
         let right = !self.dwelled
@@ -256,11 +261,11 @@ fn gap(what: &str, chosen: &mut Option<f64>, gap: f64, slack: f64) -> Result<(),
 /// A hole of a canned cycle, as the program has it.
 pub(crate) struct Drilled {
     /// The bottom, the R plane and the end of the retraction: where the tool is there.
-    pub bottom: Station,
-    pub r_plane: Station,
-    pub retracted: Station,
+    pub bottom: ResolvedPose,
+    pub r_plane: ResolvedPose,
+    pub retracted: ResolvedPose,
     /// Where the control clears chips, where its setting says that this is above the R plane.
-    pub cleared: Option<Station>,
+    pub cleared: Option<ResolvedPose>,
     /// By how much the tool goes aside, in the work frame, mm.
     aside: Option<Vec3>,
     pub cycle: Cycle,
@@ -305,7 +310,7 @@ impl Drilled {
             let counts = ends || height != cycle.retract;
             if counts && !hole.gauge.at(station, &should) {
                 let apart = Number(station.place.tip.distance(should.tip));
-                let (is, should): (&Place, _) = (&station.place, should);
+                let (is, should): (&PartialPose, _) = (&station.place, should);
                 return Err(format!("has the {what} at {is}, but should at {should}: {apart} mm"));
             }
         }

@@ -48,9 +48,9 @@ mod hole;
 mod line;
 mod machine_pose;
 mod pace;
-mod place;
 mod prover;
 mod report;
+mod resolved_pose;
 mod state;
 mod stops;
 mod surfaces;
@@ -69,7 +69,7 @@ use compensation::resolved;
 use control::Setup;
 use machine::Machine;
 use program::{Diagnostic, Program, Rule};
-use surfaces::Trial;
+use surfaces::MappedSurface;
 
 /// Runs `text` on the virtual control of `machine` and holds it against `source`.
 ///
@@ -123,7 +123,7 @@ pub fn prove_while(
         Err(found) => return refused(source, machine, tolerances, *found),
     };
     let mut proven: Option<Report> = None;
-    for Trial { places, heights } in trials {
+    for MappedSurface { places, heights } in trials {
         let setup = Setup { surface: places, ..Setup::default() };
         let report = match heights.raise(source) {
             Ok(raised) => run(&raised, setup),

@@ -1,8 +1,8 @@
 //! A straight move of the source against the feed moves of the program.
 
-use crate::expected::Goal;
+use crate::expected::ExpectedMotion;
 use crate::gauge::Gauge;
-use crate::place::{Number, Place, Station};
+use crate::resolved_pose::{Number, PartialPose, ResolvedPose};
 use control::{Orientation, Position};
 use geom::{Vec3, between, nearest_on_segment, off_great_circle};
 
@@ -27,10 +27,10 @@ const SAMPLE: f64 = 3.0;
 /// How the move leaves the line: beside it, backwards, or with the tool axis elsewhere.
 pub(crate) fn follow(
     gauge: &Gauge,
-    goal: &Goal,
+    goal: &ExpectedMotion,
     t: f64,
-    here: &Station,
-    to: &Station,
+    here: &ResolvedPose,
+    to: &ResolvedPose,
 ) -> Result<Followed, String> {
     let from = goal.from.unwrap_or(goal.to);
     let length = from.tip.distance(goal.to.tip);
@@ -50,7 +50,7 @@ pub(crate) fn follow(
         for i in 1..=samples {
             let part = f64::from(i) / f64::from(samples + 1);
             let pose = blend(&here.position, &to.position, part);
-            let place = Place::of(gauge.machine, &pose, gauge.tool_length);
+            let place = PartialPose::of(gauge.machine, &pose, gauge.tool_length);
             if !matches!(pose.orientation, Orientation::Rotary { tool_center: true, .. }) {
                 let (_, beside) = nearest_on_segment(from.tip, goal.to.tip, place.tip);
                 let allowed = slack + gauge.allowed.linearisation_mm;
@@ -70,8 +70,8 @@ pub(crate) fn follow(
 /// against the great circle where the tip stands still.
 fn axis(
     gauge: &Gauge,
-    from: &Place,
-    to: &Place,
+    from: &PartialPose,
+    to: &PartialPose,
     expected: impl FnOnce() -> Option<Vec3>,
     axis: Vec3,
 ) -> Result<(), String> {
@@ -103,7 +103,7 @@ pub(crate) fn turn(from: &Position, to: &Position) -> Option<f64> {
 
 /// Whether the machine turns the tool in a move of its own axes that began in other coordinates: the
 /// way of the tip is then not known.
-fn unlike(here: &Station, to: &Station) -> bool {
+fn unlike(here: &ResolvedPose, to: &ResolvedPose) -> bool {
     let same_kind = match (here.position.orientation, to.position.orientation) {
         (
             Orientation::Rotary { tool_center: s, .. },

@@ -26,7 +26,7 @@ pub(crate) struct MachinePose {
 
 impl Gauge<'_> {
     /// Where the axes stand at a position of the program, with the rotary axes at `rotary` (degrees of A, B, C), which
-    /// is one of [`Standing::at`].
+    /// is one of [`PossiblePositions::at`].
     ///
     /// # Errors
     /// The fact on which it hangs, where nobody says it.
@@ -57,7 +57,7 @@ impl Gauge<'_> {
 /// and the axes follow without a jump from where they stand, also beyond half a turn; behind an unknown place they may
 /// stand at any solution that is within the travel. Of a tilted plane the control takes those that its rule of choice
 /// allows ([`crate::tilt`]).
-pub(crate) struct Standing<'a> {
+pub(crate) struct PossiblePositions<'a> {
     machine: &'a Machine,
     inverse: Inverse<'a>,
     /// Degrees of A, B, C; several where it is not known which the control has taken, none where nothing is known.
@@ -98,7 +98,7 @@ const POLE_STEPS: u32 = 40;
 /// The tool turns at most this much between two places that are looked at near a pole, radians: a tenth of a degree.
 const POLE_SAMPLE: f64 = std::f64::consts::PI / 1800.0;
 
-impl<'a> Standing<'a> {
+impl<'a> PossiblePositions<'a> {
     /// How far from the pole, degrees, the vector of a block to `axis` goes past it, where that is so near that the control
     /// leads it through the pole. Ends that are themselves so near are not judged, nor a way through the pole itself.
     pub fn passes_pole(&mut self, axis: Vec3) -> Option<f64> {
@@ -127,8 +127,8 @@ impl<'a> Standing<'a> {
     }
 
     /// Before the first block: nowhere that is known.
-    pub fn new(machine: &'a Machine) -> Standing<'a> {
-        Standing {
+    pub fn new(machine: &'a Machine) -> PossiblePositions<'a> {
+        PossiblePositions {
             machine,
             inverse: Inverse::of(machine),
             angles: Vec::new(),
@@ -169,7 +169,7 @@ impl<'a> Standing<'a> {
         &self.angles
     }
 
-    /// The first position beyond the travel on the way to what [`Standing::at`] was asked for last.
+    /// The first position beyond the travel on the way to what [`PossiblePositions::at`] was asked for last.
     pub fn strayed(&self) -> Option<Degrees> {
         self.strayed
     }

@@ -2,7 +2,7 @@
 //! and the control counts other ways than the tip's.
 
 use crate::gauge::Gauge;
-use crate::place::Number;
+use crate::resolved_pose::Number;
 use crate::state::{self, Difference};
 use control::{FeedPath, Orientation, Position};
 use geom::Vec3;

@@ -1,7 +1,7 @@
 //! What holds while the tool moves: feed, spindle, coolant, tool, offsets.
 
-use crate::expected::Wanted;
-use crate::place::Number;
+use crate::expected::ExpectedState;
+use crate::resolved_pose::Number;
 use crate::tolerance::Applied;
 use control::{Corners, Dialect, FeedPath};
 use machine::{LengthOffset, Machine, RotaryAxis};
@@ -104,7 +104,11 @@ impl Running {
 pub(crate) type Difference = (Rule, String);
 
 /// What must be right on every move to a known place: tool, length offset, work offset.
-pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+pub(crate) fn set_up(
+    machine: &Machine,
+    wanted: &ExpectedState,
+    running: &Running,
+) -> Option<Difference> {
     if let Some(tool) = wanted.tool {
         match &running.tool {
             None => return Some((Rule::Tool, format!("{} is not called", named(tool)))),
@@ -135,7 +139,11 @@ pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> O
 
 /// The same at a stop of a rapid. On its way to a tool change the last tool is still in the spindle,
 /// with the register that was its own.
-pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+pub(crate) fn at_stop(
+    machine: &Machine,
+    wanted: &ExpectedState,
+    running: &Running,
+) -> Option<Difference> {
     match (wanted.tool, &running.tool) {
         (Some(_), None) => None,
         (Some(tool), Some(last)) if !same_tool(tool, last) => {
@@ -151,7 +159,11 @@ pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> 
 
 /// The work offset, or the register of a tool length, that is active at the end and was not in the last cut. The first work offset
 /// may stay, and the one at reset.
-pub(crate) fn offset_left(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<String> {
+pub(crate) fn offset_left(
+    machine: &Machine,
+    wanted: &ExpectedState,
+    running: &Running,
+) -> Option<String> {
     let at_reset = Dialect::named(&machine.reader).and_then(Dialect::work_offset_at_reset);
     let may_stay = [wanted.work_offset, at_reset, Some(WorkOffset::FIRST)];
     if let Some(active) = running.work_offset.filter(|active| !may_stay.contains(&Some(*active))) {
@@ -165,7 +177,7 @@ pub(crate) fn offset_left(machine: &Machine, wanted: &Wanted, running: &Running)
     (difference.0 == "length-offset").then_some(difference.1)
 }
 
-fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+fn work_offset(machine: &Machine, wanted: &ExpectedState, running: &Running) -> Option<Difference> {
     let expected = wanted.work_offset.unwrap_or(WorkOffset::FIRST);
     match running.work_offset {
         Some(active) if active != expected => {
@@ -189,7 +201,7 @@ fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<
 /// What must be right in the cut besides: spindle and coolant.
 pub(crate) fn spindle_and_coolant(
     allowed: &Applied,
-    wanted: &Wanted,
+    wanted: &ExpectedState,
     running: &Running,
 ) -> Option<Difference> {
     if !same_spindle(allowed, wanted.spindle, running.spindle) {
@@ -260,7 +272,11 @@ pub(crate) fn clamps(machine: &Machine, turns: [bool; 3], running: &Running) -> 
 }
 
 /// What leans the wire in the cut.
-pub(crate) fn taper(allowed: &Applied, wanted: &Wanted, running: &Running) -> Option<Difference> {
+pub(crate) fn taper(
+    allowed: &Applied,
+    wanted: &ExpectedState,
+    running: &Running,
+) -> Option<Difference> {
     let (is, should) = (running.taper, wanted.taper);
     // Rounding does not turn a lean round, nor end it.
     let same = (is - should).abs() <= allowed.taper_degrees && (is == 0.0) == (should == 0.0);

@@ -1,7 +1,7 @@
 //! The stops of a rapid on its way: axis by axis, and lifts along the tool axis.
 
 use crate::gauge::Gauge;
-use crate::place::Station;
+use crate::resolved_pose::ResolvedPose;
 use control::Orientation;
 use geom::Vec3;
 
@@ -11,7 +11,7 @@ const SAME: f64 = 1e-6;
 
 /// How the stops between two places are explained.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Lift {
+pub(crate) struct Retract {
     /// How far the tool was lifted along its axis above where it left, mm.
     pub left_mm: f64,
     /// How far above where it arrives it stood before it came down along its axis, mm.
@@ -26,15 +26,15 @@ pub(crate) struct Lift {
 /// The first stop that nothing explains.
 pub(crate) fn explain<'s>(
     gauge: &Gauge,
-    start: &Station,
-    stops: &'s [Station],
-    end: &Station,
+    start: &ResolvedPose,
+    stops: &'s [ResolvedPose],
+    end: &ResolvedPose,
     free: bool,
-) -> Result<Lift, &'s Station> {
-    let above = |base: &Station, stop: &Station| {
+) -> Result<Retract, &'s ResolvedPose> {
+    let above = |base: &ResolvedPose, stop: &ResolvedPose| {
         lifted(gauge, base, stop).then(|| base.place.above(stop.place.tip).0)
     };
-    let mut lift = Lift::default();
+    let mut lift = Retract::default();
     let (mut left, mut came) = (start, end);
     let mut middle = stops;
     while let [first, rest @ ..] = middle {
@@ -55,7 +55,7 @@ pub(crate) fn explain<'s>(
 
 /// Whether `stop` is above `base` along its tool axis, with the tool as it stands there. Both are rounded, and the axis is
 /// known as well as its words say it, so the higher, the farther beside.
-pub(crate) fn lifted(gauge: &Gauge, base: &Station, stop: &Station) -> bool {
+pub(crate) fn lifted(gauge: &Gauge, base: &ResolvedPose, stop: &ResolvedPose) -> bool {
     let (height, beside) = base.place.above(stop.place.tip);
     let slack = gauge.slack(stop);
     let axis_degrees = gauge.allowed.axis_degrees;
@@ -75,8 +75,14 @@ fn each(s: Vec3, a: Vec3, b: Vec3, slack: f64) -> bool {
 }
 
 /// Whether each coordinate of `stop` is that of `start`, that of `end`, or not known.
-fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: bool) -> bool {
-    let rotary = |station: &Station| match station.position.orientation {
+fn corner(
+    gauge: &Gauge,
+    stop: &ResolvedPose,
+    start: &ResolvedPose,
+    end: &ResolvedPose,
+    free: bool,
+) -> bool {
+    let rotary = |station: &ResolvedPose| match station.position.orientation {
         Orientation::Rotary { degrees, tool_center } => Some((degrees, tool_center)),
         Orientation::Axis(_) => None,
     };
@@ -106,10 +112,10 @@ fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: b
 /// The same for a stop whose place is not known, in a kind of coordinates that not both ends have. What
 /// its block says counts against the end that has the same; where neither has, only the height must be
 /// unknown: then Z is home. Where the axes of the machine go meanwhile, `approach` looks at.
-fn partly_known(stop: &Station, start: &Station, end: &Station, slack: f64) -> bool {
+fn partly_known(stop: &ResolvedPose, start: &ResolvedPose, end: &ResolvedPose, slack: f64) -> bool {
     let s = stop.position;
-    let alike = |other: &Station| s.orientation == other.position.orientation;
-    let said = |other: &Station| if alike(other) { other.position.point } else { Vec3::NAN };
+    let alike = |other: &ResolvedPose| s.orientation == other.position.orientation;
+    let said = |other: &ResolvedPose| if alike(other) { other.position.point } else { Vec3::NAN };
     match alike(start) || alike(end) {
         true => each(s.point, said(start), said(end), slack),
         false => s.point.z.is_nan(),

@@ -11,7 +11,7 @@ use program::{Diagnostic, Op, Program, Surface};
 const WITHIN: f64 = 0.9;
 
 /// A surface, as its places and as a map of them.
-pub(crate) struct Trial {
+pub(crate) struct MappedSurface {
     pub places: Vec<Vec3>,
     pub heights: HeightMap,
 }
@@ -28,7 +28,7 @@ pub(crate) fn found(program: &Program) -> Option<&Surface> {
 ///
 /// # Errors
 /// A grid that is none.
-pub(crate) fn trials(surface: &Surface) -> Result<[Trial; 3], Box<Diagnostic>> {
+pub(crate) fn trials(surface: &Surface) -> Result<[MappedSurface; 3], Box<Diagnostic>> {
     let [low, high] = surface.reach().map(|reach| WITHIN * reach);
     let (columns, rows) = (surface.columns().len(), surface.rows().len());
     let part = |index: usize, count: usize| index as f64 / count.saturating_sub(1).max(1) as f64;
@@ -43,7 +43,7 @@ pub(crate) fn trials(surface: &Surface) -> Result<[Trial; 3], Box<Diagnostic>> {
 fn trial(
     surface: &Surface,
     height: impl Fn(usize, usize) -> f64,
-) -> Result<Trial, Box<Diagnostic>> {
+) -> Result<MappedSurface, Box<Diagnostic>> {
     let rows = surface.rows().iter().enumerate();
     let places: Vec<Vec3> = rows
         .flat_map(|(row, y)| {
@@ -54,7 +54,7 @@ fn trial(
         .collect();
     let heights = places.iter().map(|place| place.z).collect();
     let heights = HeightMap::on(surface.columns().to_vec(), surface.rows().to_vec(), heights)?;
-    Ok(Trial { places, heights })
+    Ok(MappedSurface { places, heights })
 }
 
 /// A number from 0 to 1 for each number, without order: the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast

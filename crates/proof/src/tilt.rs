@@ -212,7 +212,7 @@ fn counted(machine: &Machine, is_second_first: bool) -> Vec<usize> {
     order
 }
 
-/// Place (in A, B, C) of the main rotary axis of a HEIDENHAIN: the first seen from the tool, or the last seen from the
+/// Index (in A, B, C) of the main rotary axis of a HEIDENHAIN: the first seen from the tool, or the last seen from the
 /// table.
 fn main_axis(machine: &Machine) -> usize {
     let head = machine.rotary.iter().rev().find(|axis| axis.on == Mount::Head);

@@ -1,7 +1,7 @@
 //! How close the two motions must be.
 
 use crate::accepted::Accepted;
-use crate::place::Place;
+use crate::resolved_pose::PartialPose;
 use control::{Orientation, Position};
 use geom::Vec3;
 use machine::{Machine, Mount};
@@ -116,7 +116,7 @@ impl Applied {
         &self,
         machine: &Machine,
         pose: &Position,
-        place: &Place,
+        place: &PartialPose,
         tool_length: Option<f64>,
     ) -> f64 {
         if self.rotary_degrees == 0.0 {

@@ -1,9 +1,9 @@
 //! The way from a control to who asked: its records go out one by one, compensated, and jumps are counted against them.
 
+use super::Outcome;
 use super::budget::Budget;
 use super::compensation::{Compensator, Terms};
 use super::relay;
-use super::source::Fallible;
 use crate::event::{Action, Event};
 use crate::{Settings, Sink};
 use program::{Compensation, Diagnostic};
@@ -28,7 +28,7 @@ impl<'a> Channel<'a> {
     /// # Errors
     /// What the caller answered; or the record does not fit to compensation that is on.
     #[inline]
-    pub fn take(&mut self, record: Event) -> Fallible<()> {
+    pub fn take(&mut self, record: Event) -> Outcome {
         self.budget.record(&record.action);
         self.compensator.take(record)
     }
@@ -37,12 +37,12 @@ impl<'a> Channel<'a> {
     ///
     /// # Errors
     /// As [`Channel::take`].
-    pub fn report(&mut self, line: u32, action: Action) -> Fallible<()> {
+    pub fn report(&mut self, line: u32, action: Action) -> Outcome {
         self.take(Event { line, action })
     }
 
     /// Compensation changes to `side` in `line`, with the next move.
-    pub(crate) fn switch(&mut self, line: u32, side: Compensation, terms: Terms) -> Fallible<()> {
+    pub(crate) fn switch(&mut self, line: u32, side: Compensation, terms: Terms) -> Outcome {
         self.compensator.switch(line, side, terms)
     }
 }
@@ -57,8 +57,8 @@ pub fn run(
     file_name: &str,
     text: &[u8],
     sink: &mut Sink,
-    language: impl FnOnce(&mut Channel) -> Fallible<()> + Send,
-) -> Fallible<()> {
+    language: impl FnOnce(&mut Channel) -> Outcome + Send,
+) -> Outcome {
     let control = |sink: &mut Sink| {
         let mut channel = Channel::new(settings, sink);
         language(&mut channel)?;

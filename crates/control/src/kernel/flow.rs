@@ -8,7 +8,7 @@ use std::ops::Index;
 
 /// Where a block begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Place {
+pub struct BlockLocation {
     /// Byte of the text.
     pub at: usize,
     /// Line of the file, from 1.
@@ -16,18 +16,18 @@ pub struct Place {
 }
 
 /// The line at a place of a text, ended by LF or CR LF, and where the next one begins; `None` behind the last.
-pub fn line(text: &[u8], place: Place) -> Option<(&[u8], Place)> {
+pub fn line(text: &[u8], place: BlockLocation) -> Option<(&[u8], BlockLocation)> {
     let rest = text.get(place.at..).filter(|rest| !rest.is_empty())?;
     let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
     let at = (place.at + length + 1).min(text.len());
     let line = rest.get(..length).unwrap_or(rest);
-    let next = Place { at, line: place.line.saturating_add(1) };
+    let next = BlockLocation { at, line: place.line.saturating_add(1) };
     Some((line.strip_suffix(b"\r").unwrap_or(line), next))
 }
 
 /// The lines of a text: where each begins, where the next one does, and what it says.
-pub fn lines(text: &[u8]) -> impl Iterator<Item = (Place, Place, &[u8])> {
-    let mut place = Place { at: 0, line: 1 };
+pub fn lines(text: &[u8]) -> impl Iterator<Item = (BlockLocation, BlockLocation, &[u8])> {
+    let mut place = BlockLocation { at: 0, line: 1 };
     std::iter::from_fn(move || {
         let (line, next) = line(text, place)?;
         Some((std::mem::replace(&mut place, next), next, line))
@@ -37,7 +37,7 @@ pub fn lines(text: &[u8]) -> impl Iterator<Item = (Place, Place, &[u8])> {
 /// The places to which jumps and calls go, by their names or numbers.
 #[derive(Debug)]
 pub struct Labels<K> {
-    places: HashMap<K, Vec<Place>>,
+    places: HashMap<K, Vec<BlockLocation>>,
 }
 
 impl<K> Default for Labels<K> {
@@ -48,25 +48,25 @@ impl<K> Default for Labels<K> {
 
 impl<K: Eq + Hash> Labels<K> {
     /// Adds a place behind those that have been added; whether it is the first of that label.
-    pub fn add(&mut self, label: K, place: Place) -> bool {
+    pub fn add(&mut self, label: K, place: BlockLocation) -> bool {
         let places = self.places.entry(label).or_default();
         places.push(place);
         places.len() == 1
     }
 
     /// The first place of that label.
-    pub fn first(&self, label: &K) -> Option<Place> {
+    pub fn first(&self, label: &K) -> Option<BlockLocation> {
         self.places.get(label)?.first().copied()
     }
 
     /// The first place of that label at byte `at` or behind it.
-    pub fn behind(&self, label: &K, at: usize) -> Option<Place> {
+    pub fn behind(&self, label: &K, at: usize) -> Option<BlockLocation> {
         let places = self.places.get(label)?;
         places.get(places.partition_point(|place| place.at < at)).copied()
     }
 
     /// The last place of that label before byte `at`.
-    pub fn before(&self, label: &K, at: usize) -> Option<Place> {
+    pub fn before(&self, label: &K, at: usize) -> Option<BlockLocation> {
         let places = self.places.get(label)?;
         places.partition_point(|place| place.at < at).checked_sub(1).map(|index| places[index])
     }
@@ -78,9 +78,9 @@ pub struct Mark<W> {
     /// What it says.
     pub word: W,
     /// Where it stands.
-    pub place: Place,
+    pub place: BlockLocation,
     /// The block behind it.
-    pub after: Place,
+    pub after: BlockLocation,
     /// The next block of the same structure; of its last one, the first.
     pub partner: usize,
     /// The first block of the structure, and there the last one.
@@ -114,7 +114,7 @@ impl<W> Index<usize> for Structures<W> {
 }
 
 impl<W> Structures<W> {
-    fn add(&mut self, word: W, [place, after]: [Place; 2]) -> usize {
+    fn add(&mut self, word: W, [place, after]: [BlockLocation; 2]) -> usize {
         let (index, inside) = (self.marks.len(), self.open.last().copied());
         let (partner, first, last) = (index, index, index);
         self.marks.push(Mark { word, place, after, partner, first, last, inside });
@@ -123,14 +123,14 @@ impl<W> Structures<W> {
 
     /// Adds a block that is no part of a structure but is found like one, with its `partner`, if it has one; answers its
     /// index. `place` is where it stands and where the next block does.
-    pub fn single(&mut self, word: W, place: [Place; 2], partner: Option<usize>) -> usize {
+    pub fn single(&mut self, word: W, place: [BlockLocation; 2], partner: Option<usize>) -> usize {
         let index = self.add(word, place);
         self.marks[index].partner = partner.unwrap_or(index);
         index
     }
 
     /// Adds the block with which a structure begins.
-    pub fn open(&mut self, word: W, place: [Place; 2]) -> usize {
+    pub fn open(&mut self, word: W, place: [BlockLocation; 2]) -> usize {
         let index = self.add(word, place);
         self.marks[index].inside = Some(index);
         self.open.push(index);
@@ -138,7 +138,7 @@ impl<W> Structures<W> {
     }
 
     /// Adds the next clause of the inmost structure that has no end, as `ELSE`; `None` where there is none.
-    pub fn clause(&mut self, word: W, place: [Place; 2]) -> Option<usize> {
+    pub fn clause(&mut self, word: W, place: [BlockLocation; 2]) -> Option<usize> {
         let before = self.open.pop()?;
         let index = self.open(word, place);
         self.marks[index].first = self.marks[before].first;
@@ -147,7 +147,7 @@ impl<W> Structures<W> {
     }
 
     /// Adds the end of the inmost structure that has none; `None` where there is none.
-    pub fn close(&mut self, word: W, place: [Place; 2]) -> Option<usize> {
+    pub fn close(&mut self, word: W, place: [BlockLocation; 2]) -> Option<usize> {
         let before = self.open.pop()?;
         let index = self.add(word, place);
         let first = self.marks[before].first;

@@ -11,7 +11,6 @@
 //! their ends. Lengths are mm, angles degrees where a text says them; a coordinate that nobody knows is NaN.
 
 pub mod arc;
-pub(crate) mod belt;
 pub mod budget;
 mod channel;
 pub(crate) mod compensation;
@@ -20,10 +19,11 @@ pub mod decimal;
 pub mod expression;
 pub mod flow;
 pub(crate) mod folders;
+pub(crate) mod modulo;
+pub(crate) mod queue;
 mod relay;
 pub mod source;
-pub(crate) mod way;
 
 pub(crate) use channel::LONG;
 pub use channel::{Channel, run};
-pub use source::Fallible;
+pub use program::Outcome;

@@ -2,7 +2,7 @@
 
 use crate::Sink;
 use crate::event::Event;
-use crate::kernel::belt::belt;
+use crate::kernel::queue::belt;
 use program::{Diagnostic, Rule};
 use std::{mem, panic, thread};
 

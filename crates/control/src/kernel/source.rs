@@ -3,9 +3,6 @@
 use program::{Diagnostic, Rule};
 use std::ops::Range;
 
-/// What a step of a control answers: what is wrong stops the run.
-pub type Fallible<T> = Result<T, Box<Diagnostic>>;
-
 /// One block of the program text.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {

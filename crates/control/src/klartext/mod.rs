@@ -10,7 +10,7 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::kernel::{Channel, Fallible};
+use crate::kernel::{Channel, Outcome};
 use execution::state::Control;
 use flow::run::Run;
 
@@ -20,7 +20,7 @@ pub(crate) fn vocabulary() -> Vec<String> {
 }
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fallible<()> {
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
     let mut control = Control::new(settings, channel);
     Run::begin(&mut control, "", text)?.finish()
 }

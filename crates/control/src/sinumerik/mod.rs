@@ -10,7 +10,7 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::kernel::{Channel, Fallible};
+use crate::kernel::{Channel, Outcome};
 
 /// Its commands, addresses, calls and cycles, and the M functions of the control itself.
 pub(crate) fn vocabulary() -> Vec<String> {
@@ -19,6 +19,6 @@ pub(crate) fn vocabulary() -> Vec<String> {
 }
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fallible<()> {
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
     flow::run::Run::main(settings, text, channel)
 }

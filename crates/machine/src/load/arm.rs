@@ -1,6 +1,6 @@
 //! The table `[arm]`: lengths, joints and limits that have to make an arm together.
 
-use super::Result;
+use super::Outcome;
 use super::file::SheetFile;
 use crate::sheet::{Angle, ArmSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet, Position};
 use arm::{Arm, Calibration, Coupling, CouplingLimit, Dh, Joint, Spherical, Structure};
@@ -22,7 +22,7 @@ impl PlacedArm {
     ///
     /// # Errors
     /// What is missing, or does not go together.
-    pub(super) fn finish(self) -> Result<Arm> {
+    pub(super) fn finish(self) -> Outcome<Arm> {
         let PlacedArm { sheet, place } = self;
         let wrong = |message: &str| {
             let message = format!("{}{message}", place.message);

@@ -1,6 +1,6 @@
 //! Sheets that are in order by themselves, merged, and the machine that they make.
 
-use super::Result;
+use super::Outcome;
 use super::arm::{self, PlacedArm};
 use super::file::SheetFile;
 use crate::model::*;
@@ -49,12 +49,12 @@ fn wrong(place: &Diagnostic, message: &str) -> Box<Diagnostic> {
 pub(super) struct CheckedSheet {
     pub(super) extends: Option<Spanned<String>>,
     title: Option<String>,
-    reader: Option<(String, Place)>,
+    reader: Option<(String, FileLocation)>,
     extension: Option<String>,
     capabilities: CapabilitiesSheet,
     format: FormatSheet,
     settings: SettingsSheet,
-    words: BTreeMap<String, (WordSheet, Place)>,
+    words: BTreeMap<String, (WordSheet, FileLocation)>,
     blocks: BTreeMap<String, Block>,
     axes: BTreeMap<LinearName, Placed<LinearSheet>>,
     rotary: Option<Placed<Vec<RotaryAxis>>>,
@@ -74,7 +74,7 @@ pub(super) struct CheckedSheet {
 
 impl CheckedSheet {
     /// Checks what serde cannot see; errors are reported at their location in the file.
-    pub(super) fn new(sheet: Sheet, file: &SheetFile) -> Result<CheckedSheet> {
+    pub(super) fn new(sheet: Sheet, file: &SheetFile) -> Outcome<CheckedSheet> {
         let word = |(name, word)| (name, file.placed(word));
         let axis = |(name, axis): (LinearName, Spanned<LinearSheet>)| {
             let placed = Placed::new(file, &format!("axes.{name:?}"), axis);
@@ -86,7 +86,7 @@ impl CheckedSheet {
             )?;
             Ok((name, placed))
         };
-        let axes: Result<_> = sheet.axes.unwrap_or_default().into_iter().map(axis).collect();
+        let axes: Outcome<_> = sheet.axes.unwrap_or_default().into_iter().map(axis).collect();
         let blocks = sheet.blocks.unwrap_or_default().into_iter();
         let spindle = sheet.spindle.map(|spindle| Placed::new(file, "spindle", spindle));
         if let Some(Placed { sheet, place }) = &spindle {
@@ -121,7 +121,7 @@ impl CheckedSheet {
 }
 
 /// Refuses a range that holds nothing.
-fn check_range(place: &Diagnostic, min: Option<f64>, max: Option<f64>, unit: &str) -> Result<()> {
+fn check_range(place: &Diagnostic, min: Option<f64>, max: Option<f64>, unit: &str) -> Outcome {
     match (min, max) {
         (Some(min), Some(max)) if min >= max => {
             let message = format!("`min` is less than `max`, not {min} {unit} and {max} {unit}");
@@ -135,7 +135,7 @@ fn check_range(place: &Diagnostic, min: Option<f64>, max: Option<f64>, unit: &st
 fn check_options(
     file: &SheetFile,
     options: BTreeMap<String, Spanned<OptionSheet>>,
-) -> Result<BTreeMap<String, OptionSheet>> {
+) -> Outcome<BTreeMap<String, OptionSheet>> {
     let checked = |(name, value): (String, Spanned<OptionSheet>)| {
         let wrong = match value.get_ref() {
             OptionSheet::Number(number) => wrong_option(&name, *number),
@@ -150,7 +150,7 @@ fn check_options(
 }
 
 /// Every linear axis comes once.
-fn check_approach(file: &SheetFile, order: Spanned<Vec<String>>) -> Result<Vec<String>> {
+fn check_approach(file: &SheetFile, order: Spanned<Vec<String>>) -> Outcome<Vec<String>> {
     let mut letters: Vec<char> = order.get_ref().concat().chars().collect();
     letters.sort_unstable();
     if letters != ['X', 'Y', 'Z'] || order.get_ref().iter().any(String::is_empty) {
@@ -163,7 +163,7 @@ fn check_approach(file: &SheetFile, order: Spanned<Vec<String>>) -> Result<Vec<S
 fn check_rotary(
     file: &SheetFile,
     axes: Spanned<Vec<Spanned<RotarySheet>>>,
-) -> Result<Placed<Vec<RotaryAxis>>> {
+) -> Outcome<Placed<Vec<RotaryAxis>>> {
     let place = file.at("rotary", &axes, "");
     let mut checked: Vec<RotaryAxis> = Vec::new();
     for spanned in axes.into_inner() {
@@ -227,7 +227,7 @@ fn check_clamps(
     rotary: &[RotaryAxis],
     modes: [OrientationMode; 2],
     blocks: &BTreeMap<String, Block>,
-) -> Result<()> {
+) -> Outcome {
     let clamps: Vec<Clamp> = rotary.iter().filter_map(|axis| axis.clamp).collect();
     if clamps.iter().any(|a| clamps.iter().any(|b| a.open == b.close)) {
         return Err(wrong(place, "one M function opens a clamp and closes another"));
@@ -306,7 +306,7 @@ impl CheckedSheet {
         file: String,
         control: String,
         missing: &dyn Fn(&str) -> Box<Diagnostic>,
-    ) -> Result<Machine> {
+    ) -> Outcome<Machine> {
         let mut linear = [LinearAxis::default(); 3];
         for (axis, name) in linear.iter_mut().zip([LinearName::X, LinearName::Y, LinearName::Z]) {
             if let Some(Placed { sheet, place }) = self.axes.remove(&name) {
@@ -375,7 +375,7 @@ impl CheckedSheet {
         let line_length = capabilities.line_length.unwrap_or(256);
         let (reader, reader_place) = match self.reader {
             Some(reader) => reader,
-            None if arm.is_some() => (String::new(), Place { file: file.clone(), line: 0 }),
+            None if arm.is_some() => (String::new(), FileLocation { file: file.clone(), line: 0 }),
             None => return Err(missing("`reader`, the virtual control,")),
         };
         if kinematics.is_some() && reader != "linuxcnc" {
@@ -485,7 +485,7 @@ impl CheckedSheet {
 }
 
 /// The safe height, which Z must reach.
-fn check_safe_height(safe: &Placed<Position>, z: &LinearAxis) -> Result<f64> {
+fn check_safe_height(safe: &Placed<Position>, z: &LinearAxis) -> Outcome<f64> {
     let (height, LinearAxis { min, max, .. }) = (safe.sheet.0, *z);
     if height < min || height > max {
         let message = format!("{height} mm, and Z travels from {min} to {max} mm");
@@ -515,7 +515,7 @@ fn finish_wire(sheet: &WireSheet) -> Wire {
     }
 }
 
-fn finish_word(name: String, (sheet, place): (WordSheet, Place)) -> (String, Word) {
+fn finish_word(name: String, (sheet, place): (WordSheet, FileLocation)) -> (String, Word) {
     let word = Word {
         address: sheet.address.unwrap_or_else(|| name.clone()),
         suffix: sheet.suffix.unwrap_or_default(),

@@ -1,8 +1,8 @@
 //! A machine file: where it is found, and places in it.
 
-use super::{Reach, Result, is_path};
+use super::{Outcome, Reach, is_path};
 use crate::library;
-use crate::model::{Block, Place};
+use crate::model::{Block, FileLocation};
 use crate::sheet::Sheet;
 use program::{Diagnostic, Rule, encoding, nearest};
 use std::fs::{self, File};
@@ -34,7 +34,7 @@ impl SheetFile {
         SheetFile { path, text, own, quoted: true, lines }
     }
 
-    pub(super) fn read(path: &Path, reach: &Reach) -> Result<SheetFile> {
+    pub(super) fn read(path: &Path, reach: &Reach) -> Outcome<SheetFile> {
         reach.check(path)?;
         let shown = path.display().to_string();
         let fail = |why: String| {
@@ -62,7 +62,7 @@ impl SheetFile {
         Ok(SheetFile::new(path.to_path_buf(), text, true))
     }
 
-    pub(super) fn of_library(name: &str, kinds: &[library::Kind]) -> Result<SheetFile> {
+    pub(super) fn of_library(name: &str, kinds: &[library::Kind]) -> Outcome<SheetFile> {
         match library::find(name, kinds) {
             Some((path, text)) => Ok(SheetFile::new(PathBuf::from(path), text.to_string(), false)),
             None if library::find(name, library::EVERYTHING).is_some() => {
@@ -88,7 +88,7 @@ impl SheetFile {
         }
     }
 
-    pub(super) fn parent(&self, parent: &Spanned<String>, reach: &Reach) -> Result<SheetFile> {
+    pub(super) fn parent(&self, parent: &Spanned<String>, reach: &Reach) -> Outcome<SheetFile> {
         let name = parent.get_ref();
         let found = if is_path(name) && self.own {
             self.parent_file(name, reach)
@@ -99,7 +99,7 @@ impl SheetFile {
     }
 
     /// The file of that path, from the folder of this one.
-    fn parent_file(&self, name: &str, reach: &Reach) -> Result<SheetFile> {
+    fn parent_file(&self, name: &str, reach: &Reach) -> Outcome<SheetFile> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let path = folder.join(name);
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -120,7 +120,7 @@ impl SheetFile {
         self.path.display().to_string()
     }
 
-    pub(super) fn parse(&self) -> Result<Sheet> {
+    pub(super) fn parse(&self) -> Outcome<Sheet> {
         toml::from_str(&self.text).map_err(|e| {
             let span = e.span().unwrap_or(0..0);
             let message = match self.quoted {
@@ -167,8 +167,8 @@ impl SheetFile {
         self.lines.partition_point(|&start| start <= offset) as u32
     }
 
-    pub(super) fn placed<T>(&self, value: Spanned<T>) -> (T, Place) {
-        let place = Place { file: self.name(), line: self.line_of(value.span().start) };
+    pub(super) fn placed<T>(&self, value: Spanned<T>) -> (T, FileLocation) {
+        let place = FileLocation { file: self.name(), line: self.line_of(value.span().start) };
         (value.into_inner(), place)
     }
 

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// How many files a chain of `extends` may have.
 const LONGEST_CHAIN: usize = 16;
 
-type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+use program::Outcome;
 
 /// Where machine files may be read, all that they extend with them. The library is within every reach.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Reach {
     ///
     /// # Errors
     /// The first mistake in the chain of files, with file, line, column and the way out.
-    pub fn load(&self, name_or_path: &str) -> Result<Machine> {
+    pub fn load(&self, name_or_path: &str) -> Outcome<Machine> {
         let file = if is_path(name_or_path) {
             SheetFile::read(Path::new(name_or_path), self)?
         } else {
@@ -50,7 +50,7 @@ impl Reach {
     ///
     /// # Errors
     /// As [`Reach::load`].
-    pub fn load_origin(&self, name_or_path: &str) -> Result<Machine> {
+    pub fn load_origin(&self, name_or_path: &str) -> Outcome<Machine> {
         match is_path(name_or_path) {
             true => self.load(name_or_path),
             false => build(SheetFile::of_library(name_or_path, library::EVERYTHING)?, self),
@@ -62,13 +62,13 @@ impl Reach {
     ///
     /// # Errors
     /// As [`Reach::load`].
-    pub fn load_text(&self, file_name: &str, text: &str) -> Result<Machine> {
+    pub fn load_text(&self, file_name: &str, text: &str) -> Outcome<Machine> {
         build(SheetFile::new(PathBuf::from(file_name), text.to_string(), true), self)
     }
 
     /// # Errors
     /// The file `path` lies elsewhere.
-    fn check(&self, path: &Path) -> Result<()> {
+    fn check(&self, path: &Path) -> Outcome {
         let (is_inside, help) = match self {
             Reach::Anywhere => return Ok(()),
             Reach::Folder(folder) => {
@@ -93,7 +93,7 @@ impl Reach {
 ///
 /// # Errors
 /// As there.
-pub fn load(name_or_path: &str) -> Result<Machine> {
+pub fn load(name_or_path: &str) -> Outcome<Machine> {
     Reach::Anywhere.load(name_or_path)
 }
 
@@ -101,7 +101,7 @@ pub fn load(name_or_path: &str) -> Result<Machine> {
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_control(name: &str) -> Result<Machine> {
+pub fn load_control(name: &str) -> Outcome<Machine> {
     build(SheetFile::of_library(name, library::CONTROLS)?, &Reach::Library)
 }
 
@@ -109,7 +109,7 @@ pub fn load_control(name: &str) -> Result<Machine> {
 ///
 /// # Errors
 /// As there.
-pub fn load_origin(name_or_path: &str) -> Result<Machine> {
+pub fn load_origin(name_or_path: &str) -> Outcome<Machine> {
     Reach::Anywhere.load_origin(name_or_path)
 }
 
@@ -117,11 +117,11 @@ pub fn load_origin(name_or_path: &str) -> Result<Machine> {
 ///
 /// # Errors
 /// As there.
-pub fn load_text(file_name: &str, text: &str) -> Result<Machine> {
+pub fn load_text(file_name: &str, text: &str) -> Outcome<Machine> {
     Reach::Anywhere.load_text(file_name, text)
 }
 
-fn build(file: SheetFile, reach: &Reach) -> Result<Machine> {
+fn build(file: SheetFile, reach: &Reach) -> Outcome<Machine> {
     let name = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let shown = file.name();
     let mut control = None;

@@ -23,7 +23,7 @@ mod search;
 pub use search::NEAR;
 
 use crate::Machine;
-use crate::inverse::{Bearings, Chain};
+use crate::inverse::{Chain, RotaryAngles};
 use axis::Axis;
 use geom::Vec3;
 use program::{Diagnostic, Rule};
@@ -99,7 +99,7 @@ const TURN: u32 = 1 << 31;
 /// before from which it is reached best; once that is settled, its own state.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    bearings: Bearings,
+    bearings: RotaryAngles,
     link: u32,
 }
 
@@ -160,7 +160,7 @@ impl Plan {
 
     /// The position of the inner axis in a singular pose, where both solutions have the same, in the
     /// turn nearest to `from`; `None` where its travel has none.
-    fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
+    fn inner(&self, bearings: &RotaryAngles, from: f64) -> Option<f64> {
         let first = self.axes[1].first(self.chain.solution(bearings, 0)[1].degrees());
         let far = |position: f64| self.axes[1].way(from, position).abs();
         let positions = (0..TURNS).map(|turn| self.axes[1].position(first, turn as f64));

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, SLACK};
 use super::{Cell, Plan, Rewind, TURN, TURNS, Target, TargetKind};
-use crate::inverse::{Bearings, Chain, Unreachable};
+use crate::inverse::{Chain, RotaryAngles, Unreachable};
 use crate::{Machine, OrientationMode};
 use geom::{ANGLE_EPSILON, Vec3, angle_between, between};
 use program::{Diagnostic, Rule};
@@ -174,7 +174,7 @@ impl<'a> Search<'a> {
     }
 
     /// Continues the best sequences to a singular target: the outer axis holds.
-    fn pass(&mut self, target: &Target, bearings: &Bearings) -> Result<(), Box<Diagnostic>> {
+    fn pass(&mut self, target: &Target, bearings: &RotaryAngles) -> Result<(), Box<Diagnostic>> {
         if self.plan.inner(bearings, 0.0).is_none() {
             return Err(self.out_of_travel(target, bearings));
         }
@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
     fn advance(
         &mut self,
         target: &Target,
-        bearings: &Bearings,
+        bearings: &RotaryAngles,
         approach: bool,
     ) -> Result<u32, Box<Diagnostic>> {
         self.plan.states(bearings, &mut self.next.states);
@@ -295,7 +295,7 @@ impl<'a> Search<'a> {
         self.plan
     }
 
-    fn out_of_travel(&self, target: &Target, bearings: &Bearings) -> Box<Diagnostic> {
+    fn out_of_travel(&self, target: &Target, bearings: &RotaryAngles) -> Box<Diagnostic> {
         let needs: Vec<String> = (0..self.plan.chain.families())
             .map(|family| {
                 let turns = self.plan.chain.solution(bearings, family);
@@ -362,7 +362,7 @@ impl Front {
 
 impl Plan {
     /// Writes the states that the travel leaves into `states`.
-    fn states(&self, bearings: &Bearings, states: &mut States) {
+    fn states(&self, bearings: &RotaryAngles, states: &mut States) {
         for (family, states) in
             states.chunks_exact_mut(TURNS).enumerate().take(self.chain.families())
         {

@@ -14,7 +14,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         title: "Test".into(),
         control: "iso".into(),
         reader: "fanuc".into(),
-        reader_place: Place::default(),
+        reader_place: FileLocation::default(),
         extension: "nc".into(),
         capabilities: Capabilities {
             arcs: vec![Plane::XY],

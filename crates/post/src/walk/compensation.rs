@@ -1,7 +1,7 @@
 //! Cutter compensation: it is switched with the first straight move in the plane, by rapid or in the cut, but
 //! not on the way from a place that the program does not know.
 
-use super::{Done, Walk, refuse};
+use super::{Outcome, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::contour::Contour;
 use crate::template::bit;
@@ -11,7 +11,7 @@ use program::{CompensatedPath, Compensation, Diagnostic, Op, Record, Rule};
 use std::collections::BTreeMap;
 
 impl Walk<'_> {
-    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Done {
+    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Outcome {
         if compensation != Compensation::Off && self.wire.is_none() && self.leaves_off()? {
             return Ok(());
         }
@@ -90,7 +90,7 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// The control cannot begin or end a contour so.
-    pub(crate) fn compensate(&mut self) -> Done {
+    pub(crate) fn compensate(&mut self) -> Outcome {
         let in_plane = bit(WordName::X) | bit(WordName::Y);
         if self.compensation_pending() && self.writer.changes(in_plane) {
             self.turn_contour()?;
@@ -110,7 +110,7 @@ impl Walk<'_> {
     }
 
     /// The next block begins a contour, or ends one.
-    fn turn_contour(&mut self) -> Done {
+    fn turn_contour(&mut self) -> Outcome {
         let (contour, to) = (self.contour.take(), self.in_plane(self.position.said()));
         let side = match self.wanted.compensation() {
             Compensation::Off => return contour.map_or(Ok(()), |contour| contour.leave(to)),
@@ -180,7 +180,7 @@ impl Walk<'_> {
 
     /// The block that has been written, a straight one, goes on with the contour.
     #[inline]
-    pub(crate) fn follow(&mut self, rapid: bool) -> Done {
+    pub(crate) fn follow(&mut self, rapid: bool) -> Outcome {
         match self.contour {
             Some(_) => self.follow_to(self.in_plane(self.position.said()), None, rapid),
             None => Ok(()),
@@ -188,11 +188,11 @@ impl Walk<'_> {
     }
 
     /// The same for an arc about +Z through `sweep` radians.
-    pub(crate) fn follow_arc(&mut self, end: Vec3, center: Vec3, sweep: f64) -> Done {
+    pub(crate) fn follow_arc(&mut self, end: Vec3, center: Vec3, sweep: f64) -> Outcome {
         self.follow_to(end.truncate(), Some(Turn { center: center.truncate(), sweep }), false)
     }
 
-    fn follow_to(&mut self, to: Vec2, turn: Option<Turn>, rapid: bool) -> Done {
+    fn follow_to(&mut self, to: Vec2, turn: Option<Turn>, rapid: bool) -> Outcome {
         let Some(mut contour) = self.contour.take() else { return Ok(()) };
         contour.go(to, turn, rapid)?;
         self.contour = Some(contour);
@@ -215,7 +215,7 @@ impl Walk<'_> {
     }
 
     /// Compensation has to be off before `what`.
-    pub(crate) fn uncompensated(&self, what: &str) -> Done {
+    pub(crate) fn uncompensated(&self, what: &str) -> Outcome {
         if !self.is_compensating() {
             return Ok(());
         }
@@ -226,7 +226,7 @@ impl Walk<'_> {
 
     /// The plane of work for a straight move that may switch compensation, with the tool along `axis`: the control offsets
     /// across Z of the coordinates that blocks have.
-    pub(crate) fn switch_plane(&mut self, axis: Vec3) -> Done {
+    pub(crate) fn switch_plane(&mut self, axis: Vec3) -> Outcome {
         if !self.compensation_pending() {
             return Ok(());
         }

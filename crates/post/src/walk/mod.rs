@@ -3,13 +3,13 @@
 mod compensation;
 mod technology;
 
-pub(crate) use technology::{Cut, Turn};
+pub(crate) use technology::{AxisPositions, Cut};
 
 use crate::around::Around;
 use crate::catalogue::{BlockName, WordName};
 use crate::contour::Contour;
+use crate::coordinate_mode::{CoordinateMode, Route, Stop};
 use crate::findings::Findings;
-use crate::place::{Place, Route, Stop};
 use crate::position::ToolPosition;
 use crate::sent::Sent;
 use crate::template::{
@@ -35,8 +35,7 @@ use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
 use technology::feed_mode;
 
-/// A step that may be refused.
-pub(crate) type Done = Result<(), Box<Diagnostic>>;
+pub(crate) use program::Outcome;
 
 /// Entries of the code word `motion`.
 pub(crate) mod motion {
@@ -107,7 +106,7 @@ pub(crate) struct Walk<'a> {
     /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
     /// from that in where it goes alone.
     pub(crate) goes_on: bool,
-    pub(crate) place: Place,
+    pub(crate) place: CoordinateMode,
     /// The wire, where the machine has one.
     pub(crate) wire: Option<Wire>,
     pub(crate) limits: Limits<'a>,
@@ -165,7 +164,7 @@ impl<'a> Walk<'a> {
             around: Around::default(),
             contour: None,
             goes_on: false,
-            place: Place::start(machine),
+            place: CoordinateMode::start(machine),
             wire: Wire::of(machine, program),
             limits: Limits::new(machine),
             followed: Cell::new(None),
@@ -191,7 +190,7 @@ impl<'a> Walk<'a> {
         Ok(crate::Output { text, blocks, warnings })
     }
 
-    fn records(&mut self) -> Done {
+    fn records(&mut self) -> Outcome {
         self.block(BlockName::ProgramStart)?;
         while self.index < self.source.records.len() {
             let rest = &self.source.records[self.index..];
@@ -224,7 +223,7 @@ impl<'a> Walk<'a> {
         if self.ended { Ok(()) } else { self.end() }
     }
 
-    fn record(&mut self, record: &'a Record, stop: Option<Stop>) -> Done {
+    fn record(&mut self, record: &'a Record, stop: Option<Stop>) -> Outcome {
         if self.ended {
             return match matches!(record.op, Op::End | Op::Comment(_) | Op::EndOfOperation) {
                 true => Ok(()),
@@ -381,7 +380,11 @@ impl<'a> Walk<'a> {
 
     /// A motion, by a tool that has been called. What it cuts straight on its way has a feed or an end of its own.
     #[inline]
-    fn motion(&mut self, stop: Option<Stop>, go: impl FnOnce(&mut Self, &Stop) -> Done) -> Done {
+    fn motion(
+        &mut self,
+        stop: Option<Stop>,
+        go: impl FnOnce(&mut Self, &Stop) -> Outcome,
+    ) -> Outcome {
         if self.wanted.tool().is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
@@ -391,7 +394,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Positions are counted from another work offset from here on; the way there leads over the part.
-    fn set_work_offset(&mut self, offset: WorkOffset) -> Done {
+    fn set_work_offset(&mut self, offset: WorkOffset) -> Outcome {
         let number = offset.number();
         let name = number.to_string();
         let texts = self.machine.words.get(WordName::WorkOffset.name()).map(|word| &word.codes);
@@ -416,7 +419,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The zero of a work offset, where the machine's programs may write it.
-    fn write_work_offset(&mut self, data: &WorkOffsetData) -> Done {
+    fn write_work_offset(&mut self, data: &WorkOffsetData) -> Outcome {
         if !self.machine.settings.sets_work_offsets {
             let message = "the source writes work offsets (G10), and the program does not: whoever runs it sets them";
             let help = "`sets_work_offsets = true` in [settings] of a machine file whose shop sets its fixtures by programs";
@@ -478,7 +481,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Writes a block, where the machine has it.
-    pub(crate) fn block(&mut self, name: BlockName) -> Done {
+    pub(crate) fn block(&mut self, name: BlockName) -> Outcome {
         self.writer.code(WordName::WorkOffset, self.sent.work_offset());
         let lines = self.writer.lines();
         match self.templates.lines(name) {
@@ -528,7 +531,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Writes a block that must be there.
-    pub(crate) fn required(&mut self, name: BlockName) -> Done {
+    pub(crate) fn required(&mut self, name: BlockName) -> Outcome {
         if self.templates.has(name) {
             return self.block(name);
         }
@@ -537,13 +540,13 @@ impl<'a> Walk<'a> {
         Err(refuse(Rule::MissingBlock, message).help(help).into())
     }
 
-    fn text(&mut self, name: BlockName, text: &str) -> Done {
+    fn text(&mut self, name: BlockName, text: &str) -> Outcome {
         self.scope.text = Value::from(printed(self.machine, text));
         self.block(name)
     }
 
     /// Everything is said, the control goes off.
-    fn end(&mut self) -> Done {
+    fn end(&mut self) -> Outcome {
         self.ended = true;
         self.wire_for(false, "the end of the program")?;
         self.uncompensated("the end of the program")?;
@@ -569,7 +572,7 @@ impl<'a> Walk<'a> {
         self.block(BlockName::ProgramEnd)
     }
 
-    fn dwell(&mut self, seconds: f64) -> Done {
+    fn dwell(&mut self, seconds: f64) -> Outcome {
         let positive = seconds > 0.0 && seconds.is_finite();
         if !positive {
             return Err(refuse(Rule::Dwell, format!("a dwell of {seconds} s")));
@@ -586,7 +589,7 @@ impl<'a> Walk<'a> {
     }
 
     /// A dwell. Where it says the feed mode, that is mm/min: under a feed per turn a control may count turns.
-    pub(crate) fn write_dwell(&mut self, seconds: f64) -> Done {
+    pub(crate) fn write_dwell(&mut self, seconds: f64) -> Outcome {
         if self.templates.places(BlockName::Dwell, WordName::FeedMode) {
             self.writer.code(WordName::FeedMode, feed_mode::PER_MINUTE);
             if self.writer.changes(bit(WordName::FeedMode)) {

@@ -1,6 +1,6 @@
 //! The technology of the walk: tools, spindle, coolant and feed, told when they are needed.
 
-use super::{Done, MOTION, Walk, refuse};
+use super::{MOTION, Outcome, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, tool_value};
 use geom::Vec3;
@@ -20,23 +20,23 @@ pub(crate) enum Cut {
     Straight,
     Arc,
     /// Rotary axes turn by so much, and the control knows nothing of the tool tip.
-    Turning(Turn),
+    Turning(AxisPositions),
 }
 
 /// Positions of the axes without tool-centre control, or the way between two of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Turn {
+pub(crate) struct AxisPositions {
     /// X, Y and Z, mm.
     pub linear: Vec3,
     /// A, B and C, degrees.
     pub degrees: [f64; 3],
 }
 
-impl Turn {
+impl AxisPositions {
     /// The way to another position.
-    pub fn to(&self, there: &Turn) -> Turn {
+    pub fn to(&self, there: &AxisPositions) -> AxisPositions {
         let degrees = [0, 1, 2].map(|i| there.degrees[i] - self.degrees[i]);
-        Turn { linear: there.linear - self.linear, degrees }
+        AxisPositions { linear: there.linear - self.linear, degrees }
     }
 
     /// What the slowest axis takes at its rapid, minutes, and its name.
@@ -77,7 +77,7 @@ impl Walk<'_> {
         self.findings.warn(Diagnostic::warning(Rule::PathMode, message).line(self.line));
     }
 
-    pub(super) fn change_tool(&mut self, tool: &Tool) -> Done {
+    pub(super) fn change_tool(&mut self, tool: &Tool) -> Outcome {
         self.uncompensated("the tool change")?;
         self.end_cycle()?;
         self.look_ahead(false)?;
@@ -146,7 +146,7 @@ impl Walk<'_> {
     }
 
     /// The source calls no tool: the machine file may say which one that means.
-    pub(super) fn default_tool(&mut self) -> Done {
+    pub(super) fn default_tool(&mut self) -> Outcome {
         let number = match self.machine.options.get("default_tool") {
             Some(OptionValue::Number(number)) => *number as u32,
             _ => {
@@ -162,7 +162,7 @@ impl Walk<'_> {
         self.change_tool(&Tool { number, ..Tool::default() })
     }
 
-    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Done {
+    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Outcome {
         self.wanted.set_spindle(spindle);
         match speed(spindle) {
             None => self.sync_spindle(),
@@ -178,7 +178,7 @@ impl Walk<'_> {
     }
 
     /// Switches the spindle as the source wants it, where something needs it before it stops again.
-    pub(crate) fn expect_spindle(&mut self) -> Done {
+    pub(crate) fn expect_spindle(&mut self) -> Outcome {
         if self.wanted.spindle() == Spindle::Off
             || self.around.needs_spindle(&self.source.records, self.index)
         {
@@ -188,7 +188,7 @@ impl Walk<'_> {
     }
 
     /// Switches the spindle as the source wants it.
-    pub(crate) fn sync_spindle(&mut self) -> Done {
+    pub(crate) fn sync_spindle(&mut self) -> Outcome {
         let spindle = self.wanted.spindle();
         if self.sent.has_spindle(spindle) {
             return Ok(());
@@ -207,7 +207,7 @@ impl Walk<'_> {
         if runs_up && dwell != 0.0 { self.write_dwell(dwell) } else { Ok(()) }
     }
 
-    pub(crate) fn sync_coolant(&mut self) -> Done {
+    pub(crate) fn sync_coolant(&mut self) -> Outcome {
         let coolant = self.wanted.coolant();
         if self.sent.has_coolant(coolant) {
             return Ok(());
@@ -227,7 +227,7 @@ impl Walk<'_> {
     }
 
     /// Coolant that the control does nothing for is none.
-    fn coolant_block(&mut self, name: BlockName) -> Done {
+    fn coolant_block(&mut self, name: BlockName) -> Outcome {
         if self.wanted.coolant() != Coolant::Off && self.machine.leaves_out(name.name()) {
             let message =
                 format!("the control has no coolant of this kind: `{}` is empty", name.name());
@@ -239,7 +239,7 @@ impl Walk<'_> {
 
     /// Before the tool touches the part: it turns, and coolant runs.
     #[inline]
-    pub(crate) fn before_cut(&mut self) -> Done {
+    pub(crate) fn before_cut(&mut self) -> Outcome {
         self.wire_for(true, "a cut")?;
         if self.wanted.spindle() == Spindle::Off && self.wire.is_none() {
             let help = "SPINDL/ with a speed before the first cut";
@@ -253,7 +253,7 @@ impl Walk<'_> {
 
     /// Look-ahead goes on or off, where the machine's file has the blocks for it.
     #[inline]
-    pub(crate) fn look_ahead(&mut self, on: bool) -> Done {
+    pub(crate) fn look_ahead(&mut self, on: bool) -> Outcome {
         let tolerance = self.wanted.path_tolerance();
         let differs = on && self.sent.path_tolerance() != tolerance;
         if !self.sent.look_ahead(on) && !differs {
@@ -279,7 +279,7 @@ impl Walk<'_> {
 
     /// Look-ahead goes on before a cut, unless the control compensates already: then it follows with the next contour.
     #[inline]
-    pub(crate) fn look_ahead_in_cuts(&mut self) -> Done {
+    pub(crate) fn look_ahead_in_cuts(&mut self) -> Outcome {
         let compensates = self.sent.compensation() != Compensation::Off;
         if compensates { Ok(()) } else { self.look_ahead(true) }
     }
@@ -372,7 +372,7 @@ impl Walk<'_> {
         &mut self,
         feed: Feed,
         length: f64,
-        turn: &Turn,
+        turn: &AxisPositions,
     ) -> Result<(usize, f64), Box<Diagnostic>> {
         let speed = speed(self.wanted.spindle()).unwrap_or_default();
         let inverse = self.machine.capabilities.inverse_time;

@@ -4,8 +4,8 @@
 //! the tool; between two of them it may take any way that does not come nearer to either, nor farther from the corner than any
 //! control goes; and what it leaves out of an element must be what the next one keeps the tool from.
 
-use super::trail::{Piece, Stretch};
-use crate::place::Number;
+use super::trail::{CompensatedMoves, Piece};
+use crate::resolved_pose::Number;
 use geom::{Element, Turn, Vec2, Vec3};
 
 /// How far from an outer corner the centre may be, in radii of the tool: where the parallels cross at a turn of 100° (SINUMERIK
@@ -23,7 +23,7 @@ pub(super) type Fault = (u32, String);
 
 /// A move in the plane.
 #[derive(Clone, Copy)]
-struct Way {
+struct PlaneMove {
     line: u32,
     element: Element,
     /// Height above the plane at its end, mm.
@@ -31,12 +31,12 @@ struct Way {
 }
 
 /// Both paths in the plane.
-struct Course {
-    contour: Vec<Way>,
+struct PlanePaths {
+    contour: Vec<PlaneMove>,
     /// What runs beside each element of the contour at the radius of the tool.
     parallel: Vec<Element>,
     /// The path of the centre.
-    ways: Vec<Way>,
+    ways: Vec<PlaneMove>,
     radius: f64,
     /// How near is near enough, mm.
     slack: f64,
@@ -47,7 +47,7 @@ struct Course {
 /// # Errors
 /// Where it cuts into the contour, or leaves something of it.
 pub(super) fn compare(
-    stretch: &Stretch,
+    stretch: &CompensatedMoves,
     path: &[Piece],
     radius: f64,
     left: f64,
@@ -55,18 +55,18 @@ pub(super) fn compare(
 ) -> Result<(), Fault> {
     let Some(first) = stretch.pieces.first() else { return Ok(()) };
     let axis = first.to.axis;
-    let ways = |pieces: &[Piece]| -> Result<Vec<Way>, Fault> {
+    let ways = |pieces: &[Piece]| -> Result<Vec<PlaneMove>, Fault> {
         let ways = pieces.iter().map(|piece| flat(piece, axis));
-        let ways: Vec<Way> = ways.collect::<Result<_, _>>()?;
+        let ways: Vec<PlaneMove> = ways.collect::<Result<_, _>>()?;
         Ok(ways.into_iter().filter(|way| way.element.length() > NOWHERE).collect())
     };
     let (contour, ways) = (ways(&stretch.pieces)?, ways(path)?);
     let parallel = contour.iter().map(|way| beside(way, left * radius));
     let parallel = parallel.collect::<Result<_, _>>()?;
-    Course { contour, parallel, ways, radius, slack }.compare()
+    PlanePaths { contour, parallel, ways, radius, slack }.compare()
 }
 
-impl Course {
+impl PlanePaths {
     fn compare(&self) -> Result<(), Fault> {
         // The first move only leads to the contour.
         let mut next = 0;
@@ -265,7 +265,7 @@ fn samples(element: &Element) -> impl Iterator<Item = Vec2> + '_ {
 }
 
 /// A move seen along the tool.
-fn flat(piece: &Piece, axis: Vec3) -> Result<Way, Fault> {
+fn flat(piece: &Piece, axis: Vec3) -> Result<PlaneMove, Fault> {
     let x = axis.any_orthonormal_vector();
     let y = axis.cross(x);
     let flat = |point: Vec3| Vec2::new(point.dot(x), point.dot(y));
@@ -284,11 +284,11 @@ fn flat(piece: &Piece, axis: Vec3) -> Result<Way, Fault> {
         }
     };
     let element = Element { start, end, turn };
-    Ok(Way { line: piece.line, element, height: piece.to.tip.dot(axis) })
+    Ok(PlaneMove { line: piece.line, element, height: piece.to.tip.dot(axis) })
 }
 
 /// What runs beside an element, so many mm to its left.
-fn beside(way: &Way, left: f64) -> Result<Element, Fault> {
+fn beside(way: &PlaneMove, left: f64) -> Result<Element, Fault> {
     let Element { start, end, turn } = way.element;
     let Some(Turn { center, sweep }) = turn else {
         let aside = way.element.tangent(0.0).perp() * left;
@@ -309,7 +309,7 @@ fn beside(way: &Way, left: f64) -> Result<Element, Fault> {
 mod tests {
     use super::*;
     use crate::compensation::trail::Terms;
-    use crate::place::Place;
+    use crate::resolved_pose::PartialPose;
     use geom::Arc;
     use program::Compensation;
 
@@ -318,7 +318,7 @@ mod tests {
 
     /// Moves through these points at Z -1, each on a line of its own.
     fn pieces(start: [f64; 2], ends: &[End]) -> Vec<Piece> {
-        let place = |[x, y]: [f64; 2]| Place { tip: Vec3::new(x, y, -1.0), axis: Vec3::Z };
+        let place = |[x, y]: [f64; 2]| PartialPose { tip: Vec3::new(x, y, -1.0), axis: Vec3::Z };
         let mut from = place(start);
         let piece = |(line, (end, turn)): (u32, &End)| {
             let to = place(*end);
@@ -333,12 +333,12 @@ mod tests {
 
     /// In from (-20, 0), along Y 0 to (30, 0), around the outer corner down to (30, -30), around the inner one to (60, -30), and
     /// out; the tool is on the left.
-    fn stretch() -> Stretch {
+    fn stretch() -> CompensatedMoves {
         let side = Compensation::Left(None);
         let terms = Terms { source_line: 1, side, radius: Some(5.0), tool_length: None };
         let ends = [[0.0, 0.0], [30.0, 0.0], [30.0, -30.0], [60.0, -30.0]];
         let pieces = pieces([-20.0, 0.0], &ends.map(|end| (end, None)));
-        Stretch { terms, before: 0, pieces, exit: None }
+        CompensatedMoves { terms, before: 0, pieces, exit: None }
     }
 
     /// What a control makes of it with a tool of radius 5: every corner by hand.

@@ -1,10 +1,10 @@
 //! The program on a control that knows the tools: where it leads their centres.
 
-use super::trail::{Piece, Stretch};
+use super::trail::{CompensatedMoves, Piece};
 use super::{Part, centre};
 use crate::gauge::Gauge;
-use crate::place::{Number, Station};
 use crate::report::Report;
+use crate::resolved_pose::{Number, ResolvedPose};
 use control::{ArcTo, Dialect, Event, Position, Setup, ToolData};
 use machine::{Machine, ToolRadius};
 use program::{CompensatedPath, Compensation, Diagnostic, Op, Program, Rule, Tool};
@@ -20,7 +20,7 @@ pub(crate) fn compare(
     setup: Setup,
     (file_name, text): (&str, &[u8]),
     gauge: Gauge,
-    stretches: &[Stretch],
+    stretches: &[CompensatedMoves],
     report: &mut Report,
 ) {
     let machine = gauge.machine;
@@ -87,7 +87,7 @@ struct Run<'a> {
     /// Whether the centre has to be beside the path of the source, and not on it.
     offsets: bool,
     /// Those that are still to come.
-    stretches: &'a [Stretch],
+    stretches: &'a [CompensatedMoves],
     /// Moves since the last one.
     moves: usize,
     /// The path of the centre in the stretch at hand.
@@ -97,7 +97,7 @@ struct Run<'a> {
     report: &'a mut Report,
 }
 
-type Outcome = Result<(), Box<Diagnostic>>;
+use program::Outcome;
 
 impl Run<'_> {
     fn take(&mut self, event: &Event) -> Outcome {
@@ -123,7 +123,7 @@ impl Run<'_> {
             return;
         };
         let to = gauge.station(line, *position);
-        let here = Station { place: from, ..to };
+        let here = ResolvedPose { place: from, ..to };
         let arc = arc.and_then(|arc| crate::arc::of_block(&gauge, &here, arc));
         self.path.push(Piece { line, from, to: to.place, arc });
         let Some(exit) = &stretch.exit else { return };
@@ -166,7 +166,7 @@ impl Run<'_> {
     }
 
     /// What the control makes of this stretch is not compared.
-    fn open(&mut self, stretch: &Stretch, why: &str) {
+    fn open(&mut self, stretch: &CompensatedMoves, why: &str) {
         let line = stretch.pieces.first().map_or(0, |piece| piece.line);
         self.report.warn(not_compared(why).line(line));
     }

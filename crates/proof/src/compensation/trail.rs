@@ -1,6 +1,6 @@
 //! The stretches in which a program compensates, as it says them: what the control is then to make of them.
 
-use crate::place::Place;
+use crate::resolved_pose::PartialPose;
 use geom::Arc;
 use program::Compensation;
 
@@ -9,8 +9,8 @@ use program::Compensation;
 pub(crate) struct Piece {
     /// Line of the program.
     pub line: u32,
-    pub from: Place,
-    pub to: Place,
+    pub from: PartialPose,
+    pub to: PartialPose,
     pub arc: Option<Arc>,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct Terms {
 }
 
 /// The moves from the one that switches compensation on to the one that switches it off.
-pub(crate) struct Stretch {
+pub(crate) struct CompensatedMoves {
     pub terms: Terms,
     /// How many moves the program makes between the stretch before and this one.
     pub before: usize,
@@ -41,10 +41,10 @@ pub(crate) struct Stretch {
 /// The stretches so far.
 #[derive(Default)]
 pub(crate) struct Trail {
-    stretches: Vec<Stretch>,
+    stretches: Vec<CompensatedMoves>,
     /// Moves since the last one.
     moves: usize,
-    open: Option<Stretch>,
+    open: Option<CompensatedMoves>,
 }
 
 impl Trail {
@@ -61,7 +61,8 @@ impl Trail {
             }
             (None, Compensation::Left(_) | Compensation::Right(_)) => {
                 let before = std::mem::take(&mut self.moves);
-                self.open = Some(Stretch { terms, before, pieces: vec![piece], exit: None });
+                self.open =
+                    Some(CompensatedMoves { terms, before, pieces: vec![piece], exit: None });
             }
         }
     }
@@ -72,7 +73,7 @@ impl Trail {
     }
 
     /// All stretches of the program.
-    pub fn finish(mut self) -> Vec<Stretch> {
+    pub fn finish(mut self) -> Vec<CompensatedMoves> {
         self.close();
         self.stretches
     }

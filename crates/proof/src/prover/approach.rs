@@ -13,7 +13,7 @@ const LEVEL: f64 = 1e-4;
 
 impl Prover<'_> {
     /// What is wrong with a rapid block to `to` from a place that nobody knows.
-    pub(super) fn wrong_approach(&mut self, to: &Station) -> Option<Diagnostic> {
+    pub(super) fn wrong_approach(&mut self, to: &ResolvedPose) -> Option<Diagnostic> {
         let point = to.position.point;
         if !self.raised {
             return self.wrong_way_on(to);
@@ -55,11 +55,11 @@ impl Prover<'_> {
 
     /// What is wrong with the way of a cycle to its R plane: it goes across as its coordinates count, at the height where the
     /// tool is, and then along the tool axis.
-    pub(super) fn wrong_cycle(&mut self, r_plane: &Station) -> Option<Diagnostic> {
+    pub(super) fn wrong_cycle(&mut self, r_plane: &ResolvedPose) -> Option<Diagnostic> {
         let here = self.here;
         if here.place.known() {
             let height = r_plane.place.above(here.place.tip).0;
-            let over = Station { place: r_plane.place.lifted(height), ..*r_plane };
+            let over = ResolvedPose { place: r_plane.place.lifted(height), ..*r_plane };
             let across = self.wrong_dog_leg(&here, &over);
             return across.or_else(|| self.wrong_dog_leg(&over, r_plane));
         }
@@ -106,7 +106,7 @@ impl Prover<'_> {
     }
 
     /// What is wrong with a rapid from a place that nobody knows while Z has not been home since the last move.
-    fn wrong_way_on(&mut self, to: &Station) -> Option<Diagnostic> {
+    fn wrong_way_on(&mut self, to: &ResolvedPose) -> Option<Diagnostic> {
         // Where a program begins without home, whoever starts it has brought the tool to a safe place.
         if !self.has_stood || !to.place.known() {
             return None;
@@ -131,7 +131,7 @@ impl Prover<'_> {
         } else {
             self.wrong_crossing(&to, &ups, is_level)
         };
-        self.motion(line, Gait::Rapid, &Position { point: Vec3::NAN, ..*position }, None)?;
+        self.motion(line, MotionKind::Rapid, &Position { point: Vec3::NAN, ..*position }, None)?;
         if let Some(found) = wrong {
             self.found(found);
         }
@@ -141,7 +141,7 @@ impl Prover<'_> {
 
     /// Whether a rapid from home has come to a place above all that the source cuts, with the tool as its end has it: the
     /// way begins there.
-    pub(super) fn begins_above(&mut self, to: &Station) -> bool {
+    pub(super) fn begins_above(&mut self, to: &ResolvedPose) -> bool {
         let Step::Move(goal) = &self.cursor.step else { return false };
         let free = goal.free(self.gauge.allowed.axis_degrees);
         let as_at_end = goal.to.apart(&to.place).1 <= self.gauge.allowed.axis_degrees;
@@ -162,7 +162,12 @@ impl Prover<'_> {
     }
 
     /// What is wrong with a block that moves X and Y from home and not Z, as its coordinates count.
-    fn wrong_crossing(&mut self, to: &Station, ups: &[Vec3], is_level: bool) -> Option<Diagnostic> {
+    fn wrong_crossing(
+        &mut self,
+        to: &ResolvedPose,
+        ups: &[Vec3],
+        is_level: bool,
+    ) -> Option<Diagnostic> {
         if !is_level {
             let what = "moves X and Y from home, and Z of the machine with them: the Z that stays is that of the part, \
                         which does not lie level";
@@ -172,7 +177,7 @@ impl Prover<'_> {
     }
 
     /// Whether this block turns the tool or the table.
-    fn turns_on_the_way(&self, to: &Station) -> bool {
+    fn turns_on_the_way(&self, to: &ResolvedPose) -> bool {
         match (&self.here.position.orientation, &to.position.orientation) {
             (Orientation::Rotary { .. }, Orientation::Rotary { .. }) => {
                 let turning = self.turning(&to.position.orientation);
@@ -188,7 +193,7 @@ impl Prover<'_> {
     }
 
     /// Where +Z of the machine points on the part, in all ways that the machine may stand at `to`; none where nobody knows.
-    fn ups(&mut self, to: &Station) -> Vec<Vec3> {
+    fn ups(&mut self, to: &ResolvedPose) -> Vec<Vec3> {
         let machine = self.gauge.machine;
         if machine.rotary.iter().all(|axis| axis.on == Mount::Head) {
             return vec![Vec3::Z];
@@ -198,7 +203,7 @@ impl Prover<'_> {
     }
 
     /// Whether the Z of a block is that of the machine.
-    fn is_level(&self, to: &Station, ups: &[Vec3]) -> bool {
+    fn is_level(&self, to: &ResolvedPose, ups: &[Vec3]) -> bool {
         match to.position.orientation {
             Orientation::Rotary { tool_center: false, .. } => true,
             Orientation::Rotary { .. } | Orientation::Axis(_) => {
@@ -209,14 +214,14 @@ impl Prover<'_> {
 
     /// By how much the tool at `to` is not the clearance above all cuts along `up`, with its length where it hangs from
     /// its tip, mm.
-    fn short_below(&mut self, to: &Station, up: Vec3) -> f64 {
+    fn short_below(&mut self, to: &ResolvedPose, up: Vec3) -> f64 {
         let point = Vec3::select(to.position.point.is_nan_mask(), Vec3::ZERO, to.position.point);
         let place = self.gauge.station(to.line, Position { point, ..to.position }).place;
         self.needed(up, place.axis) - place.tip.dot(up)
     }
 
     /// How far the tip may be from where it should be at `to`, of which a coordinate may be unknown, mm.
-    fn rounding(&self, to: &Station) -> f64 {
+    fn rounding(&self, to: &ResolvedPose) -> f64 {
         let slack = self.gauge.slack(to);
         if slack.is_nan() { self.gauge.machine.resolution() } else { slack }
     }
@@ -234,7 +239,7 @@ impl Prover<'_> {
 
     /// Whether Z of the machine alone comes down, with the tool along it, or beyond all cuts along its own axis until it
     /// is above them.
-    fn comes_straight_down(&mut self, to: &Station, ups: &[Vec3]) -> bool {
+    fn comes_straight_down(&mut self, to: &ResolvedPose, ups: &[Vec3]) -> bool {
         if !self.moves_z_alone(to, ups) {
             return false;
         }
@@ -244,8 +249,8 @@ impl Prover<'_> {
 
     /// By how much the tool is not the clearance beyond all cuts along its own axis, on the way along Z of the machine
     /// between `to` and where it is above them, mm.
-    fn short_aside(&mut self, to: &Station, ups: &[Vec3]) -> f64 {
-        let Place { tip, axis } = to.place;
+    fn short_aside(&mut self, to: &ResolvedPose, ups: &[Vec3]) -> f64 {
+        let PartialPose { tip, axis } = to.place;
         let clearance = self.gauge.machine.capabilities.rapid_clearance;
         let short = self.cut_reach(axis) + clearance - tip.dot(axis);
         let more = |up: &Vec3| (-axis.dot(*up)).max(0.0) * self.short_below(to, *up).max(0.0);
@@ -253,7 +258,7 @@ impl Prover<'_> {
     }
 
     /// Whether X and Y of the machine stand at `to` as they stand here.
-    fn moves_z_alone(&self, to: &Station, ups: &[Vec3]) -> bool {
+    fn moves_z_alone(&self, to: &ResolvedPose, ups: &[Vec3]) -> bool {
         let slack = self.gauge.slack(to);
         if let Some(over) = self.over {
             return over.apart(&to.place).1 <= self.gauge.allowed.axis_degrees
@@ -273,7 +278,7 @@ impl Prover<'_> {
                 && (a.point.x - b.point.x).abs() <= SAME
                 && (a.point.y - b.point.y).abs() <= SAME;
         }
-        let across = |station: &Station| {
+        let across = |station: &ResolvedPose| {
             let Orientation::Rotary { degrees, .. } = station.position.orientation else {
                 return None;
             };
@@ -284,7 +289,7 @@ impl Prover<'_> {
     }
 
     /// Home where it is known to be lower than the tool has to be: the table has swung the part up to it.
-    fn low_home(&mut self, to: &Station) -> Option<Diagnostic> {
+    fn low_home(&mut self, to: &ResolvedPose) -> Option<Diagnostic> {
         let Gauge { machine, tool_length, .. } = self.gauge;
         let home = machine.safe_height.unwrap_or(machine.linear[2].max);
         let (Some(zero), Some(length)) = (machine.work_zero, tool_length) else { return None };

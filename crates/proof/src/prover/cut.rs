@@ -5,7 +5,7 @@ use program::Rule;
 
 impl Prover<'_> {
     /// A feed move while the source cuts a line or an arc.
-    pub(super) fn cut(&mut self, to: &Station, block: Option<&Arc>) -> Outcome {
+    pub(super) fn cut(&mut self, to: &ResolvedPose, block: Option<&Arc>) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let here = self.here;
         if !here.place.known() || goal.from.is_none() {
@@ -41,7 +41,7 @@ impl Prover<'_> {
 
     /// A feed move from where the tool is not known: only the first motion, or the first after a tool
     /// change, may be one, and it has to go to the end at once.
-    pub(super) fn cut_from_nowhere(&mut self, to: &Station, block: Option<&Arc>) -> Outcome {
+    pub(super) fn cut_from_nowhere(&mut self, to: &ResolvedPose, block: Option<&Arc>) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let first = goal.from.is_none() || goal.tool_change;
         let straight = block.is_none() && self.gauge.at(to, &goal.to);
@@ -67,7 +67,7 @@ impl Prover<'_> {
     /// the length of an arc, mm.
     pub(super) fn feed_of(
         &mut self,
-        to: &Station,
+        to: &ResolvedPose,
         arc: Option<f64>,
         way: f64,
         source: f64,
@@ -127,7 +127,7 @@ impl Prover<'_> {
     }
 
     /// What must hold in a cut, whose feed has been compared.
-    pub(super) fn check_cut(&mut self, to: &Station, feed: Option<Difference>, on_arc: bool) {
+    pub(super) fn check_cut(&mut self, to: &ResolvedPose, feed: Option<Difference>, on_arc: bool) {
         let rounding = self.gauge.slack(to);
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;

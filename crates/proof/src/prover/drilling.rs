@@ -5,18 +5,20 @@ use program::Rule;
 
 impl Prover<'_> {
     /// A single move while the source drills.
-    pub(super) fn hole_move(&mut self, gait: Gait, to: &Station) -> Outcome {
-        let Step::Move(Goal { kind: Kind::Hole(cycle), to: point, .. }) = &self.cursor.step else {
+    pub(super) fn hole_move(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
+        let Step::Move(ExpectedMotion { kind: Kind::Hole(cycle), to: point, .. }) =
+            &self.cursor.step
+        else {
             return Ok(());
         };
         let (gauge, cycle, point) = (self.gauge, *cycle, *point);
         let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
         let here = self.here;
         if !self.leg.hole.over {
-            if gait == Gait::Rapid && !hole.is_over(to) {
+            if gait == MotionKind::Rapid && !hole.is_over(to) {
                 return self.stop_at(to);
             }
-            if gait == Gait::Rapid {
+            if gait == MotionKind::Rapid {
                 self.approached(to)?;
                 self.comes_from_above(&hole, Some(to))?;
                 self.leg.stops.clear();
@@ -32,11 +34,11 @@ impl Prover<'_> {
         let stopped = self.running.spindle == Spindle::Off;
         let run = &mut self.leg.hole;
         let done = match gait {
-            Gait::Rapid => run.rapid(&hole, &here, to, stopped),
-            Gait::Feed => run.feed(&hole, &here, to),
+            MotionKind::Rapid => run.rapid(&hole, &here, to, stopped),
+            MotionKind::Feed => run.feed(&hole, &here, to),
         }
         .map_err(|how| self.lost_at(to.line, Rule::Hole, &how))?;
-        if gait == Gait::Feed {
+        if gait == MotionKind::Feed {
             self.check_drilling(to.line, cycle.feed, self.running.feed);
         }
         if done {
@@ -52,7 +54,9 @@ impl Prover<'_> {
         };
         self.pass_left_out(|_| false);
         self.miss_events(line);
-        let Step::Move(Goal { kind: Kind::Hole(cycle), to: point, .. }) = &self.cursor.step else {
+        let Step::Move(ExpectedMotion { kind: Kind::Hole(cycle), to: point, .. }) =
+            &self.cursor.step
+        else {
             let message = "drills a hole that the source does not have";
             return Err(match self.nearest_stop() {
                 Some(stop) => self.lost_at(stop.line, Rule::EndPoint, &self.not_reached(&stop)),
@@ -120,7 +124,7 @@ impl Prover<'_> {
         let machine = self.gauge.machine;
         let tapping = matches!(
             &self.cursor.step,
-            Step::Move(Goal { kind: Kind::Hole(c), .. })
+            Step::Move(ExpectedMotion { kind: Kind::Hole(c), .. })
                 if matches!(c.kind, program::CycleKind::Tap { .. })
         );
         let found = [
@@ -139,7 +143,7 @@ impl Prover<'_> {
 
     /// Whether the way to a hole goes down nowhere but over it: as a canned cycle goes, for what the
     /// tool was drawn back from may stand between the holes.
-    fn comes_from_above(&self, hole: &Hole, to: Option<&Station>) -> Outcome {
+    fn comes_from_above(&self, hole: &Hole, to: Option<&ResolvedPose>) -> Outcome {
         let mut last = self.leg.start.unwrap_or(self.here);
         for stop in self.leg.stops.iter().chain(to) {
             if hole.beside_and_down(&last, stop) {

@@ -66,8 +66,10 @@ impl Prover<'_> {
     ///
     /// Functions of the builder that the source does not call are the machine's own: blocks of its file write them.
     pub(super) fn happens(&mut self, line: u32, event: Step) -> Outcome {
-        if let (Step::Move(Goal { kind: Kind::Hole(cycle), to, .. }), Step::Dwell(seconds)) =
-            (&self.cursor.step, &event)
+        if let (
+            Step::Move(ExpectedMotion { kind: Kind::Hole(cycle), to, .. }),
+            Step::Dwell(seconds),
+        ) = (&self.cursor.step, &event)
         {
             let hole = Hole { gauge: &self.gauge, point: to, cycle };
             if self.leg.hole.dwell(&hole, &self.here, *seconds) {

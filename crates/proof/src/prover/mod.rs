@@ -6,21 +6,21 @@ mod drilling;
 mod ending;
 mod events;
 mod rapid;
+mod rapid_path;
 mod single;
 mod travel;
-mod way;
 
 use crate::accepted::Accepted;
 use crate::compensation::Part;
-use crate::compensation::trail::{Piece, Stretch, Terms, Trail};
-use crate::expected::{Cursor, Goal, Kind, Step};
+use crate::compensation::trail::{CompensatedMoves, Piece, Terms, Trail};
+use crate::expected::{Cursor, ExpectedMotion, Kind, Step};
 use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
 use crate::line::Followed;
-use crate::machine_pose::Standing;
+use crate::machine_pose::PossiblePositions;
 use crate::pace::{self, Compared, Pace};
-use crate::place::{Number, Place, Station};
 use crate::report::{Excursion, Report, TravelChecked};
+use crate::resolved_pose::{Number, PartialPose, ResolvedPose};
 use crate::state::{self, Difference, Running};
 use crate::tolerance::{Applied, Tolerances};
 use crate::travel::Travel;
@@ -56,11 +56,11 @@ pub struct Prover<'a> {
     compensation: Compensation,
     /// The stretches in which the program compensates, where they are wanted.
     trail: Option<Trail>,
-    here: Station,
+    here: ResolvedPose,
     /// Where the rotary axes stand.
-    standing: Standing<'a>,
+    standing: PossiblePositions<'a>,
     travel: Travel,
-    leg: Leg,
+    leg: MotionProgress,
     /// What the cuts have taken, where the number behind F does not say it.
     pace: Pace,
     report: Report,
@@ -72,26 +72,26 @@ pub struct Prover<'a> {
     /// Whether the tool has stood at a place that is known.
     has_stood: bool,
     /// Where it stood last, Z not having been home since.
-    down: Option<Station>,
+    down: Option<ResolvedPose>,
     /// The line along the tool axis on which the tool stands in a tilted plane, at a height that nobody knows.
-    over: Option<Place>,
+    over: Option<PartialPose>,
     ended: bool,
     lost: bool,
 }
 
 /// How far the program is with the source motion at hand.
 #[derive(Default)]
-struct Leg {
+struct MotionProgress {
     /// Part of a line or an arc that is done, 0 to 1.
     t: f64,
     /// Where the last motion ended.
-    start: Option<Station>,
+    start: Option<ResolvedPose>,
     /// Where rapids have stopped since then, or since the tool left the path.
-    stops: Vec<Station>,
+    stops: Vec<ResolvedPose>,
     /// Where an excursion left the path.
-    left: Option<Station>,
+    left: Option<ResolvedPose>,
     /// Where the tool has left the path for a stop of the program, for which it goes home.
-    away: Option<Station>,
+    away: Option<ResolvedPose>,
     /// Whether Z was sent home since.
     homed: bool,
     hole: Run,
@@ -99,7 +99,7 @@ struct Leg {
 
 /// How a block moves.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Gait {
+enum MotionKind {
     Rapid,
     Feed,
 }
@@ -110,9 +110,7 @@ const MOST_STOPS: usize = 16;
 /// A coordinate of a block counts as repeated below this, mm.
 const SAME: f64 = 1e-6;
 
-/// What a comparison answers: the mismatch after which the two motions cannot be laid beside each
-/// other any more.
-type Outcome = Result<(), Box<Diagnostic>>;
+use program::Outcome;
 
 impl<'a> Prover<'a> {
     /// Before the first record of a program for `machine`.
@@ -134,14 +132,14 @@ impl<'a> Prover<'a> {
             statistics: None,
             cuts: None,
             here: gauge.station(0, unknown),
-            standing: Standing::new(machine),
+            standing: PossiblePositions::new(machine),
             travel: Travel::new(machine),
             gauge,
             cursor,
             running: Running::at_reset(machine),
             compensation: Compensation::Off,
             trail: None,
-            leg: Leg::default(),
+            leg: MotionProgress::default(),
             pace: Pace::default(),
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
@@ -177,7 +175,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Those stretches, and what places in them need.
-    pub(crate) fn stretches(&mut self) -> (Gauge<'a>, Vec<Stretch>) {
+    pub(crate) fn stretches(&mut self) -> (Gauge<'a>, Vec<CompensatedMoves>) {
         (self.gauge, self.trail.take().map_or_else(Vec::new, Trail::finish))
     }
 
@@ -269,9 +267,9 @@ impl<'a> Prover<'a> {
                 | Action::Hole(_)
         );
         match &event.action {
-            Action::Rapid(position) => return self.motion(line, Gait::Rapid, position, None),
-            Action::Line(position) => return self.motion(line, Gait::Feed, position, None),
-            Action::Arc(to) => return self.motion(line, Gait::Feed, &to.end, Some(to)),
+            Action::Rapid(position) => return self.motion(line, MotionKind::Rapid, position, None),
+            Action::Line(position) => return self.motion(line, MotionKind::Feed, position, None),
+            Action::Arc(to) => return self.motion(line, MotionKind::Feed, &to.end, Some(to)),
             Action::Hole(position) => return self.drilled(line, position),
             Action::Thread(thread) => {
                 return self.single(line, &thread.end, Kind::Thread(thread.pitch));
@@ -373,7 +371,7 @@ impl<'a> Prover<'a> {
     fn motion(
         &mut self,
         line: u32,
-        gait: Gait,
+        gait: MotionKind,
         position: &Position,
         arc: Option<&ArcTo>,
     ) -> Outcome {
@@ -381,11 +379,11 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
-        if gait == Gait::Rapid {
+        if gait == MotionKind::Rapid {
             self.pace = Pace::default();
         }
         let is_up = position.point.z.is_nan();
-        if is_up && gait == Gait::Rapid && self.turns_by_words(&position.orientation) {
+        if is_up && gait == MotionKind::Rapid && self.turns_by_words(&position.orientation) {
             self.check_height(line);
         }
         self.measured(line, position)?;
@@ -401,23 +399,25 @@ impl<'a> Prover<'a> {
             let gauge = self.gauge;
             self.pass_left_out(|goal| {
                 let alike = match goal.kind {
-                    Kind::Rapid => gait == Gait::Rapid,
-                    Kind::Line => gait == Gait::Feed && block.is_none(),
-                    Kind::Arc(_) => gait == Gait::Feed,
+                    Kind::Rapid => gait == MotionKind::Rapid,
+                    Kind::Line => gait == MotionKind::Feed && block.is_none(),
+                    Kind::Arc(_) => gait == MotionKind::Feed,
                     Kind::Hole(_) | Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => false,
                 };
                 alike && gauge.at(&to, &goal.to)
             });
         }
-        if gait == Gait::Rapid && self.goes_nowhere_yet(&to) {
+        if gait == MotionKind::Rapid && self.goes_nowhere_yet(&to) {
             return Ok(());
         }
         self.miss_events(line);
-        let wrong_way = if gait == Gait::Rapid { self.wrong_way(&to) } else { None };
+        let wrong_way = if gait == MotionKind::Rapid { self.wrong_way(&to) } else { None };
         let outcome = match &self.cursor.step {
             Step::Move(goal) => match &goal.kind {
                 Kind::Rapid => self.rapid(gait, &to),
-                Kind::Line | Kind::Arc(_) if gait == Gait::Rapid || self.leg.left.is_some() => {
+                Kind::Line | Kind::Arc(_)
+                    if gait == MotionKind::Rapid || self.leg.left.is_some() =>
+                {
                     self.excursion(gait, &to)
                 }
                 Kind::Line | Kind::Arc(_) => self.cut(&to, block.as_ref()),
@@ -459,7 +459,7 @@ impl<'a> Prover<'a> {
 
     /// Whether axes turn while Z is home, or the tool goes out along its axis on the way to home, before what the source has
     /// next, which is no move: it may still come.
-    fn goes_nowhere_yet(&mut self, to: &Station) -> bool {
+    fn goes_nowhere_yet(&mut self, to: &ResolvedPose) -> bool {
         if matches!(self.cursor.step, Step::Move(_)) {
             return false;
         }
@@ -496,7 +496,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Keeps where the tool stands, where that is known.
-    fn stands_at(&mut self, to: &Station) {
+    fn stands_at(&mut self, to: &ResolvedPose) {
         if to.place.known() {
             self.has_stood = true;
             self.down = Some(*to);
@@ -551,7 +551,7 @@ impl<'a> Prover<'a> {
 
     /// Passes motions that the tool need not make: those shorter than the resolution of the machine,
     /// at whose end it already is. Stops before one that `wanted` asks for.
-    fn pass_left_out(&mut self, wanted: impl Fn(&Goal) -> bool) {
+    fn pass_left_out(&mut self, wanted: impl Fn(&ExpectedMotion) -> bool) {
         while self.leg.stops.is_empty() && self.leg.left.is_none() && !self.leg.hole.over {
             let Step::Move(goal) = &self.cursor.step else { return };
             let slack = self.gauge.slack(&self.here);
@@ -571,7 +571,7 @@ impl<'a> Prover<'a> {
     }
 
     /// The source motion is done.
-    fn arrive(&mut self, to: &Station) {
+    fn arrive(&mut self, to: &ResolvedPose) {
         if let Step::Move(goal) = &self.cursor.step {
             let compared = &mut self.report.compared;
             match goal.kind {
@@ -607,7 +607,7 @@ impl<'a> Prover<'a> {
         if self.running.tool.is_none() || !self.cursor.at_tool_change() {
             self.gauge.tool_length = self.cursor.tool_length();
         }
-        if let Step::Move(Goal { kind: Kind::Hole(cycle), .. }) = &self.cursor.step {
+        if let Step::Move(ExpectedMotion { kind: Kind::Hole(cycle), .. }) = &self.cursor.step {
             self.leg.hole.restart(cycle);
         } else {
             self.leg.hole.over = false;
@@ -615,14 +615,20 @@ impl<'a> Prover<'a> {
     }
 
     /// Adds a move to the totals of the program.
-    fn count(&mut self, gait: Gait, to: &Station, arc: Option<&ArcTo>, block: Option<&Arc>) {
+    fn count(
+        &mut self,
+        gait: MotionKind,
+        to: &ResolvedPose,
+        arc: Option<&ArcTo>,
+        block: Option<&Arc>,
+    ) {
         let summary = &mut self.report.program;
         summary.include(&to.position);
         let length = block.map_or(self.here.place.tip.distance(to.place.tip), Arc::length);
         if length.is_finite() {
             match gait {
-                Gait::Rapid => summary.rapid_length_mm += length,
-                Gait::Feed => summary.cutting_length_mm += length,
+                MotionKind::Rapid => summary.rapid_length_mm += length,
+                MotionKind::Feed => summary.cutting_length_mm += length,
             }
         }
         if let Some(to) = arc {

@@ -5,9 +5,9 @@ use program::{Axes, Rule};
 
 impl Prover<'_> {
     /// A move while the source goes by rapid.
-    pub(super) fn rapid(&mut self, gait: Gait, to: &Station) -> Outcome {
+    pub(super) fn rapid(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
-        if gait == Gait::Feed {
+        if gait == MotionKind::Feed {
             let from_a_place = self.here.place.known() && goal.from.is_some();
             let straight = self.gauge.straight_rapids;
             if !straight && from_a_place && self.leg.stops.is_empty() {
@@ -37,7 +37,7 @@ impl Prover<'_> {
     }
 
     /// A rapid of the source by feed, which is straight where a rapid of the machine is not.
-    fn rapid_by_feed(&mut self, to: &Station) -> Outcome {
+    fn rapid_by_feed(&mut self, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let Followed { t, .. } = line::follow(&self.gauge, goal, self.leg.t, &self.here, to)
             .map_err(|how| {
@@ -62,7 +62,7 @@ impl Prover<'_> {
 
     /// Whether a rapid has come to a place on the straight way of the source, and not back. Before a tool change and home no
     /// place is on it: the way begins behind them.
-    fn goes_on_the_way(&mut self, to: &Station) -> bool {
+    fn goes_on_the_way(&mut self, to: &ResolvedPose) -> bool {
         if matches!(&self.cursor.step, Step::Move(goal) if goal.tool_change || goal.homed) {
             return false;
         }
@@ -75,7 +75,7 @@ impl Prover<'_> {
     }
 
     /// Keeps a stop of a rapid until its end explains it.
-    pub(super) fn stop_at(&mut self, to: &Station) -> Outcome {
+    pub(super) fn stop_at(&mut self, to: &ResolvedPose) -> Outcome {
         // On its way home the tool goes by the offsets that were.
         let leaves = matches!(&self.cursor.step, Step::Move(goal) if goal.homed && !self.leg.homed);
         if to.place.known() && !leaves {
@@ -91,7 +91,7 @@ impl Prover<'_> {
     }
 
     /// Explains the stops of a rapid that has come to its end.
-    pub(super) fn approached(&mut self, to: &Station) -> Outcome {
+    pub(super) fn approached(&mut self, to: &ResolvedPose) -> Outcome {
         self.check(to.line, state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running));
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let free = goal.free(self.gauge.allowed.axis_degrees);
@@ -121,7 +121,7 @@ impl Prover<'_> {
     }
 
     /// A move off the path of a cut, or back to it.
-    pub(super) fn excursion(&mut self, gait: Gait, to: &Station) -> Outcome {
+    pub(super) fn excursion(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let Some(left) = self.leg.left else {
             if goal.from.is_none() {
@@ -134,7 +134,7 @@ impl Prover<'_> {
             self.leg.left = Some(self.here);
             return self.stop_at(to);
         };
-        if gait == Gait::Feed && goal.tool_change && !self.here.place.known() {
+        if gait == MotionKind::Feed && goal.tool_change && !self.here.place.known() {
             return self.cut_from_nowhere(to, None);
         }
         if self.gauge.meet(to, &left) {
@@ -157,7 +157,7 @@ impl Prover<'_> {
             self.leg.stops.clear();
             return Ok(());
         }
-        if gait == Gait::Feed {
+        if gait == MotionKind::Feed {
             let line = self.leg.stops.first().map_or(to.line, |stop| stop.line);
             let message = "leaves the cut by rapid and does not come back to where it left";
             return Err(self.lost_at(line, Rule::RapidFeed, message));
@@ -166,7 +166,7 @@ impl Prover<'_> {
     }
 
     /// Whether the last move of an excursion goes along the tool axis, towards the part.
-    pub(super) fn comes_down(&self, last: &Station, to: &Station) -> bool {
+    pub(super) fn comes_down(&self, last: &ResolvedPose, to: &ResolvedPose) -> bool {
         if last.place.known() {
             return stops::lifted(&self.gauge, to, last);
         }
@@ -177,7 +177,7 @@ impl Prover<'_> {
             && last.position.orientation == to.position.orientation
     }
 
-    pub(super) fn note_excursion(&mut self, to: &Station, lift_mm: f64) {
+    pub(super) fn note_excursion(&mut self, to: &ResolvedPose, lift_mm: f64) {
         let first = self.leg.stops.first().map_or(to.line, |stop| stop.line);
         self.report.excursion(Excursion {
             source_line: self.cursor.line,
@@ -294,7 +294,7 @@ impl Prover<'_> {
     /// Forgets the stops of a rapid on the way to home, where they lead out along the tool axis: the way begins at home.
     fn forget_lifts(&mut self) {
         let base = self.leg.start.unwrap_or(self.here);
-        let lifts = |stop: &Station| stops::lifted(&self.gauge, &base, stop);
+        let lifts = |stop: &ResolvedPose| stops::lifted(&self.gauge, &base, stop);
         if self.leg.left.is_none() && self.leg.stops.iter().all(lifts) {
             self.leg.stops.clear();
         }
@@ -303,7 +303,7 @@ impl Prover<'_> {
     /// Whether the tool is beyond every point of the source along its axis, which does not point
     /// down: then Z home is away from all of them.
     pub(super) fn clear_of_part(&mut self) -> bool {
-        let Place { tip, axis } = self.here.place;
+        let PartialPose { tip, axis } = self.here.place;
         let statistics = self.statistics.get_or_insert_with(|| Statistics::of(self.source));
         axis.z >= 0.0 && tip.dot(axis) >= statistics.reach(axis)
     }
@@ -324,9 +324,9 @@ impl Prover<'_> {
     }
 
     /// A move after the last motion of the source: away along the tool axis.
-    pub(super) fn closing(&mut self, gait: Gait, to: &Station) -> Outcome {
+    pub(super) fn closing(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
         let lifts = stops::lifted(&self.gauge, &self.here, to);
-        match gait == Gait::Rapid && lifts {
+        match gait == MotionKind::Rapid && lifts {
             true => Ok(()),
             false => {
                 let message = format!("goes to {} after the last motion of the source", to.place);
@@ -336,22 +336,22 @@ impl Prover<'_> {
     }
 
     /// Whether a move turns rotary axes alone, while the machine is at home.
-    pub(super) fn turns_at_home(&self, to: &Station) -> bool {
+    pub(super) fn turns_at_home(&self, to: &ResolvedPose) -> bool {
         let (a, b) = (self.here.position.point, to.position.point);
         b.z.is_nan() && self.leg.homed && (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
     }
 
     /// The stop that comes nearest to where the source goes.
-    pub(super) fn nearest_stop(&self) -> Option<Station> {
+    pub(super) fn nearest_stop(&self) -> Option<ResolvedPose> {
         let Step::Move(goal) = &self.cursor.step else { return None };
-        let far = |stop: &Station| {
+        let far = |stop: &ResolvedPose| {
             let apart = stop.place.tip.distance(goal.to.tip);
             if apart.is_nan() { f64::INFINITY } else { apart }
         };
         self.leg.stops.iter().min_by(|a, b| far(a).total_cmp(&far(b))).copied()
     }
 
-    pub(super) fn not_reached(&self, stop: &Station) -> String {
+    pub(super) fn not_reached(&self, stop: &ResolvedPose) -> String {
         let Step::Move(goal) = &self.cursor.step else { return String::new() };
         let (tip, axis) = stop.place.apart(&goal.to);
         if tip.is_nan() || axis.is_nan() {

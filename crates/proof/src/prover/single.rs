@@ -8,14 +8,17 @@ impl Prover<'_> {
     /// A thread or a probing move of the program.
     pub(super) fn single(&mut self, line: u32, pose: &Position, is: Kind) -> Outcome {
         let to = self.gauge.station(line, *pose);
-        self.count(Gait::Feed, &to, None, None);
+        self.count(MotionKind::Feed, &to, None, None);
         self.hold_travel(&to, None);
         self.standing.arrive(&to.position.orientation);
         self.pass_left_out(|_| false);
         self.miss_events(line);
         let goal = match &self.cursor.step {
             Step::Move(goal) if same(&goal.kind, &is) => goal,
-            Step::Move(Goal { kind: kind @ (Kind::Thread(_) | Kind::Probe { .. }), .. }) => {
+            Step::Move(ExpectedMotion {
+                kind: kind @ (Kind::Thread(_) | Kind::Probe { .. }),
+                ..
+            }) => {
                 let message = format!("{}, but the source {}", does(&is), does(kind));
                 return Err(self.lost_at(line, Rule::SingleBlock, &message));
             }

@@ -10,7 +10,7 @@ const SAMPLE: f64 = 3.0;
 impl Prover<'_> {
     /// Holds the axes within their travel in a move to `to`, along `block` where it is an arc.
     #[inline]
-    pub(super) fn hold_travel(&mut self, to: &Station, block: Option<&Arc>) {
+    pub(super) fn hold_travel(&mut self, to: &ResolvedPose, block: Option<&Arc>) {
         let gauge = self.gauge;
         if gauge.machine.wire.is_some() {
             return;
@@ -45,7 +45,7 @@ impl Prover<'_> {
     }
 
     /// Refuses a vector that goes past a pole so near that the control leads it through it, or stops.
-    fn check_pole(&mut self, to: &Station) {
+    fn check_pole(&mut self, to: &ResolvedPose) {
         let Orientation::Axis(axis) = to.position.orientation else { return };
         if self.standing.has_swivelled() {
             return;
@@ -66,7 +66,7 @@ impl Prover<'_> {
     /// another, and the control makes the linear axes follow.
     fn broken_on_way(
         &mut self,
-        to: &Station,
+        to: &ResolvedPose,
         from: [f64; 3],
         end: [f64; 3],
         slack: f64,

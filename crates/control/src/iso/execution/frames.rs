@@ -10,7 +10,7 @@ pub(super) type Six = [f64; 6];
 
 /// Programmed coordinates in the work frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct ProgramFrame {
     frame: Frame,
     /// Degrees by which the rotary axes are shifted.
     rotary: [f64; 3],
@@ -18,9 +18,10 @@ pub(crate) struct Place {
     same: bool,
 }
 
-impl Place {
+impl ProgramFrame {
     /// Programmed coordinates that are those of the work frame.
-    pub(super) const SAME: Place = Place { frame: Frame::IDENTITY, rotary: [0.0; 3], same: true };
+    pub(super) const SAME: ProgramFrame =
+        ProgramFrame { frame: Frame::IDENTITY, rotary: [0.0; 3], same: true };
 
     /// A programmed point in the work frame.
     pub(crate) fn point(&self, p: Vec3) -> Vec3 {
@@ -287,8 +288,8 @@ impl Frames {
     }
 
     /// The way into the work frame.
-    pub(super) fn place(&self) -> Place {
-        let Some(offset) = self.offset() else { return Place::SAME };
+    pub(super) fn place(&self) -> ProgramFrame {
+        let Some(offset) = self.offset() else { return ProgramFrame::SAME };
         let shift: Six = std::array::from_fn(|i| self.shift[i] + self.local[i]);
         let mut frame = offset.frame() * Frame::from_translation(linear(&shift));
         if self.transform != Transform::NONE {
@@ -298,7 +299,7 @@ impl Frames {
             frame *= tilt;
         }
         let rotary = [3, 4, 5].map(|i| offset.slide[i] + shift[i]);
-        Place { frame, rotary, same: frame == Frame::IDENTITY && rotary == [0.0; 3] }
+        ProgramFrame { frame, rotary, same: frame == Frame::IDENTITY && rotary == [0.0; 3] }
     }
 
     /// A point of the work frame in machine coordinates, NaN where it is not known.

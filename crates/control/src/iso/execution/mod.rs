@@ -4,7 +4,7 @@
 //! part: the words that move ([`motion`], [`arcs`], [`splines`], [`threads`], [`places`]), what is made
 //! of many moves ([`cycles`], [`patterns`]), the coordinates ([`coordinates`] say how [`frames`]
 //! change), [`kinematics`] that a program switches, [`tools`], the [`wire`], and FreeCAD's feeds ([`freecad`]). How a number counts is asked of
-//! [`numbers`], what holds of the [`state`], which expressions read by [`system`]. A straight move behind another goes [`onward`] without all that.
+//! [`numbers`], what holds of the [`state`], which expressions read by [`system`]. A straight move behind another goes [`straight`] without all that.
 
 mod arcs;
 mod coordinates;
@@ -16,13 +16,13 @@ mod kinematics;
 mod motion;
 pub(super) mod numbers;
 mod nurbs;
-pub(super) mod onward;
 mod patterns;
 mod places;
 mod signals;
 mod splines;
 pub(super) mod state;
 pub(super) mod step;
+pub(super) mod straight;
 mod system;
 mod threads;
 mod tools;

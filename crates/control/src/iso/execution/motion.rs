@@ -6,7 +6,7 @@ use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::Rollover;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, G, Group, Motion, bit};
-use crate::kernel::way::{self, Modulo};
+use crate::kernel::modulo::{self, Modulo};
 use geom::{Arc, Vec3};
 use program::{Compensation, Feed, Rule};
 
@@ -262,7 +262,7 @@ impl Step<'_, '_, '_> {
             (Rollover::AsSetUp, None) => Modulo::ShorterOrBySign,
             (Rollover::NotFollowed, _) => return,
         };
-        let sure = way::is_sure(from, to, self.state.modulo[axis], modulo);
+        let sure = modulo::is_sure(from, to, self.state.modulo[axis], modulo);
         let away = self.state.z_is_home || self.state.position.z.is_nan();
         if !self.state.incremental && !sure && !away {
             self.actions.push(Action::Risk(Risk::ROTARY_WAY.into()));

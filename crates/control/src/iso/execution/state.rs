@@ -1,7 +1,7 @@
 //! What the control remembers from block to block.
 
 use super::cycles::Holding;
-use super::frames::{Frames, Place};
+use super::frames::{Frames, ProgramFrame};
 use super::kinematics::Kinematics;
 use super::nurbs::Nurbs;
 use super::tools::Registers;
@@ -76,7 +76,7 @@ pub(crate) struct State {
     /// What lies between programmed coordinates and the work frame.
     pub frames: Frames,
     /// The same as one way: [`Frames::place`], kept.
-    pub place: Place,
+    pub place: ProgramFrame,
     pub tilt: Tilt,
     pub kinematics: Kinematics,
     /// The wire of a wire-EDM machine.
@@ -237,7 +237,7 @@ impl State {
             table_frame_at_zero: settings.table_frame_at_zero,
             sets_work_offsets: settings.sets_work_offsets,
             frames: Frames::new(work_offset, all_zero, facts.offsets.turn),
-            place: Place::SAME,
+            place: ProgramFrame::SAME,
             tilt: Tilt::None,
             kinematics: Kinematics::at_start(facts, settings),
             wire: facts.wire.map(|_| Wire::new(settings)),

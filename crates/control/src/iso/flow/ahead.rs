@@ -1,10 +1,10 @@
 //! Plain lines of a long program, taken apart in a thread of their own ahead of their run.
 
-use super::source::Place;
+use super::source::SourceLocation;
 use crate::iso::language::block::Word;
 use crate::iso::language::plain;
 use crate::kernel::LONG;
-use crate::kernel::belt::{Feed, Taken, belt};
+use crate::kernel::queue::{QueueReceiver, QueueSender, belt};
 use std::ops::Range;
 use std::{mem, thread};
 
@@ -29,7 +29,7 @@ struct Line {
 /// What has been read ahead.
 #[derive(Debug, Default)]
 pub(crate) struct Ahead {
-    batches: Option<Taken<Batch>>,
+    batches: Option<QueueReceiver<Batch>>,
     batch: Batch,
     /// The next line of the batch.
     next: usize,
@@ -52,7 +52,7 @@ impl Ahead {
     }
 
     /// How many bytes the line at `place` has, where it is plain; `is_main` in the program itself.
-    pub(super) fn line(&mut self, place: &Place, is_main: bool) -> Option<usize> {
+    pub(super) fn line(&mut self, place: &SourceLocation, is_main: bool) -> Option<usize> {
         if is_main && self.has(place.at) {
             let line = self.batch.lines.get(self.next)?;
             self.next += 1;
@@ -100,7 +100,7 @@ impl Batch {
 }
 
 /// Lays the plain lines of `text` on, until nobody takes them.
-fn read(text: &[u8], feed: &Feed<Batch>) {
+fn read(text: &[u8], feed: &QueueSender<Batch>) {
     let (mut batch, mut at) = (Batch::default(), 0);
     while at < text.len() {
         let from = batch.words.len();

@@ -3,7 +3,7 @@
 use super::calls::{Kind, Repeat};
 use super::owords::{Keyword, Name, OWords, parse};
 use super::run::Run;
-use super::source::{Place, Source};
+use super::source::{Source, SourceLocation};
 use crate::iso::language::block::Fault;
 use crate::iso::language::expression::Reader;
 use crate::iso::language::parameters::Locals;
@@ -201,7 +201,10 @@ impl<'a> Run<'a, '_> {
     }
 
     /// The subprogram that `M98 P` names.
-    pub(super) fn o_program(&self, number: u32) -> Result<Result<Place<'a>, String>, Fault> {
+    pub(super) fn o_program(
+        &self,
+        number: u32,
+    ) -> Result<Result<SourceLocation<'a>, String>, Fault> {
         Ok(match self.subroutine(number.to_string().as_bytes())? {
             Ok((place, Keyword::Program)) => Ok(place),
             Ok(_) => Err(format!("o{number} is a subroutine: call it by o{number} call")),
@@ -210,15 +213,19 @@ impl<'a> Run<'a, '_> {
     }
 
     /// Where a subroutine begins: in this file, in the program itself, or in a file of its name.
-    fn subroutine(&self, name: &[u8]) -> Result<Result<(Place<'a>, Keyword), String>, Fault> {
-        let find = |source: &'a Source<'a>| -> Result<Option<(Place<'a>, Keyword)>, Fault> {
-            let words = source.o_words(self.settings.setup.block_delete)?;
-            let base = name.rsplit(|&b| b == b'/').next().unwrap_or(name);
-            Ok(words.subroutines.get(base).map(|&index| {
-                let mark = &words.words[index];
-                (Place::called(source, mark.after), mark.word.keyword)
-            }))
-        };
+    fn subroutine(
+        &self,
+        name: &[u8],
+    ) -> Result<Result<(SourceLocation<'a>, Keyword), String>, Fault> {
+        let find =
+            |source: &'a Source<'a>| -> Result<Option<(SourceLocation<'a>, Keyword)>, Fault> {
+                let words = source.o_words(self.settings.setup.block_delete)?;
+                let base = name.rsplit(|&b| b == b'/').next().unwrap_or(name);
+                Ok(words.subroutines.get(base).map(|&index| {
+                    let mark = &words.words[index];
+                    (SourceLocation::called(source, mark.after), mark.word.keyword)
+                }))
+            };
         for source in [self.here.source, self.main] {
             if let Some(found) = find(source)? {
                 return Ok(Ok(found));

@@ -3,7 +3,7 @@
 use super::macros;
 use super::modes::Modes;
 use super::run::Run;
-use super::source::Place;
+use super::source::SourceLocation;
 use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::Language;
 use crate::iso::language::arithmetic;
@@ -38,9 +38,9 @@ pub(crate) enum Kind {
 pub(crate) struct Frame<'a> {
     pub kind: Kind,
     /// Where its caller goes on.
-    back: Place<'a>,
+    back: SourceLocation<'a>,
     caller: Option<u32>,
-    begin: Place<'a>,
+    begin: SourceLocation<'a>,
     /// How often it is still run, with this time.
     turns: u32,
     /// With which arguments.
@@ -65,13 +65,17 @@ pub(crate) struct Repeat {
 
 /// What `G66` has asked for.
 pub(crate) struct Modal<'a> {
-    place: Place<'a>,
+    place: SourceLocation<'a>,
     turns: u32,
     locals: Locals,
 }
 
 impl<'a> Frame<'a> {
-    pub(super) fn new(kind: Kind, begin: Place<'a>, back: Place<'a>) -> Frame<'a> {
+    pub(super) fn new(
+        kind: Kind,
+        begin: SourceLocation<'a>,
+        back: SourceLocation<'a>,
+    ) -> Frame<'a> {
         Frame {
             kind,
             back,
@@ -89,7 +93,7 @@ impl<'a> Frame<'a> {
 
 impl<'a> Run<'a, '_> {
     /// The subprogram of `M98 P L` and how often it is run.
-    pub(super) fn called_program(&mut self) -> Result<(Place<'a>, u32), Fault> {
+    pub(super) fn called_program(&mut self) -> Result<(SourceLocation<'a>, u32), Fault> {
         let fault =
             |block: &Block, message: String| block.at_group(Group::Flow, Rule::Call, message);
         let Some(program) = self.whole_word(b'P')? else {
@@ -211,7 +215,7 @@ impl<'a> Run<'a, '_> {
     pub(super) fn call(
         &mut self,
         kind: Kind,
-        place: Place<'a>,
+        place: SourceLocation<'a>,
         turns: u32,
         locals: Option<Locals>,
     ) -> Result<(), String> {

@@ -18,7 +18,7 @@ use program::{Diagnostic, Feed, Rule};
 const STRAIGHT_ON: f64 = 1.0;
 
 /// A block whose corner waits for the next one.
-pub(crate) struct Held {
+pub(crate) struct WaitingCorner {
     /// Its cut.
     action: Action,
     element: Element,
@@ -64,7 +64,7 @@ impl Run<'_, '_> {
             match word {
                 Some(word) => {
                     let shape = self.shape(word)?;
-                    self.held = Some(Held { action, element, up, shape, line });
+                    self.held = Some(WaitingCorner { action, element, up, shape, line });
                 }
                 None => self.actions.push(action),
             }
@@ -75,7 +75,7 @@ impl Run<'_, '_> {
     /// Sends the held cut up to its corner, and the corner; `second`, which ends at `end`, then starts behind it.
     fn join(
         &mut self,
-        held: &Held,
+        held: &WaitingCorner,
         second: &mut Element,
         end: &Position,
         up: Vec3,
@@ -194,7 +194,7 @@ impl Run<'_, '_> {
     }
 
     /// What to say of a block that makes no cut where a corner wants one.
-    fn no_cut(&self, held: Option<&Held>) -> Fault {
+    fn no_cut(&self, held: Option<&WaitingCorner>) -> Fault {
         let message = match held {
             Some(held) => format!(
                 "the corner of line {} has no second side: a cut (G1, G2, G3) must follow at once (alarm \

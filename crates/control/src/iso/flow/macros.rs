@@ -11,7 +11,7 @@ use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::expression::{Reader, Target};
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::decimal;
-use crate::kernel::flow::{self, Labels, Place, Structures};
+use crate::kernel::flow::{self, BlockLocation, Labels, Structures};
 use program::{Diagnostic, Rule};
 
 /// What begins a statement.
@@ -168,7 +168,7 @@ impl Numbers {
 
     /// The block of this number that a jump from byte `from` finds: downwards to the end of the program,
     /// then from its start.
-    fn block(&self, number: u32, from: usize) -> Option<Place> {
+    fn block(&self, number: u32, from: usize) -> Option<BlockLocation> {
         let program = self.programs.partition_point(|at| *at <= from).saturating_sub(1);
         let start = *self.programs.get(program)?;
         let end = self.programs.get(program + 1).copied().unwrap_or(usize::MAX);
@@ -347,11 +347,11 @@ impl<'a> Run<'a, '_> {
     pub(super) fn block_of_program(
         &self,
         label: u32,
-    ) -> Result<Result<source::Place<'a>, String>, Fault> {
+    ) -> Result<Result<source::SourceLocation<'a>, String>, Fault> {
         let source = self.here.source;
         let numbers = source.numbers(self.settings.setup.block_delete)?;
         Ok(match numbers.block(label, self.here.at) {
-            Some(place) => Ok(source::Place::called(source, place)),
+            Some(place) => Ok(source::SourceLocation::called(source, place)),
             None => Err(format!("there is no block N{label} in this program")),
         })
     }
@@ -361,11 +361,11 @@ impl<'a> Run<'a, '_> {
     pub(super) fn macro_program(
         &self,
         number: u32,
-    ) -> Result<Result<source::Place<'a>, String>, Fault> {
+    ) -> Result<Result<source::SourceLocation<'a>, String>, Fault> {
         let deletes = self.settings.setup.block_delete;
-        let find = |source: &'a Source<'a>| -> Result<Option<source::Place<'a>>, Fault> {
+        let find = |source: &'a Source<'a>| -> Result<Option<source::SourceLocation<'a>>, Fault> {
             let place = source.numbers(deletes)?.by_number.first(&number);
-            Ok(place.map(|place| source::Place::called(source, place)))
+            Ok(place.map(|place| source::SourceLocation::called(source, place)))
         };
         for source in [self.here.source, self.main] {
             if let Some(place) = find(source)? {

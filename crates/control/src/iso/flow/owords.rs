@@ -6,7 +6,7 @@
 use super::source;
 use crate::iso::language::block::Fault;
 use crate::kernel::decimal;
-use crate::kernel::flow::{self, Place, Structures};
+use crate::kernel::flow::{self, BlockLocation, Structures};
 use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 
@@ -60,7 +60,7 @@ const KEYWORDS: [(&[u8], Keyword); 15] = [
 pub(super) struct OWord {
     pub keyword: Keyword,
     name: Vec<u8>,
-    /// Place in the line behind the keyword.
+    /// Position in the line, behind the keyword.
     pub rest: usize,
     /// Of what begins a branch or loop, the first O-word of this name in the subroutine that does.
     pub twin: Option<usize>,
@@ -216,7 +216,7 @@ impl OWords {
         name: Vec<u8>,
         mut keyword: Keyword,
         rest: usize,
-        place: [Place; 2],
+        place: [BlockLocation; 2],
     ) -> Result<(), String> {
         let words = &mut self.words;
         if words.unclosed().len() > DEEPEST {

@@ -2,17 +2,17 @@
 
 use super::ahead::Ahead;
 use super::calls::{Frame, Kind};
-use super::corners::Held;
+use super::corners::WaitingCorner;
 use super::macros;
 use super::owords;
-use super::source::{self, Place, Source};
+use super::source::{self, Source, SourceLocation};
 use crate::Ending;
 use crate::Settings;
 use crate::event::{Action, Event, Risk};
 use crate::iso::dialects::facts::{Facts, Language};
-use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
+use crate::iso::execution::straight::StraightContinuation;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::expression::Reader;
@@ -34,7 +34,7 @@ pub(crate) struct Run<'a, 's> {
     pub actions: Vec<Action>,
     /// The program itself.
     pub main: &'a Source<'a>,
-    pub here: Place<'a>,
+    pub here: SourceLocation<'a>,
     /// The line that is run, and its number.
     pub(super) text: (&'a [u8], u32),
     /// The line of the program itself in which a call into another file is under way.
@@ -49,9 +49,9 @@ pub(crate) struct Run<'a, 's> {
     /// The lines that have been read ahead.
     ahead: Ahead,
     /// The block before has moved, and straight moves go on behind it.
-    onward: Option<Onward>,
+    onward: Option<StraightContinuation>,
     /// The block whose corner waits for the next one.
-    pub(super) held: Option<Held>,
+    pub(super) held: Option<WaitingCorner>,
     /// Where the records go.
     pub(super) channel: &'a mut Channel<'s>,
 }
@@ -65,7 +65,7 @@ impl<'a, 's> Run<'a, 's> {
         ahead: Ahead,
         channel: &'a mut Channel<'s>,
     ) -> Run<'a, 's> {
-        let here = Place { source: main, at: 0, line: 0, percent_signs: 0 };
+        let here = SourceLocation { source: main, at: 0, line: 0, percent_signs: 0 };
         Run {
             settings,
             facts,
@@ -275,7 +275,7 @@ impl<'a, 's> Run<'a, 's> {
             return self.back(back);
         }
         if self.frame().modal.is_none() && self.held.is_none() {
-            self.onward = Onward::behind(&self.block, &self.control.state);
+            self.onward = StraightContinuation::behind(&self.block, &self.control.state);
         }
         self.after_move()
     }
@@ -300,7 +300,7 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// Goes on at a block of this file.
-    pub(super) fn jump(&mut self, to: flow::Place) -> Result<(), Fault> {
+    pub(super) fn jump(&mut self, to: flow::BlockLocation) -> Result<(), Fault> {
         let again = self.here.at.saturating_sub(to.at);
         (self.here.at, self.here.line) = (to.at, to.line - 1);
         let counted = self.channel.budget.again(again);

@@ -25,7 +25,7 @@ pub(crate) struct Source<'t> {
 
 /// Where a run is in a file: the next line.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub(crate) struct SourceLocation<'a> {
     pub source: &'a Source<'a>,
     /// Byte where the line begins.
     pub at: usize,
@@ -113,10 +113,10 @@ impl<'t> Source<'t> {
     }
 }
 
-impl<'a> Place<'a> {
+impl<'a> SourceLocation<'a> {
     /// A block to which a call goes.
-    pub(super) fn called(source: &'a Source<'a>, to: flow::Place) -> Place<'a> {
-        Place { source, at: to.at, line: to.line - 1, percent_signs: 1 }
+    pub(super) fn called(source: &'a Source<'a>, to: flow::BlockLocation) -> SourceLocation<'a> {
+        SourceLocation { source, at: to.at, line: to.line - 1, percent_signs: 1 }
     }
 
     /// The next line and its number; how many bytes it has may be known.

@@ -3,7 +3,7 @@
 use super::plane::Plane;
 use super::{SAME, error};
 use crate::event::Position;
-use crate::kernel::source::Fallible;
+use crate::kernel::Outcome;
 use geom::{Element, Vec2};
 use program::Rule;
 
@@ -19,7 +19,7 @@ pub(super) struct Leaving {
 impl Leaving {
     /// # Errors
     /// The tool does not leave the contour by a straight move to `pose`.
-    pub(super) fn check(&self, line: u32, pose: &Position) -> Fallible<()> {
+    pub(super) fn check(&self, line: u32, pose: &Position) -> Outcome {
         let (to, _) = self.plane.flat(pose.point);
         if !self.guarded || to.is_nan() {
             return Ok(());

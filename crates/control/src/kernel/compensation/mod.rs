@@ -12,7 +12,7 @@ mod plane;
 mod rules;
 
 use crate::event::{Action, Event, Orientation, Position};
-use crate::kernel::source::Fallible;
+use crate::kernel::Outcome;
 use crate::{Dialect, Settings, Sink, ToolData};
 use geom::Vec3;
 use leaving::Leaving;
@@ -76,7 +76,7 @@ impl<'a> Compensator<'a> {
 
     /// Takes any record but a change of compensation.
     #[inline]
-    pub(crate) fn take(&mut self, record: Event) -> Fallible<()> {
+    pub(crate) fn take(&mut self, record: Event) -> Outcome {
         match self.path {
             Some(_) => self.follow(record),
             None => {
@@ -90,7 +90,7 @@ impl<'a> Compensator<'a> {
     }
 
     /// Compensation changes to `side` in `line`, with the next move.
-    pub(crate) fn switch(&mut self, line: u32, side: Compensation, terms: Terms) -> Fallible<()> {
+    pub(crate) fn switch(&mut self, line: u32, side: Compensation, terms: Terms) -> Outcome {
         if let Some(mut path) = self.path.take() {
             if side != Compensation::Off {
                 let message = "compensation changes its side or its register while it is on";
@@ -155,14 +155,14 @@ impl<'a> Compensator<'a> {
     }
 
     /// The program has ended.
-    pub(crate) fn finish(&mut self) -> Fallible<()> {
+    pub(crate) fn finish(&mut self) -> Outcome {
         match self.path.take() {
             Some(mut path) => path.finish(self.sink).map(|_| ()),
             None => Ok(()),
         }
     }
 
-    fn follow(&mut self, record: Event) -> Fallible<()> {
+    fn follow(&mut self, record: Event) -> Outcome {
         if record.action == Action::End {
             self.finish()?;
             return (self.sink)(record);
@@ -174,7 +174,7 @@ impl<'a> Compensator<'a> {
     }
 
     /// Keeps in mind what compensation will need.
-    fn note(&mut self, record: &Event) -> Fallible<()> {
+    fn note(&mut self, record: &Event) -> Outcome {
         match &record.action {
             Action::Feed(feed) => self.inverse_time = matches!(feed, Feed::InverseTime(_)),
             Action::Tool(tool) => {
@@ -210,7 +210,7 @@ impl<'a> Compensator<'a> {
         }
     }
 
-    fn arrive(&mut self, line: u32, pose: Position) -> Fallible<()> {
+    fn arrive(&mut self, line: u32, pose: Position) -> Outcome {
         if let Some(leaving) = self.leaving.take() {
             leaving.check(line, &pose)?;
         }

@@ -6,7 +6,7 @@ use super::rules::{Entry, Outer, Rules};
 use super::{SAME, error, inverse_time, on_arc};
 use crate::Sink;
 use crate::event::{Action, ArcTo, Event, Orientation, Position};
-use crate::kernel::source::Fallible;
+use crate::kernel::Outcome;
 use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
 use program::{Diagnostic, Feed, Rule};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -62,7 +62,7 @@ struct Piece {
 }
 
 /// A move of the centre.
-struct Way {
+struct CentreMove {
     line: u32,
     rapid: bool,
     end: Vec2,
@@ -84,7 +84,7 @@ impl Path {
     }
 
     /// Takes a record while compensation is on.
-    pub(super) fn take(&mut self, record: Event, sink: &mut Sink) -> Fallible<()> {
+    pub(super) fn take(&mut self, record: Event, sink: &mut Sink) -> Outcome {
         let line = record.line;
         match &record.action {
             Action::Rapid(pose) | Action::Line(pose) => {
@@ -129,7 +129,7 @@ impl Path {
     }
 
     /// Ends the contour: the tool then stands across the end of its last element.
-    pub(super) fn finish(&mut self, sink: &mut Sink) -> Fallible<Option<Leaving>> {
+    pub(super) fn finish(&mut self, sink: &mut Sink) -> Outcome<Option<Leaving>> {
         match std::mem::replace(&mut self.stage, Stage::On) {
             Stage::On => Ok(None),
             Stage::Entering(Piece { line, .. }) => {
@@ -148,7 +148,7 @@ impl Path {
     }
 
     /// The program goes to `pose`: place in the plane and height before, and there.
-    fn arrive(&mut self, line: u32, pose: &Position) -> Fallible<((Vec2, f64), (Vec2, f64))> {
+    fn arrive(&mut self, line: u32, pose: &Position) -> Outcome<((Vec2, f64), (Vec2, f64))> {
         if pose.point.is_nan() || self.at.point.is_nan() {
             let message = "compensation, and where the tool stands is not known";
             return Err(error(Rule::CompensationUnknownPosition, line, message)
@@ -169,7 +169,7 @@ impl Path {
     }
 
     /// The angle through which an arc turns in the plane, positive counter-clockwise.
-    fn sweep(&self, line: u32, arc: &ArcTo) -> Fallible<f64> {
+    fn sweep(&self, line: u32, arc: &ArcTo) -> Outcome<f64> {
         let side = arc.normal.dot(self.plane.normal);
         if side.abs() < 1.0 - 1e-9 {
             let message = "an arc out of the plane of compensation";
@@ -187,7 +187,7 @@ impl Path {
     }
 
     /// What runs beside an element of the contour, whole.
-    fn piece(&self, line: u32, contour: Element, heights: [f64; 3]) -> Fallible<Piece> {
+    fn piece(&self, line: u32, contour: Element, heights: [f64; 3]) -> Outcome<Piece> {
         let Some(parallel) = contour.parallel(self.left) else {
             let radius = contour.turn.map_or(0.0, |turn| contour.start.distance(turn.center));
             let message = format!(
@@ -204,7 +204,7 @@ impl Path {
     }
 
     /// The next element of the contour, which ends the one held back.
-    fn element(&mut self, mut piece: Piece, sink: &mut Sink) -> Fallible<()> {
+    fn element(&mut self, mut piece: Piece, sink: &mut Sink) -> Outcome {
         match std::mem::replace(&mut self.stage, Stage::On) {
             Stage::On => {
                 self.stage = self.enter(piece)?;
@@ -218,7 +218,7 @@ impl Path {
                         .help("begin on the tool's side of the contour, or behind its start")
                         .into());
                 }
-                let way = Way { end: piece.parallel.start, ..entry.way() };
+                let way = CentreMove { end: piece.parallel.start, ..entry.way() };
                 let end = way.end;
                 self.send(way, sink)?;
                 self.send_waiting(end, sink)?;
@@ -230,7 +230,7 @@ impl Path {
     }
 
     /// The first move in the plane.
-    fn enter(&self, piece: Piece) -> Fallible<Stage> {
+    fn enter(&self, piece: Piece) -> Outcome<Stage> {
         if piece.contour.turn.is_some() {
             if self.rules.entry == Entry::OfItself {
                 return self.enter_on_arc(piece);
@@ -252,7 +252,7 @@ impl Path {
     }
 
     /// The arc from where the tool stands that ends beside the programmed one and in its direction.
-    fn enter_on_arc(&self, piece: Piece) -> Fallible<Stage> {
+    fn enter_on_arc(&self, piece: Piece) -> Outcome<Stage> {
         let Piece { contour, parallel, .. } = piece;
         let (start, end) = (contour.start, parallel.end);
         let sweep = contour.turn.map_or(0.0, |turn| turn.sweep);
@@ -287,7 +287,7 @@ impl Path {
     }
 
     /// Brings `last` to its end and the tool around the corner to the start of `next`.
-    fn corner(&mut self, mut last: Piece, next: &mut Piece, sink: &mut Sink) -> Fallible<()> {
+    fn corner(&mut self, mut last: Piece, next: &mut Piece, sink: &mut Sink) -> Outcome {
         let arriving = last.contour.tangent(1.0);
         let turn = turn_angle(arriving, next.contour.tangent(0.0));
         let inner = if PI - turn.abs() > self.rules.smooth {
@@ -312,7 +312,7 @@ impl Path {
     }
 
     /// The next element begins where the last one ends, a little before or behind its own start.
-    fn join(&self, last: &Piece, next: &mut Piece) -> Fallible<()> {
+    fn join(&self, last: &Piece, next: &mut Piece) -> Outcome {
         let Element { start, turn, .. } = next.parallel;
         let longer = match turn {
             None => {
@@ -338,7 +338,7 @@ impl Path {
     /// # Errors
     /// Two arcs that turn different ways, of which the second is the flatter: LinuxCNC looks at the
     /// second alone and takes the wrong side (`rs274`).
-    fn inner_on_way_back(&self, last: &Piece, next: &Piece) -> Fallible<bool> {
+    fn inner_on_way_back(&self, last: &Piece, next: &Piece) -> Outcome<bool> {
         let (first, second) = (last.contour.curvature(), next.contour.curvature());
         if second * (first + second) < 0.0 {
             return Err(self.no_reach(last, next));
@@ -347,7 +347,7 @@ impl Path {
     }
 
     /// At an inner corner both elements end where what runs beside them crosses.
-    fn shorten(&self, last: &mut Piece, next: &mut Piece) -> Fallible<()> {
+    fn shorten(&self, last: &mut Piece, next: &mut Piece) -> Outcome {
         let crossings = last.parallel.crossings(&next.parallel);
         let mut crossings: Vec<_> = crossings.filter(|c| c.on_first > last.from).collect();
         crossings.sort_by(|a, b| a.cut.total_cmp(&b.cut));
@@ -376,11 +376,11 @@ impl Path {
     }
 
     /// The moves around an outer corner at which the way turns by `turn`.
-    fn around(&self, last: &mut Piece, next: &Piece, turn: f64) -> Fallible<Vec<Way>> {
+    fn around(&self, last: &mut Piece, next: &Piece, turn: f64) -> Outcome<Vec<CentreMove>> {
         let Piece { line, rapid, heights: [height, ..], .. } = *next;
         let corner = next.contour.start;
         let start = next.parallel.start;
-        let straight = |end| Way { line, rapid, end, height, turn: None };
+        let straight = |end| CentreMove { line, rapid, end, height, turn: None };
         let lines = last.contour.turn.is_none() && next.contour.turn.is_none();
         let mut points = match self.rules.outer {
             Outer::Intersection if turn <= Outer::SHARPEST && !lines => {
@@ -400,7 +400,7 @@ impl Path {
             _ if rapid && !self.rules.rounds_rapids => return Ok(vec![straight(start)]),
             _ => {
                 let turn = Turn { center: corner, sweep: -turn * self.left.signum() };
-                return Ok(vec![Way { turn: Some((turn, height)), ..straight(start) }]);
+                return Ok(vec![CentreMove { turn: Some((turn, height)), ..straight(start) }]);
             }
         };
         // A line is longer by that; an arc ends, and begins, where it would.
@@ -415,7 +415,7 @@ impl Path {
 
     /// # Errors
     /// The control does not see as far as the element in `line`.
-    fn sees(&self, line: u32) -> Fallible<()> {
+    fn sees(&self, line: u32) -> Outcome {
         let silent = |action: &Action| matches!(action, Action::Comment(_));
         let mut blocks = 0;
         let mut last = line;
@@ -437,7 +437,7 @@ impl Path {
     }
 
     /// A record that moves nothing in the plane.
-    fn pass(&mut self, record: Event, sink: &mut Sink) -> Fallible<()> {
+    fn pass(&mut self, record: Event, sink: &mut Sink) -> Outcome {
         if matches!(self.stage, Stage::On) {
             return sink(record);
         }
@@ -451,7 +451,7 @@ impl Path {
     }
 
     /// What has waited happens at `point` of the plane.
-    fn send_waiting(&mut self, point: Vec2, sink: &mut Sink) -> Fallible<()> {
+    fn send_waiting(&mut self, point: Vec2, sink: &mut Sink) -> Outcome {
         for mut record in self.waiting.drain(..) {
             if let Action::Rapid(pose) | Action::Line(pose) = &mut record.action {
                 pose.point = self.plane.lift(point, self.plane.flat(pose.point).1);
@@ -461,8 +461,8 @@ impl Path {
         Ok(())
     }
 
-    fn send(&self, way: Way, sink: &mut Sink) -> Fallible<()> {
-        let Way { line, rapid, end, height, turn } = way;
+    fn send(&self, way: CentreMove, sink: &mut Sink) -> Outcome {
+        let CentreMove { line, rapid, end, height, turn } = way;
         let end = Position { point: self.plane.lift(end, height), ..self.at };
         // An arc of no length would be read as a full circle.
         let arc = turn.filter(|(turn, _)| {
@@ -484,12 +484,12 @@ impl Path {
 
 impl Piece {
     /// What remains of it.
-    fn way(&self) -> Way {
+    fn way(&self) -> CentreMove {
         let Piece { line, rapid, end, heights: [_, height, center], .. } = *self;
         let part = self.to - self.from;
         let turn = self.parallel.turn;
         let turn = turn.map(|turn| (Turn { sweep: turn.sweep * part, ..turn }, center));
-        Way { line, rapid, end, height, turn }
+        CentreMove { line, rapid, end, height, turn }
     }
 }
 

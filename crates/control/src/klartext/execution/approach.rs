@@ -7,7 +7,7 @@
 use super::contour::{Bend, Element, Waiting, left_of};
 use super::state::Control;
 use crate::event::Action;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{CCA, FeedWord, LEN, LINEAR, PA, PR, RADIUS, Words, slot};
@@ -40,7 +40,7 @@ pub(super) struct Approach {
 
 impl Shape {
     /// The shape that the words say, and whether its point is in polar coordinates.
-    fn read(s: &mut Scanner, control: &Control) -> Fallible<(Shape, bool, Words)> {
+    fn read(s: &mut Scanner, control: &Control) -> Outcome<(Shape, bool, Words)> {
         let (kind, span) = s.token();
         let (polar, kind) = match kind {
             [b'P', rest @ ..] => (true, rest),
@@ -119,7 +119,7 @@ fn side(compensation: Compensation) -> Option<f64> {
 
 impl Control<'_, '_> {
     /// `APPR`, from behind it: what is known is kept until the contour is.
-    pub(crate) fn approach(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn approach(&mut self, s: &mut Scanner) -> Outcome {
         let (shape, polar, mut words) = Shape::read(s, self)?;
         if polar {
             self.polar(s, &mut words)?;
@@ -160,7 +160,7 @@ impl Control<'_, '_> {
         s: &Scanner,
         approach: &Approach,
         next: &Element,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let Approach { shape, start, compensation, feed, rapid } = *approach;
         let Some(along) = next.tangent_at_start() else {
             let message = "in which direction the contour begins is not known";
@@ -211,7 +211,7 @@ impl Control<'_, '_> {
     }
 
     /// `DEP`, from behind it.
-    pub(crate) fn departure(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn departure(&mut self, s: &mut Scanner) -> Outcome {
         let (shape, polar, mut words) = Shape::read(s, self)?;
         if polar {
             self.polar(s, &mut words)?;
@@ -274,14 +274,14 @@ impl Control<'_, '_> {
     }
 
     /// The compensation ends where the tool is: its center has this place.
-    fn leave_contour(&mut self, center: Vec3) -> Fallible<()> {
+    fn leave_contour(&mut self, center: Vec3) -> Outcome {
         self.here = center;
         self.path = None;
         self.set_compensation(Compensation::Off)
     }
 
     /// How far beside the contour the center of the tool runs.
-    fn radius_beside_contour(&self, s: &Scanner, beside: f64) -> Fallible<f64> {
+    fn radius_beside_contour(&self, s: &Scanner, beside: f64) -> Outcome<f64> {
         if beside == 0.0 {
             return Ok(0.0);
         }

@@ -1,7 +1,7 @@
 //! Elements of a contour, and the corners between them.
 
 use super::state::Control;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::corner::{self, Misfit, Shape};
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, RADIUS, Words, feed_word, slot};
@@ -107,7 +107,7 @@ fn cut_off(first: &Element, second: &Element, shape: Shape) -> Result<Element, &
 
 impl Control<'_, '_> {
     /// `RND R5 F100`.
-    pub(crate) fn rounding(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn rounding(&mut self, s: &mut Scanner) -> Outcome {
         let words = Words::read(s, RADIUS, self)?;
         let radius = words.get(slot::R).filter(|radius| *radius > 0.0);
         let Some(radius) = radius.filter(|_| {
@@ -119,7 +119,7 @@ impl Control<'_, '_> {
     }
 
     /// `CHF 12 F250`.
-    pub(crate) fn chamfer(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn chamfer(&mut self, s: &mut Scanner) -> Outcome {
         let length = s.value(&self.registers)? * self.unit;
         let feed = match s.word(&self.registers)? {
             Some(word) => Some(feed_word(s, &word, self.tool_feed)?),
@@ -132,7 +132,7 @@ impl Control<'_, '_> {
         self.cut(s, Cut { shape: Shape::ChamferSide(length), feed })
     }
 
-    fn cut(&mut self, s: &Scanner, with: Cut) -> Fallible<()> {
+    fn cut(&mut self, s: &Scanner, with: Cut) -> Outcome {
         match &mut self.waiting {
             Some(Waiting::Corner { cut: cut @ None, .. }) => {
                 *cut = Some(with);
@@ -151,7 +151,7 @@ impl Control<'_, '_> {
         s: &Scanner,
         element: Element,
         corner: bool,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         if corner {
             self.here = element.end;
             self.waiting = Some(Waiting::Corner { first: element, cut: None });
@@ -162,7 +162,7 @@ impl Control<'_, '_> {
 
     /// The next element of the contour is known: what waits for it is told, up to where the element
     /// begins then.
-    pub(super) fn meet(&mut self, s: &Scanner, next: &Element) -> Fallible<()> {
+    pub(super) fn meet(&mut self, s: &Scanner, next: &Element) -> Outcome {
         let Some(waiting) = self.waiting.take() else { return Ok(()) };
         let (first, cut) = match waiting {
             Waiting::Corner { first, cut: Some(cut) } => (first, cut),
@@ -179,7 +179,7 @@ impl Control<'_, '_> {
     }
 
     /// Another feed from here on.
-    pub(super) fn take_feed(&mut self, feed: Feed) -> Fallible<()> {
+    pub(super) fn take_feed(&mut self, feed: Feed) -> Outcome {
         if self.feed == Some(feed) {
             return Ok(());
         }
@@ -188,7 +188,7 @@ impl Control<'_, '_> {
     }
 
     /// Goes back to the feed from before a block with a feed of its own.
-    pub(super) fn restore_feed(&mut self, feed: Option<Feed>) -> Fallible<()> {
+    pub(super) fn restore_feed(&mut self, feed: Option<Feed>) -> Outcome {
         match feed {
             Some(feed) => self.take_feed(feed),
             None => {
@@ -199,7 +199,7 @@ impl Control<'_, '_> {
     }
 
     /// A block that is no part of a contour: nothing may wait.
-    pub(crate) fn contour_is_closed(&self, s: &Scanner) -> Fallible<()> {
+    pub(crate) fn contour_is_closed(&self, s: &Scanner) -> Outcome {
         if self.waiting.is_none() {
             return Ok(());
         }

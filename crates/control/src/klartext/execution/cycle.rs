@@ -5,7 +5,7 @@ use super::layout::{self, Layout, Unit};
 use super::older::Older;
 use super::state::{Control, TENTH_INCH, Tip};
 use crate::event::{Action, Risk};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::registers::{Parameter, Registers};
 use crate::klartext::language::scan::{Scanner, Word};
@@ -23,7 +23,7 @@ pub(crate) struct Designation {
 }
 
 impl Designation {
-    pub(crate) fn read(s: &mut Scanner) -> Fallible<Designation> {
+    pub(crate) fn read(s: &mut Scanner) -> Outcome<Designation> {
         s.is_done();
         let start = s.at();
         let cycle = s.digits(MOST)?;
@@ -83,7 +83,7 @@ pub(super) enum Defined {
 
 impl Control<'_, '_> {
     /// The defined cycle that says by itself where its surface is.
-    pub(super) fn definition(&self, s: &Scanner) -> Fallible<&Definition> {
+    pub(super) fn definition(&self, s: &Scanner) -> Outcome<&Definition> {
         match &self.cycle {
             Some(Defined::Parameters(definition)) => Ok(definition),
             Some(Defined::Older(_)) => {
@@ -101,7 +101,7 @@ impl Control<'_, '_> {
         s: &mut Scanner,
         number: u32,
         span: (usize, usize),
-    ) -> Fallible<Definition> {
+    ) -> Outcome<Definition> {
         let layout = layout::layout(number)
             .ok_or_else(|| s.error(Rule::Unsupported, span, layout::refusal(number)))?;
         while !matches!(s.peek(), [] | [b'Q', b'0'..=b'9', ..]) {
@@ -111,7 +111,7 @@ impl Control<'_, '_> {
     }
 
     /// The parameters `Q200=+2` in one line of a cycle that is being read.
-    pub(crate) fn cycle_line(&mut self, s: &mut Scanner, open: &mut Definition) -> Fallible<()> {
+    pub(crate) fn cycle_line(&mut self, s: &mut Scanner, open: &mut Definition) -> Outcome {
         while !s.is_done() {
             let from = *s;
             let parameter = s.parameter()?;
@@ -143,7 +143,7 @@ impl Control<'_, '_> {
     }
 
     /// The last parameter is read: the cycle is checked as a whole. 220, 221 and 247 act at once.
-    pub(crate) fn close_cycle(&mut self, s: &Scanner, open: Definition) -> Fallible<()> {
+    pub(crate) fn close_cycle(&mut self, s: &Scanner, open: Definition) -> Outcome {
         let number = open.layout.number;
         if let Some(q) = open.layout.needs.iter().find(|q| !open.given.contains(q)) {
             let message = format!("cycle {number} lacks its parameter Q{q}");
@@ -169,7 +169,7 @@ impl Control<'_, '_> {
     }
 
     /// A cycle that is ready to be called, if it was `checked` well.
-    fn keep(&mut self, s: &Scanner, open: Definition, checked: Result<(), String>) -> Fallible<()> {
+    fn keep(&mut self, s: &Scanner, open: Definition, checked: Result<(), String>) -> Outcome {
         checked.map_err(|message| {
             s.error_block(Rule::CycleParameter, format!("cycle {}: {message}", open.number()))
         })?;
@@ -179,7 +179,7 @@ impl Control<'_, '_> {
     }
 
     /// Cycle 247: a preset becomes the datum, and the datum shift ends.
-    fn set_datum(&mut self, s: &Scanner, preset: f64) -> Fallible<()> {
+    fn set_datum(&mut self, s: &Scanner, preset: f64) -> Outcome {
         if preset.fract() != 0.0 || !(0.0..=9999.0).contains(&preset) {
             return Err(s.error_block(Rule::CycleParameter, "Q339 is the number of a preset"));
         }
@@ -198,7 +198,7 @@ impl Control<'_, '_> {
     }
 
     /// `CYCL CALL`, from behind it.
-    pub(crate) fn cycle_call(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn cycle_call(&mut self, s: &mut Scanner) -> Outcome {
         if s.take(b"PAT") {
             return self.pattern_call(s);
         }
@@ -214,7 +214,7 @@ impl Control<'_, '_> {
 
     /// `CYCL CALL POS X Y Z`: the tool goes there, first in the plane where it is above the surface;
     /// Z adds to the surface of the cycle.
-    fn cycle_call_at(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn cycle_call_at(&mut self, s: &mut Scanner) -> Outcome {
         let words = Words::read(s, LINEAR, self)?;
         if !words.has_all(LINEAR) || words.is_incremental(LINEAR) {
             let message = "CYCL CALL POS needs X, Y and Z, absolute";
@@ -240,13 +240,13 @@ impl Control<'_, '_> {
     }
 
     /// Runs the defined cycle where the tool stands.
-    pub(super) fn call_cycle(&mut self, s: &Scanner) -> Fallible<()> {
+    pub(super) fn call_cycle(&mut self, s: &Scanner) -> Outcome {
         self.drill(s, 0.0, None)
     }
 
     /// Runs the defined cycle where the tool stands, with its surface higher by `rise` mm; `level` is
     /// the height at which the tool ends where that is not the matter of the cycle.
-    pub(super) fn drill(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Fallible<()> {
+    pub(super) fn drill(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Outcome {
         if self.ended {
             return Err(s.error_block(Rule::Cycle, "no cycle is called where the program ends"));
         }
@@ -308,7 +308,7 @@ impl Control<'_, '_> {
     }
 
     /// Whether a cycle can be called as things stand.
-    fn may_call(&self, s: &Scanner) -> Fallible<()> {
+    fn may_call(&self, s: &Scanner) -> Outcome {
         if self.compensation != Compensation::Off {
             return Err(s.error_block(Rule::Cycle, "a cycle is called with R0"));
         }
@@ -334,7 +334,7 @@ impl Control<'_, '_> {
         s: &mut Scanner,
         cycle: u32,
         span: (usize, usize),
-    ) -> Fallible<()> {
+    ) -> Outcome {
         if matches!(cycle, 1 | 2 | 7..=11 | 17 | 19 | 26 | 32) {
             s.skip();
             return Ok(());
@@ -343,7 +343,7 @@ impl Control<'_, '_> {
     }
 
     /// A numbered part of an older cycle: `7.1 X+60`, `9.1 DWELL 1.5`, `32.1 T0.01`.
-    pub(crate) fn cycle_part(&mut self, s: &mut Scanner, cycle: u32, part: u32) -> Fallible<()> {
+    pub(crate) fn cycle_part(&mut self, s: &mut Scanner, cycle: u32, part: u32) -> Outcome {
         match (cycle, part) {
             (1 | 2 | 17, _) => {
                 if let Some(older) = self.older_part(s, cycle, part)? {
@@ -365,7 +365,7 @@ impl Control<'_, '_> {
     }
 
     /// `DWELL 1.5`, in whatever language: seconds.
-    fn dwell(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn dwell(&mut self, s: &mut Scanner) -> Outcome {
         s.take_text();
         let seconds = s.value(&self.registers)?;
         s.finish()?;
@@ -376,7 +376,7 @@ impl Control<'_, '_> {
     }
 
     /// `FUNCTION DWELL TIME10`, from behind `DWELL`.
-    pub(super) fn function_dwell(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn function_dwell(&mut self, s: &mut Scanner) -> Outcome {
         let seconds = s.take_symbol(b"TIME").then(|| s.value(&self.registers)).transpose()?;
         s.finish()?;
         match seconds.filter(|seconds| *seconds >= 0.0) {
@@ -386,7 +386,7 @@ impl Control<'_, '_> {
     }
 
     /// `T0.01`, by which the path may be left, or `HSC-MODE:1 TA0.5`, or nothing, which ends the tolerance.
-    fn tolerance(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn tolerance(&mut self, s: &mut Scanner) -> Outcome {
         let first = s.is_done();
         let mut mode = first.then_some(PathMode::AsSetUp);
         while !s.is_done() {
@@ -410,7 +410,7 @@ impl Control<'_, '_> {
     }
 
     /// Tells where the control may turn the tool by so many degrees out of its orientation, which is more than it may.
-    fn hold_orientation(&mut self, degrees: f64) -> Fallible<()> {
+    fn hold_orientation(&mut self, degrees: f64) -> Outcome {
         let turns = self.settings.rotary.contains(&true);
         if !turns || degrees <= self.settings.orientation_tolerance {
             return Ok(());

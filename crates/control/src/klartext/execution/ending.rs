@@ -3,7 +3,7 @@
 
 use super::state::{Control, Tip};
 use crate::event::{Action, Risk};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use program::Compensation;
 
 const TRANSFORM: Risk = Risk::left_on(
@@ -27,7 +27,7 @@ const MODAL_CALL: Risk = Risk::left_on(
 impl Control<'_, '_> {
     /// Reports what the end of the program leaves on. Parameters decide what of it M2, M30 and END PGM reset; PLANE and M128 stay for
     /// certain until they are reset, or another program is selected.
-    pub(super) fn report_left_on(&mut self) -> Fallible<()> {
+    pub(super) fn report_left_on(&mut self) -> Outcome {
         let inside = self.tilt.as_ref().is_some_and(|tilt| !tilt.inside.is_empty());
         let found = [
             (!self.outside.is_empty() || inside, TRANSFORM),

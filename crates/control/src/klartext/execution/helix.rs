@@ -4,7 +4,7 @@ use super::contour::{Bend, Element};
 use super::hole::Hole;
 use super::state::Control;
 use crate::event::Action;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;
 use geom::Vec3;
 use program::{Feed, Rule, Spindle};
@@ -75,7 +75,7 @@ impl Hole<'_> {
 impl Control<'_, '_> {
     /// Runs cycle 208 where the tool stands: over the surface to the wall on an arc that touches it, down
     /// on the helix, once round at the bottom, to the axis and out by rapid.
-    pub(super) fn mill_bore(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Fallible<()> {
+    pub(super) fn mill_bore(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Outcome {
         let bad = |message| s.error_block(Rule::CycleParameter, message);
         let tool_radius = self.tool_radius.ok_or_else(|| {
             let error = bad("how wide the helix is depends on the tool, which is not known");
@@ -108,7 +108,7 @@ impl Control<'_, '_> {
     }
 
     /// The ways at the feed, from the axis above the bore to the axis at its bottom.
-    fn helix(&mut self, s: &Scanner, helix: &Helix, axis: Vec3) -> Fallible<()> {
+    fn helix(&mut self, s: &Scanner, helix: &Helix, axis: Vec3) -> Outcome {
         let &Helix { radius, sense, turns, .. } = helix;
         let wall = |turned: f64, height: f64| {
             let (sin, cos) = (turned.fract() * sense * std::f64::consts::TAU).sin_cos();

@@ -3,8 +3,8 @@
 use super::contour::{Bend, Element, left_of};
 use super::state::{AXES, Control, Tip};
 use crate::event::{Action, ArcTo, Orientation, Position, Risk};
-use crate::kernel::Fallible;
-use crate::kernel::way::{self, Modulo};
+use crate::kernel::Outcome;
+use crate::kernel::modulo::{self, Modulo};
 use crate::klartext::language::functions::{Function, When};
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{
@@ -25,20 +25,20 @@ const PLANE: u32 = 1 << slot::X | 1 << slot::Y;
 
 impl Control<'_, '_> {
     /// `L`: a straight line, or M functions alone. `corner`: RND or CHF follows.
-    pub(crate) fn line(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn line(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let words = Words::read(s, LINEAR | ROTARY, self)?;
         self.positioning(s, &words, corner)
     }
 
     /// `LP`: a straight line to a point in polar coordinates about the pole.
-    pub(crate) fn polar_line(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn polar_line(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let mut words = Words::read(s, PR | PA | 1 << slot::Z, self)?;
         self.polar(s, &mut words)?;
         self.positioning(s, &words, corner)
     }
 
     /// `LN`: a straight line with the surface normal, and the direction of the tool.
-    pub(crate) fn vector_line(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn vector_line(&mut self, s: &mut Scanner) -> Outcome {
         let words = Words::read(s, LINEAR | VECTORS, self)?;
         // The normal turns tool oversizes into an offset, and oversizes are refused at TOOL CALL.
         vector(s, &words, slot::NX)?;
@@ -47,7 +47,7 @@ impl Control<'_, '_> {
     }
 
     /// Puts X and Y in the place of a polar radius and angle. What the block does not give stays.
-    pub(super) fn polar(&self, s: &Scanner, words: &mut Words) -> Fallible<()> {
+    pub(super) fn polar(&self, s: &Scanner, words: &mut Words) -> Outcome {
         if !words.has(PR | PA) {
             return Ok(());
         }
@@ -71,7 +71,7 @@ impl Control<'_, '_> {
     }
 
     /// Moves as the words say: M functions of the start, the motion, M functions of the end.
-    fn positioning(&mut self, s: &Scanner, words: &Words, corner: bool) -> Fallible<()> {
+    fn positioning(&mut self, s: &Scanner, words: &Words, corner: bool) -> Outcome {
         let moves = words.has(LINEAR | ROTARY | VECTORS);
         // What waits ends elsewhere than at the corner from which the words count.
         let mut to = None;
@@ -105,13 +105,7 @@ impl Control<'_, '_> {
     }
 
     /// What follows the motion of a block: M functions of the end, the cycle that is called modally.
-    fn after_motion(
-        &mut self,
-        s: &Scanner,
-        words: &Words,
-        moves: bool,
-        corner: bool,
-    ) -> Fallible<()> {
+    fn after_motion(&mut self, s: &Scanner, words: &Words, moves: bool, corner: bool) -> Outcome {
         if corner && (self.calls_modally || words.functions.at(When::End).next().is_some()) {
             let message = "nothing can happen at a corner that RND or CHF cuts off";
             return Err(s.error_block(Rule::Contour, message));
@@ -124,7 +118,7 @@ impl Control<'_, '_> {
     }
 
     /// Where the axes go: X, Y, Z in mm and A, B, C in degrees.
-    pub(super) fn targets(&self, s: &Scanner, words: &Words) -> Fallible<(Vec3, [f64; 3])> {
+    pub(super) fn targets(&self, s: &Scanner, words: &Words) -> Outcome<(Vec3, [f64; 3])> {
         self.transforms_are_clear(s)?;
         let here = self.here;
         let to = Vec3::new(
@@ -150,7 +144,7 @@ impl Control<'_, '_> {
         Ok((to, self.degrees))
     }
 
-    fn check_rotary(&self, s: &Scanner, words: &Words, axis: usize) -> Fallible<()> {
+    fn check_rotary(&self, s: &Scanner, words: &Words, axis: usize) -> Outcome {
         if !words.has(1 << (slot::A + axis)) {
             return Ok(());
         }
@@ -179,7 +173,7 @@ impl Control<'_, '_> {
         (to, degrees): (Vec3, [f64; 3]),
         rapid: bool,
         corner: bool,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         if corner && (rapid || words.has(ROTARY | VECTORS)) {
             let message = "RND and CHF cut off the corner of a contour, not that of this motion";
             return Err(s.error_block(Rule::Contour, message));
@@ -230,12 +224,12 @@ impl Control<'_, '_> {
     }
 
     /// Tells where nobody knows which way an axis turns that goes to `degrees` from the place `here` of the tool.
-    fn hold_way(&mut self, words: &Words, degrees: [f64; 3], here: Vec3) -> Fallible<()> {
+    fn hold_way(&mut self, words: &Words, degrees: [f64; 3], here: Vec3) -> Outcome {
         let modulo = if self.shorter_way { Modulo::Shorter } else { Modulo::AsSetUp };
         let is_sure = |i: usize| {
             let (from, counted) = (self.degrees[i], self.settings.modulo[i]);
             words.is_incremental(1 << (slot::A + i))
-                || way::is_sure(from, degrees[i], counted, modulo)
+                || modulo::is_sure(from, degrees[i], counted, modulo)
         };
         // Away from the part an axis may turn as it likes; and spatial angles are no positions of axes.
         if here.z.is_nan() || self.tip == Tip::KeptSpatial || (0..3).all(is_sure) {
@@ -246,7 +240,7 @@ impl Control<'_, '_> {
 
     /// Tells where the tool turns over the part while the control keeps its tip, and not the way that its words need: vectors and
     /// spatial angles are told as turning on the great circle, positions of axes as turning evenly.
-    fn hold_turning(&mut self, turns: bool, great_circle: bool, here: Vec3) -> Fallible<()> {
+    fn hold_turning(&mut self, turns: bool, great_circle: bool, here: Vec3) -> Outcome {
         let over_part = self.tip != Tip::Free && !here.z.is_nan();
         if !(turns && over_part) || self.great_circle == great_circle {
             return Ok(());
@@ -255,7 +249,7 @@ impl Control<'_, '_> {
     }
 
     /// Tells an element of the contour that is cut.
-    pub(super) fn tell(&mut self, s: &Scanner, element: Element) -> Fallible<()> {
+    pub(super) fn tell(&mut self, s: &Scanner, element: Element) -> Outcome {
         self.here = element.end;
         self.path = Some(element);
         let end = self.cutting_pose(s, element.end)?;
@@ -278,7 +272,7 @@ impl Control<'_, '_> {
     }
 
     /// In a turned plane nothing goes down at a place that is not known.
-    pub(super) fn check_descent(&self, s: &Scanner) -> Fallible<()> {
+    pub(super) fn check_descent(&self, s: &Scanner) -> Outcome {
         let [x, y, z] = self.here.to_array();
         let known = x.is_finite() && y.is_finite();
         if self.tilt.as_ref().is_some_and(|tilt| tilt.turned) && z.is_finite() && !known {
@@ -290,7 +284,7 @@ impl Control<'_, '_> {
     }
 
     /// The pose at a programmed position where something is cut, which must be known.
-    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Fallible<Position> {
+    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Outcome<Position> {
         let pose = self.pose(programmed);
         let rotary_known = match pose.orientation {
             Orientation::Axis(axis) => axis.is_finite(),
@@ -311,7 +305,7 @@ impl Control<'_, '_> {
     }
 
     /// `M91`, `M92`: the axes go to a place of the machine; where that is in the work is not known.
-    fn machine_position(&mut self, s: &Scanner, words: &Words, builders: bool) -> Fallible<()> {
+    fn machine_position(&mut self, s: &Scanner, words: &Words, builders: bool) -> Outcome {
         if words.is_incremental(LINEAR | ROTARY) {
             let message = "an incremental word with M91 is not supported";
             return Err(s.error_block(Rule::Unsupported, message));
@@ -353,7 +347,7 @@ impl Control<'_, '_> {
     }
 
     /// `CC`: the pole; without coordinates where the tool is.
-    pub(crate) fn circle_center(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn circle_center(&mut self, s: &mut Scanner) -> Outcome {
         let words = Words::read(s, PLANE, self)?;
         if !words.is_plain() {
             return Err(s.error_block(Rule::UnknownWord, "CC takes coordinates alone"));
@@ -372,7 +366,7 @@ impl Control<'_, '_> {
     }
 
     /// `C`: an arc about the pole.
-    pub(crate) fn arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn arc(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let words = Words::read(s, LINEAR | TURN, self)?;
         let center = self.center(s)?;
         let (end, _) = self.targets(s, &words)?;
@@ -385,7 +379,7 @@ impl Control<'_, '_> {
     }
 
     /// `CR`: an arc of given radius; positive for at most a half circle, negative for more.
-    pub(crate) fn arc_of_radius(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn arc_of_radius(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let words = Words::read(s, LINEAR | RADIUS | TURN, self)?;
         let (end, _) = self.targets(s, &words)?;
         let Some(radius) = words.get(slot::R).filter(|r| *r != 0.0) else {
@@ -416,7 +410,7 @@ impl Control<'_, '_> {
     }
 
     /// `CP`: an arc or a helix about the pole by a polar angle.
-    pub(crate) fn polar_arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn polar_arc(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let words = Words::read(s, PA | 1 << slot::Z | TURN, self)?;
         let center = self.center(s)?;
         let Some(angle) = words.get(slot::PA) else {
@@ -451,7 +445,7 @@ impl Control<'_, '_> {
         self.arc_to(s, &words, bend, end.with_z(height), corner)
     }
 
-    pub(super) fn center(&self, s: &Scanner) -> Fallible<Vec3> {
+    pub(super) fn center(&self, s: &Scanner) -> Outcome<Vec3> {
         let (x, y) = self.pole.ok_or_else(|| {
             s.error_block(Rule::MissingWord, "no pole: a CC block must come before")
         })?;
@@ -459,19 +453,19 @@ impl Control<'_, '_> {
     }
 
     /// `CT`: an arc that goes on in the direction of the element before it.
-    pub(crate) fn tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let words = Words::read(s, LINEAR, self)?;
         self.tangential_to(s, &words, corner)
     }
 
     /// `CTP`: the same to polar coordinates.
-    pub(crate) fn polar_tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
+    pub(crate) fn polar_tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Outcome {
         let mut words = Words::read(s, PR | PA | 1 << slot::Z, self)?;
         self.polar(s, &mut words)?;
         self.tangential_to(s, &words, corner)
     }
 
-    fn tangential_to(&mut self, s: &Scanner, words: &Words, corner: bool) -> Fallible<()> {
+    fn tangential_to(&mut self, s: &Scanner, words: &Words, corner: bool) -> Outcome {
         let (end, _) = self.targets(s, words)?;
         let before = self.path.filter(|path| path.end == self.here && self.waiting.is_none());
         let Some(tangent) = before.and_then(|path| path.tangent_at_end()) else {
@@ -501,7 +495,7 @@ impl Control<'_, '_> {
         bend: Bend,
         end: Vec3,
         corner: bool,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         if bend.sense == 0.0 {
             return Err(
                 s.error_block(Rule::MissingWord, "the sense of rotation DR+ or DR- is missing")
@@ -543,7 +537,7 @@ impl Control<'_, '_> {
         self.after_motion(s, words, true, corner)
     }
 
-    pub(super) fn needs_feed(&self, s: &Scanner, rapid: bool) -> Fallible<()> {
+    pub(super) fn needs_feed(&self, s: &Scanner, rapid: bool) -> Outcome {
         if rapid || self.feed.is_some() || !self.settings.setup.purpose.asks_technology() {
             return Ok(());
         }
@@ -555,7 +549,7 @@ impl Control<'_, '_> {
 }
 
 /// The unit vector of three words from `first`, where the block gives them.
-fn vector(s: &Scanner, words: &Words, first: usize) -> Fallible<Option<Vec3>> {
+fn vector(s: &Scanner, words: &Words, first: usize) -> Outcome<Option<Vec3>> {
     let all = 0b111 << first;
     if !words.has(all) {
         return Ok(None);

@@ -2,7 +2,7 @@
 //! stands, at the set-up clearance above the surface, and end there (TNC 407 ISO p. 8-4, TNC 370 p. 8-6).
 
 use super::state::{Control, TENTH_INCH};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;
 use program::{Cycle, CycleKind, Feed, Rule};
 
@@ -74,7 +74,7 @@ impl Control<'_, '_> {
         s: &mut Scanner,
         number: u32,
         part: u32,
-    ) -> Fallible<Option<Older>> {
+    ) -> Outcome<Option<Older>> {
         let value = self.named_value(s)?;
         let feed = if self.unit == 1.0 { 1.0 } else { TENTH_INCH };
         let unit = match (number, part) {
@@ -100,7 +100,7 @@ impl Control<'_, '_> {
     }
 
     /// A value behind its name, which is of one or two words in the language of the control.
-    fn named_value(&self, s: &mut Scanner) -> Fallible<f64> {
+    fn named_value(&self, s: &mut Scanner) -> Outcome<f64> {
         let mut value = None;
         while value.is_none() && matches!(s.peek(), [b'A'..=b'P' | b'R'..=b'Z', ..]) {
             if !s.take(b"V.ZEIT") {

@@ -3,7 +3,7 @@
 use super::cycle::Definition;
 use super::state::Control;
 use crate::event::Action;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::Words;
@@ -44,7 +44,7 @@ fn count(value: f64) -> Option<u32> {
 impl Control<'_, '_> {
     /// Cycles 220 and 221: call the cycle defined before at their points, with the clearances and the
     /// surface that they set.
-    pub(super) fn point_pattern(&mut self, s: &Scanner, pattern: &Definition) -> Fallible<()> {
+    pub(super) fn point_pattern(&mut self, s: &Scanner, pattern: &Definition) -> Outcome {
         let q = pattern.hole(&self.registers);
         let bad = |message: &str| {
             s.error_block(Rule::CycleParameter, format!("cycle {}: {message}", pattern.number()))
@@ -95,7 +95,7 @@ impl Control<'_, '_> {
     }
 
     /// One line of `PATTERN DEF`: `POS1 (X+25 Y+33.5 Z+0)`, `ROW1 (...)` and so on.
-    pub(crate) fn pattern_line(&mut self, s: &mut Scanner, points: &mut Vec<Vec3>) -> Fallible<()> {
+    pub(crate) fn pattern_line(&mut self, s: &mut Scanner, points: &mut Vec<Vec3>) -> Outcome {
         while !s.is_done() {
             let from = *s;
             let kind = s.letters();
@@ -118,7 +118,7 @@ impl Control<'_, '_> {
     }
 
     /// The last line of `PATTERN DEF` is read.
-    pub(crate) fn close_pattern(&mut self, s: &Scanner, points: Vec<Vec3>) -> Fallible<()> {
+    pub(crate) fn close_pattern(&mut self, s: &Scanner, points: Vec<Vec3>) -> Outcome {
         if points.is_empty() {
             return Err(s.error_block(Rule::Pattern, "PATTERN DEF has no points"));
         }
@@ -128,7 +128,7 @@ impl Control<'_, '_> {
 
     /// `CYCL CALL PAT`: at every point of the pattern; the tool goes between them at the height at
     /// which it is, or the second clearance where that is higher.
-    pub(super) fn pattern_call(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn pattern_call(&mut self, s: &mut Scanner) -> Outcome {
         let words = Words::read(s, 0, self)?;
         if self.pattern.is_empty() {
             return Err(s.error_block(Rule::Cycle, "no PATTERN DEF comes before"));
@@ -156,7 +156,7 @@ impl Control<'_, '_> {
     }
 
     /// Drills at points whose Z adds to the surface, and goes from one to the next at a height.
-    fn drill_at(&mut self, s: &Scanner, points: &[Vec3], level: f64) -> Fallible<()> {
+    fn drill_at(&mut self, s: &Scanner, points: &[Vec3], level: f64) -> Outcome {
         for point in points {
             self.count_jump(s, 0)?;
             // Upwards before it goes in the plane.
@@ -181,7 +181,7 @@ const PLAIN: [&[u8]; 9] =
     [b"NUM", b"NUMX", b"NUMY", b"ROT", b"ROTX", b"ROTY", b"START", b"STEP", b"END"];
 
 impl PatternWords {
-    fn read(s: &mut Scanner, control: &Control) -> Fallible<PatternWords> {
+    fn read(s: &mut Scanner, control: &Control) -> Outcome<PatternWords> {
         let mut words = PatternWords::default();
         while let Some(word) = s.word(&control.registers)? {
             let plain = PLAIN.contains(&word.address);

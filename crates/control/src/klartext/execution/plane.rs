@@ -3,7 +3,7 @@
 use super::state::{Control, Tip};
 use super::transform::Transforms;
 use crate::event::{Action, TiltChoice};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
 use geom::{Mat3, Vec3, direction};
@@ -39,7 +39,7 @@ pub(super) fn spatial([a, b, c]: [f64; 3]) -> Mat3 {
 
 impl Control<'_, '_> {
     /// A `PLANE` block, from behind the keyword.
-    pub(crate) fn plane(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn plane(&mut self, s: &mut Scanner) -> Outcome {
         let (kind, span) = s.token();
         let turn = match kind {
             b"SPATIAL" => Some(spatial(self.numbers(s, [b"SPA", b"SPB", b"SPC"])?)),
@@ -90,7 +90,7 @@ impl Control<'_, '_> {
     }
 
     /// Whether a plane can be tilted as things stand.
-    fn may_tilt(&self, s: &Scanner) -> Fallible<()> {
+    fn may_tilt(&self, s: &Scanner) -> Outcome {
         if self.compensation != program::Compensation::Off {
             return Err(s.error_block(Rule::TiltedPlane, "a plane is tilted with R0"));
         }
@@ -112,7 +112,7 @@ impl Control<'_, '_> {
 
     /// `CYCL DEF 19.1 A B C`: the plane of one spatial angle, or without an angle the plane of the machine.
     /// Whether the rotary axes turn at once is up to the machine, so where they are is not known.
-    pub(super) fn working_plane(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn working_plane(&mut self, s: &mut Scanner) -> Outcome {
         let words = Words::read(s, ROTARY, self)?;
         let bad = |message| Err(s.error_block(Rule::TiltedPlane, message));
         if !words.is_plain() || words.is_incremental(ROTARY) {
@@ -135,7 +135,7 @@ impl Control<'_, '_> {
     }
 
     /// Three words that must stand in this order, each with a number.
-    fn numbers(&self, s: &mut Scanner, addresses: [&[u8]; 3]) -> Fallible<[f64; 3]> {
+    fn numbers(&self, s: &mut Scanner, addresses: [&[u8]; 3]) -> Outcome<[f64; 3]> {
         let mut values = [0.0; 3];
         for (value, address) in values.iter_mut().zip(addresses) {
             let given = s.take_symbol(address).then(|| s.value(&self.registers)).transpose()?;
@@ -152,7 +152,7 @@ impl Control<'_, '_> {
     }
 
     /// `PLANE RELATIV SPB+45`: one spatial angle in the active plane.
-    fn relative(&self, s: &mut Scanner) -> Fallible<Mat3> {
+    fn relative(&self, s: &mut Scanner) -> Outcome<Mat3> {
         for (i, address) in [b"SPA", b"SPB", b"SPC"].into_iter().enumerate() {
             if s.take_symbol(address) {
                 let mut angles = [0.0; 3];
@@ -163,7 +163,7 @@ impl Control<'_, '_> {
         Err(s.error_here(Rule::TiltedPlane, "SPA, SPB or SPC with a number is missing"))
     }
 
-    fn tilt_to(&mut self, turn: Option<Mat3>, positioning: Positioning) -> Fallible<()> {
+    fn tilt_to(&mut self, turn: Option<Mat3>, positioning: Positioning) -> Outcome {
         let turned = matches!(positioning, Positioning::Turn { .. });
         self.forget_position();
         self.forget_rotary();
@@ -185,7 +185,7 @@ impl Control<'_, '_> {
     }
 
     /// The end of a PLANE block: what the rotary axes do, and which solution they take.
-    fn positioning_of_plane(&self, s: &mut Scanner) -> Fallible<Positioning> {
+    fn positioning_of_plane(&self, s: &mut Scanner) -> Outcome<Positioning> {
         let (mut positioning, mut taken) = (None, TiltChoice::ShorterWithin);
         while !s.is_done() {
             let (token, span) = s.token();
@@ -228,7 +228,7 @@ impl Control<'_, '_> {
     }
 
     /// Behind TURN or MOVE: `MB MAX` and the feed, in any order.
-    fn turning(&self, s: &mut Scanner) -> Fallible<Positioning> {
+    fn turning(&self, s: &mut Scanner) -> Outcome<Positioning> {
         let (mut rapid, mut retract) = (None, false);
         loop {
             if s.peek().starts_with(b"F") && rapid.is_none() {
@@ -255,7 +255,7 @@ impl Control<'_, '_> {
     }
 
     /// A `FUNCTION` block, from behind the keyword.
-    pub(crate) fn function_block(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn function_block(&mut self, s: &mut Scanner) -> Outcome {
         if s.take(b"RESET") {
             s.expect(b"TCPM")?;
             s.finish()?;
@@ -304,7 +304,7 @@ impl Control<'_, '_> {
         self.keep_tip(s, tip)
     }
 
-    pub(super) fn keep_tip(&mut self, s: &Scanner, tip: Tip) -> Fallible<()> {
+    pub(super) fn keep_tip(&mut self, s: &Scanner, tip: Tip) -> Outcome {
         if !self.settings.rotary.contains(&true) {
             return Err(s.error_block(Rule::ToolCenter, "the machine has no rotary axes"));
         }

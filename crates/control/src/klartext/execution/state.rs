@@ -9,7 +9,7 @@ use crate::Settings;
 use crate::ToolData;
 use crate::event::{Action, Orientation, Position, Risk};
 use crate::kernel::compensation::Terms;
-use crate::kernel::{Channel, Fallible};
+use crate::kernel::{Channel, Outcome};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::Scanner;
@@ -167,13 +167,13 @@ impl<'a, 's> Control<'a, 's> {
         self.settings.setup.flatten(&mut self.here);
     }
 
-    pub(crate) fn emit(&mut self, action: Action) -> Fallible<()> {
+    pub(crate) fn emit(&mut self, action: Action) -> Outcome {
         self.channel.report(self.line, action)
     }
 
     /// A jump, a call or a return, after which so many bytes are read again: programs that never end
     /// are refused.
-    pub(crate) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Fallible<()> {
+    pub(crate) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Outcome {
         let counted = self.channel.budget.again(bytes);
         counted.map_err(|message| s.error_block(Rule::Endless, message))
     }
@@ -282,7 +282,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// Takes over the F word of a block; answers whether the block is a rapid.
-    pub(super) fn set_feed(&mut self, s: &Scanner, word: Option<FeedWord>) -> Fallible<bool> {
+    pub(super) fn set_feed(&mut self, s: &Scanner, word: Option<FeedWord>) -> Outcome<bool> {
         let feed = match word {
             None => return Ok(false),
             Some(FeedWord::Max) => return Ok(true),
@@ -299,7 +299,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(false)
     }
 
-    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Fallible<()> {
+    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Outcome {
         let code = match (spindle, self.spindle) {
             (Spindle::Clockwise(_), _) => Some(0.0),
             (Spindle::CounterClockwise(_), _) => Some(1.0),
@@ -317,7 +317,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Fallible<()> {
+    pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Outcome {
         self.registers.preassign(111, f64::from(coolant != Coolant::Off));
         if self.coolant != coolant {
             self.coolant = coolant;
@@ -326,7 +326,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Fallible<()> {
+    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Outcome {
         if self.compensation == compensation {
             return Ok(());
         }
@@ -348,7 +348,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// Does the M functions of a block that act at that moment.
-    pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Fallible<()> {
+    pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Outcome {
         if all.is_empty() {
             return Ok(());
         }
@@ -358,7 +358,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    fn function(&mut self, s: &Scanner, function: Function) -> Fallible<()> {
+    fn function(&mut self, s: &Scanner, function: Function) -> Outcome {
         if self.ended {
             return Err(
                 s.error_block(Rule::ProgramFrame, "nothing may follow M2 or M30 in its block")
@@ -432,24 +432,24 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// Tells of a stop while something may be running.
-    fn stops_while(&mut self, running: bool) -> Fallible<()> {
+    fn stops_while(&mut self, running: bool) -> Outcome {
         if running { self.emit(Action::Risk(Risk::STOP_RUNNING.into())) } else { Ok(()) }
     }
 
     /// Spindle and coolant off: what a stop of the program, its end and a tool change bring.
-    pub(super) fn stop_all(&mut self) -> Fallible<()> {
+    pub(super) fn stop_all(&mut self) -> Outcome {
         self.set_spindle(Spindle::Off)?;
         self.set_coolant(Coolant::Off)
     }
 
-    fn needs_speed(&self, s: &Scanner) -> Fallible<f64> {
+    fn needs_speed(&self, s: &Scanner) -> Outcome<f64> {
         self.speed.ok_or_else(|| {
             s.error_block(Rule::Spindle, "the spindle has no speed yet: no S before")
         })
     }
 
     /// Back along the tool axis by `distance` mm; infinite is to the end of the travel.
-    fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Fallible<()> {
+    fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Outcome {
         if !self.has_tool {
             let message =
                 "M140 before the first TOOL CALL: along which axis it goes is not defined";
@@ -488,7 +488,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// The end of the program.
-    pub(crate) fn end(&mut self) -> Fallible<()> {
+    pub(crate) fn end(&mut self) -> Outcome {
         self.report_left_on()?;
         self.stop_all()?;
         self.ended = true;
@@ -496,7 +496,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// `FN 18: SYSREAD`, from behind its `=`: `ID270 NR1 IDX1`. Lengths are mm in every program.
-    pub(crate) fn system_datum(&self, s: &mut Scanner) -> Fallible<f64> {
+    pub(crate) fn system_datum(&self, s: &mut Scanner) -> Outcome<f64> {
         let from = *s;
         let [mut id, mut number, mut index] = [None; 3];
         while let Some(word) = s.word(&self.registers)? {

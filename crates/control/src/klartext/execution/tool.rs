@@ -3,7 +3,7 @@
 use super::state::{Control, Tip};
 use crate::ToolData;
 use crate::event::{Action, Risk};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
@@ -12,7 +12,7 @@ use program::{Compensation, Diagnostic, Rule, Spindle, Tool};
 
 impl Control<'_, '_> {
     /// `TOOL CALL` and `TOOL DEF`, from behind `TOOL`.
-    pub(crate) fn tool(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn tool(&mut self, s: &mut Scanner) -> Outcome {
         if s.take(b"DEF") {
             return self.define_tool(s);
         }
@@ -76,7 +76,7 @@ impl Control<'_, '_> {
     }
 
     /// `TOOL DEF 5` makes a tool ready; `TOOL DEF 5 L+0 R+4` says what it is, in place of the table.
-    fn define_tool(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn define_tool(&mut self, s: &mut Scanner) -> Outcome {
         let number = self.tool_number(s)?;
         if s.is_done() {
             return self.emit(Action::Preselect(number));
@@ -115,7 +115,7 @@ impl Control<'_, '_> {
     }
 
     /// A number that is written, or in a Q parameter.
-    fn tool_number(&self, s: &mut Scanner) -> Fallible<u32> {
+    fn tool_number(&self, s: &mut Scanner) -> Outcome<u32> {
         let from = *s;
         let unsigned = matches!(s.peek(), [b'0'..=b'9' | b'Q', ..]);
         let number = s.value(&self.registers)?;
@@ -127,7 +127,7 @@ impl Control<'_, '_> {
     }
 
     /// A name in a QS parameter.
-    fn tool_name(&self, s: &mut Scanner) -> Fallible<String> {
+    fn tool_name(&self, s: &mut Scanner) -> Outcome<String> {
         let from = *s;
         let text = match s.parameter()? {
             Some(Parameter::Text(index)) => self.registers.text(index),
@@ -138,7 +138,7 @@ impl Control<'_, '_> {
     }
 
     /// The change stops spindle and coolant, goes to a place of its own, and brings another length.
-    fn change_tool(&mut self, s: &Scanner, tool: Tool) -> Fallible<()> {
+    fn change_tool(&mut self, s: &Scanner, tool: Tool) -> Outcome {
         if self.compensation != Compensation::Off {
             return Err(s.error_block(Rule::Compensation, "a tool is called with R0"));
         }
@@ -170,7 +170,7 @@ impl Control<'_, '_> {
     }
 
     /// `BLK FORM`, from behind `BLK`: the blank, for the screen alone.
-    pub(crate) fn blank_form(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn blank_form(&mut self, s: &mut Scanner) -> Outcome {
         s.expect(b"FORM")?;
         let is_first = match s.token() {
             (b"0.1", _) => {

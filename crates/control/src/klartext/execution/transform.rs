@@ -1,7 +1,7 @@
 //! Shifts, mirrors, rotations and scales of the coordinates.
 
 use super::state::Control;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{LINEAR, Words};
 use geom::Vec3;
@@ -179,7 +179,7 @@ impl Control<'_, '_> {
         self.tilt.as_ref().map_or(&self.outside, |tilt| &tilt.inside)
     }
 
-    fn transform(&mut self, s: &Scanner, step: Step) -> Fallible<()> {
+    fn transform(&mut self, s: &Scanner, step: Step) -> Outcome {
         if self.compensation != Compensation::Off {
             let message = "coordinates are transformed with R0";
             return Err(s.error_block(Rule::Compensation, message));
@@ -208,7 +208,7 @@ impl Control<'_, '_> {
 
     /// Nothing moves while it is not clear in which order transformations act.
     #[inline]
-    pub(super) fn transforms_are_clear(&self, s: &Scanner) -> Fallible<()> {
+    pub(super) fn transforms_are_clear(&self, s: &Scanner) -> Outcome {
         if !self.transforms().0.iter().any(|active| active.unclear) {
             return Ok(());
         }
@@ -219,7 +219,7 @@ impl Control<'_, '_> {
     }
 
     /// `CYCL DEF 7.n`: `X+60`, `IY-5`.
-    pub(super) fn datum_shift(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn datum_shift(&mut self, s: &mut Scanner) -> Outcome {
         if s.peek().starts_with(b"#") {
             let message = "the datum is in a table of the control, which is not at hand";
             return Err(s.error_here(Rule::Unsupported, message));
@@ -231,14 +231,14 @@ impl Control<'_, '_> {
         self.shift_datum(s, &words)
     }
 
-    fn shift_datum(&mut self, s: &Scanner, words: &Words) -> Fallible<()> {
+    fn shift_datum(&mut self, s: &Scanner, words: &Words) -> Outcome {
         let old = self.transforms().shift();
         let shift = Vec3::from([0, 1, 2].map(|i| words.target(i, old[i])));
         self.transform(s, Step::Shift(shift))
     }
 
     /// `CYCL DEF 8.1`: the axes that are mirrored; none ends it.
-    pub(super) fn mirror(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn mirror(&mut self, s: &mut Scanner) -> Outcome {
         let mut signs = Vec3::ONE;
         while !s.is_done() {
             match s.token() {
@@ -253,7 +253,7 @@ impl Control<'_, '_> {
     }
 
     /// `CYCL DEF 10.1 ROT+35`.
-    pub(super) fn rotation(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn rotation(&mut self, s: &mut Scanner) -> Outcome {
         let degrees = match s.word(&self.registers)? {
             Some(word) if word.address == b"ROT" => word.number,
             Some(word) if word.address == b"IROT" => {
@@ -269,7 +269,7 @@ impl Control<'_, '_> {
     }
 
     /// `CYCL DEF 11.1 SCL0.99`.
-    pub(super) fn scale(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn scale(&mut self, s: &mut Scanner) -> Outcome {
         let factor = match s.word(&self.registers)? {
             Some(word) if word.address == b"SCL" && word.number.is_none() => {
                 Some(s.value(&self.registers)?)
@@ -286,7 +286,7 @@ impl Control<'_, '_> {
     }
 
     /// `CYCL DEF 26.1 X1.4 Y0.6 CCX+15 CCY+20`.
-    pub(super) fn axis_scale(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn axis_scale(&mut self, s: &mut Scanner) -> Outcome {
         let (mut factor, mut center) = (Vec3::ONE, Vec3::ZERO);
         while let Some(word) = s.word(&self.registers)? {
             let (address, place) = match word.address {
@@ -311,7 +311,7 @@ impl Control<'_, '_> {
     }
 
     /// `TRANS DATUM`, from behind `TRANS`.
-    pub(crate) fn transformation(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(crate) fn transformation(&mut self, s: &mut Scanner) -> Outcome {
         let (kind, span) = s.token();
         if kind != b"DATUM" {
             return Err(s.error(Rule::Unsupported, span, "only TRANS DATUM is supported"));

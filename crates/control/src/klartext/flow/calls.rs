@@ -1,8 +1,8 @@
 //! Labels: subprograms, repetitions, jumps; and calls of other programs.
 
 use super::run::Run;
-use super::source::{LAST_LABEL, Label, Place, written_label};
-use crate::kernel::Fallible;
+use super::source::{BlockLocation, LAST_LABEL, Label, written_label};
+use crate::kernel::Outcome;
 use crate::kernel::flow;
 use crate::klartext::language::registers::{Numbers, Parameter, Registers};
 use crate::klartext::language::scan::Scanner;
@@ -25,7 +25,7 @@ pub(super) struct Calls {
 }
 
 struct Return {
-    to: Place,
+    to: BlockLocation,
     /// How many repetitions were under way where the call stands.
     repetitions: usize,
 }
@@ -46,14 +46,14 @@ impl Calls {
     }
 
     /// A subprogram is called and will return to a place; answers why it cannot be.
-    pub(super) fn call(&mut self, to: Place) -> Result<(), String> {
+    pub(super) fn call(&mut self, to: BlockLocation) -> Result<(), String> {
         let back = Return { to, repetitions: self.repetitions.len() };
         let entered = self.returns.enter(back);
         entered.map_err(|most| format!("subprograms are nested more than {most} deep"))
     }
 
     /// The end of a subprogram: where it returns to, if it was called.
-    pub(super) fn end(&mut self) -> Option<Place> {
+    pub(super) fn end(&mut self) -> Option<BlockLocation> {
         let back = self.returns.leave()?;
         self.repetitions.truncate(back.repetitions);
         Some(back.to)
@@ -66,7 +66,12 @@ impl Calls {
 
     /// A `CALL LBL REP` is reached: whether the part from the label to it runs once more. Answers why
     /// that cannot be said.
-    pub(super) fn repeat(&mut self, from: Place, call: Place, times: u32) -> Result<bool, String> {
+    pub(super) fn repeat(
+        &mut self,
+        from: BlockLocation,
+        call: BlockLocation,
+        times: u32,
+    ) -> Result<bool, String> {
         let own = self.returns.last().map_or(0, |back| back.repetitions);
         let active = self.repetitions.iter().skip(own).position(|r| r.call == call.offset);
         let index = match active {
@@ -97,7 +102,7 @@ impl Calls {
     }
 
     /// A jump leads to a place.
-    pub(super) fn jump(&mut self, to: Place) {
+    pub(super) fn jump(&mut self, to: BlockLocation) {
         let own = self.returns.last().map_or(0, |back| back.repetitions);
         for repetition in self.repetitions.iter_mut().skip(own) {
             if !(repetition.from..=repetition.call).contains(&to.offset) {
@@ -109,7 +114,7 @@ impl Calls {
 
 impl<'t> Run<'t, '_, '_, '_> {
     /// `LBL`: a place, which does nothing where the program passes it, or the end of a subprogram.
-    pub(super) fn label(&mut self, s: &mut Scanner) -> Fallible<()> {
+    pub(super) fn label(&mut self, s: &mut Scanner) -> Outcome {
         let label = written_label(s)?;
         s.finish()?;
         if label == Label::Number(0)
@@ -120,7 +125,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         Ok(())
     }
 
-    pub(super) fn jump(&mut self, s: &Scanner, to: Place) -> Fallible<()> {
+    pub(super) fn jump(&mut self, s: &Scanner, to: BlockLocation) -> Outcome {
         let again = self.source.place().offset.saturating_sub(to.offset);
         self.control.count_jump(s, again)?;
         self.source.jump(to);
@@ -128,7 +133,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// `CALL LBL`, `CALL PGM`.
-    pub(super) fn call(&mut self, s: &mut Scanner, place: Place) -> Fallible<()> {
+    pub(super) fn call(&mut self, s: &mut Scanner, place: BlockLocation) -> Outcome {
         if s.take(b"PGM") {
             self.control.contour_is_closed(s)?;
             return self.call_program(s);
@@ -154,7 +159,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// How often a part is repeated: `5`, `Q5`, and `5/5` as older controls show it.
-    fn repetitions(&mut self, s: &mut Scanner) -> Fallible<u32> {
+    fn repetitions(&mut self, s: &mut Scanner) -> Outcome<u32> {
         s.is_done();
         let from = *s;
         let (_, number) = s.number_or_parameter(&self.control.registers)?;
@@ -176,7 +181,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// The place of a label that is called: `5`, `"NAME"`, or a Q parameter.
-    pub(super) fn labelled(&mut self, s: &mut Scanner) -> Fallible<Place> {
+    pub(super) fn labelled(&mut self, s: &mut Scanner) -> Outcome<BlockLocation> {
         s.is_done();
         let from = *s;
         let label = match s.parameter()? {
@@ -197,7 +202,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// `CALL PGM NAME`: a program of the folders, in which labels and QL parameters are its own.
-    fn call_program(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn call_program(&mut self, s: &mut Scanner) -> Outcome {
         let (name, span) = self.program_name(s)?;
         s.finish()?;
         let depth = self.control.enter_program();
@@ -224,7 +229,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// The name of a called program as a file below the folders.
-    fn program_name(&mut self, s: &mut Scanner) -> Fallible<(String, (usize, usize))> {
+    fn program_name(&mut self, s: &mut Scanner) -> Outcome<(String, (usize, usize))> {
         s.is_done();
         let from = *s;
         let name = match s.parameter()? {

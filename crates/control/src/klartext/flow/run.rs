@@ -1,9 +1,9 @@
 //! A program runs: its blocks in their order, jumps, subprograms, called programs.
 
 use super::calls::Calls;
-use super::source::{Line, Place, Source};
+use super::source::{BlockLocation, Line, Source};
 use crate::event::{Action, Risk};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::execution::cycle::Designation;
 use crate::klartext::execution::older::parts_needed;
 use crate::klartext::execution::state::Control;
@@ -32,7 +32,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         control: &'c mut Control<'a, 's>,
         file: &'t str,
         text: &'t [u8],
-    ) -> Fallible<Self> {
+    ) -> Outcome<Self> {
         // A text may begin with the mark of its encoding.
         let text = encoding::without_mark(text);
         let mut source = Source::new(file, text, control.settings.setup.block_delete);
@@ -60,7 +60,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// Runs the program up to its `END PGM`.
-    pub(crate) fn finish(mut self) -> Fallible<()> {
+    pub(crate) fn finish(mut self) -> Outcome {
         let mut last = self.source.place();
         // Behind M30 there are subprograms, which begin with a label.
         let mut subprograms = false;
@@ -81,7 +81,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// A block behind the end of the program.
-    fn unreached(&mut self, line: Line<'t>, subprograms: &mut bool) -> Fallible<()> {
+    fn unreached(&mut self, line: Line<'t>, subprograms: &mut bool) -> Outcome {
         let mut s = line.scanner;
         match s.peek() {
             b"END" => {
@@ -104,7 +104,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// One block, from behind its number.
-    fn block(&mut self, line: Line<'t>, place: Place) -> Fallible<()> {
+    fn block(&mut self, line: Line<'t>, place: BlockLocation) -> Outcome {
         let Line { mut scanner, continued } = line;
         let s = &mut scanner;
         let part = self.part.take();
@@ -162,8 +162,8 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         start: Scanner<'t>,
         keyword: &[u8],
         span: (usize, usize),
-        place: Place,
-    ) -> Fallible<()> {
+        place: BlockLocation,
+    ) -> Outcome {
         let control = &mut *self.control;
         match keyword {
             b"LN" => control.vector_line(s),
@@ -213,7 +213,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// A comment: the words behind `;` or `*`.
-    fn comment(&mut self, line: Line<'t>) -> Fallible<()> {
+    fn comment(&mut self, line: Line<'t>) -> Outcome {
         if line.scanner.rest().is_empty() {
             return Err(line.scanner.error_block(Rule::Syntax, "the block is empty"));
         }
@@ -229,7 +229,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `END PGM NAME MM`.
-    fn end(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn end(&mut self, s: &mut Scanner) -> Outcome {
         s.expect(b"PGM")?;
         let (name, span) = s.token();
         if name != self.name {
@@ -248,7 +248,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `Q5 = 3 * Q2`, `QS1 = "A" || QS2`, from its first parameter.
-    fn assignment(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn assignment(&mut self, s: &mut Scanner) -> Outcome {
         let (parameter, span) = target(s)?;
         let registers = &mut self.control.registers;
         let assigned = match parameter {
@@ -266,7 +266,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// QR parameters are kept when the power is off.
-    fn tell_kept(&mut self, parameter: Parameter) -> Fallible<()> {
+    fn tell_kept(&mut self, parameter: Parameter) -> Outcome {
         match parameter {
             Parameter::Lasting(_) => self.control.emit(Action::Risk(Risk::KEPT_VARIABLE.into())),
             Parameter::Global(_) | Parameter::Local(_) | Parameter::Text(_) => Ok(()),
@@ -274,7 +274,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `FN n: ...`, from behind `FN`.
-    fn numbered_function(&mut self, s: &mut Scanner) -> Fallible<()> {
+    fn numbered_function(&mut self, s: &mut Scanner) -> Outcome {
         s.is_done();
         let from = *s;
         let number = s.digits(99)?;
@@ -339,7 +339,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         s: &mut Scanner<'t>,
         part: Option<(u32, u32)>,
         continued: bool,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         self.control.contour_is_closed(s)?;
         s.is_done();
         let from = s.at();
@@ -375,7 +375,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         cycle: u32,
         span: (usize, usize),
         mut continued: bool,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let mut open = self.control.open_cycle(s, cycle, span)?;
         let mut line = *s;
         self.control.cycle_line(&mut line, &mut open)?;
@@ -388,7 +388,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `PATTERN DEF`, from behind `PATTERN`: points in its line and the lines that follow.
-    fn pattern_definition(&mut self, s: &mut Scanner<'t>, mut continued: bool) -> Fallible<()> {
+    fn pattern_definition(&mut self, s: &mut Scanner<'t>, mut continued: bool) -> Outcome {
         s.expect(b"DEF")?;
         let mut pattern = Vec::new();
         let mut line = *s;
@@ -406,7 +406,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
 }
 
 /// The parameter that a block assigns to, up to behind its `=`, and where it stands.
-fn target(s: &mut Scanner) -> Fallible<(Parameter, (usize, usize))> {
+fn target(s: &mut Scanner) -> Outcome<(Parameter, (usize, usize))> {
     s.is_done();
     let from = s.at();
     let Some(parameter) = s.parameter()? else {

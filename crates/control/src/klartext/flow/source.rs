@@ -1,6 +1,6 @@
 //! The text of a program: its blocks one after the other, and where its labels are.
 
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;
 use program::{Diagnostic, Rule};
 use std::borrow::Cow;
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 /// Where a block begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct BlockLocation {
     /// Byte of the text.
     pub(super) offset: usize,
     /// Lines before it.
@@ -51,10 +51,10 @@ pub(super) const LAST_LABEL: u32 = 65_535;
 pub(super) struct Source<'t> {
     text: Text<'t>,
     /// The next block.
-    at: Place,
+    at: BlockLocation,
     /// The first block that has not been looked at for a label.
-    unseen: Place,
-    labels: HashMap<Label<'t>, Place>,
+    unseen: BlockLocation,
+    labels: HashMap<Label<'t>, BlockLocation>,
     /// Whether any corner is cut off: most programs have none to look for.
     corners: bool,
 }
@@ -73,7 +73,7 @@ struct Text<'t> {
 
 impl<'t> Text<'t> {
     /// The line at a place, which goes on to the next one.
-    fn line(&self, at: &mut Place) -> Option<Scanner<'t>> {
+    fn line(&self, at: &mut BlockLocation) -> Option<Scanner<'t>> {
         let rest = self.bytes.get(at.offset..).filter(|rest| !rest.is_empty())?;
         let length = memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
         let (line, ending) = rest.split_at(length);
@@ -83,7 +83,7 @@ impl<'t> Text<'t> {
     }
 
     /// The block at a place, which goes on behind its first line. `None` at the end.
-    fn block(&self, at: &mut Place) -> Fallible<Option<Line<'t>>> {
+    fn block(&self, at: &mut BlockLocation) -> Outcome<Option<Line<'t>>> {
         loop {
             let Some(mut s) = self.line(at) else { return Ok(None) };
             if s.is_blank() {
@@ -108,14 +108,14 @@ impl<'t> Text<'t> {
     }
 
     /// Passes the further lines of a block.
-    fn pass(&self, at: &mut Place, mut continued: bool) {
+    fn pass(&self, at: &mut BlockLocation, mut continued: bool) {
         while continued {
             continued = self.continuation(at).is_some_and(|line| line.continued);
         }
     }
 
     /// A further line of a block.
-    fn continuation(&self, at: &mut Place) -> Option<Line<'t>> {
+    fn continuation(&self, at: &mut BlockLocation) -> Option<Line<'t>> {
         let mut scanner = self.line(at)?;
         let continued = scanner.take_continuation();
         Some(Line { scanner, continued })
@@ -126,7 +126,7 @@ impl<'t> Source<'t> {
     /// At the start of a text.
     pub(super) fn new(file: &'t str, bytes: &'t [u8], block_delete: bool) -> Source<'t> {
         let numbered = bytes.trim_ascii_start().first().is_none_or(u8::is_ascii_digit);
-        let start = Place { offset: 0, line: 0, number: 0 };
+        let start = BlockLocation { offset: 0, line: 0, number: 0 };
         let text = Text { file, bytes, numbered, block_delete };
         let has = |word: &[u8]| memchr::memmem::find(bytes, word).is_some();
         let corners = has(b"RND") || has(b"CHF");
@@ -135,7 +135,7 @@ impl<'t> Source<'t> {
 
     /// Takes the next block; `None` where the text ends.
     #[inline]
-    pub(super) fn next(&mut self) -> Fallible<Option<Line<'t>>> {
+    pub(super) fn next(&mut self) -> Outcome<Option<Line<'t>>> {
         let place = self.at;
         let block = self.text.block(&mut self.at)?;
         if place.offset == self.unseen.offset
@@ -156,23 +156,23 @@ impl<'t> Source<'t> {
     }
 
     /// The next block.
-    pub(super) fn place(&self) -> Place {
+    pub(super) fn place(&self) -> BlockLocation {
         self.at
     }
 
     /// The line at a place; an empty one behind the last.
-    pub(super) fn line_at(&self, place: Place) -> Scanner<'t> {
+    pub(super) fn line_at(&self, place: BlockLocation) -> Scanner<'t> {
         let line = self.text.line(&mut place.clone());
         line.unwrap_or(Scanner::new(self.text.file, place.line, b""))
     }
 
     /// Goes on from a place.
-    pub(super) fn jump(&mut self, to: Place) {
+    pub(super) fn jump(&mut self, to: BlockLocation) {
         self.at = to;
     }
 
     /// Where a label is.
-    pub(super) fn label(&mut self, label: &Label) -> Fallible<Option<Place>> {
+    pub(super) fn label(&mut self, label: &Label) -> Outcome<Option<BlockLocation>> {
         while !self.labels.contains_key(label) {
             let place = self.unseen;
             let mut end = place;
@@ -204,7 +204,7 @@ impl<'t> Source<'t> {
     }
 
     /// The program is closed: only blank lines follow.
-    pub(super) fn close(&mut self) -> Fallible<()> {
+    pub(super) fn close(&mut self) -> Outcome {
         while let Some(line) = self.text.line(&mut self.at) {
             if !line.rest().is_empty() {
                 return Err(line.error_block(Rule::ProgramFrame, "nothing may follow END PGM"));
@@ -215,11 +215,11 @@ impl<'t> Source<'t> {
 
     /// Notes the label of a block, if it has one.
     #[inline(always)]
-    fn note(&mut self, place: Place, s: &Scanner<'t>) -> Fallible<()> {
+    fn note(&mut self, place: BlockLocation, s: &Scanner<'t>) -> Outcome {
         if s.is_at_label() { self.note_label(place, *s) } else { Ok(()) }
     }
 
-    fn note_label(&mut self, place: Place, mut s: Scanner<'t>) -> Fallible<()> {
+    fn note_label(&mut self, place: BlockLocation, mut s: Scanner<'t>) -> Outcome {
         s.take_symbol(b"LBL");
         let label = written_label(&mut s)?;
         if label != Label::Number(0) && self.labels.contains_key(&label) {
@@ -232,7 +232,7 @@ impl<'t> Source<'t> {
 }
 
 /// A label that is written as it is: `5`, `"NAME"`.
-pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Fallible<Label<'t>> {
+pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Outcome<Label<'t>> {
     if s.peek().starts_with(b"\"") {
         return s.quoted().map(|name| Label::Name(Cow::Borrowed(name)));
     }
@@ -242,7 +242,7 @@ pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Fallible<Label<'t>> {
 /// The number at the start of a block. It says nothing to the control, which numbers the blocks anew; but
 /// one that does not ascend tells of blocks that have changed places.
 #[inline]
-fn block_number(s: &mut Scanner, least: &mut u32) -> Fallible<()> {
+fn block_number(s: &mut Scanner, least: &mut u32) -> Outcome {
     let before = *s;
     match s.whole_number() {
         Some(number) if number >= *least => {

@@ -5,27 +5,27 @@
 
 use super::registers::{LONGEST, Parameter, Registers};
 use super::scan::Scanner;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
 use program::Rule;
 use std::f64::consts::PI;
 
 /// A formula to the end of its block.
-pub(crate) fn formula(s: &mut Scanner, registers: &Registers) -> Fallible<f64> {
+pub(crate) fn formula(s: &mut Scanner, registers: &Registers) -> Outcome<f64> {
     let value = evaluate(&mut Formula { s, registers, depth: 0 })?.value;
     s.finish()?;
     Ok(value)
 }
 
 /// An operand of an `FN` function: a number or a parameter with a sign.
-pub(super) fn operand(s: &mut Scanner, registers: &Registers) -> Fallible<f64> {
+pub(super) fn operand(s: &mut Scanner, registers: &Registers) -> Outcome<f64> {
     s.is_done();
     let (_, number) = s.number_or_parameter(registers)?;
     number.ok_or_else(|| s.error_here(Rule::Syntax, "a number or a Q parameter is expected here"))
 }
 
 /// A text that is put together: `"A" || QS5`, to the end of its block.
-pub(crate) fn text(s: &mut Scanner, registers: &Registers) -> Fallible<Vec<u8>> {
+pub(crate) fn text(s: &mut Scanner, registers: &Registers) -> Outcome<Vec<u8>> {
     let mut text = Vec::new();
     loop {
         let from = *s;
@@ -63,7 +63,7 @@ struct Formula<'s, 't, 'r> {
 
 impl Formula<'_, '_, '_> {
     /// A value with its sign, or a function of one.
-    fn signed(&mut self) -> Fallible<f64> {
+    fn signed(&mut self) -> Outcome<f64> {
         if self.s.take_symbol(b"-") {
             return Ok(0.0 - self.nested(Self::signed)?);
         }
@@ -91,7 +91,7 @@ impl Formula<'_, '_, '_> {
         number.ok_or_else(|| self.s.error_here(Rule::Syntax, "a value is expected here"))
     }
 
-    fn function(&mut self, from: Scanner, name: &[u8]) -> Fallible<f64> {
+    fn function(&mut self, from: Scanner, name: &[u8]) -> Outcome<f64> {
         if name == b"PI" {
             return Ok(PI);
         }
@@ -152,7 +152,7 @@ impl Grammar for Formula<'_, '_, '_> {
         self.s.at()
     }
 
-    fn operand(&mut self) -> Fallible<Number> {
+    fn operand(&mut self) -> Outcome<Number> {
         self.signed().map(Number::of)
     }
 
@@ -170,7 +170,7 @@ impl Grammar for Formula<'_, '_, '_> {
         Some(Next { operator, rank, at })
     }
 
-    fn apply(&mut self, operator: u8, [left, right]: [Number; 2], span: Span) -> Fallible<Number> {
+    fn apply(&mut self, operator: u8, [left, right]: [Number; 2], span: Span) -> Outcome<Number> {
         let (a, b) = (left.value, right.value);
         let wrong =
             |from, message: &str| Err(self.s.error(Rule::Expression, (from, span.end), message));
@@ -231,7 +231,7 @@ const BETWEEN: [(u32, &[u8]); 6] =
     [(1, b"+"), (2, b"-"), (3, b"*"), (4, b"DIV"), (8, b"LEN"), (13, b"ANG")];
 
 /// The value that `FN 0` to `FN 8` and `FN 13` give, from behind their `=`.
-pub(crate) fn calculated(s: &mut Scanner, number: u32, registers: &Registers) -> Fallible<f64> {
+pub(crate) fn calculated(s: &mut Scanner, number: u32, registers: &Registers) -> Outcome<f64> {
     let one = |s: &mut Scanner, word: &[u8]| {
         if !s.take_symbol(word) {
             let message = format!("{} is expected here", String::from_utf8_lossy(word));
@@ -272,7 +272,7 @@ pub(crate) fn calculated(s: &mut Scanner, number: u32, registers: &Registers) ->
 }
 
 /// What an `IF` of `FN 9` to `FN 12` says: whether the jump is made. The scanner ends before GOTO.
-pub(crate) fn condition(s: &mut Scanner, number: u32, registers: &Registers) -> Fallible<bool> {
+pub(crate) fn condition(s: &mut Scanner, number: u32, registers: &Registers) -> Outcome<bool> {
     s.expect(b"IF")?;
     let first = operand(s, registers)?;
     let word: &[u8] = match number {

@@ -2,7 +2,7 @@
 
 use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use program::Rule;
 
 /// An M function with what belongs to it.
@@ -127,7 +127,7 @@ pub(crate) enum When {
 
 impl Function {
     /// What the word `M..` says, with the words that belong to it.
-    pub(super) fn read(s: &mut Scanner, word: &Word, control: &dyn Readable) -> Fallible<Function> {
+    pub(super) fn read(s: &mut Scanner, word: &Word, control: &dyn Readable) -> Outcome<Function> {
         let Some(number) = word.number.filter(|_| word.sign == 0.0) else {
             return Err(unknown(s, word));
         };
@@ -177,7 +177,7 @@ impl Function {
 }
 
 /// Behind `M140`: `MB MAX` or `MB 50 F750`. The feed is that of the retraction alone.
-fn retract(s: &mut Scanner, control: &dyn Readable) -> Fallible<Function> {
+fn retract(s: &mut Scanner, control: &dyn Readable) -> Outcome<Function> {
     let distance = if s.take(b"MB") {
         if s.take(b"MAX") { f64::INFINITY } else { s.value(control.registers())? }
     } else {
@@ -193,7 +193,7 @@ fn retract(s: &mut Scanner, control: &dyn Readable) -> Fallible<Function> {
 }
 
 /// Behind `M101`: by how many blocks the change may be late, `BT10`.
-fn delay(s: &mut Scanner, control: &dyn Readable) -> Fallible<()> {
+fn delay(s: &mut Scanner, control: &dyn Readable) -> Outcome {
     if s.peek().starts_with(b"BT") {
         s.word(control.registers())?;
     }
@@ -201,7 +201,7 @@ fn delay(s: &mut Scanner, control: &dyn Readable) -> Fallible<()> {
 }
 
 /// The feed that belongs to the function before it, where there is one.
-fn own_feed(s: &mut Scanner, control: &dyn Readable) -> Fallible<Option<FeedWord>> {
+fn own_feed(s: &mut Scanner, control: &dyn Readable) -> Outcome<Option<FeedWord>> {
     if !s.peek().starts_with(b"F") {
         return Ok(None);
     }

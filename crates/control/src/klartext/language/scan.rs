@@ -1,7 +1,7 @@
 //! Lines and words of the text.
 
 use super::registers::{Parameter, Registers};
-use crate::kernel::{Fallible, decimal};
+use crate::kernel::{Outcome, decimal};
 use program::{Diagnostic, Rule};
 
 /// A place in a line.
@@ -121,7 +121,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes `expected`, which must come next.
-    pub(crate) fn expect(&mut self, expected: &[u8]) -> Fallible<()> {
+    pub(crate) fn expect(&mut self, expected: &[u8]) -> Outcome {
         if self.take(expected) {
             return Ok(());
         }
@@ -130,7 +130,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes the next word, a Q parameter as its value; `None` at the end of the block.
-    pub(crate) fn word(&mut self, registers: &Registers) -> Fallible<Option<Word<'t>>> {
+    pub(crate) fn word(&mut self, registers: &Registers) -> Outcome<Option<Word<'t>>> {
         if self.is_done() {
             return Ok(None);
         }
@@ -159,7 +159,7 @@ impl<'t> Scanner<'t> {
         address: &'t [u8],
         (mut sign, mut number): (f64, Option<f64>),
         registers: &Registers,
-    ) -> Fallible<Word<'t>> {
+    ) -> Outcome<Word<'t>> {
         if number.is_none() {
             if sign == 0.0 && matches!(self.byte(), Some(b' ' | b'\t')) {
                 (sign, number) = self.number_apart();
@@ -176,7 +176,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// A number that stands alone (after blanks).
-    pub(crate) fn value(&mut self, registers: &Registers) -> Fallible<f64> {
+    pub(crate) fn value(&mut self, registers: &Registers) -> Outcome<f64> {
         let done = self.is_done();
         let start = self.at;
         let (_, number) = self.number_or_parameter(registers)?;
@@ -190,7 +190,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes a text between quotes.
-    pub(crate) fn quoted(&mut self) -> Fallible<&'t [u8]> {
+    pub(crate) fn quoted(&mut self) -> Outcome<&'t [u8]> {
         self.is_done();
         let rest = self.text.get(self.at..self.end).unwrap_or_default();
         let length = rest.iter().skip(1).position(|b| *b == b'"');
@@ -204,7 +204,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Whether the block ends here; anything more is an error.
-    pub(crate) fn finish(&mut self) -> Fallible<()> {
+    pub(crate) fn finish(&mut self) -> Outcome {
         if self.is_done() { Ok(()) } else { Err(self.unknown()) }
     }
 
@@ -270,7 +270,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes the digits that stand next, as a number of at most `most`.
-    pub(crate) fn digits(&mut self, most: u32) -> Fallible<u32> {
+    pub(crate) fn digits(&mut self, most: u32) -> Outcome<u32> {
         let start = self.at;
         while matches!(self.byte(), Some(b'0'..=b'9')) {
             self.at += 1;
@@ -303,7 +303,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes the name of a Q parameter, if one stands next after blanks.
-    pub(crate) fn parameter(&mut self) -> Fallible<Option<Parameter>> {
+    pub(crate) fn parameter(&mut self) -> Outcome<Option<Parameter>> {
         if self.is_done() || self.byte() != Some(b'Q') {
             return Ok(None);
         }
@@ -350,7 +350,7 @@ impl<'t> Scanner<'t> {
     pub(crate) fn number_or_parameter(
         &mut self,
         registers: &Registers,
-    ) -> Fallible<(f64, Option<f64>)> {
+    ) -> Outcome<(f64, Option<f64>)> {
         let (sign, mut number) = self.number();
         if number.is_none() && self.byte() == Some(b'Q') {
             number = Some(self.parameter_value(sign, registers)?);
@@ -360,7 +360,7 @@ impl<'t> Scanner<'t> {
 
     /// What the parameter holds that stands next, with the sign before it.
     #[cold]
-    fn parameter_value(&mut self, sign: f64, registers: &Registers) -> Fallible<f64> {
+    fn parameter_value(&mut self, sign: f64, registers: &Registers) -> Outcome<f64> {
         let start = self.at;
         let Some(parameter) = self.parameter()? else { return Err(self.unknown()) };
         let value = registers

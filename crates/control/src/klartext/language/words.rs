@@ -3,7 +3,7 @@
 use super::functions::{Function, Functions};
 use super::registers::Registers;
 use super::scan::{Scanner, Word};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use program::{Compensation, Rule};
 
 /// Where a word's value is kept. The first six are the axes in the order of their coordinates.
@@ -98,7 +98,7 @@ pub(crate) struct Words {
 impl Words {
     /// Reads words to the end of the block. Those of `allowed` may stand there, besides feed, radius
     /// compensation and M functions.
-    pub(crate) fn read(s: &mut Scanner, allowed: u32, control: &dyn Readable) -> Fallible<Words> {
+    pub(crate) fn read(s: &mut Scanner, allowed: u32, control: &dyn Readable) -> Outcome<Words> {
         let mut words = Words::default();
         while let Some(word) = s.word(control.registers())? {
             words.add(s, &word, allowed, control)?;
@@ -157,7 +157,7 @@ impl Words {
         word: &Word,
         allowed: u32,
         control: &dyn Readable,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let unit = control.unit();
         let (incremental, address) = match word.address {
             [b'I', rest @ ..] if !rest.is_empty() => (true, rest),
@@ -212,12 +212,7 @@ impl Words {
         Ok(())
     }
 
-    fn add_function(
-        &mut self,
-        s: &mut Scanner,
-        word: &Word,
-        control: &dyn Readable,
-    ) -> Fallible<()> {
+    fn add_function(&mut self, s: &mut Scanner, word: &Word, control: &dyn Readable) -> Outcome {
         let function = Function::read(s, word, control)?;
         self.functions
             .push(function)
@@ -231,7 +226,7 @@ pub(crate) fn feed_word(
     s: &mut Scanner,
     word: &Word,
     automatic: Option<FeedWord>,
-) -> Fallible<FeedWord> {
+) -> Outcome<FeedWord> {
     match (word.address, word.number) {
         (b"FMAX", None) => Ok(FeedWord::Max),
         (b"F", None) if word.sign == 0.0 && s.take(b"MAX") => Ok(FeedWord::Max),
@@ -266,7 +261,7 @@ pub(crate) fn feed_word(
     }
 }
 
-fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Fallible<()> {
+fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Outcome {
     match place.replace(value) {
         None => Ok(()),
         Some(_) => Err(twice(s, word)),

@@ -4,7 +4,7 @@ use super::corner::Element;
 use super::interpreter::Interpreter;
 use crate::event::Action;
 use crate::kernel::source::Source;
-use crate::kernel::{Fallible, arc};
+use crate::kernel::{Outcome, arc};
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, Motion};
 use geom::{Arc, ArcError, Vec3, direction, rotate};
@@ -40,7 +40,7 @@ struct Ends {
 
 impl Interpreter<'_, '_> {
     /// An arc from where the tool is.
-    pub fn arc(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    pub fn arc(&mut self, source: &Source, block: &Block) -> Outcome {
         let error = |message: &str| Err(source.block_error(Rule::Arc, message));
         if block.has_rotary() || block.has_vector() {
             return error("the tool turns during an arc, which is not supported");
@@ -124,7 +124,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `I J K`: from the start, whatever `G90` and `G91` say, unless `AC()` says otherwise.
-    fn by_center(&self, source: &Source, block: &Block, ends: &Ends) -> Fallible<Circle> {
+    fn by_center(&self, source: &Source, block: &Block, ends: &Ends) -> Outcome<Circle> {
         let mut center = ends.start;
         for i in 0..3 {
             let Some(coordinate) = block.center[i] else { continue };
@@ -143,7 +143,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `CT`: goes on in the direction of the last move in the plane.
-    fn tangential(&self, source: &Source, block: &Block, ends: &Ends) -> Fallible<Circle> {
+    fn tangential(&self, source: &Source, block: &Block, ends: &Ends) -> Outcome<Circle> {
         let error = |message: &str| Err(source.block_error(Rule::Arc, message));
         if block.has_arc_word() {
             return error("CT takes the end of the arc only");
@@ -164,7 +164,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `CIP`: through `I1= J1= K1=`, which count like the end (`G90`, `G91`), in any plane.
-    fn through_point(&self, source: &Source, block: &Block, ends: &Ends) -> Fallible<Circle> {
+    fn through_point(&self, source: &Source, block: &Block, ends: &Ends) -> Outcome<Circle> {
         let error = |message: &str| Err(source.block_error(Rule::Arc, message));
         let other_word = block.center.iter().any(Option::is_some)
             || block.radius.is_some()
@@ -192,7 +192,7 @@ impl Interpreter<'_, '_> {
 
 /// An arc that also moves across its plane must name both axes of the plane: the 828D takes a missing
 /// one for a wrong centre (seen on the machine).
-fn check_helix(source: &Source, block: &Block, ends: &Ends) -> Fallible<()> {
+fn check_helix(source: &Source, block: &Block, ends: &Ends) -> Outcome {
     if ends.end[ends.across] == ends.start[ends.across]
         || block.opening.is_some()
         || block.has_polar()
@@ -212,7 +212,7 @@ fn check_helix(source: &Source, block: &Block, ends: &Ends) -> Fallible<()> {
 }
 
 /// The chord of an arc in its plane: its middle, its half length, and the unit vector to its left.
-fn chord(source: &Source, ends: &Ends) -> Fallible<(Vec3, f64, Vec3)> {
+fn chord(source: &Source, ends: &Ends) -> Outcome<(Vec3, f64, Vec3)> {
     let chord = (ends.end - ends.start).reject_from_normalized(ends.normal);
     let length = chord.length();
     if length <= 1e-9 {
@@ -224,7 +224,7 @@ fn chord(source: &Source, ends: &Ends) -> Fallible<(Vec3, f64, Vec3)> {
 
 /// `CR=`: positive up to half a circle, negative above. The centre lies to the left of the chord of
 /// a shorter arc.
-fn by_radius(source: &Source, ends: &Ends, radius: f64) -> Fallible<Circle> {
+fn by_radius(source: &Source, ends: &Ends, radius: f64) -> Outcome<Circle> {
     let (middle, half, left) = chord(source, ends)?;
     let size = radius.abs();
     if half > size + RADIUS_ERROR.max(size * RADIUS_ERROR_FACTOR) {
@@ -239,7 +239,7 @@ fn by_radius(source: &Source, ends: &Ends, radius: f64) -> Fallible<Circle> {
 }
 
 /// `AR=` with the end point.
-fn by_opening(source: &Source, ends: &Ends, opening: f64) -> Fallible<Circle> {
+fn by_opening(source: &Source, ends: &Ends, opening: f64) -> Outcome<Circle> {
     check_opening(source, opening)?;
     let (middle, half, left) = chord(source, ends)?;
     let height = half / (opening / 2.0).to_radians().tan();
@@ -253,7 +253,7 @@ fn opened(
     ends: &Ends,
     circle: &Circle,
     opening: f64,
-) -> Fallible<Vec3> {
+) -> Outcome<Vec3> {
     check_opening(source, opening)?;
     if (0..3).any(|i| i != ends.across && block.axes[i].is_some()) {
         let message = "the arc has an end point, a centre and an opening angle";
@@ -265,14 +265,14 @@ fn opened(
     Ok(end)
 }
 
-fn check_opening(source: &Source, opening: f64) -> Fallible<()> {
+fn check_opening(source: &Source, opening: f64) -> Outcome {
     if opening > 0.0 && opening < 360.0 {
         return Ok(());
     }
     Err(source.block_error(Rule::Arc, "the opening angle AR= is between 0 and 360 degrees"))
 }
 
-fn turns(source: &Source, block: &Block) -> Fallible<u32> {
+fn turns(source: &Source, block: &Block) -> Outcome<u32> {
     match block.turns {
         None => Ok(0),
         Some(turns) if turns.fract() == 0.0 && (0.0..=MOST_TURNS).contains(&turns) => {

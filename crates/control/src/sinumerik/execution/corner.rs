@@ -6,7 +6,7 @@
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, ArcTo, Event};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 pub(super) use crate::kernel::corner::Element;
 use crate::kernel::corner::{self, Joint, Misfit, Shape};
 use crate::kernel::source::Source;
@@ -21,7 +21,7 @@ const MOST_BETWEEN: usize = 100;
 const STRAIGHT_ON: f64 = 1e-6;
 
 /// A block whose corner waits for the next one.
-pub(crate) struct Held {
+pub(crate) struct WaitingCorner {
     element: Element,
     corner: Corner,
     /// Whether every block has such a corner (`RNDM`), so that there need not be one here.
@@ -47,7 +47,7 @@ impl Interpreter<'_, '_> {
         block: &Block,
         mut element: Element,
         action: Action,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let own = block.rare.as_ref().and_then(|rare| rare.corner);
         let modal = own.is_none();
         let corner =
@@ -89,14 +89,20 @@ impl Interpreter<'_, '_> {
         let feed = feed.or(self.state.corner_feed).filter(|feed| *feed > 0.0);
         let feed = feed.map(|feed| feed * self.state.feed_unit);
         let line = self.line.unwrap_or(source.line);
-        self.held =
-            Some(Box::new(Held { element, corner, modal, feed, line, between: Vec::new() }));
+        self.held = Some(Box::new(WaitingCorner {
+            element,
+            corner,
+            modal,
+            feed,
+            line,
+            between: Vec::new(),
+        }));
         Ok(())
     }
 
     /// A record while a block is held.
     #[cold]
-    pub fn keep(&mut self, source: &Source, record: Event) -> Fallible<()> {
+    pub fn keep(&mut self, source: &Source, record: Event) -> Outcome {
         let Some(held) = &mut self.held else { return self.send(record) };
         if corner::may_stand_at(&record.action) && held.between.len() < MOST_BETWEEN {
             held.between.push(record);
@@ -119,7 +125,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// The held block goes all its way, as nothing follows that it could have a corner with.
-    pub fn release(&mut self, source: &Source) -> Fallible<()> {
+    pub fn release(&mut self, source: &Source) -> Outcome {
         let Some(held) = self.held.take() else { return Ok(()) };
         if !held.modal {
             return Err(no_second_side(source, held.line));
@@ -131,7 +137,12 @@ impl Interpreter<'_, '_> {
 
     /// Puts the corner of the held block between it and `second`, which then starts behind it; whether
     /// there was one.
-    fn join(&mut self, source: &Source, held: Held, second: &mut Element) -> Fallible<bool> {
+    fn join(
+        &mut self,
+        source: &Source,
+        held: WaitingCorner,
+        second: &mut Element,
+    ) -> Outcome<bool> {
         let across = self.state.plane_normal;
         let level = second.start[across] == second.end[across];
         if !second.cut || !level || second.start == second.end {
@@ -181,7 +192,12 @@ impl Interpreter<'_, '_> {
     }
 
     /// The corner between two ways in the plane; none where the second goes straight on.
-    fn joint(&self, source: &Source, held: &Held, second: &Element) -> Fallible<Option<Joint>> {
+    fn joint(
+        &self,
+        source: &Source,
+        held: &WaitingCorner,
+        second: &Element,
+    ) -> Outcome<Option<Joint>> {
         let shape = match held.corner {
             Corner::Chamfer(length) => Shape::Chamfer(length),
             Corner::ChamferSide(back) => Shape::ChamferSide(back),
@@ -207,7 +223,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// The record of a way.
-    pub fn piece(&self, source: &Source, element: &Element) -> Fallible<Action> {
+    pub fn piece(&self, source: &Source, element: &Element) -> Outcome<Action> {
         let end = self.state.pose(element.end);
         let Some((center, normal)) = element.circle else { return Ok(Action::Line(end)) };
         let Some(normal) = self.state.frames.circle_normal(normal) else {

@@ -5,7 +5,7 @@
 
 use super::state::State;
 use crate::event::Risk;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::call::Call;
 use crate::sinumerik::language::commands::FeedType;
@@ -123,28 +123,28 @@ impl Arguments<'_> {
         self.source.block_error(rule, message)
     }
 
-    fn get(&self, name: &str) -> Fallible<Option<f64>> {
+    fn get(&self, name: &str) -> Outcome<Option<f64>> {
         match self.form.parameters.iter().position(|n| *n == name) {
             Some(index) => self.call.number(self.source, index),
             None => Ok(None),
         }
     }
 
-    fn required(&self, name: &str) -> Fallible<f64> {
+    fn required(&self, name: &str) -> Outcome<f64> {
         self.get(name)?
             .ok_or_else(|| self.error(Rule::CycleParameter, format!("{name} is missing")))
     }
 
-    fn or_zero(&self, name: &str) -> Fallible<f64> {
+    fn or_zero(&self, name: &str) -> Outcome<f64> {
         Ok(self.get(name)?.unwrap_or(0.0))
     }
 
-    fn length(&self, name: &str) -> Fallible<Option<f64>> {
+    fn length(&self, name: &str) -> Outcome<Option<f64>> {
         Ok(self.get(name)?.map(|value| value * self.unit))
     }
 
     /// A length that is written without a sign.
-    fn unsigned(&self, name: &str) -> Fallible<Option<f64>> {
+    fn unsigned(&self, name: &str) -> Outcome<Option<f64>> {
         let value = self.length(name)?;
         if value.is_some_and(|v| v < 0.0) {
             return Err(self.error(Rule::CycleParameter, format!("{name} has no sign")));
@@ -152,7 +152,7 @@ impl Arguments<'_> {
         Ok(value)
     }
 
-    fn check(&self) -> Fallible<()> {
+    fn check(&self) -> Outcome {
         if self.call.arguments.len() > self.form.parameters.len() {
             let most = self.form.parameters.len();
             return Err(
@@ -173,7 +173,7 @@ impl Arguments<'_> {
     /// A depth that is given absolute or relative to the reference plane; the depth below it, mm.
     /// A relative depth of 0 is none, as in the calls of older posts. Where both are given they must
     /// agree (the control would take the relative one).
-    fn depth(&self, absolute: &str, relative: &str, surface: f64) -> Fallible<Option<f64>> {
+    fn depth(&self, absolute: &str, relative: &str, surface: f64) -> Outcome<Option<f64>> {
         let from_absolute = self.length(absolute)?.map(|level| surface - level);
         let from_relative = self.unsigned(relative)?.filter(|depth| *depth > 0.0);
         match (from_absolute, from_relative) {
@@ -196,7 +196,7 @@ impl Drilling {
         call: &Call,
         form: &'static Form,
         state: &State,
-    ) -> Fallible<Drilling> {
+    ) -> Outcome<Drilling> {
         let arguments = Arguments { source, call, form, unit: state.unit };
         arguments.check()?;
         let surface = arguments.required("RFP")? * state.unit;
@@ -250,7 +250,7 @@ impl Drilling {
         Ok(drilling)
     }
 
-    fn peck(&mut self, arguments: &Arguments) -> Fallible<()> {
+    fn peck(&mut self, arguments: &Arguments) -> Outcome {
         let Some(first) = arguments.depth("FDEP", "FDPR", self.surface)? else {
             let message = "there is neither FDEP nor FDPR (alarm 61107)";
             return Err(arguments.error(Rule::CycleDepth, message));
@@ -292,7 +292,7 @@ impl Drilling {
     }
 
     /// The pitch in mm and whether the thread is left-handed.
-    fn pitch(arguments: &Arguments) -> Fallible<(f64, bool)> {
+    fn pitch(arguments: &Arguments) -> Outcome<(f64, bool)> {
         if arguments.unit != 1.0 {
             return Err(arguments.error(Rule::Unsupported, "tapping in inches is not supported"));
         }
@@ -321,7 +321,7 @@ impl Drilling {
     }
 
     /// `SDAC`: what the spindle does after the cycle.
-    fn direction(arguments: &Arguments, name: &str, speed: Option<f64>) -> Fallible<Spindle> {
+    fn direction(arguments: &Arguments, name: &str, speed: Option<f64>) -> Outcome<Spindle> {
         let given = || {
             let message = format!("{name} starts the spindle and no speed has been given by S");
             speed.ok_or_else(|| arguments.error(Rule::Spindle, message))
@@ -337,7 +337,7 @@ impl Drilling {
         }
     }
 
-    fn rigid_tap(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+    fn rigid_tap(&mut self, arguments: &Arguments, state: &State) -> Outcome {
         let (pitch, left) = Drilling::pitch(arguments)?;
         let speed = arguments.required("SST")?;
         if speed <= 0.0 {
@@ -368,7 +368,7 @@ impl Drilling {
         Ok(())
     }
 
-    fn tap(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+    fn tap(&mut self, arguments: &Arguments, state: &State) -> Outcome {
         let encoder = arguments.or_zero("ENC")?;
         if ![0.0, 11.0, 20.0].contains(&encoder) {
             let message = format!("ENC = {encoder}, a pitch from the feed, is not supported");
@@ -389,7 +389,7 @@ impl Drilling {
         Ok(())
     }
 
-    fn ream(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+    fn ream(&mut self, arguments: &Arguments, state: &State) -> Outcome {
         self.cycle.kind = CycleKind::Ream;
         let feed = arguments.get("FFR")?;
         let back = arguments.get("RFF")?;
@@ -414,7 +414,7 @@ impl Drilling {
         Ok(())
     }
 
-    fn bore(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+    fn bore(&mut self, arguments: &Arguments, state: &State) -> Outcome {
         let mut aside = Vec3::ZERO;
         for (axis, name) in ["RPA", "RPO", "RPAP"].into_iter().enumerate() {
             aside[axis] = arguments.length(name)?.unwrap_or(0.0);

@@ -4,7 +4,7 @@
 //! (auxiliary functions come before the motion, Function Manual H2); then the motion; then the hole of
 //! a modal cycle; then stops and the end of the program (`M0 M1 M2 M17 M30` come after the motion).
 
-use super::corner::Held;
+use super::corner::WaitingCorner;
 use super::cycles::{Drilling, Pause};
 use super::modal::Modal;
 use super::programmable::plain_values;
@@ -12,7 +12,7 @@ use super::state::State;
 use crate::Settings;
 use crate::event::{Action, Event, FeedPath, Risk};
 use crate::kernel::Channel;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::compensation::Terms;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, ToolCall};
@@ -20,7 +20,7 @@ use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
-use crate::sinumerik::language::variables::{ELEMENTS_IN_A_TURN, Place};
+use crate::sinumerik::language::variables::{AssignmentTarget, ELEMENTS_IN_A_TURN};
 use program::{Auxiliary, Compensation, Coolant, Cycle, Diagnostic, Feed, Rule, Spindle, Tool};
 
 /// Runs blocks.
@@ -38,7 +38,7 @@ pub(crate) struct Interpreter<'a, 's> {
     /// Whether the sink has stopped the run.
     pub stopped: bool,
     /// The block whose corner waits for the next one.
-    pub held: Option<Box<Held>>,
+    pub held: Option<Box<WaitingCorner>>,
     pub(super) reported_cycle: Option<Cycle>,
 }
 
@@ -79,18 +79,18 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// Reports what happens.
     #[inline]
-    pub fn emit(&mut self, source: &Source, action: Action) -> Fallible<()> {
+    pub fn emit(&mut self, source: &Source, action: Action) -> Outcome {
         let record = Event { line: self.line.unwrap_or(source.line), action };
         if self.held.is_some() { self.keep(source, record) } else { self.send(record) }
     }
 
     #[inline]
-    pub fn send(&mut self, record: Event) -> Fallible<()> {
+    pub fn send(&mut self, record: Event) -> Outcome {
         self.channel.take(record).inspect_err(|_| self.stopped = true)
     }
 
     /// Reports that compensation changes with the move that follows.
-    pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Fallible<()> {
+    pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Outcome {
         let line = self.line.unwrap_or(source.line);
         if self.held.is_some() {
             return self.keep(source, Event { line, action: Action::Compensation(side) });
@@ -99,7 +99,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// Turns of loops, jumps and calls, of which there may not be too many between two records.
-    pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
+    pub fn spend(&mut self, source: &Source, turns: usize) -> Outcome {
         self.channel
             .budget
             .spend(turns)
@@ -107,7 +107,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// So many bytes are read, again or in a called program.
-    pub fn reads(&mut self, source: &Source, bytes: usize) -> Fallible<()> {
+    pub fn reads(&mut self, source: &Source, bytes: usize) -> Outcome {
         self.channel
             .budget
             .read(bytes)
@@ -115,14 +115,16 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// Sets what a block or a loop assigns to.
-    pub fn assign(&mut self, source: &Source, place: Place, value: Value) -> Fallible<()> {
+    pub fn assign(&mut self, source: &Source, place: AssignmentTarget, value: Value) -> Outcome {
         self.state.assign(place, value);
         match place {
-            Place::WorkOffset(..) => self.emit(source, Action::Risk(Risk::OPERATOR_DATA.into())),
-            Place::Parameter(index) if self.is_operators(index) => {
+            AssignmentTarget::WorkOffset(..) => {
+                self.emit(source, Action::Risk(Risk::OPERATOR_DATA.into()))
+            }
+            AssignmentTarget::Parameter(index) if self.is_operators(index) => {
                 self.emit(source, Action::Risk(Risk::OPERATOR_PARAMETER.into()))
             }
-            Place::Parameter(_) | Place::Element(..) => Ok(()),
+            AssignmentTarget::Parameter(_) | AssignmentTarget::Element(..) => Ok(()),
         }
     }
 
@@ -132,7 +134,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// Carries out a block.
-    pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+    pub fn run(&mut self, source: &Source, block: &mut Block) -> Outcome {
         if let Some(comment) = block.comment.take() {
             self.emit(source, Action::Comment(comment.into()))?;
         }
@@ -218,7 +220,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.stops(source, block)
     }
 
-    fn check_m(&self, source: &Source, block: &Block) -> Fallible<()> {
+    fn check_m(&self, source: &Source, block: &Block) -> Outcome {
         for group in [STOPS, SPINDLE, COOLANT] {
             if block.m.iter().flatten().filter(|m| group.contains(m)).count() > 1 {
                 let message = "two M functions of one kind in a block contradict each other";
@@ -241,7 +243,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// How compensation leads the tool: `NORM KONT`, `G450 G451`, `DISC=`.
     #[cold]
-    fn compensation_terms(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn compensation_terms(&mut self, source: &Source, block: &Block) -> Outcome {
         let state = &mut self.state;
         let before = (state.corner, state.peak, state.goes_around);
         if let Some(Code::Corner(outer)) = block.code(18) {
@@ -268,7 +270,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// The modal G commands.
-    fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn modes(&mut self, source: &Source, block: &Block) -> Outcome {
         self.state.smoothed.switch(block);
         let turns_loosely =
             [34, 61].iter().any(|&group| block.code(group) == Some(Code::TurnsLoosely(true)));
@@ -344,7 +346,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// Says how rapids go where that is news. `RTLIOF` does nothing with a transformation (PM19 p. 181; nor with G64, a
     /// compressor or G41, which hang on more words than these).
-    pub fn report_rapids(&mut self, source: &Source) -> Fallible<()> {
+    pub fn report_rapids(&mut self, source: &Source) -> Outcome {
         let together = self.state.rapids_together.map(|said| said || self.state.tool_center);
         if together == self.state.reported_rapids {
             return Ok(());
@@ -353,7 +355,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.emit(source, Action::RapidsTogether(together))
     }
 
-    fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Fallible<()> {
+    fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Outcome {
         if compensation == self.state.compensation {
             return Ok(());
         }
@@ -367,7 +369,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// Tool, offset, feed, spindle, coolant.
-    fn technology(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+    fn technology(&mut self, source: &Source, block: &mut Block) -> Outcome {
         if block.tool.is_some() || block.edge.is_some() || block.has_m(6) {
             self.tool(source, block)?;
         }
@@ -380,7 +382,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         Ok(())
     }
 
-    fn tool(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+    fn tool(&mut self, source: &Source, block: &mut Block) -> Outcome {
         if let Some(call) = block.tool.take() {
             let tool = match call {
                 ToolCall::Number(number) => Tool { number, ..Tool::default() },
@@ -417,7 +419,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         Ok(())
     }
 
-    fn feed(&mut self, source: &Source, value: f64) -> Fallible<()> {
+    fn feed(&mut self, source: &Source, value: f64) -> Outcome {
         if value <= 0.0 {
             let message = "the feed must be above 0 (alarm 14800)";
             return Err(source.block_error(Rule::Feed, message));
@@ -431,7 +433,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         Ok(())
     }
 
-    fn report_feed(&mut self, source: &Source) -> Fallible<()> {
+    fn report_feed(&mut self, source: &Source) -> Outcome {
         self.state.reported_feed = self.state.active_feed();
         match self.state.reported_feed {
             Some(feed) => self.emit(source, Action::Feed(feed)),
@@ -440,7 +442,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// Says that the feed has been used by a motion; in inverse time it holds for one block only.
-    pub fn use_feed(&mut self, source: &Source) -> Fallible<()> {
+    pub fn use_feed(&mut self, source: &Source) -> Outcome {
         if self.state.feed.is_none() {
             if !self.settings.setup.purpose.asks_technology() {
                 return Ok(());
@@ -456,7 +458,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         Ok(())
     }
 
-    fn spindle_and_coolant(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn spindle_and_coolant(&mut self, source: &Source, block: &Block) -> Outcome {
         if let Some(speed) = block.speed {
             if speed < 0.0 {
                 return Err(
@@ -495,7 +497,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     ///
     /// # Errors
     /// It has given none: the spindle would turn as the program before has left it.
-    fn given_speed(&self, source: &Source) -> Fallible<f64> {
+    fn given_speed(&self, source: &Source) -> Outcome<f64> {
         self.state.speed.ok_or_else(|| {
             let message = "the spindle starts and no speed has been given by S";
             let mut error = source.block_error(Rule::Spindle, message);
@@ -505,7 +507,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// The coolant is this from here on.
-    fn report_coolant(&mut self, source: &Source, coolant: Coolant) -> Fallible<()> {
+    fn report_coolant(&mut self, source: &Source, coolant: Coolant) -> Outcome {
         if coolant == self.state.coolant {
             return Ok(());
         }
@@ -514,7 +516,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// The spindle does this from here on.
-    pub fn report_spindle(&mut self, source: &Source, spindle: Spindle) -> Fallible<()> {
+    pub fn report_spindle(&mut self, source: &Source, spindle: Spindle) -> Outcome {
         if spindle == self.state.spindle {
             return Ok(());
         }
@@ -532,7 +534,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// `G25`, `G26`: limits of the speed of the spindle, and of the work area. Where the tool would leave
     /// that, the control stops; it goes nowhere else.
-    fn limit(&mut self, source: &Source, block: &Block, upper: bool) -> Fallible<()> {
+    fn limit(&mut self, source: &Source, block: &Block, upper: bool) -> Outcome {
         plain_values(source, block)?;
         self.emit(source, Action::Risk(Risk::LIMITS_WRITTEN.into()))?;
         if !block.only_group(3) || block.feed.is_some() || block.has_rotary() {
@@ -545,7 +547,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         Ok(())
     }
 
-    fn stops(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn stops(&mut self, source: &Source, block: &Block) -> Outcome {
         if block.m[0].is_none() {
             return Ok(());
         }
@@ -563,7 +565,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// The end of a program, by which the main one `returns` to whatever has called it, or ends.
-    fn end(&mut self, source: &Source, returns: bool) -> Fallible<()> {
+    fn end(&mut self, source: &Source, returns: bool) -> Outcome {
         self.state.ended = true;
         if self.called {
             return Ok(());
@@ -580,7 +582,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// `G4`: in a block of its own; its `F` (seconds) and `S` (turns) change neither feed nor speed.
-    fn dwell(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn dwell(&mut self, source: &Source, block: &Block) -> Outcome {
         let pause = match (block.feed, block.speed) {
             (Some(seconds), None) => Pause::Seconds(seconds),
             (None, Some(turns)) => Pause::Turns(turns),
@@ -597,7 +599,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// A call stands in a block of its own.
-    fn call(&mut self, source: &Source, block: &Block, call: &Call) -> Fallible<()> {
+    fn call(&mut self, source: &Source, block: &Block, call: &Call) -> Outcome {
         let alone = block.only_group(0)
             && !block.has_position()
             && block.feed.is_none()
@@ -652,7 +654,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     /// `CYCLE832(S_TOL, S_TOLM, S_OTOL)`: the tolerance of the contour, the kind of machining, and the tolerance of the orientation
     /// where the kind says so (tens 1, `_ORI_FINISH` and its kin), else a version. The older form has a packed second argument that
     /// can switch the transformation too.
-    fn high_speed(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+    fn high_speed(&mut self, source: &Source, call: &Call) -> Outcome {
         let tolerates_orientation = match call.arguments.get(1) {
             None | Some(Argument::None) => false,
             Some(Argument::Number(kind)) => {
@@ -695,7 +697,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     /// Tells where the control may turn the tool by so many degrees out of its orientation, which is more than it may.
-    fn hold_orientation(&mut self, source: &Source, degrees: f64) -> Fallible<()> {
+    fn hold_orientation(&mut self, source: &Source, degrees: f64) -> Outcome {
         let turns = self.settings.rotary.contains(&true);
         if !turns || degrees <= self.settings.orientation_tolerance {
             return Ok(());
@@ -705,7 +707,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// `FGROUP(...)`: the axes that F is the speed of. Without one of X, Y, Z the tool would move at
     /// another feed than F wherever that axis takes part.
-    fn feed_group(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+    fn feed_group(&mut self, source: &Source, call: &Call) -> Outcome {
         let mut named = [false; 6];
         for argument in &call.arguments {
             let name = if let Argument::Text(name) = argument { name.as_str() } else { "" };
@@ -735,7 +737,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// `FGREF[C]=...`: the radius at which a degree of an axis of the group counts, 57.296 mm as delivered (Programming
     /// Manual Fundamentals, "Feedrate": 1 mm a degree).
-    fn feed_reference(&mut self, source: &Source, radii: [Option<f64>; 3]) -> Fallible<()> {
+    fn feed_reference(&mut self, source: &Source, radii: [Option<f64>; 3]) -> Outcome {
         if radii == [None; 3] {
             return Ok(());
         }
@@ -746,7 +748,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.report_feed_path(source, before)
     }
 
-    fn report_feed_path(&mut self, source: &Source, before: FeedPath) -> Fallible<()> {
+    fn report_feed_path(&mut self, source: &Source, before: FeedPath) -> Outcome {
         match self.state.feed_path() {
             path if path == before => Ok(()),
             path => self.emit(source, Action::FeedPath(path)),
@@ -765,7 +767,7 @@ fn unknown_kind(source: &Source) -> Box<Diagnostic> {
 
 /// `GROUP_BEGIN(level, text, spindle, retract)`, `GROUP_END(level, retract)`: nothing, unless the control
 /// is to retract by itself.
-fn group(source: &Source, call: &Call) -> Fallible<()> {
+fn group(source: &Source, call: &Call) -> Outcome {
     let plain = |argument: &Argument| match argument {
         Argument::Number(value) => *value == 0.0,
         Argument::None | Argument::Text(_) => true,

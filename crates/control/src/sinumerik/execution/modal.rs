@@ -3,7 +3,7 @@
 use super::cycles::Drilling;
 use super::interpreter::Interpreter;
 use crate::event::Action;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::statement::ProgramCall;
 use geom::Vec3;
@@ -30,7 +30,7 @@ impl Modal {
 }
 
 impl Interpreter<'_, '_> {
-    pub fn cycle_off(&mut self, source: &Source) -> Fallible<()> {
+    pub fn cycle_off(&mut self, source: &Source) -> Outcome {
         if self.reported_cycle.take().is_some() {
             self.emit(source, Action::CycleOff)?;
         }
@@ -38,7 +38,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// What `MCALL` has after a block with a motion: a hole is drilled, a program is due.
-    pub fn call_modal(&mut self, source: &Source) -> Fallible<()> {
+    pub fn call_modal(&mut self, source: &Source) -> Outcome {
         match std::mem::replace(&mut self.state.modal, Modal::None) {
             Modal::Cycle(drilling) => {
                 self.drill(source, &drilling)?;
@@ -51,13 +51,13 @@ impl Interpreter<'_, '_> {
     }
 
     /// `MCALL` of a program.
-    pub fn set_modal_program(&mut self, source: &Source, call: ProgramCall) -> Fallible<()> {
+    pub fn set_modal_program(&mut self, source: &Source, call: ProgramCall) -> Outcome {
         self.may_change_modal(source)?;
         self.state.modal = Modal::Program(call);
         self.cycle_off(source)
     }
 
-    pub fn may_change_modal(&self, source: &Source) -> Fallible<()> {
+    pub fn may_change_modal(&self, source: &Source) -> Outcome {
         if let Modal::Running = self.state.modal {
             let message = "MCALL in a program that MCALL calls";
             return Err(source.block_error(Rule::Call, message));
@@ -65,7 +65,7 @@ impl Interpreter<'_, '_> {
         Ok(())
     }
 
-    pub fn drill(&mut self, source: &Source, drilling: &Drilling) -> Fallible<()> {
+    pub fn drill(&mut self, source: &Source, drilling: &Drilling) -> Outcome {
         let state = &self.state;
         if state.plane_normal != 2 {
             let message = "drilling along X or Y (G18, G19) is not supported";

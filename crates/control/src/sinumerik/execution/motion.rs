@@ -5,10 +5,10 @@ use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::state::ToolAxis;
 use crate::event::{Action, Risk};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::compensation::{Outer, Terms};
+use crate::kernel::modulo::{self, Modulo};
 use crate::kernel::source::Source;
-use crate::kernel::way::{self, Modulo};
 use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::system::AXIS_NAMES;
@@ -18,7 +18,7 @@ use program::{Axes, Compensation, MachineMove, Rule};
 impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
     #[inline]
-    pub fn motion(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    pub fn motion(&mut self, source: &Source, block: &Block) -> Outcome {
         if block.rotation.is_some()
             || block.fixed_point.is_some()
             || block.machine_axes.contains(&true)
@@ -96,7 +96,7 @@ impl Interpreter<'_, '_> {
 
     /// A block without a motion. While a call is modal, `F`, `S` or `G0` alone would do it once more
     /// (Programming Manual 06/2019, 3.2.3.4): nobody means that.
-    fn no_motion(&self, source: &Source, block: &Block) -> Fallible<()> {
+    fn no_motion(&self, source: &Source, block: &Block) -> Outcome {
         let drills = block.feed.is_some() || block.speed.is_some() || block.code(1).is_some();
         if drills && self.state.modal.waits() {
             let message = "F, S or a motion command without a position drills or calls once more \
@@ -109,7 +109,7 @@ impl Interpreter<'_, '_> {
     /// The linear axes' end of a block: where they are in the coordinates of the program, and what
     /// incremental words count from afterwards; mm.
     #[inline]
-    pub fn target(&mut self, source: &Source, block: &Block) -> Fallible<(Vec3, Vec3)> {
+    pub fn target(&mut self, source: &Source, block: &Block) -> Outcome<(Vec3, Vec3)> {
         let mut position = self.state.position;
         let mut programmed = self.state.programmed;
         for i in 0..3 {
@@ -155,7 +155,7 @@ impl Interpreter<'_, '_> {
         block: &Block,
         angle: f64,
         position: &mut Vec3,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let error = |message: &str| Err(source.block_error(Rule::Angle, message));
         let (first, second) = axes_of_plane(self.state.plane_normal);
         let start = self.state.position;
@@ -192,7 +192,7 @@ impl Interpreter<'_, '_> {
         coordinate: Coordinate,
         base: f64,
         name: &str,
-    ) -> Fallible<f64> {
+    ) -> Outcome<f64> {
         let value = coordinate.value * self.state.unit;
         let incremental = match coordinate.count {
             Count::Modal => !self.state.absolute,
@@ -220,7 +220,7 @@ impl Interpreter<'_, '_> {
 
     /// Rotary positions and tool vectors of a block.
     #[inline]
-    fn orient(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn orient(&mut self, source: &Source, block: &Block) -> Outcome {
         if block.has_vector() {
             return self.orient_by_vector(source, block);
         }
@@ -246,7 +246,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// Tells where the tool turns under `TRAORI` over the part, and not surely on the great circle, or not surely by its axes.
-    fn hold_turning(&mut self, source: &Source, turns: bool, great_circle: bool) -> Fallible<()> {
+    fn hold_turning(&mut self, source: &Source, turns: bool, great_circle: bool) -> Outcome {
         let state = &self.state;
         let over_part = state.tool_center && !state.position.z.is_nan();
         if !(turns && over_part) || state.turning.on_great_circle() == Some(great_circle) {
@@ -257,7 +257,7 @@ impl Interpreter<'_, '_> {
 
     /// Position of rotary axis `index`, degrees. `DC`, `ACP` and `ACN` go on counting, so that the way
     /// shows in the value.
-    fn turned_to(&self, source: &Source, coordinate: Coordinate, index: usize) -> Fallible<f64> {
+    fn turned_to(&self, source: &Source, coordinate: Coordinate, index: usize) -> Outcome<f64> {
         let name = AXIS_NAMES[index + 3];
         self.check_rotary(source, index)?;
         let value = coordinate.value;
@@ -294,7 +294,7 @@ impl Interpreter<'_, '_> {
         coordinate: Coordinate,
         index: usize,
         to: f64,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let (from, counted) = (self.state.rotary[index], self.settings.modulo[index]);
         let is_absolute = match coordinate.count {
             Count::Modal => self.state.absolute,
@@ -313,7 +313,7 @@ impl Interpreter<'_, '_> {
         // MD30455, bit 0: alarm 16830, or the place within the turn.
         let within =
             !is_absolute || counted != Some(true) || (0.0..360.0).contains(&coordinate.value);
-        if within && way::is_sure(from, to, counted, modulo) {
+        if within && modulo::is_sure(from, to, counted, modulo) {
             return Ok(());
         }
         self.emit(source, Action::Risk(Risk::ROTARY_WAY.into()))
@@ -321,7 +321,7 @@ impl Interpreter<'_, '_> {
 
     /// The proof takes the operator's offset as 0. So it must shift every position of its axis alike:
     /// one block without it, or with another, and the axis would go elsewhere by that much.
-    fn check_offset(&mut self, source: &Source, coordinate: Coordinate, i: usize) -> Fallible<()> {
+    fn check_offset(&mut self, source: &Source, coordinate: Coordinate, i: usize) -> Outcome {
         let name = AXIS_NAMES[i + 3];
         let incremental = coordinate.count == Count::Incremental
             || coordinate.count == Count::Modal && !self.state.absolute;
@@ -350,7 +350,7 @@ impl Interpreter<'_, '_> {
         Err(error)
     }
 
-    fn check_rotary(&self, source: &Source, index: usize) -> Fallible<()> {
+    fn check_rotary(&self, source: &Source, index: usize) -> Outcome {
         if self.settings.rotary[index] {
             return Ok(());
         }
@@ -359,7 +359,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `A3= B3= C3=`: any length, what is left out is 0 (Programming Guide Advanced 04.00, 7.1).
-    fn orient_by_vector(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn orient_by_vector(&mut self, source: &Source, block: &Block) -> Outcome {
         if block.has_rotary() {
             let message = "positions of rotary axes and a vector of the tool in one block";
             return Err(source.block_error(Rule::Orientation, message));
@@ -384,7 +384,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// Compensation takes effect with the first move in the plane, which must be straight.
-    fn settle_compensation(&mut self, source: &Source, block: &Block, round: bool) -> Fallible<()> {
+    fn settle_compensation(&mut self, source: &Source, block: &Block, round: bool) -> Outcome {
         let state = &mut self.state;
         let normal = state.plane_normal;
         let in_plane = round || (0..3).any(|i| i != normal && block.axes[i].is_some());
@@ -443,7 +443,7 @@ impl Interpreter<'_, '_> {
 
     /// `POS[X]=`: axes that each go to a place by themselves, and the block with them.
     #[cold]
-    fn position_axes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn position_axes(&mut self, source: &Source, block: &Block) -> Outcome {
         if block.has_position() || block.has_arc_word() {
             let message = "POS and a way of the tool in one block";
             return Err(source.block_error(Rule::Syntax, message));
@@ -458,7 +458,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `G53`, `G153`, `SUPA`: a position of the machine, not of the work frame.
-    fn machine_position(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    fn machine_position(&mut self, source: &Source, block: &Block) -> Outcome {
         if !block.has_position() {
             return self.no_motion(source, block);
         }
@@ -488,7 +488,7 @@ impl Interpreter<'_, '_> {
 
     /// The positions of a block in machine coordinates. `SUPA` and its kin leave the tool length on (Programming
     /// Manual Fundamentals, "Deselect frame": `D0` beside them ends it), so Z of the spindle is not known with an edge.
-    fn machine_target(&self, source: &Source, block: &Block) -> Fallible<MachineMove> {
+    fn machine_target(&self, source: &Source, block: &Block) -> Outcome<MachineMove> {
         let mut to = MachineMove::default();
         for (axis, word) in block.axes.iter().enumerate() {
             let Some(coordinate) = word else { continue };
@@ -504,7 +504,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `G74`, `G75`: the values of the axes mean nothing, only their names.
-    pub fn approach_fixed_point(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    pub fn approach_fixed_point(&mut self, source: &Source, block: &Block) -> Outcome {
         let name = block.command(2);
         let mut named = block.machine_axes;
         for (named, axis) in named.iter_mut().zip(&block.axes) {
@@ -523,7 +523,7 @@ impl Interpreter<'_, '_> {
 
     /// Moves in machine coordinates are made neither with compensation nor between modal holes, nor
     /// with `TRAORI`: what they switch off are offsets, so positions would still be the tool tip's.
-    pub fn check_free(&self, source: &Source, name: &str) -> Fallible<()> {
+    pub fn check_free(&self, source: &Source, name: &str) -> Outcome {
         if self.state.compensation != Compensation::Off
             || self.state.compensation_in_effect != Compensation::Off
         {
@@ -542,7 +542,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// The named axes go to a place of the machine, by `action`.
-    fn leave_for(&mut self, source: &Source, named: [bool; 6], action: Action) -> Fallible<()> {
+    fn leave_for(&mut self, source: &Source, named: [bool; 6], action: Action) -> Outcome {
         let turned = self.state.frames.turned();
         for (i, _) in named.iter().enumerate().filter(|(_, named)| **named) {
             if i >= 3 {

@@ -3,7 +3,7 @@
 use super::interpreter::Interpreter;
 use super::state::{Modes, place};
 use crate::event::Action;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use geom::Vec3;
 use program::{Compensation, Rule, WorkOffset};
@@ -56,7 +56,7 @@ impl WorkOffsets {
 impl Interpreter<'_, '_> {
     /// Activates a settable work offset. Where the values of the old and the new one are known, so is
     /// where the tool is in the new one.
-    pub fn work_offset(&mut self, source: &Source, number: u32) -> Fallible<()> {
+    pub fn work_offset(&mut self, source: &Source, number: u32) -> Outcome {
         let state = &mut self.state;
         let value = state.work_offsets.get(number);
         let changed = (0..3).any(|i| !(value[i] == state.active_offset[i] || value[i].is_nan()));
@@ -96,7 +96,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// Back to the modal commands and the frame of the caller of a program with `SAVE`.
-    pub fn restore(&mut self, source: &Source, modes: Modes) -> Fallible<()> {
+    pub fn restore(&mut self, source: &Source, modes: Modes) -> Outcome {
         self.release(source)?;
         let state = &mut self.state;
         let frame = (state.frames.programmable(), state.frames.fine()) != modes.programmable;

@@ -4,7 +4,7 @@ use super::frames::{swivel_order, swivelled};
 use super::interpreter::Interpreter;
 use super::state::ToolAxis;
 use crate::event::{Action, Risk, TiltChoice};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::call::{Argument, Call};
 use geom::{Frame, Vec3};
@@ -24,7 +24,7 @@ const PARAMETERS: usize = 16;
 
 impl Interpreter<'_, '_> {
     /// `TRAORI`, `TRAORI(1)`: the linear axes now give the tool tip, which was elsewhere before.
-    pub fn traori(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+    pub fn traori(&mut self, source: &Source, call: &Call) -> Outcome {
         let plain = match call.arguments.as_slice() {
             [] => true,
             [Argument::Number(number)] => *number == 1.0,
@@ -47,7 +47,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `TRAFOOF`: positions are those of the axes again; where those stand is not known.
-    pub fn trafoof(&mut self, source: &Source) -> Fallible<()> {
+    pub fn trafoof(&mut self, source: &Source) -> Outcome {
         self.check_compensation_off(source, "TRAFOOF")?;
         if self.state.tool_center {
             self.state.tool_center = false;
@@ -59,7 +59,7 @@ impl Interpreter<'_, '_> {
         self.report_rapids(source)
     }
 
-    fn check_compensation_off(&self, source: &Source, name: &str) -> Fallible<()> {
+    fn check_compensation_off(&self, source: &Source, name: &str) -> Outcome {
         if self.state.compensation == Compensation::Off
             && self.state.compensation_in_effect == Compensation::Off
         {
@@ -71,7 +71,7 @@ impl Interpreter<'_, '_> {
 
     /// `CYCLE800`: turns the plane and the machine's rotary axes with it. Where the axes are then is
     /// the machine's kinematics, so that the position is not known until blocks say it.
-    pub fn swivel(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+    pub fn swivel(&mut self, source: &Source, call: &Call) -> Outcome {
         let error = |rule, message: &str| Err(source.block_error(rule, message));
         self.check_compensation_off(source, call.name)?;
         if self.state.modal.waits() {
@@ -84,8 +84,8 @@ impl Interpreter<'_, '_> {
             return error(Rule::CycleParameter, "CYCLE800 has at most 16 parameters");
         }
         let number =
-            |index: usize| -> Fallible<f64> { Ok(call.number(source, index)?.unwrap_or(0.0)) };
-        let vector = |index: usize, unit: f64| -> Fallible<Vec3> {
+            |index: usize| -> Outcome<f64> { Ok(call.number(source, index)?.unwrap_or(0.0)) };
+        let vector = |index: usize, unit: f64| -> Outcome<Vec3> {
             Ok(Vec3::new(number(index)?, number(index + 1)?, number(index + 2)?) * unit)
         };
         match call.arguments.get(DATA_SET) {
@@ -95,7 +95,7 @@ impl Interpreter<'_, '_> {
                 return error(Rule::CycleParameter, "_TC is a name in quotes");
             }
         }
-        let whole = |index: usize, name: &str| -> Fallible<u32> {
+        let whole = |index: usize, name: &str| -> Outcome<u32> {
             let value = number(index)?;
             if value.fract() == 0.0 && (0.0..1e9).contains(&value) {
                 return Ok(value as u32);
@@ -170,7 +170,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.
-    fn end_swivel(&mut self) -> Fallible<()> {
+    fn end_swivel(&mut self) -> Outcome {
         if self.state.frames.swivel().is_some() {
             self.state.lose_position();
             self.state.lose_rotary(self.settings.rotary);

@@ -3,7 +3,7 @@
 use super::interpreter::Interpreter;
 use super::modal::Modal;
 use crate::event::Action;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::forms::Pattern;
@@ -21,7 +21,7 @@ fn under(degrees: f64) -> Vec3 {
 
 impl Interpreter<'_, '_> {
     /// Goes to each place of a pattern in rapid and drills there.
-    pub fn pattern(&mut self, source: &Source, call: &Call, pattern: Pattern) -> Fallible<()> {
+    pub fn pattern(&mut self, source: &Source, call: &Call, pattern: Pattern) -> Outcome {
         let error = |rule, message: String| {
             Err(source.block_error(rule, format!("{}: {message}", call.name)))
         };
@@ -97,12 +97,7 @@ impl Interpreter<'_, '_> {
         }
     }
 
-    fn drill_each(
-        &mut self,
-        source: &Source,
-        count: f64,
-        place: impl Fn(f64) -> Vec3,
-    ) -> Fallible<()> {
+    fn drill_each(&mut self, source: &Source, count: f64, place: impl Fn(f64) -> Vec3) -> Outcome {
         for index in 0..count as u32 {
             let place = place(f64::from(index));
             for i in 0..2 {

@@ -3,7 +3,7 @@
 
 use super::interpreter::Interpreter;
 use super::programmable::plain_values;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Count};
 use crate::sinumerik::language::commands::{Diameter, Origin};
@@ -21,7 +21,7 @@ pub(super) fn axes_of_plane(normal: usize) -> (usize, usize) {
 
 impl Interpreter<'_, '_> {
     /// `G110`, `G111`, `G112` with X, Y, Z, in a block of its own. The polar angle is forgotten.
-    pub fn pole(&mut self, source: &Source, block: &Block, origin: Origin) -> Fallible<()> {
+    pub fn pole(&mut self, source: &Source, block: &Block, origin: Origin) -> Outcome {
         let name = block.command(3);
         if !block.only_group(3) || block.feed.is_some() || block.speed.is_some() {
             let message = format!("{name} stands in a block of its own with X, Y, Z");
@@ -41,12 +41,7 @@ impl Interpreter<'_, '_> {
 
     /// The place in the plane that `AP=` and `RP=` say, put into `position`.
     #[cold]
-    pub fn polar_target(
-        &mut self,
-        source: &Source,
-        block: &Block,
-        position: &mut Vec3,
-    ) -> Fallible<()> {
+    pub fn polar_target(&mut self, source: &Source, block: &Block, position: &mut Vec3) -> Outcome {
         let error = |message: &str| Err(source.block_error(Rule::Polar, message));
         let Some(rare) = &block.rare else { return Ok(()) };
         let (first, second) = axes_of_plane(self.state.plane_normal);

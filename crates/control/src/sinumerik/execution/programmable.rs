@@ -2,7 +2,7 @@
 
 use super::frames::{about, roll_pitch_yaw};
 use super::interpreter::Interpreter;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, FrameCommand};
@@ -17,7 +17,7 @@ impl Interpreter<'_, '_> {
         source: &Source,
         block: &Block,
         command: FrameCommand,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         let name = block.command(3);
         let error = |rule, message: String| Err(source.block_error(rule, message));
         if !block.only_group(3)
@@ -83,12 +83,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `G58`, `G59`: the absolute or the added part of the translation of single axes.
-    fn axial_offset(
-        &mut self,
-        source: &Source,
-        values: [Option<f64>; 3],
-        coarse: bool,
-    ) -> Fallible<()> {
+    fn axial_offset(&mut self, source: &Source, values: [Option<f64>; 3], coarse: bool) -> Outcome {
         let mut frame = self.state.frames.programmable();
         let mut fine = self.state.frames.fine();
         if frame.matrix3 != geom::Mat3::IDENTITY {
@@ -110,7 +105,7 @@ impl Interpreter<'_, '_> {
 }
 
 /// X, Y and Z of a block, which count neither absolute nor incremental.
-pub(super) fn plain_values(source: &Source, block: &Block) -> Fallible<[Option<f64>; 3]> {
+pub(super) fn plain_values(source: &Source, block: &Block) -> Outcome<[Option<f64>; 3]> {
     let mut values = [None; 3];
     for (place, coordinate) in values.iter_mut().zip(&block.axes) {
         *place = match coordinate {

@@ -3,7 +3,7 @@
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, Risk};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, TOLERANCES};
 use crate::sinumerik::language::commands::{Code, Smoothing};
@@ -60,7 +60,7 @@ impl Interpreter<'_, '_> {
     /// Reports where the path of the block is smoothed and the program does not say by how much. Machine data do (MD33100,
     /// MD33120): they are not known, and so not 0.
     #[cold]
-    pub fn hold_smoothing(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    pub fn hold_smoothing(&mut self, source: &Source, block: &Block) -> Outcome {
         if !(block.has_position() || block.has_arc_word()) {
             return Ok(());
         }
@@ -70,7 +70,7 @@ impl Interpreter<'_, '_> {
 
     /// `CTOL=`, `ADIS=`, `ADISPOS=`: the tolerances of a block, mm. `CTOL` below 0 takes back what was programmed (B1,
     /// "Contour/Orientation tolerance").
-    pub fn tolerances(&mut self, source: &Source, named: [Option<f64>; 3]) -> Fallible<()> {
+    pub fn tolerances(&mut self, source: &Source, named: [Option<f64>; 3]) -> Outcome {
         for (name, value) in TOLERANCES.into_iter().zip(named) {
             let Some(value) = value.map(|value| value * self.state.unit) else { continue };
             let takes_back = value < 0.0 && name == TOLERANCES[CONTOUR];
@@ -86,7 +86,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// `CYCLE832` with that tolerance, mm: it switches the smoothing on and says by how much, or, with 0, off.
-    pub fn cycle_tolerance(&mut self, source: &Source, name: &str, mm: f64) -> Fallible<()> {
+    pub fn cycle_tolerance(&mut self, source: &Source, name: &str, mm: f64) -> Outcome {
         if mm < 0.0 {
             let message = format!("{name}: the tolerance has no sign");
             let error = source.block_error(Rule::CycleParameter, message);
@@ -98,7 +98,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// How far the control may leave the path, mm: what it then does is not seen here.
-    fn path_tolerance(&self, source: &Source, name: &str, tolerance: f64) -> Fallible<()> {
+    fn path_tolerance(&self, source: &Source, name: &str, tolerance: f64) -> Outcome {
         let most = self.settings.path_tolerance;
         if tolerance <= most {
             return Ok(());
@@ -113,5 +113,5 @@ impl Interpreter<'_, '_> {
     }
 }
 
-/// Place of `CTOL` among [`TOLERANCES`].
+/// Index of `CTOL` among [`TOLERANCES`].
 const CONTOUR: usize = 0;

@@ -8,7 +8,7 @@ use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
-use crate::sinumerik::language::variables::{Locals, Parameters, Place, Readable};
+use crate::sinumerik::language::variables::{AssignmentTarget, Locals, Parameters, Readable};
 use crate::{Dialect, Settings};
 use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Spindle, Tool};
@@ -314,28 +314,32 @@ impl State {
     }
 
     /// Sets an R parameter, a variable or a work offset.
-    pub fn assign(&mut self, place: Place, value: Value) {
+    pub fn assign(&mut self, place: AssignmentTarget, value: Value) {
         match (place, value.number()) {
-            (Place::Element(index, element), _) => self.locals.set(index, element, value),
-            (Place::Parameter(index), Some(number)) => self.parameters.set(index, number),
-            (Place::WorkOffset(number, axis), Some(length)) => {
+            (AssignmentTarget::Element(index, element), _) => {
+                self.locals.set(index, element, value)
+            }
+            (AssignmentTarget::Parameter(index), Some(number)) => {
+                self.parameters.set(index, number)
+            }
+            (AssignmentTarget::WorkOffset(number, axis), Some(length)) => {
                 self.work_offsets.set(number, axis, length);
             }
-            (Place::Parameter(_) | Place::WorkOffset(..), None) => {}
+            (AssignmentTarget::Parameter(_) | AssignmentTarget::WorkOffset(..), None) => {}
         }
     }
 
     /// The number at a place.
-    pub fn value_of(&self, place: Place) -> Option<f64> {
+    pub fn value_of(&self, place: AssignmentTarget) -> Option<f64> {
         match place {
-            Place::Parameter(index) => match self.parameters.get(index) {
+            AssignmentTarget::Parameter(index) => match self.parameters.get(index) {
                 crate::sinumerik::language::variables::Parameter::Set(value) => Some(value),
                 _ => None,
             },
-            Place::Element(index, element) => {
+            AssignmentTarget::Element(index, element) => {
                 self.locals.get(index)?.values.get(element)?.as_ref()?.number()
             }
-            Place::WorkOffset(number, axis) => {
+            AssignmentTarget::WorkOffset(number, axis) => {
                 Some(self.work_offsets.get(number)[axis]).filter(|value| !value.is_nan())
             }
         }

@@ -2,7 +2,7 @@
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, Thread};
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::commands::Motion;
@@ -12,7 +12,7 @@ impl Interpreter<'_, '_> {
     /// `G33`, `G331`, `G332`: a straight way along one axis in step with the spindle; `I J K` is the pitch
     /// along X, Y, Z.
     #[cold]
-    pub fn thread(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    pub fn thread(&mut self, source: &Source, block: &Block) -> Outcome {
         let error = |message: &str| Err(source.block_error(Rule::Thread, message));
         let motion = self.state.motion;
         if block.has_rotary() || block.has_vector() || block.has_polar() {
@@ -62,7 +62,7 @@ impl Interpreter<'_, '_> {
 
     /// `G63`: feed and speed of the spindle are the program's to match.
     #[cold]
-    pub fn floating_tap(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+    pub fn floating_tap(&mut self, source: &Source, block: &Block) -> Outcome {
         let modal = std::mem::replace(&mut self.state.motion, Motion::Line);
         if self.state.spindle == Spindle::Off {
             let message = "G63 needs a running spindle";

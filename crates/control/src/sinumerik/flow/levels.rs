@@ -2,8 +2,8 @@
 
 use super::library::Program;
 use super::run::{Level, Run, check_rest};
-use crate::kernel::Fallible;
-use crate::kernel::flow::Place;
+use crate::kernel::Outcome;
+use crate::kernel::flow::BlockLocation;
 use crate::kernel::source::Source;
 use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::execution::state::Modes;
@@ -41,7 +41,7 @@ pub(super) struct Reference {
 
 impl Run<'_, '_> {
     /// Goes into a called program.
-    pub fn call(&mut self, source: &Source, call: ProgramCall) -> Fallible<()> {
+    pub fn call(&mut self, source: &Source, call: ProgramCall) -> Outcome {
         self.turn(source)?;
         let error = |rule, message: String| source.block_error(rule, message);
         let program = self.library.find(&call.program).map_err(|message| {
@@ -77,7 +77,7 @@ impl Run<'_, '_> {
     }
 
     /// Goes into the program that `MCALL` names, behind the block that has moved.
-    pub fn call_due(&mut self, source: &Source) -> Fallible<()> {
+    pub fn call_due(&mut self, source: &Source) -> Outcome {
         let state = &mut self.interpreter.state;
         let Modal::Due(call) = std::mem::replace(&mut state.modal, Modal::Running) else {
             return Ok(());
@@ -94,10 +94,10 @@ impl Run<'_, '_> {
     }
 
     /// The `PROC` line of a program, where it begins with one.
-    fn signature(&self, program: &Program) -> Fallible<Signature> {
+    fn signature(&self, program: &Program) -> Outcome<Signature> {
         let mut place = program.start();
         while let Some((source, next)) = program.block(place.at, place.line) {
-            place = Place { at: next, line: place.line.saturating_add(1) };
+            place = BlockLocation { at: next, line: place.line.saturating_add(1) };
             let mut scanner = Scanner::new(source);
             if scanner.rests() {
                 continue;
@@ -182,7 +182,12 @@ impl Run<'_, '_> {
     }
 
     /// `M30`, `M17` and their kin: back to the caller, or the end; whether it is the end.
-    pub fn end(&mut self, program: &Program, source: &Source, after: Place) -> Fallible<bool> {
+    pub fn end(
+        &mut self,
+        program: &Program,
+        source: &Source,
+        after: BlockLocation,
+    ) -> Outcome<bool> {
         let state = &mut self.interpreter.state;
         let Some(caller) = &mut self.level.caller else {
             // What stands behind the end is only reached by jumps.

@@ -1,8 +1,8 @@
 //! Programs: the main one, those that travel in the same file, and those of the operator's folders.
 
 use super::outline::Outline;
-use crate::kernel::Fallible;
-use crate::kernel::flow::Place;
+use crate::kernel::Outcome;
+use crate::kernel::flow::BlockLocation;
 use crate::kernel::folders::Folders;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::scan::{Name, Scanner};
@@ -29,8 +29,8 @@ pub(crate) struct Program<'a> {
 
 impl Program<'_> {
     /// Where its first block starts.
-    pub fn start(&self) -> Place {
-        Place { at: 0, line: self.first_line }
+    pub fn start(&self) -> BlockLocation {
+        BlockLocation { at: 0, line: self.first_line }
     }
 
     /// The block that starts at byte `at` on that line, and where the next one starts.
@@ -47,7 +47,7 @@ impl Program<'_> {
     ///
     /// # Errors
     /// The control structures do not fit together.
-    pub fn outline(&self) -> Fallible<&Outline> {
+    pub fn outline(&self) -> Outcome<&Outline> {
         if let Some(outline) = self.outline.get() {
             return Ok(outline);
         }
@@ -75,7 +75,7 @@ impl<'a> Library<'a> {
     ///
     /// # Errors
     /// A header that names no program.
-    pub fn new(folders: &'a Folders, text: &'a [u8]) -> Fallible<Library<'a>> {
+    pub fn new(folders: &'a Folders, text: &'a [u8]) -> Outcome<Library<'a>> {
         let here = split(text)?.into_iter().map(Rc::new).collect();
         Ok(Library { folders, here, called: HashMap::new() })
     }
@@ -145,7 +145,7 @@ impl<'a> Library<'a> {
 
 /// The programs of a file: each begins with its header, `%_N_NAME_MPF` or `%NAME_SPF`; a file of one
 /// program may have none.
-fn split(text: &[u8]) -> Fallible<Vec<Program<'_>>> {
+fn split(text: &[u8]) -> Outcome<Vec<Program<'_>>> {
     let mut headers: Vec<usize> = memchr::memchr_iter(b'%', text)
         .filter(|at| *at == 0 || text.get(at - 1) == Some(&b'\n'))
         .collect();
@@ -176,7 +176,7 @@ fn split(text: &[u8]) -> Fallible<Vec<Program<'_>>> {
 }
 
 /// The name in a header, and whether it is a main program's.
-fn check_header(source: &Source) -> Fallible<(Name, bool)> {
+fn check_header(source: &Source) -> Outcome<(Name, bool)> {
     let text = source.text.trim_ascii_end().get(1..).unwrap_or(&[]);
     let name = Scanner::new(Source { line: source.line, text })
         .name()

@@ -1,8 +1,8 @@
 //! Where jumps go: the labels and block numbers of a program, and its control structures.
 
 use super::library::Program;
-use crate::kernel::Fallible;
-use crate::kernel::flow::{Labels, Place, Structures};
+use crate::kernel::Outcome;
+use crate::kernel::flow::{BlockLocation, Labels, Structures};
 use crate::kernel::source::Source;
 use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::structure::Word;
@@ -27,11 +27,11 @@ impl Outline {
     ///
     /// # Errors
     /// Control structures that do not fit together.
-    pub fn of(program: &Program) -> Fallible<Outline> {
+    pub fn of(program: &Program) -> Outcome<Outline> {
         let mut outline = Outline::default();
         let mut place = program.start();
         while let Some((source, next)) = program.block(place.at, place.line) {
-            let after = Place { at: next, line: place.line.saturating_add(1) };
+            let after = BlockLocation { at: next, line: place.line.saturating_add(1) };
             outline.add(&source, place, after)?;
             place = after;
         }
@@ -45,7 +45,7 @@ impl Outline {
         Err(source.block_error(Rule::ControlStructure, message))
     }
 
-    fn add(&mut self, source: &Source, place: Place, after: Place) -> Fallible<()> {
+    fn add(&mut self, source: &Source, place: BlockLocation, after: BlockLocation) -> Outcome {
         let mut scanner = Scanner::new(*source);
         // What is wrong with a block that is never run is nobody's business.
         let Ok(head) = scanner.head() else { return Ok(()) };

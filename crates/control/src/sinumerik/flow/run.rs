@@ -5,8 +5,8 @@ use super::library::{Library, Program};
 use crate::Settings;
 use crate::event::{Action, Risk};
 use crate::kernel::Channel;
-use crate::kernel::Fallible;
-use crate::kernel::flow::{Calls, Labels, Place};
+use crate::kernel::Outcome;
+use crate::kernel::flow::{BlockLocation, Calls, Labels};
 use crate::kernel::source::Source;
 use crate::sinumerik::execution::interpreter::Interpreter;
 use crate::sinumerik::execution::modal::Modal;
@@ -28,7 +28,7 @@ const LONGEST_BLOCK: usize = 512;
 pub(crate) struct Level<'a> {
     pub program: Rc<Program<'a>>,
     /// The block that comes next.
-    pub next: Place,
+    pub next: BlockLocation,
     /// Whether a block has done something, behind which no variable is defined any more.
     pub working: bool,
     /// The sections that are being repeated, the inmost last.
@@ -41,13 +41,13 @@ pub(crate) struct Level<'a> {
 
 /// A section that is being repeated.
 pub(crate) struct Repetition {
-    from: Place,
+    from: BlockLocation,
     /// The byte behind its last block.
     end: usize,
     /// How often it still starts again.
     left: u32,
     /// Where it goes on afterwards.
-    back: Place,
+    back: BlockLocation,
 }
 
 /// A run of a main program.
@@ -69,11 +69,7 @@ impl<'a> Level<'a> {
 
 impl<'a, 's> Run<'a, 's> {
     /// Runs the main program of `text`.
-    pub fn main(
-        settings: &'a Settings,
-        text: &'a [u8],
-        channel: &'a mut Channel<'s>,
-    ) -> Fallible<()> {
+    pub fn main(settings: &'a Settings, text: &'a [u8], channel: &'a mut Channel<'s>) -> Outcome {
         let library = Library::new(&settings.setup.folders, text)?;
         let Some(program) = library.main() else { return Ok(()) };
         let interpreter = Interpreter::new(settings, channel);
@@ -104,11 +100,11 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// Runs blocks of `program` until another one goes on; whether the main program has ended.
-    fn blocks(&mut self, program: &Program, block: &mut Block) -> Fallible<bool> {
+    fn blocks(&mut self, program: &Program, block: &mut Block) -> Outcome<bool> {
         let mut here = self.level.next;
         let skips = self.interpreter.settings.setup.block_delete;
         while let Some((source, next)) = program.block(here.at, here.line) {
-            let after = Place { at: next, line: here.line.saturating_add(1) };
+            let after = BlockLocation { at: next, line: here.line.saturating_add(1) };
             if source.text.iter().all(u8::is_ascii_whitespace) {
                 here = after;
                 continue;
@@ -168,7 +164,7 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// Another turn of a loop, a jump or a call.
-    pub fn turn(&mut self, source: &Source) -> Fallible<()> {
+    pub fn turn(&mut self, source: &Source) -> Outcome {
         self.interpreter.spend(source, 1)
     }
 
@@ -177,11 +173,11 @@ impl<'a, 's> Run<'a, 's> {
         &mut self,
         program: &Program,
         source: &Source,
-        here: Place,
-        after: Place,
+        here: BlockLocation,
+        after: BlockLocation,
         statement: Statement,
-    ) -> Fallible<Place> {
-        let partner = || -> Fallible<(Place, Place)> {
+    ) -> Outcome<BlockLocation> {
+        let partner = || -> Outcome<(BlockLocation, BlockLocation)> {
             let mark = program.outline()?.structures.partner(here.at).ok_or_else(|| {
                 source.block_error(Rule::ControlStructure, "the control structure is not complete")
             })?;
@@ -252,7 +248,7 @@ impl<'a, 's> Run<'a, 's> {
         }
     }
 
-    fn set(&mut self, source: &Source, count: &Count, value: f64) -> Fallible<()> {
+    fn set(&mut self, source: &Source, count: &Count, value: f64) -> Outcome {
         let (kind, _) = Evaluator::new(&self.interpreter.state, &[]).room(count.place);
         let value = kind
             .keep(Value::Real(value))
@@ -265,10 +261,10 @@ impl<'a, 's> Run<'a, 's> {
     fn count_on(
         &mut self,
         program: &Program,
-        first: Place,
-        body: Place,
-        behind: Place,
-    ) -> Fallible<Place> {
+        first: BlockLocation,
+        body: BlockLocation,
+        behind: BlockLocation,
+    ) -> Outcome<BlockLocation> {
         let Some((source, _)) = program.block(first.at, first.line) else { return Ok(behind) };
         let mut block = Block::empty();
         block.read(source, &self.interpreter.state)?;
@@ -293,14 +289,18 @@ impl<'a, 's> Run<'a, 's> {
         &mut self,
         program: &Program,
         source: &Source,
-        here: Place,
-        after: Place,
+        here: BlockLocation,
+        after: BlockLocation,
         jump: &Jump,
-    ) -> Fallible<Place> {
+    ) -> Outcome<BlockLocation> {
         let outline = program.outline()?;
         let error = |message: String| Err(source.block_error(Rule::Jump, message));
         // A block in front of the jump, or the one in which it stands, and one behind it.
-        fn both<K: Eq + Hash>(labels: &Labels<K>, label: &K, at: usize) -> [Option<Place>; 2] {
+        fn both<K: Eq + Hash>(
+            labels: &Labels<K>,
+            label: &K,
+            at: usize,
+        ) -> [Option<BlockLocation>; 2] {
             [labels.before(label, at + 1), labels.behind(label, at + 1)]
         }
         let (name, [backward, forward]) = match &jump.target {
@@ -333,9 +333,9 @@ impl<'a, 's> Run<'a, 's> {
         &self,
         program: &Program,
         source: &Source,
-        here: Place,
-        target: Place,
-    ) -> Fallible<Place> {
+        here: BlockLocation,
+        target: BlockLocation,
+    ) -> Outcome<BlockLocation> {
         if !program.outline()?.structures.may_jump(here.at, target.at) {
             let message = format!("the jump to line {} enters a control structure", target.line);
             return Err(source.block_error(Rule::Jump, message));
@@ -353,10 +353,10 @@ impl<'a, 's> Run<'a, 's> {
         &mut self,
         program: &Program,
         source: &Source,
-        here: Place,
-        after: Place,
+        here: BlockLocation,
+        after: BlockLocation,
         section: &Section,
-    ) -> Fallible<Place> {
+    ) -> Outcome<BlockLocation> {
         let outline = program.outline()?;
         // A label is looked for towards the start of the program, then towards its end.
         let find = |name: &Name| {
@@ -367,7 +367,8 @@ impl<'a, 's> Run<'a, 's> {
             let message = format!("the label {} is not there (alarm 14080)", name.as_str());
             source.block_error(Rule::Jump, message)
         };
-        let behind = |place: Place| program.block(place.at, place.line).map_or(place.at, |b| b.1);
+        let behind =
+            |place: BlockLocation| program.block(place.at, place.line).map_or(place.at, |b| b.1);
         let from = find(&section.from).ok_or_else(|| missing(&section.from))?;
         let end_label = || outline.labels.behind(&Name::of("ENDLABEL")?, from.at);
         let last = match &section.to {
@@ -396,7 +397,7 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// Starts a section again, or goes on behind it, where its end is reached.
-    pub fn repeat(&mut self, source: &Source, mut here: Place) -> Fallible<Place> {
+    pub fn repeat(&mut self, source: &Source, mut here: BlockLocation) -> Outcome<BlockLocation> {
         while let Some(section) = self.level.sections.last_mut().filter(|s| s.end == here.at) {
             if section.left > 0 {
                 section.left -= 1;
@@ -416,7 +417,7 @@ fn reaches(value: f64, end: f64) -> bool {
     value <= end + end.abs() * 1e-12
 }
 
-fn check_length(source: &Source) -> Fallible<()> {
+fn check_length(source: &Source) -> Outcome {
     if source.text.len() < LONGEST_BLOCK {
         return Ok(());
     }
@@ -425,7 +426,7 @@ fn check_length(source: &Source) -> Fallible<()> {
 }
 
 /// Only comments follow the end of a program without jumps.
-pub(super) fn check_rest(program: &Program, mut place: Place) -> Fallible<bool> {
+pub(super) fn check_rest(program: &Program, mut place: BlockLocation) -> Outcome<bool> {
     while let Some((source, next)) = program.block(place.at, place.line) {
         check_length(&source)?;
         // What closes a part of the program for the editor may follow.
@@ -434,7 +435,7 @@ pub(super) fn check_rest(program: &Program, mut place: Place) -> Fallible<bool> 
             let message = "there are blocks behind the end of the program";
             return Err(source.block_error(Rule::ProgramEnd, message));
         }
-        place = Place { at: next, line: place.line.saturating_add(1) };
+        place = BlockLocation { at: next, line: place.line.saturating_add(1) };
     }
     Ok(true)
 }

@@ -4,7 +4,7 @@ use super::call::Call;
 use super::commands::{self, Code, GROUPS};
 use super::statement::Statement;
 use super::value::Value;
-use super::variables::Place;
+use super::variables::AssignmentTarget;
 
 /// How a coordinate counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +130,7 @@ pub(crate) struct Block {
     /// The words that few blocks have.
     pub rare: Option<Box<Rare>>,
     /// Assignments to R parameters and variables.
-    pub assigned: Vec<(Place, Value)>,
+    pub assigned: Vec<(AssignmentTarget, Value)>,
     /// A call; it stands alone.
     pub call: Option<Call>,
     /// A statement; it stands alone.

@@ -4,7 +4,7 @@ use super::expression::Evaluator;
 use super::forms::{CYCLES, Form, Pattern};
 use super::scan::Scanner;
 use super::value::Value;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use program::{Diagnostic, Rule};
 
@@ -189,7 +189,7 @@ impl Call {
         start: usize,
         name: &str,
         evaluator: &Evaluator,
-    ) -> Fallible<Option<Call>> {
+    ) -> Outcome<Option<Call>> {
         if name == "MCALL" {
             return Call::read_modal(scanner, start, evaluator).map(Some);
         }
@@ -211,7 +211,7 @@ impl Call {
         }
     }
 
-    fn read_modal(scanner: &mut Scanner, start: usize, evaluator: &Evaluator) -> Fallible<Call> {
+    fn read_modal(scanner: &mut Scanner, start: usize, evaluator: &Evaluator) -> Outcome<Call> {
         scanner.blanks();
         if !scanner.name_goes_on() {
             let procedure = Procedure::EndOfModalCall;
@@ -238,7 +238,7 @@ impl Call {
     ///
     /// # Errors
     /// It is a text.
-    pub fn number(&self, source: &Source, index: usize) -> Fallible<Option<f64>> {
+    pub fn number(&self, source: &Source, index: usize) -> Outcome<Option<f64>> {
         match self.arguments.get(index) {
             None | Some(Argument::None) => Ok(None),
             Some(Argument::Number(value)) => Ok(Some(*value)),
@@ -251,7 +251,7 @@ impl Call {
 }
 
 /// Takes arguments in brackets; none where no bracket comes.
-fn read_arguments(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<Argument>> {
+fn read_arguments(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Vec<Argument>> {
     let mut arguments = Vec::new();
     if !scanner.take(b'(') || scanner.take(b')') {
         return Ok(arguments);
@@ -273,7 +273,7 @@ fn too_many(scanner: &Scanner) -> Box<Diagnostic> {
 }
 
 /// An argument: left out, a value, or a name that is none (a constant of the cycle).
-fn read_argument(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Argument> {
+fn read_argument(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Argument> {
     scanner.blanks();
     if matches!(scanner.peek(), b',' | b')') {
         return Ok(Argument::None);

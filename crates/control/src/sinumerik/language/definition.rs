@@ -5,7 +5,7 @@ use super::scan::{Name, Scanner};
 use super::value::{Kind, LONGEST_TEXT, Value};
 use super::variables::{MOST_ELEMENTS, Variable};
 use super::words::reserved;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use program::Rule;
 
 /// Most dimensions of an array.
@@ -21,7 +21,7 @@ pub(super) enum Filling {
 
 impl Filling {
     /// Takes the values behind `=`, where they are those of an array.
-    pub fn read(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Option<Filling>> {
+    pub fn read(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Option<Filling>> {
         if scanner.take_word("REP") {
             scanner.expect(b'(')?;
             let value = evaluator.value(scanner)?;
@@ -81,7 +81,7 @@ impl Filling {
 }
 
 /// Takes a type.
-fn kind(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Kind> {
+fn kind(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Kind> {
     scanner.blanks();
     let start = scanner.at;
     let name = scanner.name()?;
@@ -110,7 +110,7 @@ fn kind(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Kind> {
 }
 
 /// Takes the name of a new variable: it begins with two letters or underscores and means nothing else.
-fn new_name(scanner: &mut Scanner) -> Fallible<Name> {
+fn new_name(scanner: &mut Scanner) -> Outcome<Name> {
     scanner.blanks();
     let start = scanner.at;
     if !scanner.name_next() {
@@ -126,7 +126,7 @@ fn new_name(scanner: &mut Scanner) -> Fallible<Name> {
 }
 
 /// Takes the dimensions of an array in brackets; none where no bracket comes.
-fn sizes(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<usize>> {
+fn sizes(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Vec<usize>> {
     let mut sizes = Vec::new();
     if !scanner.take(b'[') {
         return Ok(sizes);
@@ -147,7 +147,7 @@ fn sizes(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<usize>> {
 pub(super) fn define(
     scanner: &mut Scanner,
     evaluator: &Evaluator,
-) -> Fallible<Vec<(Name, Variable)>> {
+) -> Outcome<Vec<(Name, Variable)>> {
     let kind = kind(scanner, evaluator)?;
     let mut variables = Vec::new();
     loop {
@@ -211,7 +211,7 @@ pub(crate) struct Signature {
 impl Signature {
     /// Takes the name, the parameters and the attributes behind `PROC` (or `EXTERN`, which names types
     /// only).
-    pub fn read(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Signature> {
+    pub fn read(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Signature> {
         let mut signature = Signature::default();
         scanner.blanks();
         scanner.name()?;
@@ -242,7 +242,7 @@ impl Signature {
 }
 
 impl Formal {
-    fn read(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Formal> {
+    fn read(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Formal> {
         let by_reference = scanner.take_word("VAR");
         let kind = kind(scanner, evaluator)?;
         scanner.blanks();

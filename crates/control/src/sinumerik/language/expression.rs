@@ -12,8 +12,8 @@ use super::operators::{Operator, bits};
 use super::scan::Scanner;
 use super::system;
 use super::value::Value;
-use super::variables::{Place, Readable};
-use crate::kernel::Fallible;
+use super::variables::{AssignmentTarget, Readable};
+use crate::kernel::Outcome;
 use crate::kernel::expression::{self, Grammar, Next, Rank, Span, Stack};
 use program::{Diagnostic, Rule};
 use std::rc::Rc;
@@ -23,7 +23,7 @@ pub(crate) struct Evaluator<'a> {
     /// Before the block.
     pub(super) state: &'a dyn Readable,
     /// What the block has assigned so far.
-    pub(super) assigned: &'a [(Place, Value)],
+    pub(super) assigned: &'a [(AssignmentTarget, Value)],
 }
 
 /// A value, and the operator's parameter that is added to it, which counts as 0.
@@ -41,19 +41,22 @@ impl From<Value> for Operand {
 
 impl<'a> Evaluator<'a> {
     /// For a block that has assigned `assigned` so far.
-    pub fn new(state: &'a dyn Readable, assigned: &'a [(Place, Value)]) -> Evaluator<'a> {
+    pub fn new(
+        state: &'a dyn Readable,
+        assigned: &'a [(AssignmentTarget, Value)],
+    ) -> Evaluator<'a> {
         Evaluator { state, assigned }
     }
 
     /// Takes an expression of any type.
-    pub fn value(&self, scanner: &mut Scanner) -> Fallible<Value> {
+    pub fn value(&self, scanner: &mut Scanner) -> Outcome<Value> {
         let start = scanner.at;
         let found = self.finite(scanner)?;
         without_offset(scanner, start, found)
     }
 
     /// Takes a number.
-    pub fn expression(&self, scanner: &mut Scanner) -> Fallible<f64> {
+    pub fn expression(&self, scanner: &mut Scanner) -> Outcome<f64> {
         let start = scanner.at;
         let value = self.value(scanner)?;
         number(scanner, start, &value)
@@ -61,14 +64,14 @@ impl<'a> Evaluator<'a> {
 
     /// Takes an expression to which one parameter of the operator may be added: its value without
     /// that, and the parameter.
-    pub fn offset_expression(&self, scanner: &mut Scanner) -> Fallible<(f64, Option<usize>)> {
+    pub fn offset_expression(&self, scanner: &mut Scanner) -> Outcome<(f64, Option<usize>)> {
         let start = scanner.at;
         let found = self.finite(scanner)?;
         Ok((number(scanner, start, &found.value)?, found.offset))
     }
 
     /// Takes a condition.
-    pub fn condition(&self, scanner: &mut Scanner) -> Fallible<bool> {
+    pub fn condition(&self, scanner: &mut Scanner) -> Outcome<bool> {
         let start = scanner.at;
         let value = self.value(scanner)?;
         value.truth().ok_or_else(|| {
@@ -78,7 +81,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Takes a text.
-    pub fn text(&self, scanner: &mut Scanner) -> Fallible<Rc<str>> {
+    pub fn text(&self, scanner: &mut Scanner) -> Outcome<Rc<str>> {
         let start = scanner.at;
         match self.value(scanner)? {
             Value::Text(text) => Ok(text),
@@ -94,7 +97,7 @@ impl<'a> Evaluator<'a> {
         &self,
         scanner: &mut Scanner,
         range: std::ops::RangeInclusive<u32>,
-    ) -> Fallible<u32> {
+    ) -> Outcome<u32> {
         scanner.blanks();
         let start = scanner.at;
         let value = self.expression(scanner)?;
@@ -110,7 +113,7 @@ impl<'a> Evaluator<'a> {
         Err(scanner.error_since(start, Rule::Number, message))
     }
 
-    fn finite(&self, scanner: &mut Scanner) -> Fallible<Operand> {
+    fn finite(&self, scanner: &mut Scanner) -> Outcome<Operand> {
         let start = scanner.at;
         let found = Expression { evaluator: self, scanner, depth: 0 }.whole()?;
         if found.value.number().is_none_or(f64::is_finite) {
@@ -129,7 +132,7 @@ struct Expression<'e, 'a, 's, 't> {
 
 impl Expression<'_, '_, '_, '_> {
     /// An expression. It is read by the ranks of the control, and where it compares also by the usual ones.
-    fn whole(&mut self) -> Fallible<Operand> {
+    fn whole(&mut self) -> Outcome<Operand> {
         let (mut own, mut read) = (Stack::default(), Vec::new());
         let start = self.start();
         let (found, last) = loop {
@@ -168,14 +171,14 @@ impl Expression<'_, '_, '_, '_> {
     }
 
     /// An expression in brackets, behind the first of them.
-    fn inner(&mut self) -> Fallible<Value> {
+    fn inner(&mut self) -> Outcome<Value> {
         let start = self.scanner.at;
         let found = self.nested(Self::whole)?;
         without_offset(self.scanner, start, found)
     }
 
     /// An operand behind signs, `NOT` and `B_NOT`.
-    fn signed(&mut self) -> Fallible<Operand> {
+    fn signed(&mut self) -> Outcome<Operand> {
         self.scanner.blanks();
         let start = self.scanner.at;
         let sign = match self.scanner.peek() {
@@ -213,7 +216,7 @@ impl Expression<'_, '_, '_, '_> {
         }))
     }
 
-    fn operand_alone(&mut self) -> Fallible<Operand> {
+    fn operand_alone(&mut self) -> Outcome<Operand> {
         let scanner = &mut *self.scanner;
         let value = match scanner.peek() {
             b'(' => {
@@ -236,7 +239,7 @@ impl Expression<'_, '_, '_, '_> {
     }
 
     /// A variable, a function, a constant or an axis.
-    fn named(&mut self) -> Fallible<Value> {
+    fn named(&mut self) -> Outcome<Value> {
         let scanner = &mut *self.scanner;
         let start = scanner.at;
         let name = scanner.name()?;
@@ -344,7 +347,7 @@ impl Grammar for Expression<'_, '_, '_, '_> {
         self.scanner.at
     }
 
-    fn operand(&mut self) -> Fallible<Operand> {
+    fn operand(&mut self) -> Outcome<Operand> {
         self.signed()
     }
 
@@ -360,7 +363,7 @@ impl Grammar for Expression<'_, '_, '_, '_> {
         operator: Operator,
         [left, right]: [Operand; 2],
         span: Span,
-    ) -> Fallible<Operand> {
+    ) -> Outcome<Operand> {
         let error = |(rule, start, message): (_, _, String)| {
             self.scanner.source.error(rule, start..span.end, message)
         };
@@ -383,7 +386,7 @@ impl Grammar for Expression<'_, '_, '_, '_> {
     }
 }
 
-fn number(scanner: &Scanner, start: usize, value: &Value) -> Fallible<f64> {
+fn number(scanner: &Scanner, start: usize, value: &Value) -> Outcome<f64> {
     value.number().ok_or_else(|| scanner.error_since(start, Rule::Type, no_number(value)))
 }
 
@@ -402,7 +405,7 @@ fn rank_in_doubt(scanner: &Scanner, start: usize) -> Box<Diagnostic> {
 }
 
 /// A number; one without a point is whole.
-fn constant(scanner: &mut Scanner) -> Fallible<Value> {
+fn constant(scanner: &mut Scanner) -> Outcome<Value> {
     let start = scanner.at;
     let value = scanner.constant()?;
     let text = scanner.source.text.get(start..scanner.at).unwrap_or(&[]);
@@ -413,7 +416,7 @@ fn constant(scanner: &mut Scanner) -> Fallible<Value> {
 }
 
 /// `'HFF'`, `'B101'`.
-fn based_constant(scanner: &mut Scanner) -> Fallible<Value> {
+fn based_constant(scanner: &mut Scanner) -> Outcome<Value> {
     let start = scanner.at;
     let rest = scanner.source.text.get(start + 1..).unwrap_or(&[]);
     let end = rest.iter().position(|byte| *byte == b'\'').unwrap_or(0);
@@ -437,7 +440,7 @@ fn based_constant(scanner: &mut Scanner) -> Fallible<Value> {
 }
 
 /// The value of an operand to which no parameter of the operator is added.
-pub(super) fn without_offset(scanner: &Scanner, start: usize, found: Operand) -> Fallible<Value> {
+pub(super) fn without_offset(scanner: &Scanner, start: usize, found: Operand) -> Outcome<Value> {
     match found.offset {
         None => Ok(found.value),
         Some(index) => Err(scanner.error_since(start, Rule::OperatorOffset, only_added(index))),

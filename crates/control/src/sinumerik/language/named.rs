@@ -4,8 +4,8 @@ use super::expression::{Evaluator, Operand, without_offset};
 use super::scan::{Name, Scanner};
 use super::system;
 use super::value::{Kind, LONGEST_TEXT, Value};
-use super::variables::{Parameter, Place, R_PARAMETERS, Variable};
-use crate::kernel::Fallible;
+use super::variables::{AssignmentTarget, Parameter, R_PARAMETERS, Variable};
+use crate::kernel::Outcome;
 use program::Rule;
 
 impl Evaluator<'_> {
@@ -15,13 +15,13 @@ impl Evaluator<'_> {
     }
 
     /// Takes what a value is assigned to.
-    pub fn place(&self, scanner: &mut Scanner) -> Fallible<Place> {
+    pub fn place(&self, scanner: &mut Scanner) -> Outcome<AssignmentTarget> {
         let start = scanner.at;
         match (scanner.peek(), scanner.peek_at(1)) {
             (b'$', _) => system::place(self, scanner),
             (b'R', next) if !scanner.name_next() && next != b'=' => {
                 scanner.at += 1;
-                self.index(scanner).map(Place::Parameter)
+                self.index(scanner).map(AssignmentTarget::Parameter)
             }
             _ => {
                 let name = scanner.name()?;
@@ -33,20 +33,21 @@ impl Evaluator<'_> {
                     error.help = "a variable needs its DEF in the same program".into();
                     return Err(error);
                 };
-                self.element(scanner, variable).map(|element| Place::Element(index, element))
+                self.element(scanner, variable)
+                    .map(|element| AssignmentTarget::Element(index, element))
             }
         }
     }
 
     /// The type of a place, and how many elements there are from it on.
-    pub fn room(&self, place: Place) -> (Kind, usize) {
+    pub fn room(&self, place: AssignmentTarget) -> (Kind, usize) {
         match place {
-            Place::Element(index, element) => match self.state.locals().get(index) {
+            AssignmentTarget::Element(index, element) => match self.state.locals().get(index) {
                 Some(variable) if variable.sizes.is_empty() => (variable.kind, 1),
                 Some(variable) => (variable.kind, variable.values.len().saturating_sub(element)),
                 None => (Kind::Real, 0),
             },
-            Place::Parameter(_) | Place::WorkOffset(..) => (Kind::Real, 1),
+            AssignmentTarget::Parameter(_) | AssignmentTarget::WorkOffset(..) => (Kind::Real, 1),
         }
     }
 
@@ -55,7 +56,7 @@ impl Evaluator<'_> {
     pub fn variable_alone(
         &self,
         scanner: &mut Scanner,
-    ) -> Fallible<Option<((usize, Option<usize>), Option<Value>)>> {
+    ) -> Outcome<Option<((usize, Option<usize>), Option<Value>)>> {
         let back = scanner.at;
         if !scanner.name_next() {
             return Ok(None);
@@ -77,7 +78,7 @@ impl Evaluator<'_> {
     }
 
     /// Takes the index of an R parameter behind its `R`.
-    pub fn index(&self, scanner: &mut Scanner) -> Fallible<usize> {
+    pub fn index(&self, scanner: &mut Scanner) -> Outcome<usize> {
         let start = scanner.at;
         let index = if scanner.take(b'[') {
             let index = Evaluator::new(self.state, self.assigned).expression(scanner)?;
@@ -93,7 +94,7 @@ impl Evaluator<'_> {
     }
 
     /// Takes the element in brackets of a variable, where it is an array.
-    pub fn element(&self, scanner: &mut Scanner, variable: &Variable) -> Fallible<usize> {
+    pub fn element(&self, scanner: &mut Scanner, variable: &Variable) -> Outcome<usize> {
         let start = scanner.at;
         let mut element = 0;
         for (i, size) in variable.sizes.iter().enumerate() {
@@ -116,7 +117,7 @@ impl Evaluator<'_> {
     }
 
     /// Takes an R parameter: its value. That of the operator is added where it is named by its number.
-    pub(super) fn parameter(&self, scanner: &mut Scanner) -> Fallible<Operand> {
+    pub(super) fn parameter(&self, scanner: &mut Scanner) -> Outcome<Operand> {
         let start = scanner.at;
         scanner.at += 1;
         let by_number = scanner.digit_next();
@@ -140,8 +141,8 @@ impl Evaluator<'_> {
         scanner: &Scanner,
         start: usize,
         index: usize,
-    ) -> Fallible<Operand> {
-        if self.assigned.iter().any(|(place, _)| *place == Place::Parameter(index)) {
+    ) -> Outcome<Operand> {
+        if self.assigned.iter().any(|(place, _)| *place == AssignmentTarget::Parameter(index)) {
             return Err(scanner.error_since(
                 start,
                 Rule::RParameter,
@@ -164,12 +165,16 @@ impl Evaluator<'_> {
     }
 
     /// The value of the variable `index`, whose name stands from `start`, or of one of its elements.
-    pub fn variable(&self, scanner: &mut Scanner, start: usize, index: usize) -> Fallible<Value> {
+    pub fn variable(&self, scanner: &mut Scanner, start: usize, index: usize) -> Outcome<Value> {
         let Some(variable) = self.state.locals().get(index) else {
             return Err(scanner.error_since(start, Rule::UnknownWord, "there is no such variable"));
         };
         let element = self.element(scanner, variable)?;
-        if self.assigned.iter().any(|(place, _)| *place == Place::Element(index, element)) {
+        if self
+            .assigned
+            .iter()
+            .any(|(place, _)| *place == AssignmentTarget::Element(index, element))
+        {
             let message = "the variable is set and read in one block";
             return Err(scanner.error_since(start, Rule::Variable, message));
         }

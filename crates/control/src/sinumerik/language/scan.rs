@@ -1,6 +1,6 @@
 //! Characters to names, numbers and texts.
 
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use program::{Diagnostic, Rule};
 use std::ops::Range;
@@ -87,7 +87,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Takes `byte` or says that it is missing.
-    pub fn expect(&mut self, byte: u8) -> Fallible<()> {
+    pub fn expect(&mut self, byte: u8) -> Outcome {
         if self.take(byte) {
             return Ok(());
         }
@@ -123,7 +123,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Takes a name: letters, digits and underscores.
-    pub fn name(&mut self) -> Fallible<Name> {
+    pub fn name(&mut self) -> Outcome<Name> {
         let start = self.at;
         let mut name = Name { bytes: [0; LONGEST_NAME], length: 0 };
         while self.name_goes_on() {
@@ -169,7 +169,7 @@ impl<'a> Scanner<'a> {
     /// Takes skip mark, block number and label. A label is a name of which the first two characters
     /// are letters or underscores, and a colon.
     #[inline(always)]
-    pub fn head(&mut self) -> Fallible<Head> {
+    pub fn head(&mut self) -> Outcome<Head> {
         let mut head = Head::default();
         self.blanks();
         let mut next = self.peek();
@@ -203,7 +203,7 @@ impl<'a> Scanner<'a> {
 
     /// Takes a whole number without a sign.
     #[inline]
-    pub fn integer(&mut self) -> Fallible<u32> {
+    pub fn integer(&mut self) -> Outcome<u32> {
         let start = self.at;
         let mut value: u32 = 0;
         while self.digit_next() {
@@ -222,7 +222,7 @@ impl<'a> Scanner<'a> {
 
     /// Takes the number of an address.
     #[inline]
-    pub fn number(&mut self) -> Fallible<f64> {
+    pub fn number(&mut self) -> Outcome<f64> {
         let start = self.at;
         let value = self.constant()?;
         if value.abs() <= LARGEST {
@@ -233,7 +233,7 @@ impl<'a> Scanner<'a> {
 
     /// Takes a number: sign, digits, point, digits, exponent (`EX`).
     #[inline(always)]
-    pub fn constant(&mut self) -> Fallible<f64> {
+    pub fn constant(&mut self) -> Outcome<f64> {
         let start = self.at;
         let negative = self.peek() == b'-';
         if negative || self.peek() == b'+' {
@@ -271,7 +271,7 @@ impl<'a> Scanner<'a> {
 
     /// The number from `start` with many digits or an exponent.
     #[cold]
-    fn slow_number(&mut self, start: usize, exponent: bool) -> Fallible<f64> {
+    fn slow_number(&mut self, start: usize, exponent: bool) -> Outcome<f64> {
         let end_of_mantissa = self.at;
         if exponent {
             self.at += 2;
@@ -297,7 +297,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Takes a text in quotes.
-    pub fn quoted(&mut self) -> Fallible<String> {
+    pub fn quoted(&mut self) -> Outcome<String> {
         self.expect(b'"')?;
         let start = self.at;
         let rest = self.source.text.get(start..).unwrap_or(&[]);

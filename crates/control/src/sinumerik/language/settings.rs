@@ -4,7 +4,7 @@ use super::block::{Block, Corner, Rare, TOLERANCES};
 use super::expression::Evaluator;
 use super::value::Value;
 use super::words::Reader;
-use crate::kernel::Fallible;
+use crate::kernel::Outcome;
 use program::Rule;
 
 /// An address of several letters.
@@ -93,7 +93,7 @@ impl Reader<'_, '_> {
         start: usize,
         said: &'static str,
         setting: Setting,
-    ) -> Fallible<()> {
+    ) -> Outcome {
         match setting {
             Setting::Position => return self.positioning(start),
             Setting::FeedReference => return self.feed_reference(start),
@@ -159,7 +159,7 @@ impl Reader<'_, '_> {
     }
 
     /// `[X]=` behind an address that each axis has.
-    fn indexed_axis(&mut self) -> Fallible<usize> {
+    fn indexed_axis(&mut self) -> Outcome<usize> {
         self.scanner.expect(b'[')?;
         self.scanner.blanks();
         let at = self.scanner.at;
@@ -173,7 +173,7 @@ impl Reader<'_, '_> {
     }
 
     /// `FGREF[A]=...`.
-    fn feed_reference(&mut self, start: usize) -> Fallible<()> {
+    fn feed_reference(&mut self, start: usize) -> Outcome {
         let axis = self.indexed_axis()?;
         let radius = self.expression()?;
         let Some(axis) = axis.checked_sub(3) else {
@@ -191,7 +191,7 @@ impl Reader<'_, '_> {
 
     /// `ACC[X]=80`: percent of what the machine data let the axis do; the path stays what it is (Programming Manual 12/2019,
     /// "Percentage acceleration override", "Influence of acceleration on following axes").
-    fn dynamics(&mut self, start: usize, said: &str) -> Fallible<()> {
+    fn dynamics(&mut self, start: usize, said: &str) -> Outcome {
         self.indexed_axis()?;
         let percent = self.expression()?;
         if percent > 0.0 && percent <= 200.0 {
@@ -203,7 +203,7 @@ impl Reader<'_, '_> {
     }
 
     /// `POS[X]=...`.
-    fn positioning(&mut self, start: usize) -> Fallible<()> {
+    fn positioning(&mut self, start: usize) -> Outcome {
         let axis = self.indexed_axis()?;
         let coordinate = self.counted(axis >= 3)?;
         let place = self.block.rare.get_or_insert_default().positioned.get_mut(axis);

@@ -7,8 +7,8 @@ use super::expression::Evaluator;
 use super::scan::{Name, Scanner};
 use super::structure::Word;
 use super::value::Value;
-use super::variables::{Place, Variable};
-use crate::kernel::Fallible;
+use super::variables::{AssignmentTarget, Variable};
+use crate::kernel::Outcome;
 use program::Rule;
 use std::rc::Rc;
 
@@ -47,7 +47,7 @@ pub(crate) enum Statement {
 /// `FOR`.
 pub(crate) struct Count {
     /// What counts.
-    pub place: Place,
+    pub place: AssignmentTarget,
     /// From.
     pub start: f64,
     /// To, itself included.
@@ -127,7 +127,7 @@ pub(super) fn read(
     evaluator: &Evaluator,
     start: usize,
     name: &Name,
-) -> Fallible<Option<Statement>> {
+) -> Outcome<Option<Statement>> {
     let statement = match name.as_str() {
         "IF" => condition(scanner, evaluator)?,
         "WHILE" => Statement::While(evaluator.condition(scanner)?),
@@ -196,7 +196,7 @@ fn search(name: &str) -> Option<Search> {
 
 /// `IF condition`, or `IF condition GOTOF label`, which may be followed by further ones of which the
 /// first that holds counts.
-fn condition(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Statement> {
+fn condition(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Statement> {
     let holds = evaluator.condition(scanner)?;
     if scanner.rests() {
         return Ok(Statement::If(holds));
@@ -217,7 +217,7 @@ impl Jump {
 }
 
 /// Takes a jump with its word.
-fn jump_word(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Jump> {
+fn jump_word(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Jump> {
     scanner.blanks();
     let start = scanner.at;
     let name = scanner.name()?;
@@ -231,7 +231,7 @@ fn jump_word(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Jump> {
 }
 
 /// Takes the target of a jump: a label, a block number, or a text that names one.
-fn jump(scanner: &mut Scanner, evaluator: &Evaluator, search: Search) -> Fallible<Jump> {
+fn jump(scanner: &mut Scanner, evaluator: &Evaluator, search: Search) -> Outcome<Jump> {
     if search == Search::Start {
         return Ok(Jump { search, target: Target::Start });
     }
@@ -265,7 +265,7 @@ fn target(text: &str) -> Option<Target> {
 }
 
 /// `CASE expression OF constant GOTOF label ... DEFAULT GOTOF label`.
-fn case(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Statement> {
+fn case(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Statement> {
     let value = evaluator.expression(scanner)?;
     if !scanner.take_word("OF") {
         return Err(scanner.error_here(Rule::Syntax, "OF is missing here"));
@@ -285,7 +285,7 @@ fn case(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Statement> {
 }
 
 /// `variable = start TO end`.
-fn count(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Count> {
+fn count(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Count> {
     scanner.blanks();
     let place = evaluator.place(scanner)?;
     scanner.expect(b'=')?;
@@ -297,7 +297,7 @@ fn count(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Count> {
     Ok(Count { place, start, end })
 }
 
-fn section(scanner: &mut Scanner, evaluator: &Evaluator, one_block: bool) -> Fallible<Section> {
+fn section(scanner: &mut Scanner, evaluator: &Evaluator, one_block: bool) -> Outcome<Section> {
     scanner.blanks();
     let from = label(scanner)?;
     scanner.blanks();
@@ -311,7 +311,7 @@ fn section(scanner: &mut Scanner, evaluator: &Evaluator, one_block: bool) -> Fal
     Ok(Section { from, to, one_block, times })
 }
 
-fn label(scanner: &mut Scanner) -> Fallible<Name> {
+fn label(scanner: &mut Scanner) -> Outcome<Name> {
     if scanner.name_next() {
         return scanner.name();
     }
@@ -319,7 +319,7 @@ fn label(scanner: &mut Scanner) -> Fallible<Name> {
 }
 
 /// `P3`, `P=n`; once where there is none.
-fn times(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<u32> {
+fn times(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<u32> {
     scanner.blanks();
     if scanner.peek() != b'P' {
         return Ok(1);
@@ -339,7 +339,7 @@ fn times(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<u32> {
 }
 
 /// `PCALL /_N_WKS_DIR/NAME(arguments)`: the path is not in quotes.
-fn path_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Statement> {
+fn path_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Statement> {
     scanner.blanks();
     let start = scanner.at;
     let rest = scanner.source.text.get(start..).unwrap_or(&[]);
@@ -357,13 +357,13 @@ pub(super) fn program_call(
     scanner: &mut Scanner,
     evaluator: &Evaluator,
     start: usize,
-) -> Fallible<Statement> {
+) -> Outcome<Statement> {
     named_call(scanner, evaluator, start).map(Statement::Call)
 }
 
 /// Takes what `MCALL` calls, where that is a program and not a cycle. Its arguments are passed once, here
 /// (Job Planning, "Modal subprogram call").
-fn modal_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Option<ProgramCall>> {
+fn modal_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Option<ProgramCall>> {
     let before = scanner.at;
     scanner.blanks();
     let start = scanner.at;
@@ -389,7 +389,7 @@ fn modal_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Option<P
 }
 
 /// A program's name up to here, its arguments, and how often.
-fn named_call(scanner: &mut Scanner, evaluator: &Evaluator, start: usize) -> Fallible<ProgramCall> {
+fn named_call(scanner: &mut Scanner, evaluator: &Evaluator, start: usize) -> Outcome<ProgramCall> {
     let name = scanner.source.text.get(start..scanner.at).unwrap_or(&[]);
     let program = String::from_utf8_lossy(name.trim_ascii_end()).into();
     let arguments = arguments(scanner, evaluator)?;
@@ -402,7 +402,7 @@ fn named_call(scanner: &mut Scanner, evaluator: &Evaluator, start: usize) -> Fal
 }
 
 /// Takes arguments in brackets; none where no bracket comes.
-fn arguments(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Vec<Actual>> {
+fn arguments(scanner: &mut Scanner, evaluator: &Evaluator) -> Outcome<Vec<Actual>> {
     let mut arguments = Vec::new();
     if !scanner.take(b'(') || scanner.take(b')') {
         return Ok(arguments);

@@ -3,8 +3,8 @@
 use super::expression::{Evaluator, without_offset};
 use super::scan::Scanner;
 use super::value::Value;
-use super::variables::{Place, Readable};
-use crate::kernel::Fallible;
+use super::variables::{AssignmentTarget, Readable};
+use crate::kernel::Outcome;
 use program::{Diagnostic, Feed, Rule};
 
 /// The names of the axes, in the order of their numbers.
@@ -25,7 +25,7 @@ pub(super) fn read(
     evaluator: &Evaluator,
     state: &dyn Readable,
     scanner: &mut Scanner,
-) -> Fallible<Value> {
+) -> Outcome<Value> {
     let start = scanner.at;
     scanner.at += 1;
     let name = scanner.name()?;
@@ -91,15 +91,15 @@ pub(super) fn read(
 }
 
 /// Takes the system variable that is assigned to.
-pub(super) fn place(evaluator: &Evaluator, scanner: &mut Scanner) -> Fallible<Place> {
+pub(super) fn place(evaluator: &Evaluator, scanner: &mut Scanner) -> Outcome<AssignmentTarget> {
     let start = scanner.at;
     scanner.at += 1;
     let name = scanner.name()?;
     match name.as_str() {
-        "R" => evaluator.index(scanner).map(Place::Parameter),
+        "R" => evaluator.index(scanner).map(AssignmentTarget::Parameter),
         "P_UIFR" => {
             let (number, axis) = frame_component(evaluator, scanner, true)?;
-            Ok(Place::WorkOffset(number, axis))
+            Ok(AssignmentTarget::WorkOffset(number, axis))
         }
         _ => Err(not_known(scanner, start, name.as_str())),
     }
@@ -118,14 +118,14 @@ fn not_known(scanner: &Scanner, start: usize, name: &str) -> Box<Diagnostic> {
 }
 
 /// `[X]`.
-fn axis_in_brackets(evaluator: &Evaluator, scanner: &mut Scanner) -> Fallible<usize> {
+fn axis_in_brackets(evaluator: &Evaluator, scanner: &mut Scanner) -> Outcome<usize> {
     scanner.expect(b'[')?;
     let axis = take_axis(evaluator, scanner)?;
     scanner.expect(b']')?;
     Ok(axis)
 }
 
-fn take_axis(evaluator: &Evaluator, scanner: &mut Scanner) -> Fallible<usize> {
+fn take_axis(evaluator: &Evaluator, scanner: &mut Scanner) -> Outcome<usize> {
     scanner.blanks();
     let start = scanner.at;
     match evaluator.value(scanner)? {
@@ -142,7 +142,7 @@ fn frame_component(
     evaluator: &Evaluator,
     scanner: &mut Scanner,
     numbered: bool,
-) -> Fallible<(u32, usize)> {
+) -> Outcome<(u32, usize)> {
     scanner.expect(b'[')?;
     let mut number = 0;
     if numbered {

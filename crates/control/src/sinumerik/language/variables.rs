@@ -158,7 +158,7 @@ impl Locals {
 
 /// Where a value can be assigned to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum AssignmentTarget {
     /// An R parameter.
     Parameter(usize),
     /// An element of a variable.

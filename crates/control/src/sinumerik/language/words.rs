@@ -10,8 +10,8 @@ use super::scan::Scanner;
 use super::settings;
 use super::statement;
 use super::structure::Word;
-use super::variables::{Place, Readable};
-use crate::kernel::Fallible;
+use super::variables::{AssignmentTarget, Readable};
+use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use program::Rule;
 
@@ -20,7 +20,7 @@ impl Block {
     ///
     /// # Errors
     /// The first word that is not understood, repeated, or against the rules of a block.
-    pub fn read(&mut self, source: Source, state: &dyn Readable) -> Fallible<()> {
+    pub fn read(&mut self, source: Source, state: &dyn Readable) -> Outcome {
         *self = Block::empty();
         let mut reader = Reader { scanner: Scanner::new(source), state, block: self };
         reader.scanner.head()?;
@@ -54,7 +54,7 @@ impl Reader<'_, '_> {
         self.scanner.at = self.scanner.source.text.len();
     }
 
-    fn word(&mut self, first: bool) -> Fallible<()> {
+    fn word(&mut self, first: bool) -> Outcome {
         let letter = self.scanner.peek();
         if letter == b'$' {
             return self.assignment();
@@ -76,7 +76,7 @@ impl Reader<'_, '_> {
 
     /// A letter and a number, `=` and an expression, or an extension, `=` and an expression.
     #[inline]
-    fn address_word(&mut self, letter: u8, first: bool) -> Fallible<()> {
+    fn address_word(&mut self, letter: u8, first: bool) -> Outcome {
         let start = self.scanner.at;
         if letter == b'R' {
             return self.assignment();
@@ -156,7 +156,7 @@ impl Reader<'_, '_> {
         Some(digit - b'0')
     }
 
-    fn extended_word(&mut self, start: usize, letter: u8, extension: u8) -> Fallible<()> {
+    fn extended_word(&mut self, start: usize, letter: u8, extension: u8) -> Outcome {
         match (letter, extension) {
             (b'A'..=b'C', 3) => {
                 let value = self.value()?;
@@ -199,7 +199,7 @@ impl Reader<'_, '_> {
     }
 
     /// `R1=...`, `NAME[1]=...`, `$P_...=...`.
-    fn assignment(&mut self) -> Fallible<()> {
+    fn assignment(&mut self) -> Outcome {
         let start = self.scanner.at;
         let evaluator = Evaluator::new(self.state, &self.block.assigned);
         let place = evaluator.place(&mut self.scanner)?;
@@ -213,13 +213,13 @@ impl Reader<'_, '_> {
         let wrong = |scanner: &Scanner, message| scanner.error_since(at, Rule::Type, message);
         let repeated = self.block.assigned.iter().any(|(p, _)| *p == place);
         match (filling, place) {
-            (Some(filling), Place::Element(index, element)) => {
+            (Some(filling), AssignmentTarget::Element(index, element)) => {
                 let elements = filling
                     .elements(kind, room)
                     .map_err(|message| wrong(&self.scanner, message))?;
                 let places = elements
                     .into_iter()
-                    .map(|(i, value)| (Place::Element(index, element + i), value));
+                    .map(|(i, value)| (AssignmentTarget::Element(index, element + i), value));
                 self.block.assigned.extend(places);
             }
             _ => {
@@ -231,14 +231,14 @@ impl Reader<'_, '_> {
         self.once(start, repeated)
     }
 
-    fn program_call(&mut self, start: usize) -> Fallible<()> {
+    fn program_call(&mut self, start: usize) -> Outcome {
         let evaluator = Evaluator::new(self.state, &self.block.assigned);
         let call = statement::program_call(&mut self.scanner, &evaluator, start)?;
         self.block.statement = Some(call.into());
         Ok(())
     }
 
-    fn axis(&mut self, start: usize, index: usize) -> Fallible<()> {
+    fn axis(&mut self, start: usize, index: usize) -> Outcome {
         let value = self.offset_coordinate(index >= 3)?;
         let repeated = match self.block.axes.get_mut(index) {
             Some(place) => place.replace(value).is_some(),
@@ -249,13 +249,13 @@ impl Reader<'_, '_> {
 
     /// The value of an address that may stand in `AC()`, `IC()` ...
     #[inline]
-    fn coordinate(&mut self) -> Fallible<Coordinate> {
+    fn coordinate(&mut self) -> Outcome<Coordinate> {
         self.offset_coordinate(false)
     }
 
     /// The same, to which the operator's offset may be added where `may`.
     #[inline]
-    fn offset_coordinate(&mut self, may: bool) -> Fallible<Coordinate> {
+    fn offset_coordinate(&mut self, may: bool) -> Outcome<Coordinate> {
         if self.scanner.take(b'=') {
             return self.counted(may);
         }
@@ -264,7 +264,7 @@ impl Reader<'_, '_> {
     }
 
     /// The same behind its `=`.
-    pub(super) fn counted(&mut self, may: bool) -> Fallible<Coordinate> {
+    pub(super) fn counted(&mut self, may: bool) -> Outcome<Coordinate> {
         self.scanner.blanks();
         let back = self.scanner.at;
         if self.scanner.peek().is_ascii_alphabetic()
@@ -284,7 +284,7 @@ impl Reader<'_, '_> {
         Ok(Coordinate { count: Count::Modal, value, offset })
     }
 
-    fn offset_expression(&mut self, may: bool) -> Fallible<(f64, Option<usize>)> {
+    fn offset_expression(&mut self, may: bool) -> Outcome<(f64, Option<usize>)> {
         if !may {
             return Ok((self.expression()?, None));
         }
@@ -292,25 +292,25 @@ impl Reader<'_, '_> {
         evaluator.offset_expression(&mut self.scanner)
     }
 
-    pub(super) fn expression(&mut self) -> Fallible<f64> {
+    pub(super) fn expression(&mut self) -> Outcome<f64> {
         Evaluator::new(self.state, &self.block.assigned).expression(&mut self.scanner)
     }
 
     /// A constant, perhaps behind blanks.
     #[inline]
-    fn constant(&mut self) -> Fallible<f64> {
+    fn constant(&mut self) -> Outcome<f64> {
         self.scanner.blanks();
         self.scanner.number()
     }
 
     /// A constant, or `=` and an expression.
     #[inline]
-    fn value(&mut self) -> Fallible<f64> {
+    fn value(&mut self) -> Outcome<f64> {
         if self.scanner.take(b'=') { self.expression() } else { self.constant() }
     }
 
     /// A [`Reader::value`] that must be a whole number from 0.
-    fn whole(&mut self, start: usize) -> Fallible<u32> {
+    fn whole(&mut self, start: usize) -> Outcome<u32> {
         let value = self.value()?;
         if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
             return Ok(value as u32);
@@ -318,7 +318,7 @@ impl Reader<'_, '_> {
         Err(self.scanner.error_since(start, Rule::Number, "a whole number from 0 must stand here"))
     }
 
-    fn tool(&mut self, start: usize) -> Fallible<ToolCall> {
+    fn tool(&mut self, start: usize) -> Outcome<ToolCall> {
         let back = self.scanner.at;
         if self.scanner.take(b'=') && self.scanner.take(b'"') {
             self.scanner.at -= 1;
@@ -336,7 +336,7 @@ impl Reader<'_, '_> {
         self.whole(start).map(ToolCall::Number)
     }
 
-    fn m_function(&mut self, start: usize, number: u32) -> Fallible<()> {
+    fn m_function(&mut self, start: usize, number: u32) -> Outcome {
         let repeated = self.block.has_m(number);
         let Some(place) = self.block.m.iter_mut().find(|m| m.is_none()) else {
             let message = "a block has at most five M functions";
@@ -346,7 +346,7 @@ impl Reader<'_, '_> {
         self.once(start, repeated)
     }
 
-    fn numbered_command(&mut self, start: usize, number: u32) -> Fallible<()> {
+    fn numbered_command(&mut self, start: usize, number: u32) -> Outcome {
         // Fundamentals 12/2019, "Settable work offset": on an 828D G58 and G59 are the fifth and the sixth.
         let is_828d = self.state.is_828d();
         if is_828d && matches!(number, 505 | 506) {
@@ -366,7 +366,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn command(&mut self, start: usize, index: u8) -> Fallible<()> {
+    fn command(&mut self, start: usize, index: u8) -> Outcome {
         let command = commands::at(index);
         if let Code::Unsupported(reason) = command.code {
             let message = format!("{} is not supported: {reason}", command.name);
@@ -385,7 +385,7 @@ impl Reader<'_, '_> {
     }
 
     /// A word of more than one letter.
-    fn named_word(&mut self, first: bool) -> Fallible<()> {
+    fn named_word(&mut self, first: bool) -> Outcome {
         let start = self.scanner.at;
         let whole_name = self.scanner.name()?;
         if self.state.locals().find(&whole_name).is_some() {
@@ -437,7 +437,7 @@ impl Reader<'_, '_> {
     }
 
     /// `SETAL(number)`, `SETAL(number, text)`.
-    fn alarm(&mut self, start: usize) -> Fallible<()> {
+    fn alarm(&mut self, start: usize) -> Outcome {
         self.scanner.expect(b'(')?;
         let evaluator = Evaluator::new(self.state, &self.block.assigned);
         let number = evaluator.within(&mut self.scanner, 0..=u32::MAX)?;
@@ -457,7 +457,7 @@ impl Reader<'_, '_> {
     }
 
     /// `MSG("text")`, `MSG()`, `MSG`; a second argument says when the text appears.
-    fn message(&mut self, start: usize) -> Fallible<()> {
+    fn message(&mut self, start: usize) -> Outcome {
         let mut text = String::new();
         if self.scanner.take(b'(') && !self.scanner.take(b')') {
             self.scanner.blanks();
@@ -474,7 +474,7 @@ impl Reader<'_, '_> {
 
     /// An error where the word was there before.
     #[inline]
-    pub(super) fn once(&self, start: usize, repeated: bool) -> Fallible<()> {
+    pub(super) fn once(&self, start: usize, repeated: bool) -> Outcome {
         if !repeated {
             return Ok(());
         }

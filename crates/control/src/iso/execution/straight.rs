@@ -14,16 +14,16 @@ use program::Feed;
 
 /// What holds from one straight move to the next.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Onward {
+pub(crate) struct StraightContinuation {
     /// mm in the unit of length.
     unit: f64,
     /// The F that is in effect, where the block before has it.
     feed: Option<Word>,
 }
 
-impl Onward {
+impl StraightContinuation {
     /// What holds behind `block`, which has been executed; `None` where straight moves behind it are not simple.
-    pub(crate) fn behind(block: &Block, state: &State) -> Option<Onward> {
+    pub(crate) fn behind(block: &Block, state: &State) -> Option<StraightContinuation> {
         let unit = match state.inches? {
             true => geom::INCH,
             false => 1.0,
@@ -42,14 +42,18 @@ impl Onward {
         // FreeCAD's F beside a rapid is none of the moves behind it, and FANUC's beside G33 is a pitch.
         let cuts = matches!(state.motion, Some(Motion::Line | Motion::Arc { .. }));
         let feed = (cuts && block.gives(b'F')).then(|| block.words[index(b'F')]);
-        goes.then_some(Onward { unit, feed })
+        goes.then_some(StraightContinuation { unit, feed })
     }
 }
 
 impl Control {
     /// Executes a block of these words where it is a straight move behind what is `onward`, as
     /// [`Control::execute`] would. `None` where it is not: nothing has changed.
-    pub(crate) fn go_on(&mut self, onward: &Onward, words: &[Word]) -> Option<Action> {
+    pub(crate) fn go_on(
+        &mut self,
+        onward: &StraightContinuation,
+        words: &[Word],
+    ) -> Option<Action> {
         let state = &mut self.state;
         let (mut motion, mut point) = (state.motion?, state.position);
         let mut given = 0;

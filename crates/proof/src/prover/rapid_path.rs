@@ -19,7 +19,7 @@ const FREE_POSITIONS: u32 = 16;
 
 impl Prover<'_> {
     /// What is wrong with the way of a rapid block from where the tool is to `to`.
-    pub(super) fn wrong_way(&mut self, to: &Station) -> Option<Diagnostic> {
+    pub(super) fn wrong_way(&mut self, to: &ResolvedPose) -> Option<Diagnostic> {
         let gauge = self.gauge;
         if gauge.machine.wire.is_some() {
             return None;
@@ -43,7 +43,7 @@ impl Prover<'_> {
             Kind::Line | Kind::Arc(_) => (None, self.leg.left.map_or(from, |left| left.place)),
             Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => return None,
         };
-        let way = Way { gauge: &gauge, straight };
+        let way = StraightPath { gauge: &gauge, straight };
         let is_straight = gauge.straight_rapids && !turns;
         if is_straight && way.holds(&here.place) && way.holds(&to.place) {
             self.note_rapid(&way, std::iter::once(&to.place), to.line);
@@ -54,22 +54,26 @@ impl Prover<'_> {
 
     /// What is wrong with the way to a hole from `here` to `to`, where each axis goes at its own speed: the tool leaves the
     /// straight line between the two beyond all cuts only.
-    pub(super) fn wrong_dog_leg(&mut self, here: &Station, to: &Station) -> Option<Diagnostic> {
+    pub(super) fn wrong_dog_leg(
+        &mut self,
+        here: &ResolvedPose,
+        to: &ResolvedPose,
+    ) -> Option<Diagnostic> {
         let gauge = self.gauge;
         if gauge.straight_rapids {
             return None;
         }
-        let way = Way { gauge: &gauge, straight: Some((here.place, to.place)) };
+        let way = StraightPath { gauge: &gauge, straight: Some((here.place, to.place)) };
         self.wrong_places(&way, here, to, &to.place)
     }
 
     /// What is wrong with the places to which the axes lead the tool from `here` to `to`, on the way to `end`.
     fn wrong_places(
         &mut self,
-        way: &Way,
-        here: &Station,
-        to: &Station,
-        end: &Place,
+        way: &StraightPath,
+        here: &ResolvedPose,
+        to: &ResolvedPose,
+        end: &PartialPose,
     ) -> Option<Diagnostic> {
         let Some(places) = way.places(here, to) else {
             let what = "turns axes that go each at its own speed: where the tool goes between the ends is not known";
@@ -78,12 +82,12 @@ impl Prover<'_> {
         if along_axis(way.gauge, here, to, &places, end) {
             return None;
         }
-        let (on_way, elsewhere): (Vec<&Place>, Vec<&Place>) =
+        let (on_way, elsewhere): (Vec<&PartialPose>, Vec<&PartialPose>) =
             places.iter().partition(|place| way.holds(place));
         self.note_rapid(way, on_way.into_iter(), to.line);
         let short = self.short_of_clearance(elsewhere.iter().copied())?;
         let slack = self.gauge.slack(here);
-        let low: Vec<&Place> =
+        let low: Vec<&PartialPose> =
             elsewhere.into_iter().filter(|place| self.short(place) > slack).collect();
         self.note_rapid(way, low.into_iter(), to.line);
         let clearance = Number(self.gauge.machine.capabilities.rapid_clearance);
@@ -97,8 +101,8 @@ impl Prover<'_> {
     /// How far these places of a rapid are from the straight way of the source.
     fn note_rapid<'p>(
         &mut self,
-        way: &Way,
-        places: impl Iterator<Item = &'p Place>,
+        way: &StraightPath,
+        places: impl Iterator<Item = &'p PartialPose>,
         program_line: u32,
     ) {
         let off = places.filter_map(|place| way.beside(place)).fold(0.0, f64::max);
@@ -107,12 +111,13 @@ impl Prover<'_> {
 
     /// How far a place is along the straight way of a rapid of the source, 0 to 1, where it is on it; and the length of
     /// the way, mm.
-    pub(super) fn on_the_way(&self, to: &Station) -> Option<(f64, f64)> {
-        let Step::Move(goal @ Goal { kind: Kind::Rapid, from: Some(from), .. }) = &self.cursor.step
+    pub(super) fn on_the_way(&self, to: &ResolvedPose) -> Option<(f64, f64)> {
+        let Step::Move(goal @ ExpectedMotion { kind: Kind::Rapid, from: Some(from), .. }) =
+            &self.cursor.step
         else {
             return None;
         };
-        let way = Way { gauge: &self.gauge, straight: Some((*from, goal.to)) };
+        let way = StraightPath { gauge: &self.gauge, straight: Some((*from, goal.to)) };
         let (t, _) = nearest_on_segment(from.tip, goal.to.tip, to.place.tip);
         way.holds(&to.place).then(|| (t, goal.length()))
     }
@@ -120,7 +125,7 @@ impl Prover<'_> {
     /// By how much the tool is not the clearance beyond all cuts at the worst of these places, mm.
     pub(super) fn short_of_clearance<'p>(
         &mut self,
-        places: impl Iterator<Item = &'p Place>,
+        places: impl Iterator<Item = &'p PartialPose>,
     ) -> Option<f64> {
         let worst = places.map(|place| self.short(place)).fold(f64::NEG_INFINITY, f64::max);
         let slack = self.gauge.slack(&self.here);
@@ -128,7 +133,7 @@ impl Prover<'_> {
     }
 
     /// How far a place is below the clearance beyond all cuts, along the tool axis there, mm.
-    fn short(&mut self, place: &Place) -> f64 {
+    fn short(&mut self, place: &PartialPose) -> f64 {
         let cuts = self.cuts();
         let clearance = self.gauge.machine.capabilities.rapid_clearance;
         cuts.reach(place.axis) + clearance - place.tip.dot(place.axis)
@@ -144,7 +149,7 @@ impl Prover<'_> {
         self.cuts().reach(direction)
     }
 
-    pub(super) fn way_refused(&self, to: &Station, what: &str) -> Diagnostic {
+    pub(super) fn way_refused(&self, to: &ResolvedPose, what: &str) -> Diagnostic {
         let message = format!(
             "source line {}: the program goes by rapid to {} and {what}",
             self.cursor.line, to.place
@@ -164,14 +169,14 @@ impl Prover<'_> {
 }
 
 /// The straight way of the source, where it goes by rapid.
-struct Way<'a> {
+struct StraightPath<'a> {
     gauge: &'a Gauge<'a>,
-    straight: Option<(Place, Place)>,
+    straight: Option<(PartialPose, PartialPose)>,
 }
 
-impl Way<'_> {
+impl StraightPath<'_> {
     /// Whether a place is on it, with the tool as it is there.
-    fn holds(&self, place: &Place) -> bool {
+    fn holds(&self, place: &PartialPose) -> bool {
         let Some((from, to)) = &self.straight else { return false };
         let (machine, allowed) = (self.gauge.machine, &self.gauge.allowed);
         let corridor = machine.capabilities.rapid_corridor + allowed.tip_mm;
@@ -181,14 +186,14 @@ impl Way<'_> {
     }
 
     /// How far a place is from it, mm.
-    fn beside(&self, place: &Place) -> Option<f64> {
+    fn beside(&self, place: &PartialPose) -> Option<f64> {
         let (from, to) = self.straight.as_ref()?;
         Some(nearest_on_segment(from.tip, to.tip, place.tip).1)
     }
 
     /// Places on the way of a block, in all ways that the machine may stand; nothing where it is not known what lies
     /// between its ends.
-    fn places(&self, here: &Station, to: &Station) -> Option<Vec<Place>> {
+    fn places(&self, here: &ResolvedPose, to: &ResolvedPose) -> Option<Vec<PartialPose>> {
         let machine = self.gauge.machine;
         let turns = here.position.orientation != to.position.orientation;
         if self.gauge.straight_rapids {
@@ -197,13 +202,13 @@ impl Way<'_> {
         let stances = if turns { Vec::new() } else { self.stances(to) };
         let wandering = |degrees| {
             let tips = machine.wandering(here.place.tip, to.place.tip, degrees);
-            tips.map(|tip| Place { tip, axis: to.place.axis })
+            tips.map(|tip| PartialPose { tip, axis: to.place.axis })
         };
         (!stances.is_empty()).then(|| stances.into_iter().flat_map(wandering).collect())
     }
 
     /// The positions of the rotary axes with the tool as it stands at `to`.
-    fn stances(&self, to: &Station) -> Vec<[f64; 3]> {
+    fn stances(&self, to: &ResolvedPose) -> Vec<[f64; 3]> {
         let machine = self.gauge.machine;
         match to.position.orientation {
             Orientation::Rotary { degrees, .. } => vec![degrees],
@@ -226,7 +231,7 @@ impl Way<'_> {
     }
 
     /// Places on a way on which the tool turns, all axes going together.
-    fn turning(&self, here: &Station, to: &Station) -> Vec<Place> {
+    fn turning(&self, here: &ResolvedPose, to: &ResolvedPose) -> Vec<PartialPose> {
         let Gauge { machine, tool_length, .. } = *self.gauge;
         let start = in_the_kind_of(machine, here, to, tool_length);
         let most = turn(&start, &to.position).unwrap_or_else(|| here.place.apart(&to.place).1);
@@ -235,10 +240,10 @@ impl Way<'_> {
         (0..=samples)
             .map(|i| match to.position.orientation {
                 Orientation::Rotary { .. } => {
-                    Place::of(machine, &blend(&start, &to.position, part(i)), tool_length)
+                    PartialPose::of(machine, &blend(&start, &to.position, part(i)), tool_length)
                 }
                 // The control turns the vector itself.
-                Orientation::Axis(axis) => Place {
+                Orientation::Axis(axis) => PartialPose {
                     tip: here.place.tip.lerp(to.place.tip, part(i)),
                     axis: geom::between(here.place.axis, axis, part(i)),
                 },
@@ -250,8 +255,8 @@ impl Way<'_> {
 /// Where `here` is, said as the block that goes to `to` says it.
 fn in_the_kind_of(
     machine: &Machine,
-    here: &Station,
-    to: &Station,
+    here: &ResolvedPose,
+    to: &ResolvedPose,
     tool_length: Option<f64>,
 ) -> Position {
     match (here.position.orientation, to.position.orientation) {
@@ -270,11 +275,17 @@ fn in_the_kind_of(
 }
 
 /// Whether a block goes along the tool axis: away, or down to the end of the way.
-fn along_axis(gauge: &Gauge, here: &Station, to: &Station, places: &[Place], end: &Place) -> bool {
+fn along_axis(
+    gauge: &Gauge,
+    here: &ResolvedPose,
+    to: &ResolvedPose,
+    places: &[PartialPose],
+    end: &PartialPose,
+) -> bool {
     let is_up = stops::lifted(gauge, here, to);
     let is_down = stops::lifted(gauge, to, here)
         && gauge.height_over(end, to).is_some_and(|height| height >= -gauge.slack(to));
     let corridor = gauge.machine.capabilities.rapid_corridor;
-    let on_line = |place: &Place| here.place.above(place.tip).1 <= corridor;
+    let on_line = |place: &PartialPose| here.place.above(place.tip).1 <= corridor;
     (is_up || is_down) && places.iter().all(on_line)
 }

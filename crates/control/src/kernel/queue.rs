@@ -7,27 +7,27 @@ use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
 const WAITING: usize = 4;
 
 /// A belt: the end where batches are laid on, and that where they are taken.
-pub(crate) fn belt<T>() -> (Feed<T>, Taken<T>) {
+pub(crate) fn belt<T>() -> (QueueSender<T>, QueueReceiver<T>) {
     let (full, taken) = mpsc::sync_channel(WAITING);
     let (back, empty) = mpsc::channel();
-    (Feed { full, empty }, Taken { full: taken, back })
+    (QueueSender { full, empty }, QueueReceiver { full: taken, back })
 }
 
 /// Where batches are laid on.
 #[derive(Debug)]
-pub(crate) struct Feed<T> {
+pub(crate) struct QueueSender<T> {
     full: SyncSender<T>,
     empty: Receiver<T>,
 }
 
 /// Where batches are taken.
 #[derive(Debug)]
-pub(crate) struct Taken<T> {
+pub(crate) struct QueueReceiver<T> {
     full: Receiver<T>,
     back: Sender<T>,
 }
 
-impl<T: Default> Feed<T> {
+impl<T: Default> QueueSender<T> {
     /// Lays a batch on and gives an empty one for it; `None` where nobody takes batches any more.
     pub(crate) fn lay(&self, batch: T) -> Option<T> {
         self.full.send(batch).ok()?;
@@ -35,7 +35,7 @@ impl<T: Default> Feed<T> {
     }
 }
 
-impl<T> Taken<T> {
+impl<T> QueueReceiver<T> {
     /// The next batch; `None` behind the last.
     pub(crate) fn take(&self) -> Option<T> {
         self.full.recv().ok()

@@ -4,7 +4,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, Words, bit, place_value};
 use crate::tilt::Solution;
-use crate::walk::{Done, Walk, motion, refuse};
+use crate::walk::{Outcome, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};
@@ -30,7 +30,7 @@ pub(crate) enum Kind {
 
 /// How the control counts, and where the rotary axes stand.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct CoordinateMode {
     pub(crate) kind: Kind,
     /// Degrees of A, B, C as they are written; `None` where the program does not know them.
     degrees: Option<[f64; 3]>,
@@ -46,11 +46,11 @@ pub(crate) struct Place {
     pub(crate) just_off: [bool; 2],
 }
 
-impl Place {
-    pub(crate) fn start(machine: &Machine) -> Place {
+impl CoordinateMode {
+    pub(crate) fn start(machine: &Machine) -> CoordinateMode {
         let fixed = machine.rotary.is_empty();
         let kind = if fixed { Kind::Plain } else { Kind::Bare };
-        Place {
+        CoordinateMode {
             kind,
             degrees: None,
             set_up: Frame::IDENTITY,
@@ -209,7 +209,7 @@ pub(crate) fn same(a: Vec3, b: Vec3) -> bool {
 impl Walk<'_> {
     /// Brings the control to where `pose` can be written. In a cut nothing may have to change.
     #[inline]
-    pub(crate) fn settle(&mut self, pose: &Pose, stop: &Stop, cut: bool) -> Done {
+    pub(crate) fn settle(&mut self, pose: &Pose, stop: &Stop, cut: bool) -> Outcome {
         if self.settled(pose, stop, cut)? {
             // The axes go along with the moves of this operation.
             return if stop.turning { self.unclamp() } else { Ok(()) };
@@ -270,7 +270,7 @@ impl Walk<'_> {
     }
 
     /// The tool leaves the part, the rotary axes turn, and the control counts as `stop` says.
-    pub(crate) fn turn(&mut self, axis: Vec3, stop: &Stop) -> Done {
+    pub(crate) fn turn(&mut self, axis: Vec3, stop: &Stop) -> Outcome {
         let upright = same(axis, Vec3::Z) && stop.mode == OrientationMode::TiltedPlane;
         self.leave_part()?;
         self.leave_place()?;
@@ -317,7 +317,7 @@ impl Walk<'_> {
     /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of
     /// the axes only while the control does not keep the tool tip: SINUMERIK's `SUPA` leaves `TRAORI`
     /// on, and HEIDENHAIN wants `M129` before `M91`.
-    pub(crate) fn leave_part(&mut self) -> Done {
+    pub(crate) fn leave_part(&mut self) -> Outcome {
         let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
         if self.position.is_located() || keeps_tip {
             self.uncompensated("a new orientation")?;
@@ -333,7 +333,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn tool_center_off(&mut self) -> Done {
+    fn tool_center_off(&mut self) -> Outcome {
         if matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.required(BlockName::ToolCenterOff)?;
             self.place.just_off[0] = true;
@@ -349,7 +349,7 @@ impl Walk<'_> {
     }
 
     /// Whatever is on goes off, on the way to home.
-    pub(crate) fn leave_place(&mut self) -> Done {
+    pub(crate) fn leave_place(&mut self) -> Outcome {
         self.go_out()?;
         match self.place.kind {
             Kind::Bare => {}
@@ -370,7 +370,7 @@ impl Walk<'_> {
 
     /// The rotary axes to these positions, while the tool is clear of the part.
     /// They are clamped there, unless they turn in the cuts that follow.
-    pub(crate) fn rotate(&mut self, degrees: Option<[f64; 3]>, turning: bool) -> Done {
+    pub(crate) fn rotate(&mut self, degrees: Option<[f64; 3]>, turning: bool) -> Outcome {
         let Some(degrees) = degrees else { return Ok(()) };
         self.say_degrees(degrees);
         let turns = self.writer.changes(ORIENTATION);
@@ -389,7 +389,7 @@ impl Walk<'_> {
     }
 
     /// The clamps close, where they may be open: the axes stand in the cuts that follow.
-    fn clamp(&mut self) -> Done {
+    fn clamp(&mut self) -> Outcome {
         if self.machine.has_clamps() && self.sent.clamp(true) {
             self.required(BlockName::Clamp)?;
         }
@@ -397,7 +397,7 @@ impl Walk<'_> {
     }
 
     /// The clamps open, where they may be closed.
-    pub(crate) fn unclamp(&mut self) -> Done {
+    pub(crate) fn unclamp(&mut self) -> Outcome {
         if self.machine.has_clamps() && self.sent.clamp(false) {
             self.required(BlockName::Unclamp)?;
         }
@@ -411,12 +411,12 @@ impl Walk<'_> {
     }
 
     /// The clamps close where the program has opened them.
-    pub(crate) fn clamp_again(&mut self) -> Done {
+    pub(crate) fn clamp_again(&mut self) -> Outcome {
         if self.sent.clamps_are_open() { self.clamp() } else { Ok(()) }
     }
 
     /// The tilted plane goes off. The rotary axes stay, unless the block itself turns them to 0.
-    fn plane_tilt_off(&mut self) -> Done {
+    fn plane_tilt_off(&mut self) -> Outcome {
         let turns =
             self.machine.rotary.iter().any(|axis| {
                 self.templates.places(BlockName::PlaneTiltOff, rotary_word(axis.index()))
@@ -437,7 +437,7 @@ impl Walk<'_> {
     }
 
     /// Writes another origin of the tilted plane, where the control has a block of its own for that.
-    pub(crate) fn plane_origin(&mut self, origin: Vec3) -> Done {
+    pub(crate) fn plane_origin(&mut self, origin: Vec3) -> Outcome {
         if !self.templates.has(BlockName::PlaneOrigin) {
             return Ok(());
         }
@@ -457,7 +457,7 @@ impl Walk<'_> {
 
     /// A tilted plane whose Z is `axis`: that of the set-up where it fits, else the one that turns
     /// about X and Y only.
-    fn tilt(&mut self, axis: Vec3) -> Done {
+    fn tilt(&mut self, axis: Vec3) -> Outcome {
         self.unclamp()?;
         let set_up = self.place.set_up;
         let (matrix, origin) = if angle_between(set_up.matrix3.z_axis, axis) < ANGLE_EPSILON {

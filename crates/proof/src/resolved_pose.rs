@@ -8,16 +8,16 @@ use std::fmt;
 
 /// A tool tip (mm) and a tool axis (unit vector), both in the work frame. What is not known is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct PartialPose {
     pub tip: Vec3,
     pub axis: Vec3,
 }
 
-impl Place {
+impl PartialPose {
     /// The place that a block says, with a tool of `tool_length` mm.
-    pub fn of(machine: &Machine, position: &Position, tool_length: Option<f64>) -> Place {
+    pub fn of(machine: &Machine, position: &Position, tool_length: Option<f64>) -> PartialPose {
         let (tip, axis) = nc::resolve(machine, position, tool_length);
-        Place { tip, axis }
+        PartialPose { tip, axis }
     }
 
     /// Whether every coordinate is known.
@@ -40,12 +40,12 @@ impl Place {
     }
 
     /// This place moved along its axis, mm.
-    pub fn lifted(&self, height: f64) -> Place {
-        Place { tip: self.tip + self.axis * height, ..*self }
+    pub fn lifted(&self, height: f64) -> PartialPose {
+        PartialPose { tip: self.tip + self.axis * height, ..*self }
     }
 
     /// Distance of the tips, mm, and angle of the axes, degrees. NaN where either is not known.
-    pub fn apart(&self, other: &Place) -> (f64, f64) {
+    pub fn apart(&self, other: &PartialPose) -> (f64, f64) {
         let angle =
             if self.axis == other.axis { 0.0 } else { angle_between(self.axis, other.axis) };
         (self.tip.distance(other.tip), angle.to_degrees())
@@ -53,7 +53,7 @@ impl Place {
 }
 
 /// `X1 Y2 Z3`, with the tool axis behind where it is not +Z; `X1 (Y and Z not known)` where that is so.
-impl fmt::Display for Place {
+impl fmt::Display for PartialPose {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let all = ["X", "Y", "Z"].into_iter().zip(self.tip.to_array());
         let (unknown, known): (Vec<_>, Vec<_>) = all.partition(|(_, value)| value.is_nan());
@@ -77,9 +77,9 @@ impl fmt::Display for Place {
 }
 
 /// The place of a pose of the source.
-impl From<&Pose> for Place {
-    fn from(pose: &Pose) -> Place {
-        Place { tip: pose.point(), axis: pose.axis() }
+impl From<&Pose> for PartialPose {
+    fn from(pose: &Pose) -> PartialPose {
+        PartialPose { tip: pose.point(), axis: pose.axis() }
     }
 }
 
@@ -104,11 +104,11 @@ impl fmt::Display for Number {
 
 /// A place that the NC program reached: what its block says, and where that is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Station {
+pub(crate) struct ResolvedPose {
     /// Line of the NC program.
     pub line: u32,
     /// What the block says.
     pub position: Position,
     /// Where that is in the work frame.
-    pub place: Place,
+    pub place: PartialPose,
 }
