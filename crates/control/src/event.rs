@@ -387,11 +387,21 @@ impl Risk {
     };
 
     /// FANUC moves Z by a length that begins, ends or changes, or it moves the coordinates: parameter 5006, bit 6
-    /// (B-64484EN-2, "Tool length compensation").
+    /// (B-64484EN-2, "Tool length compensation"; B-63943EN-1 p. 1654).
     pub(crate) const LENGTH_CHANGE: Risk = Risk {
         rule: Rule::LengthChange,
-        what: "changes the tool length offset where Z is not home: whether Z moves by it, parameter 5006#6 says",
-        help: "send Z home before (`G91 G28 Z0`), or say Z in the same block",
+        what: "changes the tool length offset in a block that does not say Z: whether Z moves by it, parameter 5006#6 says",
+        help: "say Z in the block of G43 or G43.4 (`G43 Z50. H1`); before G49 send Z home (`G91 G28 Z0`); where 5006#6 is 1, say \
+               `length_moves_axis = false` in [settings] of the machine file",
+        refused: true,
+    };
+
+    /// G28, G30 and G53 take the length away at their end, and G43 stays on (B-63844EN p. 204, "G53, G28, and G30 commands in
+    /// tool length offset mode").
+    pub(crate) const LENGTH_SUSPENDED: Risk = Risk {
+        rule: Rule::LengthChange,
+        what: "moves Z behind G28, G30 or G53 without G43 and H: whether the tool length counts again, parameter 5001#6 says",
+        help: "write G43 and H in the block that moves Z",
         refused: true,
     };
 

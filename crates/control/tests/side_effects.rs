@@ -43,7 +43,9 @@ fn rules(actions: &[Action]) -> Vec<&'static str> {
 }
 
 /// B-64484EN-2, "Tool length compensation"; parameter 5006, bit 6: the axis moves where it is 0, the coordinates where
-/// it is 1. At the reference position the offset is suspended, and where a block says Z its end is the same on both.
+/// it is 1 (B-63943EN-1 p. 1654: "If no move command is specified together with the G43, G44, or G49 command, the tool will not
+/// move" is said of the latter alone). G28, G30 and G53 take the offset away at their end (B-63844EN p. 204), so that G49 behind them
+/// moves nothing, while a length that begins at home does; where a block says Z its end is the same on both.
 #[test]
 fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
     const START: &str = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\n";
@@ -63,20 +65,85 @@ fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
         ("G43.4 H1 Z50.\nG91 G28 Z0.\nG49", true),
         // With the tool centre kept, words of X and Y may move Z.
         ("G43.4 H1 Z50.\nG91 G28 Z0.\nG90 X50. Y0. B0. C0.\nG49", false),
-        ("G43 H1\nZ50.", true),
+        // At home a length moves Z as anywhere else: up beyond its end, or, with negative registers, down onto the part.
+        ("G43 H1\nZ50.", false),
+        ("G43 H1\nG90 Z50.", false),
+        ("G43.4 H1\nX0. Y0. Z50.", false),
+        ("G43.4 X0. Y0. Z50. H1", true),
+        ("G43 H1 Z50.\nG91 G28 Z0.\nG90 G43 H2\nZ50.", false),
+        ("G43 H1 Z50.\nG91 G28 Z0.\nG90 G43 H2 Z50.", true),
         // No length is active.
         ("Z50.\nG49", true),
     ] {
         let expected: &[&str] = if harmless { &[] } else { &["length-change"] };
-        let found = risks(Dialect::Fanuc, &format!("{START}{block}\nM30\n"));
+        let mut found = risks(Dialect::Fanuc, &format!("{START}{block}\nM30\n"));
+        found.dedup();
         assert_eq!(found, expected, "{block}");
     }
+    // By so much, from where it was: with 5006#6 = 0 the length is added to that. Z of a cycle is the bottom of its hole.
+    let known = "G10 L10 P1 R30.\nG10 L10 P2 R40.\nG43 H1 Z50.";
+    for (block, told) in [
+        ("G91 G43 H2 Z-10.\nG90", true),
+        ("G43 H2 G98 G81 X5. Y5. Z-5. R2. F100.\nG80", true),
+        ("G43 H2 Z40.", false),
+    ] {
+        let found = risks(Dialect::Fanuc, &format!("{START}{known}\n{block}\nM30\n"));
+        assert_eq!(found.contains(&"length-change"), told, "{block}");
+    }
+}
+
+/// On a machine whose file says that the coordinates move (5006#6 is 1) a length may begin wherever it likes.
+#[test]
+fn a_length_that_begins_alone_moves_nothing_where_the_coordinates_take_it() {
+    let text = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1\nZ50.\nG91 G28 Z0.\nG49\nM30\n";
+    for (moves_axis, expected) in
+        [(Some(false), &[][..]), (Some(true), &["length-change"]), (None, &["length-change"])]
+    {
+        let settings = Settings {
+            length_moves_axis: moves_axis,
+            ..Settings::new(Dialect::Fanuc, [false, true, true])
+        };
+        assert_eq!(
+            rules(&common::ops(&settings, "p.nc", text).unwrap()),
+            expected,
+            "{moves_axis:?}"
+        );
+    }
+}
+
+/// B-63844EN p. 204: "When G53, G28, or G30 is specified in tool length offset mode, tool length offset vectors are canceled ...
+/// However, the previously specified modal G code remains displayed"; which block gives them back parameter 5001#6 says.
+#[test]
+fn behind_g28_of_a_fanuc_the_length_counts_again_where_g43_and_h_say_so() {
+    const START: &str = "G21 G90 G94 G17 G98\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1 Z50.\n";
+    for (blocks, harmless) in [
+        ("G91 G28 Z0.\nG90 Z50.", false),
+        ("G91 G30 Z0.\nG90 Z50.", false),
+        ("G53 Z0.\nX5.\nZ50.", false),
+        ("G91 G28 Z0.\nG90 G43 H1 Z50.", true),
+        ("G91 G28 Z0.\nG90 X5.\nG43 Z50. H1", true),
+        ("G53 Z0.\nH1 Z50.", true),
+        ("G91 G28 Z0.\nG49\nG90 Z50.", true),
+        ("G91 G28 X0.\nG90 Z50.", true),
+        ("G91 G28 Z0.\nG90 X50. Y50.", true),
+    ] {
+        let expected: &[&str] = if harmless { &[] } else { &["length-change"] };
+        let found = risks(Dialect::Fanuc, &format!("{START}{blocks}\nG91 G28 Z0.\nM30\n"));
+        let found: Vec<_> = found.into_iter().filter(|rule| *rule != "stored-position").collect();
+        assert_eq!(found, expected, "{blocks}");
+    }
+    // Haas ends the length there, which the next move without one is refused for; LinuxCNC keeps it.
+    let other = format!("{START}G91 G28 Z0.\nG90 Z50.\nM30\n");
+    assert_eq!(risks(Dialect::Haas, &other), [""; 0]);
 }
 
 /// B-64484EN, "AI contour control": a mode for contours. Where else it may be on is a matter of model and parameters.
 #[test]
 fn look_ahead_is_for_contours() {
     const START: &str = "G21 G90 G94 G17 G98 G54\nT1 M6\nS500 M3\nG91 G28 Z0.\nG90 G0 X0. Y0. B0. C0.\nG43 H1 Z50.\n";
+    const FIVE: &str = "G91 G28 Z0.\nG90 G49";
+    const BEGINS: &str = "G43.4 X0. Y0. Z50. H1";
+    const ENDS: &str = "G91 G28 Z0.\nG90 G49";
     for (on, off) in [("G5.1 Q1", "G5.1 Q0"), ("G5 P10000", "G5 P0"), ("G8 P1", "G8 P0")] {
         for (blocks, harmless) in [
             (format!("{on}\nG1 Z1. F100.\n{off}"), true),
@@ -88,9 +155,9 @@ fn look_ahead_is_for_contours() {
                 format!("{on}\nG91 G28 Z0.\nG90\nG49\nG68.2 X0. Y0. Z0. I0. J9. K0.\nG69\n{off}"),
                 false,
             ),
-            (format!("G91 G28 Z0.\nG90 G49\n{on}\nG43.4 H1\n{off}\nG49"), false),
-            (format!("G91 G28 Z0.\nG90 G49\nG43.4 H1\n{on}\n{off}\nG49"), true),
-            (format!("G91 G28 Z0.\nG90 G49\nG43.4 H1\n{on}\nG49\n{off}"), false),
+            (format!("{FIVE}\n{on}\n{BEGINS}\n{off}\n{ENDS}"), false),
+            (format!("{FIVE}\n{BEGINS}\n{on}\n{off}\n{ENDS}"), true),
+            (format!("{FIVE}\n{BEGINS}\n{on}\n{ENDS}\n{off}"), false),
         ] {
             let expected: &[&str] = if harmless { &[] } else { &["look-ahead"] };
             assert_eq!(

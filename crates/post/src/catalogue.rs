@@ -107,7 +107,7 @@ names! {
         PlaneOrigin Block "plane_origin", "", "Where the origin of a tilted plane ({{OX}} {{OY}} {{OZ}}) is written in a block of its own: before `plane_tilt` where it is another than the last one, and with 0 where the tool stands upright again.";
         LookAheadOn Block "look_ahead_on", "", "Before the first line or arc that cuts: the control looks ahead from here on.";
         LookAheadOff Block "look_ahead_off", "", "Before what look-ahead must not be on for: a hole cycle, a thread, a probing move, a tool change, a turn of the rotary axes, a work offset, the end.";
-        ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
+        ToolCenterOn Block "tool_center_on", "", "Tool center point control on. A block that places {{X}} {{Y}} {{Z}} is the first move under it, from home to above all cuts.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
         ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that is told of no wire: its program cuts one opening.";
         CutWire Block "cut_wire", "", "Where the wire is cut (wire EDM).";

@@ -40,6 +40,8 @@ pub(crate) struct CoordinateMode {
     solutions: Vec<Solution>,
     /// The origin of the tilted plane that has been written last.
     origin: Vec3,
+    /// Whether tool-centre control goes on with the next move.
+    pub(crate) begins: bool,
     /// Whether a rotary axis that the block places has to turn.
     pub(crate) turned: bool,
     /// Whether nothing has moved since the control stopped keeping the tip, or since a tilted plane went off.
@@ -56,6 +58,7 @@ impl CoordinateMode {
             set_up: Frame::IDENTITY,
             solutions: Vec::new(),
             origin: Vec3::ZERO,
+            begins: false,
             turned: false,
             just_off: [false; 2],
         }
@@ -219,7 +222,13 @@ impl Walk<'_> {
             let found = refuse(Rule::OrientationInCut, "the plane of work changes in a cut");
             return Err(found.help(help).into());
         }
-        self.turn(pose.axis(), stop)
+        self.turn(pose.axis(), stop)?;
+        if cut && self.place.begins {
+            let help = "begin the operation with a rapid move";
+            let message = "tool-centre control goes on with the first move, and that is a cut";
+            return Err(refuse(Rule::OrientationInCut, message).help(help).into());
+        }
+        Ok(())
     }
 
     /// Whether `pose` can be written as the control counts, and with the rotary axes as they stand.
@@ -298,9 +307,7 @@ impl Walk<'_> {
                     false => Kind::Machine,
                 };
                 if mode != OrientationMode::MachineAngles {
-                    self.writer.forget(LENGTH_OFFSET);
-                    self.say_length_offset();
-                    self.required(BlockName::ToolCenterOn)?;
+                    self.tool_center_on()?;
                 }
             }
         }
@@ -331,6 +338,17 @@ impl Walk<'_> {
             self.lose_position();
         }
         Ok(())
+    }
+
+    /// Tool-centre control goes on: at once, or with the first move, where its block says the position.
+    fn tool_center_on(&mut self) -> Outcome {
+        self.writer.forget(LENGTH_OFFSET);
+        self.place.begins = self.templates.places(BlockName::ToolCenterOn, WordName::Z);
+        if self.place.begins {
+            return Ok(());
+        }
+        self.say_length_offset();
+        self.required(BlockName::ToolCenterOn)
     }
 
     fn tool_center_off(&mut self) -> Outcome {

@@ -115,6 +115,9 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
     };
     placed(BlockName::KeepHeight, &[WordName::Height], "no height could be kept");
     placed(BlockName::Rapid, axes, "no move could go there");
+    if templates.places(BlockName::ToolCenterOn, WordName::Z) {
+        placed(BlockName::ToolCenterOn, axes, "it says Z, and is the first move");
+    }
     placed(BlockName::Linear, axes, "no move could go there");
     for (promise, why, word) in [
         (machine.wire.is_none(), "no feed could be said", WordName::F),

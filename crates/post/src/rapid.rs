@@ -161,7 +161,8 @@ impl Walk<'_> {
         let is_level = match &self.place.kind {
             Kind::Bare | Kind::Plain | Kind::Machine => true,
             Kind::Tilted(_, tilted) => is_along(*tilted),
-            Kind::ToolCenter | Kind::Vectors => is_along(Vec3::Z),
+            // The block by which it goes on says X, Y and Z.
+            Kind::ToolCenter | Kind::Vectors => is_along(Vec3::Z) && !self.place.begins,
         };
         if is_level && is_along(axis) {
             // Z that comes down while nobody knows X and Y has room above all cuts alone.
@@ -198,7 +199,11 @@ impl Walk<'_> {
             if self.writer.changes(POSITION | ORIENTATION) {
                 self.writer.code(WordName::Motion, motion::RAPID);
                 self.keep_compensation();
-                self.block(BlockName::Rapid)?;
+                let begins = std::mem::take(&mut self.place.begins);
+                if begins {
+                    self.say_length_offset();
+                }
+                self.block(if begins { BlockName::ToolCenterOn } else { BlockName::Rapid })?;
             }
             self.writer.unset(Words::MAX);
         }

@@ -57,9 +57,50 @@ fn trunnion(control: &str, more: &str) -> Machine {
     load_text("trunnion.toml", &text).unwrap_or_else(|why| panic!("{why}\n{text}"))
 }
 
+/// `G43.4` stands in a block of its own there, which a control whose lengths move the coordinates lets it.
 fn fanuc() -> Machine {
-    let settings = "table_frame_at_zero = true\nrotary_by_sign = false\nlength_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"";
+    let settings = "table_frame_at_zero = true\nrotary_by_sign = false\nlength_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"\n\
+                    [blocks]\ntool_center_on = \"{{N}} G43.4 {{H}}\"";
     trunnion("fanuc-31i", settings)
+}
+
+/// As the library has it: `G43.4` begins with the first position.
+fn fanuc_by_position(length_moves_axis: &str) -> Machine {
+    let settings = format!(
+        "table_frame_at_zero = true\nrotary_by_sign = false\n{length_moves_axis}length_along_z = true\nrapid_path = \"linear\""
+    );
+    trunnion("fanuc-31i", &settings)
+}
+
+/// Parameter 5006#6 (B-63943EN-1 p. 1654): where it is 0 a length that begins moves Z by itself, at home beyond its end, or, with
+/// lengths that count down from home, onto the part. A machine file that says so, or does not say it, gets no such block.
+#[test]
+fn a_length_begins_with_a_position_above_all_cuts() {
+    let source = read(LEDGE);
+    for setting in ["", "length_moves_axis = true\n", "length_moves_axis = false\n"] {
+        let machine = fanuc_by_position(setting);
+        let good = written(&source, &machine);
+        proven(&source, &machine, &good);
+        let entry = "G43.4 X0. Y-201.01 Z20. H1";
+        let apart = with(&good, entry, &["G43.4 H1", "X0. Y-201.01 Z20."]);
+        if setting.contains("false") {
+            proven(&source, &machine, &apart);
+        } else {
+            assert_eq!(refused(&source, &machine, &apart), ("length-change", "G43.4 H1".into()));
+        }
+        // X and Y alone move Z of the machine, and this one says no Z at all.
+        let dives = with(&good, entry, &["G43.4 X0. Y-145. H1", "Z20."]);
+        assert!(!found(&source, &machine, &dives).is_empty());
+    }
+    // With the table level too: X, Y and Z together, to 1 mm above all cuts, which begin at 50.
+    let upright = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,100\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/0,0,-20,0,0,1\n\
+         GOTO/0,0,-21\nGOTO/9,0,-21,0,0.1,0.995\nRAPID\nGOTO/9,0,50,0,0.1,0.995\nRAPID\nGOTO/40,0,50\nGOTO/40,0,0\nFINI\n",
+    );
+    let machine = fanuc_by_position("");
+    let good = written(&upright, &machine);
+    proven(&upright, &machine, &good);
+    assert!(good.contains("G43.4 X0. Y0. Z51.01 H1\n"), "{good}");
 }
 
 /// Cuts in the face that looks along -Y: first a ledge at Y -140, then what stands out to Y -200. With A at 90 the table
@@ -234,7 +275,7 @@ fn the_samples_approach_in_the_machine() {
         ]
     };
     for (name, block, z) in [
-        ("fanuc-table-bc", "X-16.84 Y6.946 Z48.294", " Z"),
+        ("fanuc-table-bc", "G43.4 X-16.84 Y6.946 Z48.294 H2", " Z"),
         ("haas-umc-750", "X-16.84 Y6.946 Z48.294", " Z"),
         ("dmu50-heidenhain", "L X-16.84 Y+6.946 Z+48.294 R0 FMAX", " Z"),
         ("sinumerik-840d-traori", "G0 X7.465 Y10.556 Z77.071", " Z"),
@@ -260,7 +301,9 @@ fn the_samples_approach_in_the_machine() {
         lines.splice(at..=at, [xy.trim_end().to_owned(), only_z.trim_end().to_owned()]);
         let text = lines.join("\n") + "\n";
         let (rule, line) = refused(&source, &machine, &text);
-        assert_eq!((rule, line), ("rapid-path", lines[at].clone()), "{name}");
+        // A length of FANUC begins with a Z, whatever X and Y do.
+        let expected = if name == "fanuc-table-bc" { "length-change" } else { "rapid-path" };
+        assert_eq!((rule, line), (expected, lines[at].clone()), "{name}");
     }
 }
 
@@ -268,7 +311,7 @@ fn the_samples_approach_in_the_machine() {
 fn fork(more: &str) -> Machine {
     let text = format!(
         "extends = \"fanuc-31i\"\nsafe_height = 400\nwork_zero = [0, 0, 0]\n[settings]\ntable_frame_at_zero = true\nrotary_by_sign = false\n\
-         length_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"\n{more}[orientation]\n\
+         length_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"\n{more}[blocks]\ntool_center_on = \"{{{{N}}}} G43.4 {{{{H}}}}\"\n[orientation]\n\
          simultaneous = \"tool-center-angles\"\npositioned = \"tool-center-angles\"\ntolerance = 0.01\n\
          [[rotary]]\nletter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\npoint = [0, 0, 200]\nmin = -115\nmax = 115\n\
          rapid = 9000\nacceleration = 300\nmodulo = false\n"

@@ -92,7 +92,7 @@ FANUC = [
     Damage("no coolant", r"M8$", drop),
     Damage("bottom of a hole", r"G81", shift("Z", -2)),
     Damage("R plane of a hole", r"G81", shift("R", -8)),
-    Damage("register of the length", r"G43.4 H2", swap("H2", "H1")),
+    Damage("register of the length", r"G43.4 .*H2", swap("H2", "H1")),
     Damage("no length", r"G43 Z", lambda line: line.replace("G43 ", "").replace(" H1", "")),
     Damage("no tool-centre control", r"G43.4", swap("G43.4", "G43")),
     Damage("no tilted plane", r"G68.2", drop),

@@ -828,8 +828,8 @@ rules! {
         "give a length above 0, mm"
         "A tool of -1 mm";
     LengthChange "length-change" []
-        "The tool length changes where Z is not home."
-        "send Z home before (`G91 G28 Z0`), or give Z in the same block"
+        "The tool length changes, or counts again behind G28, in a block that does not say where Z goes."
+        "give Z in the block of G43 or G43.4 (`G43 Z50. H1`); send Z home before G49"
         "fanuc: `G43 H5`";
     LengthOffset "length-offset" ["nc-length"]
         "The length offset is missing, wrong, or not that of the tool in the spindle."

@@ -164,7 +164,7 @@ impl Step<'_, '_, '_> {
         }
         let point = Vec3::select(point.is_nan_mask(), self.state.position, point);
         self.straight(Target { point, named, ..self.place_of_tool() }, rapid)?;
-        self.state.z_is_home |= named & 4 != 0;
+        self.sends_home(named);
         Ok(())
     }
 
@@ -329,8 +329,16 @@ impl Step<'_, '_, '_> {
         }
         self.state.position = self.state.place.programmed(point);
         self.state.moved = true;
-        self.state.z_is_home |= named & 4 != 0;
+        self.sends_home(named);
         self.actions.push(action);
+    }
+
+    /// The named axes stand at a fixed position: Z without its tool length, where the control takes that away there.
+    fn sends_home(&mut self, named: u8) {
+        let z = named & 4 != 0;
+        self.state.z_is_home |= z;
+        self.state.length_is_suspended |=
+            z && self.facts.tools.length_as_set_up && self.state.length != Length::None;
     }
 
     fn all_axes(&self) -> u8 {

@@ -112,6 +112,8 @@ pub(crate) struct State {
     pub told: bool,
     /// Z stands where `G28`, `G30` or `G53` has sent it.
     pub z_is_home: bool,
+    /// `G28`, `G30` or `G53` of Z has taken the tool length away, and no block has given it back (FANUC).
+    pub length_is_suspended: bool,
     /// Something has moved.
     pub moved: bool,
     /// Something has moved at feed.
@@ -256,6 +258,7 @@ impl State {
             cycle: None,
             told: all_zero,
             z_is_home: false,
+            length_is_suspended: false,
             moved: false,
             cut: false,
             looks_ahead: false,

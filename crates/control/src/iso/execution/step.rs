@@ -93,6 +93,7 @@ impl Step<'_, '_, '_> {
             self.modes()?;
         }
         self.motion()?;
+        self.holds_suspended_length();
         if more {
             self.flow()?;
         }

@@ -151,6 +151,8 @@ impl Step<'_, '_, '_> {
 
     /// `G43` and its kin, `G49`.
     pub(super) fn length(&mut self) -> Result<(), Fault> {
+        // B-63844EN p. 204: a block with G43, G43.4, H or G49 gives back, or ends, what G28 and G53 have taken away.
+        self.state.length_is_suspended &= self.block.g(Group::Length).is_none();
         if self.facts.tools.follows_tool && self.block.g(Group::Length).is_some() {
             self.not_compensated("another length offset")?;
         }
@@ -199,9 +201,12 @@ impl Step<'_, '_, '_> {
     }
 
     /// Tells where parameters of the control say what `length` does.
+    ///
+    /// Where Z is home a length that begins moves it as well, beyond the end of its travel or, where the registers hold negative
+    /// numbers, down onto the part; one that ends moves nothing there, since G28 and G53 have taken it away before.
     fn hold_length(&mut self, length: Length) {
-        let says_z = self.block.has(b'Z') && self.block.g(Group::OneShot).is_none();
-        if self.state.length_moves_axis != Some(false) && !self.state.z_is_home && !says_z {
+        let ends_at_home = length == Length::None && self.state.z_is_home;
+        if self.state.length_moves_axis != Some(false) && !ends_at_home && !self.goes_to_z() {
             self.actions.push(Action::Risk(Risk::LENGTH_CHANGE.into()));
         }
         if [length, self.state.length].iter().any(|length| matches!(length, Length::Center(_))) {
@@ -217,6 +222,28 @@ impl Step<'_, '_, '_> {
         let begins = length != Length::None && self.state.plane != Plane::Xy;
         if begins && self.state.length_along_z != Some(true) {
             self.actions.push(Action::Risk(Risk::LENGTH_PLANE.into()));
+        }
+    }
+
+    /// Whether the block itself says where Z goes: its end is the same then, whether the length moves Z or the coordinates.
+    fn goes_to_z(&self) -> bool {
+        let cycle = match self.block.g(Group::Cycle) {
+            Some(word) => word != G::CancelCycle,
+            None => self.state.cycle.is_some() && self.block.g(Group::Motion).is_none(),
+        };
+        let incremental = match self.block.g(Group::Distance) {
+            Some(G::Incremental(incremental)) => incremental,
+            _ => self.state.incremental,
+        };
+        self.block.has(b'Z') && self.block.g(Group::OneShot).is_none() && !cycle && !incremental
+    }
+
+    /// Tells of Z that has moved while nobody knows whether the length counts: G28, G30 and G53 take it away at their end, G43 stays
+    /// on, and parameter 5001#6 says whether the next block gives it back, or one with G43 or H (B-63844EN p. 204).
+    pub(super) fn holds_suspended_length(&mut self) {
+        if self.state.length_is_suspended && !self.state.z_is_home {
+            self.state.length_is_suspended = false;
+            self.actions.push(Action::Risk(Risk::LENGTH_SUSPENDED.into()));
         }
     }
 
