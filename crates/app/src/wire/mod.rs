@@ -18,9 +18,12 @@ use ::wire::points::{Refusal, Step, points};
 use ::wire::segment::Segment;
 use machine::{Machine, Wire};
 use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, within};
-use report::Cut;
+use report::{Cut, Report};
 use serde_json::json;
 use source::Source;
+
+/// The most segments that an [`Account`] lists; the report lists all.
+const MOST_LISTED: usize = 1000;
 
 /// What is cut, and how.
 #[derive(Clone, Debug)]
@@ -161,20 +164,21 @@ pub fn make(
     }
 
     warnings.extend(proof.warnings.iter().cloned());
-    let data = json!({
-        "schema": SCHEMA,
-        "toolpost": env!("CARGO_PKG_VERSION"),
-        "sha256": Digests::of(&output.text, &toolpath, &machine),
-        "source": { "file": toolpath.file, "dialect": toolpath.dialect },
-        "machine": toolpath::describe(&machine),
-        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
-        "wire": cut.summary(select),
-        "proof": proof,
-    });
-    let mut report = data.clone();
-    report["instructions"] = cut.instructions();
-    report["warnings"] = json!(warnings);
-    let report = format!("{report:#}\n");
+    let whole = Report {
+        schema: SCHEMA,
+        toolpost: env!("CARGO_PKG_VERSION"),
+        sha256: Digests::of(&output.text, &toolpath, &machine),
+        source: json!({ "file": toolpath.file, "dialect": toolpath.dialect }),
+        machine: toolpath::describe(&machine),
+        program: json!({ "file": file, "blocks": output.blocks, "bytes": output.text.len() }),
+        wire: cut.summary(select, usize::MAX),
+        proof: &proof,
+        instructions: Some(cut.instructions()),
+        warnings: Some(&warnings),
+    };
+    let report = whole.text();
+    let wire = cut.summary(select, MOST_LISTED);
+    let data = json!(Report { wire, instructions: None, warnings: None, ..whole });
     let mut rows = toolpath.rows(Some(&machine));
     rows.extend(cut.rows(select));
     rows.extend(prove::rows(&proof, &machine));

@@ -1,12 +1,14 @@
 //! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
 
+use crate::report::Digests;
 use crate::summary::{duration, length, number};
 use ::wire::points::Step;
 use ::wire::segment::{self, End, Segment};
 use ::wire::{Accuracy, Chords};
 use drawing::{WirePicture, WireSegment};
 use machine::Machine;
-use program::{NoPose, Program};
+use program::{Diagnostic, NoPose, Program};
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 /// The most segments that a summary lists.
@@ -131,45 +133,31 @@ impl Cut {
         })
     }
 
-    /// The numbers, as JSON.
-    pub fn summary(&self, selected: Option<u32>) -> Value {
-        let segments = self.segments.iter().zip(&self.accuracy);
-        let segments: Vec<Value> =
-            segments.map(|(segment, accuracy)| data(segment, accuracy)).collect();
+    /// The numbers, as JSON, with the first `most` segments.
+    pub fn summary(&self, selected: Option<u32>, most: usize) -> Summary<'_> {
         let ranges = |line| -> Vec<Value> {
             let found = self.of_line(line);
             found.map(|(first, last)| json!({ "first": first, "last": last })).collect()
         };
-        let selected = selected.map(|line| json!({ "line": line, "points": ranges(line) }));
-        json!({
-            "ways": segments,
-            "height_mm": self.height,
-            "memory": self.memory,
-            "points": self.points(),
-            "chord_error": chords(&self.chords()),
-            "area_error_mm2": self.area_error(End::Lower),
-            "upper_area_error_mm2": self.area_error(End::Upper),
-            "length_mm": self.length(),
-            "cutting_time_s": self.time(),
-            "selected": selected,
-        })
+        let left_out = self.segments.len().saturating_sub(most);
+        Summary {
+            ways: Ways { cut: self, most },
+            ways_left_out: (left_out > 0).then_some(left_out),
+            height_mm: self.height,
+            memory: self.memory,
+            points: self.points(),
+            chord_error: chords(&self.chords()),
+            area_error_mm2: self.area_error(End::Lower),
+            upper_area_error_mm2: self.area_error(End::Upper),
+            length_mm: self.length(),
+            cutting_time_s: self.time(),
+            selected: selected.map(|line| json!({ "line": line, "points": ranges(line) })),
+        }
     }
 
     /// Which points came from which line of the source, as JSON; points count from 1.
-    pub fn instructions(&self) -> Value {
-        let mut all = Vec::new();
-        for (before, segment) in self.counted() {
-            let Some(points) = &segment.points else { continue };
-            for (element, found) in segment.path.lower().elements().iter().enumerate() {
-                let range = points.of_element(element);
-                all.push(json!({
-                    "line": found.line,
-                    "first_point": before + range.start + 1,
-                    "last_point": before + range.end,
-                }));
-            }
-        }
-        json!(all)
+    pub fn instructions(&self) -> Instructions<'_> {
+        Instructions(self)
     }
 
     /// The lines of a summary.
@@ -228,6 +216,84 @@ impl Cut {
             threaded: segment.thread,
         });
         WirePicture { segments: segments.collect(), height: self.height, selected }
+    }
+}
+
+/// The report of a program. Its lists are written entry by entry: as JSON values 500,000 segments took 3.5 GB.
+#[derive(Serialize)]
+pub struct Report<'a> {
+    pub schema: u32,
+    pub toolpost: &'static str,
+    pub sha256: Digests,
+    pub source: Value,
+    pub machine: Value,
+    pub program: Value,
+    pub wire: Summary<'a>,
+    pub proof: &'a ::proof::Report,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instructions: Option<Instructions<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warnings: Option<&'a [Diagnostic]>,
+}
+
+impl Report<'_> {
+    /// The report as it is saved.
+    pub fn text(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("all keys are texts");
+        text.push('\n');
+        text
+    }
+}
+
+/// The numbers of a cut.
+#[derive(Serialize)]
+pub struct Summary<'a> {
+    ways: Ways<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ways_left_out: Option<usize>,
+    height_mm: Option<f64>,
+    memory: Option<usize>,
+    points: Option<usize>,
+    chord_error: Value,
+    area_error_mm2: Option<f64>,
+    upper_area_error_mm2: Option<f64>,
+    length_mm: f64,
+    cutting_time_s: Option<f64>,
+    selected: Option<Value>,
+}
+
+/// The first segments of a cut.
+struct Ways<'a> {
+    cut: &'a Cut,
+    most: usize,
+}
+
+impl Serialize for Ways<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let segments = self.cut.segments.iter().zip(&self.cut.accuracy).take(self.most);
+        serializer.collect_seq(segments.map(|(segment, accuracy)| data(segment, accuracy)))
+    }
+}
+
+/// Which points came from which line of the source.
+pub struct Instructions<'a>(&'a Cut);
+
+impl Serialize for Instructions<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let divided = self.0.counted().filter_map(|(before, segment)| {
+            let elements = segment.path.lower().elements();
+            Some((before, segment.points.as_ref()?, elements))
+        });
+        serializer.collect_seq(divided.flat_map(|(before, points, elements)| {
+            elements.iter().enumerate().map(move |(element, found)| {
+                let range = points.of_element(element);
+                json!({
+                    "line": found.line,
+                    "first_point": before + range.start + 1,
+                    "last_point": before + range.end,
+                })
+            })
+        }))
     }
 }
 
