@@ -230,16 +230,26 @@ pub(crate) fn spindle_and_coolant(
     })
 }
 
-/// By how much the control may leave the path at corners.
+/// By how much the control may leave the path at corners of cuts.
 pub(crate) fn corners(machine: &Machine, running: &Running) -> Option<Difference> {
-    let allowed = machine.path_tolerance();
+    rounded(machine, running, machine.path_tolerance(), "`path_tolerance` in [options]")
+}
+
+/// The same at corners of rapids, which may be as far from their way as elsewhere.
+pub(crate) fn rapid_corners(machine: &Machine, running: &Running) -> Option<Difference> {
+    let allowed = machine.path_tolerance().max(machine.capabilities.rapid_corridor);
+    rounded(machine, running, allowed, "`rapid_corridor` in [capabilities], at rapids")
+}
+
+fn rounded(machine: &Machine, running: &Running, allowed: f64, key: &str) -> Option<Difference> {
+    let as_set_up = machine.path_tolerance();
     let most = match running.path {
         PathMode::ExactStop | PathMode::ExactPath => 0.0,
         PathMode::Blend(most) => most,
         PathMode::AsSetUp => match Dialect::named(&machine.reader)?.corners() {
             Corners::Followed => 0.0,
             // What its operator has set, the machine's file says.
-            Corners::AsSetUp if allowed > 0.0 => allowed,
+            Corners::AsSetUp if as_set_up > 0.0 => as_set_up,
             Corners::AsSetUp | Corners::Unbounded => f64::INFINITY,
         },
     };
@@ -249,8 +259,7 @@ pub(crate) fn corners(machine: &Machine, running: &Running) -> Option<Difference
     }
     let by = if most.is_finite() { format!("{} mm", Number(most)) } else { "any amount".into() };
     let message = format!(
-        "the control may leave the path at corners by {by}, the machine file allows {} mm \
-         (`path_tolerance` in [options])",
+        "the control may leave the path at corners by {by}, the machine file allows {} mm ({key})",
         Number(allowed)
     );
     Some((Rule::PathTolerance, message))

@@ -208,3 +208,67 @@ fn what_a_source_asks_for_and_the_machine_does_not_give_is_told() {
         ]
     );
 }
+
+/// A slot down to Z-30, out of it by rapid to Z2 and on by rapid to X80: the rounding of that corner goes through its wall.
+const SLOT: &str = "PARTNO/SLOT\nUNITS/MM\nLOADTL/1,LENGTH,60\nCUTTER/10,0\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,50\nRAPID\n\
+    GOTO/0,0,2\nFEDRAT/300,MMPM\nGOTO/0,0,-30\nGOTO/20,0,-30\nRAPID\nGOTO/20,0,2\nRAPID\nGOTO/80,0,2\nGOTO/80,0,-5\nRAPID\n\
+    GOTO/80,0,50\nFINI\n";
+
+/// A real LinuxCNC 2.9 leaves a corner between two rapids after `G64 P20` by 3.6 mm, and by nothing after `G61`. Of Mach3, Haas and
+/// HEIDENHAIN no manual says that their rounding ends at rapids.
+#[test]
+fn corners_of_rapids_near_the_part_are_rounded_no_more_than_the_machine_file_lets_rapids() {
+    let source = source::apt::read("slot.cls", SLOT.as_bytes(), &Default::default()).unwrap();
+    for (name, out, cut, wide, narrow, tight) in [
+        ("linuxcnc-mill", "G0 Z2", "G1 Z-5", "G64 P20", "G64 P0.005 Q0.005", "G64 P0.05 Q0.05"),
+        ("linuxcnc-mill", "G0 Z2", "G1 Z-5", "G64", "G61", "G61.1"),
+        ("mach3-mill", "G0 Z2", "G1 Z-5", "G64", "G61", "G61"),
+        ("generic-3axis-haas", "G0 Z2.", "G1 Z-5.", "G187 E20.", "G187 E0.01", "G187 E0.1"),
+        ("generic-3axis-haas", "G0 Z2.", "G1 Z-5.", "G187", "G187 E0.01", "G61"),
+        ("haas-umc-750", "G0 Z2.", "G1 Z-5.", "G187 E20.", "G187 E0.01", "G187 E0.1"),
+        (
+            "generic-3axis-heidenhain",
+            "L Z+2 R0 FMAX",
+            "L Z-5 R0",
+            "CYCL DEF 32.0 TOLERANCE\n0 CYCL DEF 32.1 T5",
+            "CYCL DEF 32.0 TOLERANCE\n0 CYCL DEF 32.1 T0.01",
+            "CYCL DEF 32.0 TOLERANCE\n0 CYCL DEF 32.1 T0.1",
+        ),
+    ] {
+        let machine = load(name).unwrap();
+        let output = post::write(&source.program, &machine).unwrap();
+        let text = String::from_utf8(output.text).unwrap();
+        let klartext = machine.reader == "klartext";
+        let with = |words: &str| {
+            let number = |line: &str| line.split_once(' ').map_or("", |(_, rest)| rest).to_owned();
+            let is = |line: &str, block: &str| number(line) == block || line == block;
+            // The rapid out of the slot is the last of these.
+            let at = text.lines().enumerate().filter(|(_, line)| is(line, out)).last();
+            let at = at.unwrap_or_else(|| panic!("{out}\n{text}")).0;
+            let mut damaged = String::new();
+            for (i, line) in text.lines().enumerate() {
+                let before = match () {
+                    () if i == at => words,
+                    () if is(line, cut) => narrow,
+                    () => "",
+                };
+                let zero = if klartext { "0 " } else { "" };
+                if !before.is_empty() {
+                    damaged += &format!("{zero}{before}\n");
+                }
+                damaged += &format!("{line}\n");
+            }
+            assert_eq!(text.lines().filter(|line| is(line, cut)).count(), 1, "{text}");
+            if klartext { numbered(&damaged) } else { damaged }
+        };
+        let rules = |text: &str| {
+            let report =
+                proof::prove(&source.program, &machine, "t", text.as_bytes(), &Default::default());
+            let found = report.mismatches.iter().map(|found| found.rule.name());
+            found.collect::<Vec<_>>()
+        };
+        assert_eq!(rules(&text), [""; 0], "{name}");
+        assert_eq!(rules(&with(wide)).first(), Some(&"path-tolerance"), "{name} {wide}");
+        assert_eq!(rules(&with(tight)), [""; 0], "{name} {tight}");
+    }
+}

@@ -307,10 +307,19 @@ struct Damage {
     shows: fn(&[Sample], f64) -> bool,
 }
 
-const DAMAGES: [Damage; 4] = [
+const DAMAGES: [Damage; 5] = [
     Damage {
         name: "a corner is cut",
         edit: |text| text.replacen("G64 P0.005 Q0.005", "G64", 1),
+        rule: "path-tolerance",
+        shows: |_, off| off > 0.1,
+    },
+    Damage {
+        name: "a corner of rapids is cut",
+        edit: |text| {
+            let out = text.replacen("G0 Z5\n", "G64 P20\nG0 Z5\n", 1);
+            out.replacen("G2 X32.5", "G64 P0.005 Q0.005\nG2 X32.5", 1)
+        },
         rule: "path-tolerance",
         shows: |_, off| off > 0.1,
     },

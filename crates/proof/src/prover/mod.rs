@@ -412,6 +412,9 @@ impl<'a> Prover<'a> {
         }
         self.miss_events(line);
         let wrong_way = if gait == MotionKind::Rapid { self.wrong_way(&to) } else { None };
+        if gait == MotionKind::Rapid {
+            self.check_rapid_corners(&to);
+        }
         let outcome = match &self.cursor.step {
             Step::Move(goal) => match &goal.kind {
                 Kind::Rapid => self.rapid(gait, &to),

@@ -98,6 +98,19 @@ impl Prover<'_> {
         Some(self.way_refused(to, &what))
     }
 
+    /// Holds the rounding of corners of rapids, which goes through the part where one of the two ends is not beyond all cuts.
+    pub(super) fn check_rapid_corners(&mut self, to: &ResolvedPose) {
+        let found = state::rapid_corners(self.gauge.machine, &self.running);
+        if found.is_none() || self.gauge.machine.wire.is_some() {
+            return;
+        }
+        let ends = [self.here.place, to.place];
+        let known = ends.iter().filter(|place| place.known());
+        if self.short_of_clearance(known).is_some() {
+            self.check(to.line, found);
+        }
+    }
+
     /// How far these places of a rapid are from the straight way of the source.
     fn note_rapid<'p>(
         &mut self,
