@@ -31,7 +31,7 @@ const ABSOLUTE: [WordName; 3] = [WordName::CX, WordName::CY, WordName::CZ];
 const MIDDLE: [WordName; 3] = [WordName::MX, WordName::MY, WordName::MZ];
 const START: [WordName; 3] = [WordName::SX, WordName::SY, WordName::SZ];
 
-/// By what a block says its circle, beside the ends of the arc.
+/// By what a block says its circle, apart from the ends of the arc.
 #[derive(Clone, Copy, PartialEq)]
 enum Notation {
     /// The centre from the start, or absolute.
@@ -60,11 +60,11 @@ const ROUNDING_STEPS: f64 = 6.0;
 /// side of a full circle that is opposite to its ends.
 const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 
-/// How many steps the end of an arc that is told by its angle may be off: its start is rounded by up to
+/// How many steps the end of an arc that is written by its angle may be off: its start is rounded by up to
 /// √½ steps in the plane, and its centre by less.
 const ANGLE_STEPS: f64 = 0.85;
 
-/// How an arc is told.
+/// How an arc is written.
 struct Form {
     facts: &'static Facts,
     /// Whether it is a helix.
@@ -195,7 +195,7 @@ impl Walk<'_> {
             let read = through_in_space(start, round(&MIDDLE, middle), round(&END, end));
             let most = CENTER_STEPS * self.resolution;
             let quarters = [0.25, 0.75].map(|part| local.at(from + (until - from) * part));
-            let near = |circle: &SpaceCircle| quarters.iter().all(|&p| circle.beside(p) <= most);
+            let near = |circle: &SpaceCircle| quarters.iter().all(|&p| circle.distance(p) <= most);
             if !read.is_some_and(|circle| near(&circle)) {
                 self.lower(arc, from, until, to, stop, "arcs too short for the decimals")?;
                 continue;
@@ -255,7 +255,7 @@ impl Walk<'_> {
         (turns / each - 1e-9).ceil() as usize
     }
 
-    /// How the arc is told in a plane.
+    /// How the arc is written in a plane.
     fn form(&self, arc: &Arc, facts: &'static Facts, rises: bool) -> Form {
         let [first, second, normal] = facts.axes;
         let ccw = arc.normal[normal] > 0.0;
@@ -281,7 +281,7 @@ impl Walk<'_> {
         };
         let start = self.stands(|| round(&END, arc.at(from)));
         let to = arc.at(until);
-        // An arc that is told by its angle ends as far from its centre as it begins, and not at a
+        // An arc that is written by its angle ends as far from its centre as it begins, and not at a
         // rounded place.
         let end = if by_angle { to } else { round(&END, to) };
         let [u, v, w] = facts.axes;
@@ -476,7 +476,7 @@ impl Walk<'_> {
     }
 }
 
-/// How near the centre of an arc that is told by its radius may lie to the way between its ends, as part of
+/// How near the centre of an arc that is written by its radius may lie to the chord between its ends, as part of
 /// the radius. There the control finds it by the root of a difference of almost equal numbers: GRBL 1.1
 /// (`gcode.c`, step 20) refuses a half circle where single precision makes that difference negative.
 const NEAREST_CENTER: f64 = 0.1;
@@ -502,7 +502,7 @@ struct SpaceCircle {
 
 impl SpaceCircle {
     /// How far a point is from the circle, mm.
-    fn beside(&self, point: Vec3) -> f64 {
+    fn distance(&self, point: Vec3) -> f64 {
         let spoke = point - self.center;
         let across = spoke.reject_from_normalized(self.normal).length();
         (across - self.radius).hypot(spoke.dot(self.normal))

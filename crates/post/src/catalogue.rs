@@ -109,7 +109,7 @@ names! {
         LookAheadOff Block "look_ahead_off", "", "Before what look-ahead must not be on for: a hole cycle, a thread, a probing move, a tool change, a turn of the rotary axes, a work offset, the end.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on. A block that places {{X}} {{Y}} {{Z}} is the first move under it, from home to above all cuts.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
-        ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that is told of no wire: its program cuts one opening.";
+        ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that has no such word: its program cuts one opening.";
         CutWire Block "cut_wire", "", "Where the wire is cut (wire EDM).";
         CycleDrill Block "cycle_drill", "", "Definition of a drilling cycle. A definition that places {{X}} drills the first hole itself.";
         CycleDwell Block "cycle_dwell", "", "The same with a dwell at the bottom; `cycle_drill` where it is missing and places {{DWELL}}.";
@@ -121,7 +121,7 @@ names! {
         CycleReamDwell Block "cycle_ream_dwell", "", "The same with a dwell at the bottom; `cycle_ream` where it is missing and places {{DWELL}}.";
         CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out.";
         CycleHole Block "cycle_hole", "", "Each hole of the cycle that its definition has not drilled.";
-        CycleOff Block "cycle_off", "", "End of the cycle. After tapping and boring the spindle is told anew, for controls differ in whether it turns then.";
+        CycleOff Block "cycle_off", "", "End of the cycle. After tapping and boring the spindle is started again, for controls differ in whether it turns then.";
         Dwell Block "dwell", "", "A dwell.";
         Stop Block "stop", "", "An unconditional stop.";
         OptionalStop Block "optional_stop", "", "A stop that the operator can switch off.";
@@ -143,8 +143,8 @@ names! {
         A Word "A", "degrees", "Position of the rotary axis A; left out where the machine has none.";
         B Word "B", "degrees", "Position of the rotary axis B; left out where the machine has none.";
         C Word "C", "degrees", "Position of the rotary axis C; left out where the machine has none.";
-        U Word "U", "mm", "How far the wire is beside X at the upper plane (wire EDM); left out where it stands upright in the whole program.";
-        V Word "V", "mm", "How far it is beside Y there.";
+        U Word "U", "mm", "How far the wire is from X at the upper plane (wire EDM); left out where it stands upright in the whole program.";
+        V Word "V", "mm", "How far it is from Y there.";
         Taper Word "TAPER", "degrees", "By how much the control leans the wire, in a block that switches that on (wire EDM).";
         VX Word "VX", "", "Tool axis, a unit vector from the tip to the spindle: X.";
         VY Word "VY", "", "Tool axis: Y.";
@@ -236,7 +236,7 @@ names! {
     }
 }
 
-/// What templates may read beside words. `options.` stands for the machine's own `[options]`.
+/// What templates may read besides words. `options.` stands for the machine's own `[options]`.
 pub(crate) const VARIABLES: &[Parameter] = &[
     variable("program.name", "", "Name of the program: letters, digits, `_` and `-` only."),
     variable(

@@ -2,7 +2,7 @@
 //! written, and not only by whoever runs it.
 //!
 //! A control that meets what the tool does not reach stops with an alarm, or cuts into the contour. So a contour is written only
-//! where the way at the tool's radius exists: beside each element, shortened at inner corners to where the ways beside the two
+//! where the path at the tool's radius exists: parallel to each element, shortened at inner corners to where the parallels of the two
 //! cross, and nowhere nearer than the radius to the elements on both sides of it. Elements are those of the blocks, after
 //! rounding. What controls do differently, `[capabilities]` says (`compensation_start`, `compensation_blind`).
 
@@ -54,7 +54,7 @@ enum Stage {
     Following(OffsetElement),
 }
 
-/// An element of the contour, and the way beside it.
+/// An element of the contour, and the path parallel to it.
 #[derive(Clone, Copy)]
 struct OffsetElement {
     element: Element,
@@ -98,14 +98,14 @@ impl Contour {
             }
             Stage::On => Stage::Following(self.first(element)?),
             Stage::Entering(from) => {
-                let next = self.beside(element)?;
+                let next = self.parallel(element)?;
                 if self.cuts(from, &next.element, &next.parallel) {
                     return Err(gouge("the way to the contour", "begin"));
                 }
                 Stage::Following(next)
             }
             Stage::Following(last) => {
-                let mut next = self.beside(element)?;
+                let mut next = self.parallel(element)?;
                 self.corner(last, &mut next, rapid, between)?;
                 Stage::Following(OffsetElement { before: Some(last.element), ..next })
             }
@@ -154,8 +154,8 @@ impl Contour {
         }
     }
 
-    /// The way beside an element.
-    fn beside(&self, element: Element) -> Result<OffsetElement, Box<Diagnostic>> {
+    /// The path parallel to an element.
+    fn parallel(&self, element: Element) -> Result<OffsetElement, Box<Diagnostic>> {
         let Some(parallel) = element.parallel(self.left) else {
             let message = format!(
                 "with cutter compensation a tool of radius {} mm does not fit into this arc of radius {} mm",
@@ -180,7 +180,7 @@ impl Contour {
             let help = "a longer way to the contour";
             return Err(refuse(Rule::CompensationEntry, message).help(help).into());
         }
-        Ok(OffsetElement { leads_in: true, ..self.beside(element)? })
+        Ok(OffsetElement { leads_in: true, ..self.parallel(element)? })
     }
 
     /// From `last` to `next`, with so many blocks between.
@@ -295,7 +295,7 @@ impl Contour {
         Ok(())
     }
 
-    /// The way beside `last` ends at `to`: there is one, and it keeps off the elements before and behind it.
+    /// The path parallel to `last` ends at `to`: there is one, and it keeps off the elements before and behind it.
     fn complete(&self, last: &OffsetElement, to: f64, next: Option<&Element>) -> Outcome {
         if self.left == 0.0 {
             return Ok(());
@@ -328,7 +328,7 @@ impl Contour {
         }
     }
 
-    /// Whether the straight way from `from`, off the contour, to the start of `parallel` cuts into the element beside it.
+    /// Whether the straight way from `from`, off the contour, to the start of `parallel` cuts into its element.
     fn cuts(&self, from: Vec2, element: &Element, parallel: &Element) -> bool {
         let (back, out) = (from - parallel.start, parallel.start - element.start);
         if self.left == 0.0 || back.length() < NOWHERE {

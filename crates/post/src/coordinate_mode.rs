@@ -20,7 +20,7 @@ pub(crate) enum Kind {
     Plain,
     /// A tilted plane: from the work frame into it, and the tool axis in the work frame.
     Tilted(Frame, Vec3),
-    /// The tool tip in the work frame, rotary positions beside it.
+    /// The tool tip in the work frame, with the rotary positions.
     ToolCenter,
     /// The tool tip in the work frame, the tool axis as a vector.
     Vectors,

@@ -87,7 +87,7 @@ fn replace(text: &str, from: &str, to: &str) -> Result<String, Error> {
     Ok(text.replace(from, to))
 }
 
-/// A width is told in the text or, with `*`, by a value: `'%1000000000d'` takes a gigabyte.
+/// A width stands in the text or, with `*`, by a value: `'%1000000000d'` takes a gigabyte.
 fn format(state: &mut State, text: &Value, rest: Rest<ValueOrKwargs>) -> Result<Value, Error> {
     let shape = text.as_str().unwrap_or_default();
     let widths = shape.split(|c: char| !c.is_ascii_digit());
@@ -148,7 +148,7 @@ pub(crate) fn check(text: &str, machine: &Machine) -> Result<(), Fault> {
     guard.statement(&parsed).map_err(Fault::Refused)
 }
 
-/// What a value is, as far as it can be told before the template runs.
+/// What a value is, as far as it is known before the template runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     Number,

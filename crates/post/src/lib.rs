@@ -2,11 +2,11 @@
 //!
 //! A control's blocks are templates; one that consists only of words is compiled once and runs without
 //! the template engine, so that readability costs no speed. What the control lacks is lowered within a
-//! stated tolerance and told in the warnings; what can be neither written nor lowered is refused.
+//! stated tolerance and reported in the warnings; what can be neither written nor lowered is refused.
 //! Nothing here reads NC text: whether the program is right is the proof's to say.
 //!
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
-//! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
+//! goes through `walk`, which knows what has been output to the control; `place` brings the tool into its
 //! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire stands,
 //! `contour` finds out whether a tool can follow a contour that the control offsets,
 //! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of

@@ -393,9 +393,9 @@ impl Walk<'_> {
     }
 }
 
-/// The positions of the axes hang on what nobody has said.
+/// The positions of the axes depend on what nobody has stated.
 #[cold]
 fn hangs_on(unsaid: Unsaid) -> Box<Diagnostic> {
-    let message = format!("nobody says {unsaid}: the positions of all axes hang on it");
+    let message = format!("{unsaid} is not stated: the positions of all axes depend on it");
     refuse(unsaid.rule(), message).help(unsaid.way_out()).into()
 }

@@ -51,7 +51,7 @@ enum RapidMoves {
 /// Sine of the angle over level from which a tilted tool comes down along itself from above all cuts.
 const STEEP: f64 = 0.5;
 
-/// A tool that points down by more than this sine has no room beside it.
+/// A tool that points down by more than this sine has no room next to it.
 const NEARLY_DOWN: f64 = 0.9;
 
 /// A tool that points down by less than this sine lies level.
@@ -283,7 +283,7 @@ impl Walk<'_> {
     /// How far the whole tool at `pose` is below the clearance above all cuts along `up`, mm.
     ///
     /// # Errors
-    /// A tool that points down, whose length nobody says, or beside which there is no room.
+    /// A tool that points down, whose length nobody says, or next to which there is no room.
     fn below(&mut self, pose: &Pose, up: Vec3) -> Result<f64, Box<Diagnostic>> {
         let rise = pose.axis().dot(up);
         let hangs = if rise < -LEVEL { -rise } else { 0.0 };
@@ -296,7 +296,7 @@ impl Walk<'_> {
         let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
         let below = self.cut_reach(up) + clearance + hangs * length - pose.point().dot(up);
         if below > 0.0 && hangs > NEARLY_DOWN {
-            let message = "the tool points down along Z of the machine: from home it comes to no place beside the part";
+            let message = "the tool points down along Z of the machine: from home it reaches no position next to the part";
             let help = "another set-up, in which it points to the side or up";
             return Err(refuse(Rule::RapidPath, message).help(help).into());
         }
@@ -497,7 +497,7 @@ impl Walk<'_> {
         if own
             && (machine.unsaid(degrees, length).or(machine.unsaid(there.degrees, length))).is_some()
         {
-            // What its place hangs on is asked for where the block is written.
+            // What its position depends on is asked for where the block is written.
             return Ok(RapidMoves::AtOnce);
         }
         let most = (0..3).map(|i| (there.degrees[i] - degrees[i]).abs()).fold(0.0, f64::max);

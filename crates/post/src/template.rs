@@ -102,7 +102,7 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Cuts `text` into steps, for a control that has only `words`. A blank beside a word, outside of comments
+    /// Cuts `text` into steps, for a control that has only `words`. A blank next to a word, outside of comments
     /// and quotes, is a separator.
     fn of(text: String, format: &Format, words: Words) -> Lines {
         let (mut steps, mut placed) = (Vec::new(), 0);
@@ -509,7 +509,7 @@ impl<'a> Templates<'a> {
         }
     }
 
-    /// Runs a block on samples, so that one that can never run is told before a program needs it. Answers the words that
+    /// Runs a block on samples, so that one that can never run is reported before a program needs it. Answers the words that
     /// it has placed.
     fn attempt(&self, name: BlockName) -> Result<Words, Box<Diagnostic>> {
         let (Some(template), None) = (&self.blocks[name as usize], self.lines(name)) else {

@@ -50,7 +50,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// The solution beside `wanted` that the control may take too.
+    /// The solution besides `wanted` that the control may take too.
     fn other_solution(&self, axis: Vec3, wanted: [f64; 3]) -> Option<[f64; 3]> {
         let solutions = self.inverse.solve(axis).ok()?;
         let apart = |degrees: &[f64; 3]| {

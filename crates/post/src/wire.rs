@@ -44,14 +44,14 @@ impl Wire {
 impl Walk<'_> {
     /// The wire is threaded where it stands.
     pub(crate) fn thread_wire(&mut self) -> Outcome {
-        let told = !self.machine.leaves_out(BlockName::ThreadWire.name());
+        let threads = !self.machine.leaves_out(BlockName::ThreadWire.name());
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
         if wire.threaded {
             return Err(refuse(Rule::WireThreaded, "the wire is threaded already"));
         }
         (wire.threaded, wire.openings) = (true, wire.openings + 1);
-        if wire.openings > 1 && !told {
-            let message = "a second opening: the control cannot be told to thread the wire again";
+        if wire.openings > 1 && !threads {
+            let message = "a second opening: the control has no word that threads the wire again";
             return Err(refuse(Rule::OneOpening, message)
                 .help("a program for each opening")
                 .into());
@@ -75,9 +75,9 @@ impl Walk<'_> {
 
     /// The control is to lean the wire from the next straight cut on.
     pub(crate) fn set_taper(&mut self, degrees: f64) -> Outcome {
-        let told = self.templates.places(BlockName::Linear, WordName::Taper);
+        let written = self.templates.places(BlockName::Linear, WordName::Taper);
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
-        if degrees != 0.0 && !told {
+        if degrees != 0.0 && !written {
             let message = "the control leans no wire by an angle";
             let help = "a taper that is worked out here, or a machine that leans the wire";
             return Err(refuse(Rule::Taper, message).help(help).into());

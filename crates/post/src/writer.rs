@@ -222,13 +222,13 @@ impl Writer {
         self.set | self.constant | bit(WordName::N)
     }
 
-    /// The control is at this entry of a code without being told.
+    /// The control is at this entry of a code without a word.
     pub(crate) fn assume(&mut self, word: WordName, index: usize) {
         self.active[word as usize] = index as Key;
         self.known |= bit(word);
     }
 
-    /// The control has this value of a number without being told.
+    /// The control has this value of a number without a word.
     pub(crate) fn is_at(&mut self, word: WordName, value: f64) {
         let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
         if let Some(key) = number.key(value) {

@@ -1,4 +1,4 @@
-//! Rules that whoever posts a program may let pass for one run: each hangs on how the machine is set up, which the
+//! Rules that whoever posts a program may let pass for one run: each depends on how the machine is set up, which the
 //! program does not say.
 
 use program::Rule;

@@ -56,10 +56,10 @@ pub(crate) fn follow(
     let samples = 4 * (block.sweep / PI).ceil().clamp(1.0, 100.0) as u32;
     for i in 1..=samples {
         let part = f64::from(i) / f64::from(samples);
-        let (beside, along) = off(arc, steepness, t + part * (reached - t), block.at(part));
-        within("leaves the arc", beside, allowed, "mm")?;
+        let (aside, along) = off(arc, steepness, t + part * (reached - t), block.at(part));
+        within("leaves the arc", aside, allowed, "mm")?;
         within("is elsewhere on the arc", along, allowed, "mm")?;
-        followed.path_mm = followed.path_mm.max(beside);
+        followed.path_mm = followed.path_mm.max(aside);
     }
     axis(gauge, goal, here, to)?;
     Ok(followed)
@@ -105,15 +105,15 @@ fn parameter(arc: &Arc, point: Vec3, near: f64) -> f64 {
     (angle + turns * TAU) / arc.sweep
 }
 
-/// How far `point` is beside `arc` at `t`, and along it, mm. Along a helix of this [`steepness`] counts as its
+/// How far `point` is from `arc` at `t`, and along it, mm. Along a helix of this [`steepness`] counts as its
 /// turn does: a small error of the angle is a long way there, but no other path.
 fn off(arc: &Arc, steepness: f64, t: f64, point: Vec3) -> (f64, f64) {
     let on = arc_point(arc, t);
     let spoke = (on - arc.center).reject_from_normalized(arc.normal);
     let tangent = arc.normal.cross(spoke) * arc.sweep + arc.normal * arc.rise();
     let along = (point - on).dot(tangent) / tangent.length();
-    let beside = (point - on - tangent.normalize() * along).length();
-    (beside, along.abs() / steepness)
+    let aside = (point - on - tangent.normalize() * along).length();
+    (aside, along.abs() / steepness)
 }
 
 /// What is left of `arc` from `t` on, mm of its turn.

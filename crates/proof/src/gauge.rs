@@ -45,7 +45,7 @@ impl Gauge<'_> {
 
     /// How far `station` stands above `place` along its axis, where it stands on that axis.
     pub fn height_over(&self, place: &PartialPose, station: &ResolvedPose) -> Option<f64> {
-        let (height, beside) = place.above(station.place.tip);
-        (beside <= self.slack(station)).then_some(height)
+        let (height, aside) = place.above(station.place.tip);
+        (aside <= self.slack(station)).then_some(height)
     }
 }

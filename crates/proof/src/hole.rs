@@ -51,8 +51,8 @@ impl Hole<'_> {
         aligned && height.is_some_and(|h| h >= self.cycle.clearance - self.gauge.slack(station))
     }
 
-    /// Whether a move goes down beside the hole, with the tool along its axis. What is not known is not.
-    pub fn beside_and_down(&self, from: &ResolvedPose, to: &ResolvedPose) -> bool {
+    /// Whether a move goes down next to the hole, with the tool along its axis. What is not known is not.
+    pub fn off_axis_and_down(&self, from: &ResolvedPose, to: &ResolvedPose) -> bool {
         let aligned = |station: &ResolvedPose| {
             station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees
         };
@@ -60,16 +60,16 @@ impl Hole<'_> {
             (self.point.above(from.place.tip), self.point.above(to.place.tip));
         // Both ends are rounded, each for itself.
         let slack = self.gauge.slack(from) + self.gauge.slack(to);
-        let beside = |station: &ResolvedPose| self.point.above(station.place.tip).1 > slack;
-        aligned(from) && aligned(to) && high - low > slack && (beside(from) || beside(to))
+        let aside = |station: &ResolvedPose| self.point.above(station.place.tip).1 > slack;
+        aligned(from) && aligned(to) && high - low > slack && (aside(from) || aside(to))
     }
 
     /// The height of a station on the axis of the hole.
     fn height(&self, station: &ResolvedPose) -> Result<f64, String> {
         let angle = station.place.apart(self.point).1;
         within("tilts the tool in the hole", angle, self.gauge.allowed.axis_degrees, "°")?;
-        let (height, beside) = self.point.above(station.place.tip);
-        within("leaves the axis of the hole", beside, self.gauge.slack(station), "mm")?;
+        let (height, aside) = self.point.above(station.place.tip);
+        within("leaves the axis of the hole", aside, self.gauge.slack(station), "mm")?;
         Ok(height)
     }
 

@@ -1,4 +1,4 @@
-//! The proof: the motion an NC program makes, held against the program it came from.
+//! The proof: the motion that an NC program makes, compared with the program from which it came.
 //!
 //! The text is run on the virtual control of its dialect; every pose goes through the machine's forward
 //! kinematics into the work frame and is compared there with the source: tool tip, tool axis, arcs,
@@ -32,7 +32,7 @@
 //!    stands at the stop.
 //! 9. **An end**, and before it, after the last motion, only ways away from the part.
 //!
-//! A program that finds the surface itself is run on three surfaces, and held against the source raised
+//! A program that finds the surface itself is run on three surfaces, and compared with the source raised
 //! to each.
 //!
 //! The rules in full, with what each keeps out, are in `docs/proof.md`.

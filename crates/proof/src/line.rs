@@ -24,7 +24,7 @@ const SAMPLE: f64 = 3.0;
 /// done.
 ///
 /// # Errors
-/// How the move leaves the line: beside it, backwards, or with the tool axis elsewhere.
+/// How the move leaves the line: sideways, backwards, or with the tool axis elsewhere.
 pub(crate) fn follow(
     gauge: &Gauge,
     goal: &ExpectedMotion,
@@ -35,8 +35,8 @@ pub(crate) fn follow(
     let from = goal.from.unwrap_or(goal.to);
     let length = from.tip.distance(goal.to.tip);
     let slack = gauge.slack(to);
-    let (reached, beside) = nearest_on_segment(from.tip, goal.to.tip, to.place.tip);
-    within("leaves the line", beside, slack, "mm")?;
+    let (reached, aside) = nearest_on_segment(from.tip, goal.to.tip, to.place.tip);
+    within("leaves the line", aside, slack, "mm")?;
     within("goes back on the line", (t - reached) * length, slack, "mm")?;
     let expected = |t: f64| match length > 2.0 * slack {
         true => Some(between(from.axis, goal.to.axis, t)),
@@ -44,7 +44,7 @@ pub(crate) fn follow(
     };
     axis(gauge, &from, &goal.to, || expected(reached), to.place.axis)?;
     let left_mm = (1.0 - reached) * length;
-    let mut followed = Followed { t: reached, path_mm: beside, left_mm };
+    let mut followed = Followed { t: reached, path_mm: aside, left_mm };
     if let Some(turn) = turn(&here.position, &to.position) {
         let samples = (turn / SAMPLE).ceil().clamp(1.0, 360.0) as u32;
         for i in 1..=samples {
@@ -52,10 +52,10 @@ pub(crate) fn follow(
             let pose = blend(&here.position, &to.position, part);
             let place = PartialPose::of(gauge.machine, &pose, gauge.tool_length);
             if !matches!(pose.orientation, Orientation::Rotary { tool_center: true, .. }) {
-                let (_, beside) = nearest_on_segment(from.tip, goal.to.tip, place.tip);
+                let (_, aside) = nearest_on_segment(from.tip, goal.to.tip, place.tip);
                 let allowed = slack + gauge.allowed.linearisation_mm;
-                within("swings off the line between its ends", beside, allowed, "mm")?;
-                followed.path_mm = followed.path_mm.max(beside);
+                within("swings off the line between its ends", aside, allowed, "mm")?;
+                followed.path_mm = followed.path_mm.max(aside);
             }
             let expected = || expected(t + (reached - t) * part);
             axis(gauge, &from, &goal.to, expected, place.axis)?;

@@ -202,7 +202,7 @@ impl Pace {
     }
 
     /// How long the tool has stood while axes turned about it, minutes: out of a singular pose an axis turns before the tip sets out.
-    /// The source gives the time of its whole move. So long may the tool stand, or as long as the axes need, beside its way.
+    /// The source gives the time of its whole move. So long may the tool stand, or as long as the axes need, besides its way.
     fn standing(&mut self, cut: &Cut) -> f64 {
         let Feed::InverseTime(rate) = cut.wanted else { return 0.0 };
         let longer = self.took[0] - self.slowest * (1.0 + self.blur());

@@ -26,7 +26,7 @@ pub struct Report {
     pub warnings: Vec<Diagnostic>,
     /// What would be mismatches, had their rules not been accepted for this run ([`Accepted`](crate::Accepted)).
     pub accepted: Vec<Diagnostic>,
-    /// The first mismatch as source line beside program block.
+    /// The first mismatch as source line and program block.
     pub first_mismatch: Option<SideBySide>,
     /// How close the motions had to be.
     pub tolerances: Applied,
@@ -51,7 +51,7 @@ pub struct TravelChecked {
     pub unsaid: Vec<Unsaid>,
 }
 
-/// A place of the source beside a place of the program.
+/// A place of the source with a place of the program.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SideBySide {
     /// Line of the source, from 1; 0 where the source has none.
@@ -81,7 +81,7 @@ pub struct Compared {
     pub tool_changes: usize,
     /// Excursions of the program.
     pub excursions: usize,
-    /// Contours beside which the control leads the centre of the source's tool as it has to.
+    /// Contours along which the control leads the centre of the source's tool as it has to.
     pub contours: usize,
     /// Cuts in which the tip is slower than the source wants it, since an axis, or F, can go no faster.
     pub slowed: usize,
@@ -274,7 +274,7 @@ impl Report {
         }
     }
 
-    /// Puts the file name and the blocks of the NC text beside what was found, and counts the blocks.
+    /// Adds the file name and the blocks of the NC text to what was found, and counts the blocks.
     pub(crate) fn quote(&mut self, file_name: &str, text: &[u8]) {
         let lines = || lines(text);
         self.program.blocks = lines().filter(|line| !line.trim_ascii().is_empty()).count();

@@ -25,14 +25,14 @@ impl PartialPose {
         self.tip.is_finite() && self.axis.is_finite()
     }
 
-    /// How far `point` stands above this place along its axis, and how far beside it, mm.
+    /// How far `point` stands above this place along its axis, and how far from that axis, mm.
     pub fn above(&self, point: Vec3) -> (f64, f64) {
         let from = point - self.tip;
         let height = from.dot(self.axis);
         (height, (from - self.axis * height).length())
     }
 
-    /// Whether `tip` stands beside this place's axis by more than `slack` mm, or nobody knows where: the
+    /// Whether `tip` stands off this place's axis by more than `slack` mm, or nobody knows where: the
     /// way between the two moves in the plane of work.
     pub fn is_across(&self, tip: Vec3, slack: f64) -> bool {
         let across = self.above(tip).1;

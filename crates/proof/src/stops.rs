@@ -54,14 +54,14 @@ pub(crate) fn explain<'s>(
 }
 
 /// Whether `stop` is above `base` along its tool axis, with the tool as it stands there. Both are rounded, and the axis is
-/// known as well as its words say it, so the higher, the farther beside.
+/// known as well as its words say it, so the higher, the farther from the axis.
 pub(crate) fn lifted(gauge: &Gauge, base: &ResolvedPose, stop: &ResolvedPose) -> bool {
-    let (height, beside) = base.place.above(stop.place.tip);
+    let (height, aside) = base.place.above(stop.place.tip);
     let slack = gauge.slack(stop);
     let axis_degrees = gauge.allowed.axis_degrees;
     let same_axis = base.place.apart(&stop.place).1 <= 2.0 * axis_degrees;
     let rounding = slack + gauge.slack(base) + height * axis_degrees.to_radians();
-    height > slack && beside <= rounding && same_axis
+    height > slack && aside <= rounding && same_axis
 }
 
 /// Whether `s` is `a`, or `b`, or not known.

@@ -1,4 +1,4 @@
-//! The way through the program, record by record: what the machine is told, and when.
+//! Goes through the program record by record: what is output to the machine, and when.
 
 mod compensation;
 mod technology;

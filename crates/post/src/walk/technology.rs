@@ -1,4 +1,4 @@
-//! The technology of the walk: tools, spindle, coolant and feed, told when they are needed.
+//! The technology of the walk: tools, spindle, coolant and feed, output when they are needed.
 
 use super::{MOTION, Outcome, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};

@@ -1,6 +1,6 @@
 //! The path of the tool's centre against the contour that it has to cut.
 //!
-//! Nothing here knows how a control works the path out. Beside each element of the contour the centre has to run at the radius of
+//! Nothing here knows how a control works the path out. Parallel to each element of the contour the centre has to run at the radius of
 //! the tool; between two of them it may take any way that does not come nearer to either, nor farther from the corner than any
 //! control goes; and what it leaves out of an element must be what the next one keeps the tool from.
 
@@ -33,7 +33,7 @@ struct PlaneMove {
 /// Both paths in the plane.
 struct PlanePaths {
     contour: Vec<PlaneMove>,
-    /// What runs beside each element of the contour at the radius of the tool.
+    /// The parallel of each element of the contour at the radius of the tool.
     parallel: Vec<Element>,
     /// The path of the centre.
     ways: Vec<PlaneMove>,
@@ -42,7 +42,7 @@ struct PlanePaths {
     slack: f64,
 }
 
-/// Compares the path of the centre with the contour of `stretch`, beside which it has to run at `radius` mm.
+/// Compares the path of the centre with the contour of `stretch`, to which it has to run parallel at `radius` mm.
 ///
 /// # Errors
 /// Where it cuts into the contour, or leaves something of it.
@@ -61,7 +61,7 @@ pub(super) fn compare(
         Ok(ways.into_iter().filter(|way| way.element.length() > NOWHERE).collect())
     };
     let (contour, ways) = (ways(&stretch.pieces)?, ways(path)?);
-    let parallel = contour.iter().map(|way| beside(way, left * radius));
+    let parallel = contour.iter().map(|way| parallel_of(way, left * radius));
     let parallel = parallel.collect::<Result<_, _>>()?;
     PlanePaths { contour, parallel, ways, radius, slack }.compare()
 }
@@ -75,7 +75,7 @@ impl PlanePaths {
             let found = (next..self.ways.len())
                 .find_map(|i| self.covered(k, &self.ways[i].element).map(|part| (i, part)));
             let Some((i, part)) = found else {
-                let message = "nowhere leads the tool's centre beside this block";
+                let message = "nowhere leads the tool's centre along this block";
                 return Err((self.contour[k].line, message.into()));
             };
             match last {
@@ -88,7 +88,7 @@ impl PlanePaths {
         last.map_or(Ok(()), |(i, part)| self.way_out(i, part))
     }
 
-    /// Which part of element `k` the centre runs beside on `way`, as lengths along what runs beside it, mm.
+    /// Along which part of element `k` the centre runs on `way`, as lengths along the parallel, mm.
     fn covered(&self, k: usize, way: &Element) -> Option<[f64; 2]> {
         let leg = &self.parallel[k];
         let [from, to] = match (leg.turn, way.turn) {
@@ -119,7 +119,7 @@ impl PlanePaths {
         (shared > self.slack.min(leg.length() / 4.0)).then_some([from, to])
     }
 
-    /// From way `i` beside one element to way `j` beside the next, `k`.
+    /// From way `i` along one element to way `j` along the next, `k`.
     fn corner(
         &self,
         k: usize,
@@ -154,7 +154,7 @@ impl PlanePaths {
         self.left_out(k, [0.0, next[0]], &before.element)
     }
 
-    /// The way to the contour, up to way `i` beside its first element.
+    /// The way to the contour, up to way `i` along its first element.
     fn way_in(&self, i: usize, part: [f64; 2]) -> Result<(), Fault> {
         let (entry, first) = (&self.contour[0], &self.contour[1]);
         let start = first.element.nearest(entry.element.start).1;
@@ -171,7 +171,7 @@ impl PlanePaths {
         self.left_out(1, [0.0, part[0]], &entry.element)
     }
 
-    /// The way off the contour, after way `i` beside its last element.
+    /// The way off the contour, after way `i` along its last element.
     fn way_out(&self, i: usize, part: [f64; 2]) -> Result<(), Fault> {
         let Some(k) = self.contour.len().checked_sub(1) else { return Ok(()) };
         let last = &self.contour[k];
@@ -227,7 +227,7 @@ impl PlanePaths {
         ))
     }
 
-    /// Each point of element `k` beside which the centre does not run, from and to in mm, is one from which `other` keeps the tool.
+    /// Each point of element `k` along which the centre does not run, from and to in mm, is one from which `other` keeps the tool.
     fn left_out(&self, k: usize, [from, to]: [f64; 2], other: &Element) -> Result<(), Fault> {
         let leg = &self.parallel[k];
         let length = leg.length();
@@ -287,8 +287,8 @@ fn flat(piece: &Piece, axis: Vec3) -> Result<PlaneMove, Fault> {
     Ok(PlaneMove { line: piece.line, element, height: piece.to.tip.dot(axis) })
 }
 
-/// What runs beside an element, so many mm to its left.
-fn beside(way: &PlaneMove, left: f64) -> Result<Element, Fault> {
+/// The parallel of an element, so many mm to its left.
+fn parallel_of(way: &PlaneMove, left: f64) -> Result<Element, Fault> {
     let Element { start, end, turn } = way.element;
     let Some(Turn { center, sweep }) = turn else {
         let aside = way.element.tangent(0.0).perp() * left;

@@ -1,7 +1,7 @@
 //! Which path a source gives where it compensates, and what the tool table of the machine makes of it.
 //!
 //! A contour is compared twice: as the program says it, with the rest of the program, and as its control leads the centre of the
-//! source's tools beside it ([`resolved`], [`centre`]).
+//! source's tools along it ([`resolved`], [`centre`]).
 
 mod centre;
 pub(crate) mod resolved;

@@ -84,7 +84,7 @@ fn joints(machine: &Machine) -> f64 {
 /// A run of the program.
 struct Run<'a> {
     gauge: Gauge<'a>,
-    /// Whether the centre has to be beside the path of the source, and not on it.
+    /// Whether the centre has to be off the path of the source, and not on it.
     offsets: bool,
     /// Those that are still to come.
     stretches: &'a [CompensatedMoves],

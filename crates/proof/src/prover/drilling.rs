@@ -146,8 +146,8 @@ impl Prover<'_> {
     fn comes_from_above(&self, hole: &Hole, to: Option<&ResolvedPose>) -> Outcome {
         let mut last = self.leg.start.unwrap_or(self.here);
         for stop in self.leg.stops.iter().chain(to) {
-            if hole.beside_and_down(&last, stop) {
-                let message = format!("goes down by rapid to {}, beside the hole", stop.place);
+            if hole.off_axis_and_down(&last, stop) {
+                let message = format!("goes down by rapid to {}, next to the hole", stop.place);
                 return Err(self.lost_at(stop.line, Rule::Hole, &message));
             }
             last = *stop;

@@ -674,7 +674,7 @@ impl<'a> Prover<'a> {
         self.lost_at(line, Rule::Unproven, &message).help(COMPARABLE).into()
     }
 
-    /// Holds known what the place of the tip hangs on.
+    /// Holds known what the position of the tip depends on.
     ///
     /// # Errors
     /// The control does not keep the tip, and a fact of the machine or the tool is missing to know where it is. Where

@@ -243,7 +243,7 @@ impl Prover<'_> {
         }
         if !first && !retracted && axes != Axes::Z {
             if !self.clear_of_part() {
-                let message = "sends axes home together with Z, not after it, beside the part";
+                let message = "sends axes home together with Z, not after it, next to the part";
                 return Err(self.lost_at(line, Rule::Home, message));
             }
             let message = "Z goes home together with other axes, not before them";

@@ -1,4 +1,4 @@
-//! The way of a rapid between its ends: as the control really goes, held against the straight way of the source.
+//! The path of a rapid between its ends: as the control really moves, compared with the straight line of the source.
 //!
 //! A block goes near the part only on the straight way that the source goes by rapid, along the tool axis away from a
 //! place or down to it, or from home along Z. Any other way must be beyond all that the source cuts, along the tool
@@ -118,7 +118,7 @@ impl Prover<'_> {
         places: impl Iterator<Item = &'p PartialPose>,
         program_line: u32,
     ) {
-        let off = places.filter_map(|place| way.beside(place)).fold(0.0, f64::max);
+        let off = places.filter_map(|place| way.off_path(place)).fold(0.0, f64::max);
         self.report.deviations.rapid_mm.note(off, self.cursor.line, program_line);
     }
 
@@ -193,13 +193,13 @@ impl StraightPath<'_> {
         let Some((from, to)) = &self.straight else { return false };
         let (machine, allowed) = (self.gauge.machine, &self.gauge.allowed);
         let corridor = machine.capabilities.rapid_corridor + allowed.tip_mm;
-        let (_, beside) = nearest_on_segment(from.tip, to.tip, place.tip);
+        let (_, off_path) = nearest_on_segment(from.tip, to.tip, place.tip);
         let off = off_great_circle(from.axis, to.axis, place.axis).to_degrees();
-        beside <= corridor && off <= allowed.axis_degrees + allowed.sweep_degrees
+        off_path <= corridor && off <= allowed.axis_degrees + allowed.sweep_degrees
     }
 
     /// How far a place is from it, mm.
-    fn beside(&self, place: &PartialPose) -> Option<f64> {
+    fn off_path(&self, place: &PartialPose) -> Option<f64> {
         let (from, to) = self.straight.as_ref()?;
         Some(nearest_on_segment(from.tip, to.tip, place.tip).1)
     }
