@@ -1,5 +1,6 @@
 //! What a virtual control reports: the motion that it makes, in the words of its blocks.
 
+use crate::arm::ArmAction;
 use geom::Vec3;
 use program::{
     Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, MachineMove, Output, PathMode,
@@ -120,6 +121,8 @@ pub enum Action {
     OptionalStop,
     /// What the block does hangs on something that the program does not say, or stays when the program has ended.
     Risk(Box<Risk>),
+    /// What an arm does beyond what every machine does.
+    Arm(ArmAction),
     /// Words for the reader of the program.
     Comment(Box<str>),
     /// Words for the operator's screen.
@@ -655,6 +658,7 @@ impl Action {
             | Action::Stop
             | Action::OptionalStop
             | Action::Risk(_)
+            | Action::Arm(_)
             | Action::Comment(_)
             | Action::Message(_)
             | Action::End => None,

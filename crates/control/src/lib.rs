@@ -9,14 +9,17 @@
 //! as [`Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod arm;
 mod event;
 mod iso;
 pub mod kernel;
 mod klartext;
+mod krl;
 mod points;
 mod sinumerik;
 pub mod tools;
 
+pub use arm::{ArmAction, ArmMove, ArmPath, Corner, Turning};
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
 use geom::Vec3;
 use iso::dialects::facts::Facts;
@@ -54,13 +57,15 @@ pub enum Dialect {
     Agie,
     /// Lists of coordinates for wire EDM.
     Points,
+    /// KUKA's robot language (KRC2, KRC4).
+    Krl,
     /// The commands in which FreeCAD keeps a toolpath: a source, which no machine reads.
     FreeCad,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 14] = [
+    pub const NAMES: [(&'static str, Dialect); 15] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -74,6 +79,7 @@ impl Dialect {
         ("sodick", Dialect::Sodick),
         ("agie", Dialect::Agie),
         ("points", Dialect::Points),
+        ("krl", Dialect::Krl),
         ("freecad", Dialect::FreeCad),
     ];
 
@@ -98,6 +104,7 @@ impl Dialect {
             Dialect::Sinumerik | Dialect::Sinumerik828d => Language::Sinumerik,
             Dialect::Klartext => Language::Klartext,
             Dialect::Points => Language::Points,
+            Dialect::Krl => Language::Krl,
         }
     }
 
@@ -106,7 +113,7 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.corners,
             Language::Klartext => Corners::Unbounded,
-            Language::Sinumerik | Language::Points => Corners::Followed,
+            Language::Sinumerik | Language::Points | Language::Krl => Corners::Followed,
         }
     }
 
@@ -120,7 +127,7 @@ impl Dialect {
     pub fn ending(self) -> Ending {
         match self.language() {
             Language::Iso(facts) => facts.syntax.ending,
-            Language::Sinumerik | Language::Klartext => Ending::Code,
+            Language::Sinumerik | Language::Klartext | Language::Krl => Ending::Code,
             Language::Points => Ending::Text,
         }
     }
@@ -132,6 +139,8 @@ impl Dialect {
             Language::Sinumerik => FeedPath::Group([0.0; 3]),
             Language::Klartext => FeedPath::AllAxes,
             Language::Points => FeedPath::AsSetUp,
+            // The speed of the tip, whatever turns.
+            Language::Krl => FeedPath::LinearAxes,
         }
     }
 
@@ -141,7 +150,7 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.work_offset,
             Language::Sinumerik => Some(WorkOffset::NONE),
-            Language::Klartext | Language::Points => None,
+            Language::Klartext | Language::Points | Language::Krl => None,
         }
     }
 
@@ -159,6 +168,7 @@ enum Language {
     Sinumerik,
     Klartext,
     Points,
+    Krl,
 }
 
 /// How a program ends.
@@ -226,6 +236,8 @@ pub struct Settings {
     pub swivel_data: String,
     /// The M functions that switch the kinematics, where the machine has two (LinuxCNC).
     pub kinematics: Option<Kinematics>,
+    /// Name of the operator's program that changes the tool of an arm; empty where there is none.
+    pub tool_change: String,
     /// The wire, where the machine has one.
     pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
@@ -357,6 +369,7 @@ impl Settings {
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
             kinematics: None,
+            tool_change: String::new(),
             wire: Wire::default(),
             path_tolerance: 0.0,
             orientation_tolerance: 0.0,
@@ -389,6 +402,7 @@ pub fn vocabulary(dialect: Dialect) -> Vec<String> {
         Language::Sinumerik => sinumerik::vocabulary(),
         Language::Klartext => klartext::vocabulary(),
         Language::Points => Vec::new(),
+        Language::Krl => krl::vocabulary(),
     }
 }
 
@@ -416,5 +430,6 @@ pub fn read(
         Language::Sinumerik => sinumerik::run(settings, text, channel),
         Language::Klartext => klartext::run(settings, text, channel),
         Language::Points => points::run(settings, text, channel),
+        Language::Krl => krl::run(settings, text, channel),
     })
 }

@@ -614,6 +614,12 @@ impl<'a> Conversion<'a> {
             Action::Dwell(seconds) => self.push(line, Op::Dwell(seconds)),
             Action::Stop => self.push(line, Op::Stop),
             Action::OptionalStop => self.push(line, Op::OptionalStop),
+            // The source of a mill has poses and no joints: programs of arms are proven, and no source yet.
+            Action::Arm(_) => {
+                let message = "a motion of a robot: its programs are no source yet";
+                let help = "post the toolpath that it was made of";
+                return Err(refuse(Rule::Unsupported, message, help));
+            }
             Action::Comment(text) => self.push(line, Op::Comment(text)),
             Action::Message(text) => self.push(line, Op::Message(text)),
             Action::End => {

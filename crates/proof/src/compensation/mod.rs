@@ -108,6 +108,7 @@ impl Part<'_> {
             | Action::Stop
             | Action::OptionalStop
             | Action::Risk(_)
+            | Action::Arm(_)
             | Action::Comment(_)
             | Action::Message(_)
             | Action::End => Part::Other,

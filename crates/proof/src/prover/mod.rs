@@ -360,6 +360,11 @@ impl<'a> Prover<'a> {
                     self.report.warn(found.line(line));
                 }
             }
+            Action::Arm(_) => {
+                let message = "a motion of an arm, and the machine's file describes none";
+                let help = "prove it with the machine file of the robot";
+                self.found(Diagnostic::error(Rule::MachineKind, message).help(help).line(line));
+            }
             Action::End => self.ends(line),
             // A tool that is made ready changes nothing, and words are for people.
             Action::Preselect(_) | Action::Comment(_) | Action::Message(_) => {}

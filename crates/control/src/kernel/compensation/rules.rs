@@ -76,6 +76,8 @@ impl Rules {
             Dialect::Haas | Dialect::Mach3 => None,
             // So with wires, whose offsets are the generator's.
             Dialect::FanucWire | Dialect::Sodick | Dialect::Agie => None,
+            // Robots have none: what writes for them works it out.
+            Dialect::Krl => None,
             // FreeCAD has worked its paths out already; what it has not, is the new control's.
             Dialect::Grbl | Dialect::Marlin | Dialect::Points | Dialect::FreeCad => None,
         }

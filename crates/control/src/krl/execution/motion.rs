@@ -1,0 +1,181 @@
+//! Motions.
+
+use super::state::{Standing, State};
+use crate::event::Action;
+use crate::kernel::Channel;
+use crate::krl::language::{AXES, Approximation, COORDINATES, Motion, OUTER, Scan, Value, frame};
+use crate::{ArmAction, ArmMove, ArmPath, Corner, Turning};
+use program::{Outcome, Rule};
+
+/// Fields of a position that say the posture.
+const POSTURE: [&str; 2] = ["S", "T"];
+
+/// A coordinate or a joint beyond this, mm or degrees, is no arm's.
+const FARTHEST: f64 = 1e6;
+
+impl State {
+    /// A motion.
+    pub(in crate::krl) fn go(
+        &mut self,
+        scan: &Scan,
+        motion: &Motion,
+        channel: &mut Channel,
+    ) -> Outcome {
+        let (path, standing, approximation) = match motion {
+            Motion::Here => {
+                if matches!(self.standing, Standing::NotStarted) {
+                    self.standing = Standing::Unknown;
+                }
+                return Ok(());
+            }
+            Motion::Ptp(to, approximation) => {
+                let (path, standing) = self.point_to_point(scan, to)?;
+                (path, standing, *approximation)
+            }
+            Motion::Lin(to, approximation) => {
+                self.started(scan)?;
+                let end = self.pose(scan, to)?;
+                (ArmPath::Line(frame(end)), Standing::Pose(end), *approximation)
+            }
+            Motion::LinRel(by, approximation) => {
+                let end = self.moved_by(scan, by)?;
+                (ArmPath::Line(frame(end)), Standing::Pose(end), *approximation)
+            }
+            Motion::Circ(via, end, approximation) => {
+                self.started(scan)?;
+                let (via, end) = (self.pose(scan, via)?, self.pose(scan, end)?);
+                let path = ArmPath::Arc { via: frame(via), end: frame(end) };
+                (path, Standing::Pose(end), *approximation)
+            }
+        };
+        self.standing = standing;
+        let corner = self.corner(scan, approximation, &path)?;
+        let motion = ArmMove { turning: self.turning_of(&path), path, corner };
+        channel.report(scan.source.line, Action::Arm(ArmAction::Move(Box::new(motion))))
+    }
+
+    /// How the tool turns on the way.
+    fn turning_of(&self, path: &ArmPath) -> Option<Turning> {
+        match (path, self.along_path) {
+            (ArmPath::Joints(_) | ArmPath::Point { .. }, _) => Some(Turning::ByJoints),
+            (ArmPath::Line(_), _) | (ArmPath::Arc { .. }, Some(false)) => self.turning,
+            (ArmPath::Arc { .. }, Some(true)) => self.turning.map(|_| Turning::AlongPath),
+            (ArmPath::Arc { .. }, None) => None,
+        }
+    }
+
+    /// # Errors
+    /// Nothing has moved yet: the control refuses a straight line there (KSS, "The first motion has to be a PTP").
+    fn started(&self, scan: &Scan) -> Outcome {
+        match self.standing {
+            Standing::NotStarted => {
+                let message = "the first motion of a program is a PTP to all six axes";
+                let help = "write PTP {A1 ..,A2 ..,A3 ..,A4 ..,A5 ..,A6 ..} before it";
+                Err(Box::new(scan.since(0, Rule::UnknownPosition, message).help(help)))
+            }
+            Standing::Unknown | Standing::Joints(_) | Standing::Pose(_) => Ok(()),
+        }
+    }
+
+    /// `PTP` to joints, or to a position in a posture.
+    fn point_to_point(&self, scan: &Scan, to: &Value) -> Outcome<(ArmPath, Standing)> {
+        if to.has_only(&[&AXES, &OUTER]) {
+            let before = match self.standing {
+                Standing::Joints(joints) => joints.map(Some),
+                Standing::NotStarted | Standing::Unknown | Standing::Pose(_) => [None; 6],
+            };
+            let help = "write all six axes";
+            let joints = numbers(scan, to, AXES, before, help)?;
+            return Ok((ArmPath::Joints(joints), Standing::Joints(joints)));
+        }
+        let end = self.pose(scan, to)?;
+        let (status, turn) = (whole(scan, to, "S", 31)?, whole(scan, to, "T", 63)?);
+        Ok((ArmPath::Point { end: frame(end), status, turn }, Standing::Pose(end)))
+    }
+
+    /// The six numbers of a position; those that it does not have stay as they are.
+    fn pose(&self, scan: &Scan, to: &Value) -> Outcome<[f64; 6]> {
+        if !to.has_only(&[&COORDINATES, &POSTURE, &OUTER]) {
+            let message = "a position of X, Y, Z, A, B, C is needed here";
+            return Err(scan.since(0, Rule::Type, message));
+        }
+        let before = match self.standing {
+            Standing::Pose(pose) => pose.map(Some),
+            Standing::NotStarted | Standing::Unknown | Standing::Joints(_) => [None; 6],
+        };
+        let help =
+            "write all of X, Y, Z, A, B and C in the first motion behind joints or another frame";
+        numbers(scan, to, COORDINATES, before, help)
+    }
+
+    /// `LIN_REL`: X, Y and Z from where the tool stands, in the base.
+    fn moved_by(&self, scan: &Scan, by: &Value) -> Outcome<[f64; 6]> {
+        let Standing::Pose(pose) = self.standing else {
+            let message = "LIN_REL counts from where the tool stands, which is not known";
+            return Err(scan.since(0, Rule::UnknownPosition, message));
+        };
+        if !by.has_only(&[&COORDINATES[..3]]) {
+            let message = "of LIN_REL X, Y and Z are followed";
+            return Err(scan.since(0, Rule::Unsupported, message));
+        }
+        let moved = numbers(scan, by, COORDINATES, [Some(0.0); 6], "")?;
+        Ok(std::array::from_fn(|i| pose[i] + moved[i]))
+    }
+
+    fn corner(&self, scan: &Scan, approximation: Approximation, path: &ArmPath) -> Outcome<Corner> {
+        match (approximation, path) {
+            (Approximation::None, _) => Ok(Corner::Exact),
+            (Approximation::Distance, ArmPath::Line(_) | ArmPath::Arc { .. }) => {
+                let distance = self.distance.ok_or_else(|| {
+                    let message = "C_DIS needs a distance, and no block has set $APO.CDIS";
+                    scan.since(0, Rule::Variable, message)
+                })?;
+                Ok(Corner::Within(distance))
+            }
+            (Approximation::Distance | Approximation::Other, _) => Ok(Corner::Unbounded),
+        }
+    }
+}
+
+/// The numbers of six fields, or what they were before.
+///
+/// # Errors
+/// A field is missing and was not known before; an axis beyond the arm moves; a number is no arm's.
+fn numbers(
+    scan: &Scan,
+    to: &Value,
+    names: [&str; 6],
+    before: [Option<f64>; 6],
+    help: &str,
+) -> Outcome<[f64; 6]> {
+    if let Some(name) = OUTER.iter().find(|name| to.field(name).is_some_and(|at| at != 0.0)) {
+        let message = format!("{name} is an axis beyond the arm, which is not followed");
+        return Err(scan.since(0, Rule::Unsupported, message));
+    }
+    let mut all = [0.0; 6];
+    for ((number, name), before) in all.iter_mut().zip(names).zip(before) {
+        let Some(value) = to.field(name).or(before) else {
+            let message = format!("{name} is left out, and what it was before is not known");
+            return Err(Box::new(scan.since(0, Rule::UnknownPosition, message).help(help)));
+        };
+        if value.is_nan() || value.abs() > FARTHEST {
+            return Err(scan.since(0, Rule::Number, format!("{name} {value} is beyond any arm")));
+        }
+        *number = value;
+    }
+    Ok(all)
+}
+
+/// S or T, where it is there.
+fn whole(scan: &Scan, to: &Value, name: &str, most: u8) -> Outcome<Option<u8>> {
+    match to.field(name) {
+        None => Ok(None),
+        Some(value) if value.fract() == 0.0 && (0.0..=f64::from(most)).contains(&value) => {
+            Ok(Some(value as u8))
+        }
+        Some(value) => {
+            let message = format!("{name} is a whole number from 0 to {most}, not {value}");
+            Err(scan.since(0, Rule::Number, message))
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! What a program has set: variables, frames, modes, where the arm is.
+
+use super::system;
+use crate::event::{Action, Risk};
+use crate::kernel::Channel;
+use crate::krl::language::{Name, Readable, Scan, Target, Value, Waiting};
+use crate::{ArmAction, Turning};
+use program::{Diagnostic, Input, Outcome, Rule, Until};
+use std::collections::HashMap;
+
+/// Most variables that a program may set.
+const MOST_VARIABLES: usize = 100_000;
+
+/// Where the arm is, as far as the program says it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Standing {
+    /// Nothing has moved: a line may not begin here.
+    NotStarted,
+    /// Where only the machine knows.
+    Unknown,
+    /// At these joints, degrees.
+    Joints([f64; 6]),
+    /// At X, Y, Z, A, B, C in the base.
+    Pose([f64; 6]),
+}
+
+/// A key of a variable: its name, its index, and its field where it is one of a structure.
+type Key = (Name, Option<i64>, Option<Name>);
+
+/// What is active. All of it is unknown before the program says it, and behind `BAS (#INITMOV,0)`, which takes the values of the
+/// machine's configuration.
+pub(in crate::krl) struct State {
+    variables: HashMap<Key, Value>,
+    pub(super) standing: Standing,
+    /// `$APO.CDIS`, mm.
+    pub(super) distance: Option<f64>,
+    /// `$ORI_TYPE`.
+    pub(super) turning: Option<Turning>,
+    /// Whether `$CIRC_TYPE` is `#PATH`.
+    pub(super) along_path: Option<bool>,
+    /// The name of the operator's program that changes tools.
+    tool_change: String,
+}
+
+impl Readable for State {
+    fn value(&self, name: Name, index: Option<i64>, field: Option<Name>) -> Option<Value> {
+        let found = self.variables.get(&(name, index, field)).cloned();
+        let of_operator = matches!(name.as_str(), "BASE_DATA" | "TOOL_DATA") && field.is_none();
+        match found {
+            None if of_operator && index.is_some() => Some(Value::OfOperator),
+            None => self.field_of(name, index, field?),
+            found => found,
+        }
+    }
+}
+
+impl State {
+    pub(in crate::krl) fn new(tool_change: &str) -> State {
+        State {
+            variables: HashMap::new(),
+            standing: Standing::NotStarted,
+            distance: None,
+            turning: None,
+            along_path: None,
+            tool_change: tool_change.to_ascii_uppercase(),
+        }
+    }
+
+    /// The field of a structure that has been set as a whole.
+    fn field_of(&self, name: Name, index: Option<i64>, field: Name) -> Option<Value> {
+        let Value::Fields(fields) = self.variables.get(&(name, index, None))? else { return None };
+        fields.iter().find(|(own, _)| *own == field).map(|(_, value)| value.clone())
+    }
+
+    /// What an element of an array holds.
+    pub(super) fn element(&self, array: &str, number: i64) -> Option<&Value> {
+        self.variables.get(&(Name::of(array.as_bytes())?, Some(number), None))
+    }
+
+    /// A variable has this value from here on.
+    pub(in crate::krl) fn set(&mut self, scan: &Scan, target: Target, value: Value) -> Outcome {
+        if self.variables.len() >= MOST_VARIABLES {
+            let message = "more variables than a controller has room for";
+            return Err(scan.since(0, Rule::TooMuch, message));
+        }
+        self.variables.insert((target.name, target.index, target.field), value);
+        Ok(())
+    }
+
+    /// An assignment.
+    pub(in crate::krl) fn assign(
+        &mut self,
+        scan: &Scan,
+        target: Target,
+        value: Value,
+        channel: &mut Channel,
+    ) -> Outcome {
+        if target.name.as_str().starts_with('$') {
+            return system::assign(self, scan, target, value, channel);
+        }
+        if matches!(target.name.as_str(), "BASE_DATA" | "TOOL_DATA" | "LOAD_DATA") {
+            let risk = Action::Risk(Box::new(Risk::OPERATOR_DATA));
+            channel.report(scan.source.line, risk)?;
+        }
+        self.set(scan, target, value)
+    }
+
+    /// A call of `BAS` or of the operator's tool change; whether it is one of them.
+    pub(in crate::krl) fn called(
+        &mut self,
+        scan: &Scan,
+        name: Name,
+        arguments: &[Value],
+        channel: &mut Channel,
+    ) -> Outcome<bool> {
+        if name.as_str() == "BAS" {
+            return system::bas(self, scan, arguments, channel).map(|()| true);
+        }
+        if self.tool_change.is_empty() || name.as_str() != self.tool_change {
+            return Ok(false);
+        }
+        let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
+        let number = match arguments {
+            [Value::Number(number)] if whole(number) => *number as u32,
+            _ => {
+                let message = "a tool change has the number of the tool as its one argument";
+                return Err(scan.since(0, Rule::Tool, message));
+            }
+        };
+        let tool = program::Tool { number, ..program::Tool::default() };
+        channel.report(scan.source.line, Action::Tool(Box::new(tool)))?;
+        // What the operator's program leaves behind, this one does not say.
+        self.forget(scan.source.line, channel)?;
+        self.standing = Standing::Unknown;
+        Ok(true)
+    }
+
+    /// Frames and modes are as the machine is configured, or as another program has left them.
+    pub(super) fn forget(&mut self, line: u32, channel: &mut Channel) -> Outcome {
+        (self.distance, self.turning, self.along_path) = (None, None, None);
+        self.frame(line, ArmAction::Base(None), channel)?;
+        self.frame(line, ArmAction::Tool(None), channel)
+    }
+
+    /// A frame changes: the pose counts in another one from here on.
+    pub(super) fn frame(&mut self, line: u32, action: ArmAction, channel: &mut Channel) -> Outcome {
+        if matches!(self.standing, Standing::Pose(_)) {
+            self.standing = Standing::Unknown;
+        }
+        channel.report(line, Action::Arm(action))
+    }
+
+    /// A wait.
+    pub(in crate::krl) fn wait(
+        &mut self,
+        scan: &Scan,
+        waiting: Waiting,
+        channel: &mut Channel,
+    ) -> Outcome {
+        let line = scan.source.line;
+        match waiting {
+            Waiting::Seconds(seconds) => channel.report(line, Action::Dwell(seconds)),
+            Waiting::Message => Ok(()),
+            Waiting::Input(number, on) => {
+                let Ok(number) = u32::try_from(number) else {
+                    return Err(scan.since(0, Rule::Index, "no input has this number"));
+                };
+                let until = if on { Until::High } else { Until::Low };
+                let input = Input { number, until, timeout: f64::INFINITY };
+                channel.report(line, Action::Input(Box::new(input)))
+            }
+        }
+    }
+}
+
+/// The error of an assignment whose value does not fit.
+pub(super) fn unfit(scan: &Scan, name: Name, value: &Value, needed: &str) -> Box<Diagnostic> {
+    let message = format!("{name} takes {needed}, not {}", value.kind());
+    scan.since(0, Rule::Type, message)
+}

@@ -1,0 +1,204 @@
+//! System variables, outputs, and `BAS`.
+
+use super::state::{State, unfit};
+use crate::event::Action;
+use crate::kernel::Channel;
+use crate::krl::language::{Name, Scan, Target, Value, frame, whole_frame};
+use crate::{ArmAction, Turning};
+use geom::Frame;
+use program::{Feed, Outcome, Output, OutputValue, Rule};
+
+/// mm/min in a m/s.
+const PER_MINUTE: f64 = 60_000.0;
+
+/// Most frames that the controller keeps for the operator.
+const MOST_FRAMES: i64 = 128;
+
+/// Assigns to a system variable.
+pub(super) fn assign(
+    state: &mut State,
+    scan: &Scan,
+    Target { name, index, field }: Target,
+    value: Value,
+    channel: &mut Channel,
+) -> Outcome {
+    let line = scan.source.line;
+    match (name.as_str(), field.as_ref().map(Name::as_str)) {
+        ("$OUT" | "$ANOUT", None) => output(scan, name, index, &value, channel),
+        ("$BASE", None) => {
+            state.frame(line, ArmAction::Base(frame_of(scan, name, &value)?), channel)
+        }
+        ("$TOOL", None) => {
+            state.frame(line, ArmAction::Tool(frame_of(scan, name, &value)?), channel)
+        }
+        ("$VEL", Some("CP")) => {
+            let speed = positive(scan, name, &value)?;
+            channel.report(line, Action::Feed(Feed::PerMinute(speed * PER_MINUTE)))
+        }
+        ("$LOAD", None) => match value {
+            Value::Fields(_) => channel.report(line, Action::Arm(ArmAction::Load)),
+            other => Err(unfit(scan, name, &other, "an aggregate")),
+        },
+        ("$LOOP_MSG", None) => match value {
+            Value::Text(text) => channel.report(line, Action::Message(text)),
+            other => Err(unfit(scan, name, &other, "a text")),
+        },
+        ("$IPO_MODE", None) => {
+            let on_flange = chosen(scan, name, &value, &[("BASE", false), ("TCP", true)])?;
+            channel.report(line, Action::Arm(ArmAction::PartOnFlange(on_flange)))
+        }
+        (_, field) => mode(state, scan, name, field, &value),
+    }
+}
+
+/// Assigns to a variable that motions read.
+fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: &Value) -> Outcome {
+    match (name.as_str(), field) {
+        ("$APO", Some("CDIS")) => {
+            let distance = number(scan, name, value)?;
+            if distance < 0.0 {
+                return Err(scan.since(0, Rule::Number, "a distance is not below 0"));
+            }
+            state.distance = Some(distance);
+        }
+        // They make the arm slower or its corners wider: how wide, no motion is told that is passed by them (`Unbounded`).
+        ("$APO", Some("CVEL" | "CORI" | "CPTP"))
+        | ("$VEL", Some("ORI1" | "ORI2"))
+        | ("$ACC", Some("CP" | "ORI1" | "ORI2"))
+        | ("$VEL_AXIS" | "$ACC_AXIS", None) => drop(positive(scan, name, value)?),
+        ("$ADVANCE", None) => {
+            let count = number(scan, name, value)?;
+            if count.fract() != 0.0 || !(0.0..=5.0).contains(&count) {
+                let message = format!("$ADVANCE is 0 to 5, not {count}");
+                return Err(scan.since(0, Rule::Number, message));
+            }
+        }
+        ("$ORI_TYPE", None) => {
+            let entries =
+                [("VAR", Turning::Even), ("CONSTANT", Turning::Kept), ("JOINT", Turning::ByJoints)];
+            state.turning = Some(chosen(scan, name, value, &entries)?);
+        }
+        ("$CIRC_TYPE", None) => {
+            let entries = [("BASE", false), ("PATH", true)];
+            state.along_path = Some(chosen(scan, name, value, &entries)?);
+        }
+        ("$LOOP_CONT" | "$BWDSTART", None) if matches!(value, Value::Flag(_)) => {}
+        _ => {
+            let message = format!("what {name} does is not known here");
+            return Err(scan.since(0, Rule::UnknownWord, message));
+        }
+    }
+    Ok(())
+}
+
+/// `BAS (#COMMAND,value)`, as in KUKA's `BAS.SRC`.
+pub(super) fn bas(
+    state: &mut State,
+    scan: &Scan,
+    arguments: &[Value],
+    channel: &mut Channel,
+) -> Outcome {
+    let line = scan.source.line;
+    let [Value::Entry(command), Value::Number(value)] = arguments else {
+        let message = "BAS has a command and a number: BAS (#VEL_PTP,20)";
+        return Err(scan.since(0, Rule::Argument, message));
+    };
+    let percent = *value > 0.0 && *value <= 100.0;
+    match command.as_str() {
+        "INITMOV" => state.forget(line, channel),
+        "VEL_PTP" if percent => channel.report(line, Action::Arm(ArmAction::JointSpeed(*value))),
+        "ACC_PTP" if percent => Ok(()),
+        "VEL_CP" if *value > 0.0 => {
+            channel.report(line, Action::Feed(Feed::PerMinute(value * PER_MINUTE)))
+        }
+        "TOOL" => {
+            let frame = numbered(state, scan, "TOOL_DATA", *value)?;
+            state.frame(line, ArmAction::Tool(frame), channel)
+        }
+        "BASE" => {
+            let frame = numbered(state, scan, "BASE_DATA", *value)?;
+            state.frame(line, ArmAction::Base(frame), channel)
+        }
+        _ => {
+            let message = format!("BAS (#{command},{value}) is not understood");
+            Err(scan.since(0, Rule::UnknownCommand, message))
+        }
+    }
+}
+
+/// The frame of a number: 0 is that of the flange, or the world; `None` is one that the operator has measured.
+fn numbered(state: &State, scan: &Scan, array: &str, number: f64) -> Outcome<Option<Frame>> {
+    let index = if number.fract() == 0.0 { number as i64 } else { -1 };
+    match index {
+        0 => Ok(Some(Frame::IDENTITY)),
+        1..=MOST_FRAMES => Ok(state.element(array, index).and_then(whole_frame).map(frame)),
+        _ => Err(scan.since(0, Rule::Index, format!("no frame has the number {number}"))),
+    }
+}
+
+/// `$OUT[1]=TRUE`, and `$ANOUT[1]=0.5`: -1 to 1 of the range of the output.
+fn output(
+    scan: &Scan,
+    name: Name,
+    index: Option<i64>,
+    value: &Value,
+    channel: &mut Channel,
+) -> Outcome {
+    let number = index.and_then(|index| u32::try_from(index).ok()).filter(|number| *number > 0);
+    let Some(number) = number else {
+        return Err(scan.since(0, Rule::Index, format!("an output has a number: {name}[1]")));
+    };
+    let value = match (name.as_str(), value) {
+        ("$OUT", Value::Flag(on)) => OutputValue::Digital(*on),
+        ("$OUT", other) => return Err(unfit(scan, name, other, "TRUE or FALSE")),
+        (_, Value::Number(part)) if part.abs() <= 1.0 => OutputValue::Analog(*part),
+        (_, other) => return Err(unfit(scan, name, other, "a number from -1 to 1")),
+    };
+    let output = Output { number, value, with_motion: false };
+    channel.report(scan.source.line, Action::Output(output))
+}
+
+/// A frame all of whose numbers are there; `None` is one of the operator.
+fn frame_of(scan: &Scan, name: Name, value: &Value) -> Outcome<Option<Frame>> {
+    match value {
+        Value::OfOperator => Ok(None),
+        Value::Fields(_) => match whole_frame(value) {
+            Some(numbers) if numbers.iter().all(|number| number.is_finite()) => {
+                Ok(Some(frame(numbers)))
+            }
+            _ => {
+                let message = format!("{name} needs each of X, Y, Z, A, B and C");
+                Err(scan.since(0, Rule::Frame, message))
+            }
+        },
+        other => Err(unfit(scan, name, other, "a frame")),
+    }
+}
+
+fn number(scan: &Scan, name: Name, value: &Value) -> Outcome<f64> {
+    match value {
+        Value::Number(number) if number.is_finite() => Ok(*number),
+        other => Err(unfit(scan, name, other, "a number")),
+    }
+}
+
+fn positive(scan: &Scan, name: Name, value: &Value) -> Outcome<f64> {
+    let number = number(scan, name, value)?;
+    match number > 0.0 {
+        true => Ok(number),
+        false => Err(scan.since(0, Rule::Number, format!("{name} is above 0, not {number}"))),
+    }
+}
+
+/// What an entry of an enumeration means.
+fn chosen<T: Copy>(scan: &Scan, name: Name, value: &Value, entries: &[(&str, T)]) -> Outcome<T> {
+    let entry = match value {
+        Value::Entry(entry) => entries.iter().find(|(known, _)| *known == entry.as_str()),
+        _ => None,
+    };
+    entry.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let names: Vec<String> = entries.iter().map(|(known, _)| format!("#{known}")).collect();
+        let message = format!("{name} is one of {}", names.join(", "));
+        scan.since(0, Rule::Type, message)
+    })
+}

@@ -1,0 +1,189 @@
+//! Through a file: the program that it begins with, those behind it, and those of other files that are called.
+
+use super::execution::State;
+use super::language::{Name, Scan, Statement, Target, read};
+use crate::Settings;
+use crate::event::Action;
+use crate::kernel::Channel;
+use crate::kernel::flow::{BlockLocation, line, lines};
+use crate::kernel::source::Source;
+use program::{Diagnostic, Outcome, Rule};
+use std::collections::HashMap;
+
+/// Most calls within calls (KSS: 20 levels).
+const DEEPEST: usize = 20;
+
+/// A file.
+struct File<'t> {
+    text: &'t [u8],
+    /// The line that is reported for all of it; none of its own for the file that is run.
+    shown: Option<u32>,
+    /// Where its programs begin: behind their `DEF`.
+    programs: HashMap<Name, BlockLocation>,
+    first: Option<(Name, BlockLocation)>,
+}
+
+/// Runs a program.
+pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
+    let file = File::of(text, None)?;
+    let Some((name, at)) = file.first else {
+        let message = "the file has no program: it begins with DEF name ( )";
+        return Err(Diagnostic::error(Rule::Program, message).line(1).into());
+    };
+    let mut run = Run { settings, state: State::new(&settings.tool_change), channel };
+    run.data(name)?;
+    let end = run.routine(&file, at, 0)?;
+    run.channel.report(end, Action::End)
+}
+
+impl<'t> File<'t> {
+    /// # Errors
+    /// Two programs have one name; a line with `DEF` is not understood.
+    fn of(text: &'t [u8], shown: Option<u32>) -> Outcome<File<'t>> {
+        let (mut programs, mut first) = (HashMap::new(), None);
+        for (place, after, block) in lines(text) {
+            if !begins_program(block) {
+                continue;
+            }
+            let mut scan = Scan::new(Source { line: place.line, text: block });
+            if let Statement::Define(name) = read(&mut scan, &State::new(""))? {
+                if programs.insert(name, after).is_some() {
+                    let message = format!("the file has two programs {name}");
+                    return Err(scan.since(0, Rule::Twice, message));
+                }
+                first = first.or(Some((name, after)));
+            }
+        }
+        Ok(File { text, shown, programs, first })
+    }
+}
+
+fn begins_program(block: &[u8]) -> bool {
+    let text = block.trim_ascii_start();
+    let word = text.get(..3).unwrap_or_default();
+    word.eq_ignore_ascii_case(b"DEF") && text.get(3).is_some_and(u8::is_ascii_whitespace)
+}
+
+struct Run<'r, 'c> {
+    settings: &'r Settings,
+    state: State,
+    channel: &'r mut Channel<'c>,
+}
+
+impl Run<'_, '_> {
+    /// Runs a program from behind its `DEF` to its end; the line of that.
+    fn routine(&mut self, file: &File, from: BlockLocation, depth: usize) -> Outcome<u32> {
+        let mut place = from;
+        while let Some((text, after)) = line(file.text, place) {
+            let mut scan = Scan::new(Source { line: place.line, text });
+            let statement = read(&mut scan, &self.state)?;
+            let number = file.shown.unwrap_or(place.line);
+            scan.source.line = number;
+            match statement {
+                Statement::End | Statement::Return => return Ok(number),
+                Statement::Define(_) | Statement::DefineData => {
+                    let message = "a program begins within another: END is missing before it";
+                    return Err(scan.since(0, Rule::Program, message));
+                }
+                Statement::Call(name, arguments) => {
+                    if !self.state.called(&scan, name, &arguments, self.channel)? {
+                        self.call(file, &scan, (name, arguments.is_empty()), depth)?;
+                    }
+                }
+                other => self.statement(&scan, other)?,
+            }
+            place = after;
+        }
+        Err(Diagnostic::error(Rule::NoEnd, "the program has no END").line(place.line).into())
+    }
+
+    fn statement(&mut self, scan: &Scan, statement: Statement) -> Outcome {
+        let number = scan.source.line;
+        match statement {
+            Statement::Comment(text) => self.channel.report(number, Action::Comment(text)),
+            Statement::Motion(motion) => self.state.go(scan, &motion, self.channel),
+            Statement::Assign(target, value) => {
+                self.state.assign(scan, target, value, self.channel)
+            }
+            Statement::Wait(waiting) => self.state.wait(scan, waiting, self.channel),
+            Statement::Halt => self.channel.report(number, Action::Stop),
+            Statement::Declare(_, Some(_)) => {
+                let message =
+                    "values of declarations stand in the data list (.dat), not in the program";
+                Err(scan.since(0, Rule::Definition, message))
+            }
+            Statement::Declare(_, None)
+            | Statement::Nothing
+            | Statement::Define(_)
+            | Statement::DefineData
+            | Statement::End
+            | Statement::Return
+            | Statement::Call(_, _) => Ok(()),
+        }
+    }
+
+    /// A call of a program of this file, or of another one; whether it is called without arguments.
+    fn call(
+        &mut self,
+        file: &File,
+        scan: &Scan,
+        (name, plain): (Name, bool),
+        depth: usize,
+    ) -> Outcome {
+        let refused = |rule: Rule, message: String| Err(scan.since(0, rule, message));
+        if !plain {
+            let message = format!("{name} is called with arguments, which is not followed");
+            return refused(Rule::Argument, message);
+        }
+        if depth >= DEEPEST {
+            return refused(Rule::Nesting, format!("calls nest deeper than {DEEPEST}"));
+        }
+        self.channel.budget.jump().or_else(|message| refused(Rule::Endless, message))?;
+        if let Some(place) = file.programs.get(&name) {
+            return self.routine(file, *place, depth + 1).map(drop);
+        }
+        let folders = &self.settings.setup.folders;
+        let lower = format!("{}.src", name.as_str().to_ascii_lowercase());
+        let called = [format!("{name}.src"), lower].into_iter().find(|file| folders.have(file));
+        let Some(called) = called else {
+            let message = format!("the called program {name} is in no folder for called programs");
+            return refused(Rule::CalledProgram, message);
+        };
+        let text = folders.open(&called);
+        let text = text.map_err(|message| scan.since(0, Rule::CalledProgram, message))?;
+        let number = scan.source.line;
+        let inside = |found: Box<Diagnostic>| {
+            let message = format!("in {called}, line {}: {}", found.line, found.message);
+            Box::new(Diagnostic { message, ..*found }.line(number))
+        };
+        let other = File::of(&text, Some(number)).map_err(inside)?;
+        self.data(name)?;
+        match other.programs.get(&name) {
+            Some(place) => self.routine(&other, *place, depth + 1).map(drop).map_err(inside),
+            None => refused(Rule::CalledProgram, format!("{called} has no program {name}")),
+        }
+    }
+
+    /// The data list of a program, where a folder has it.
+    fn data(&mut self, name: Name) -> Outcome {
+        let folders = &self.settings.setup.folders;
+        let file = format!("{}.dat", name.as_str().to_ascii_lowercase());
+        if !folders.have(&file) {
+            return Ok(());
+        }
+        let text = folders.open(&file);
+        let text = text.map_err(|message| Diagnostic::error(Rule::CalledProgram, message))?;
+        for (place, _, block) in lines(&text) {
+            let mut scan = Scan::new(Source { line: place.line, text: block });
+            let listed = read(&mut scan, &self.state).and_then(|statement| match statement {
+                Statement::Declare(name, Some(value)) => {
+                    self.state.set(&scan, Target { name, index: None, field: None }, value)
+                }
+                Statement::Assign(target, value) => self.state.set(&scan, target, value),
+                _ => Ok(()),
+            });
+            listed.map_err(|found| Box::new(found.file(file.clone())))?;
+        }
+        Ok(())
+    }
+}

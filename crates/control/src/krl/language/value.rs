@@ -1,0 +1,112 @@
+//! Names and values.
+
+use geom::{Euler, Frame, Vec3};
+use std::fmt;
+
+/// Most letters of a name (KSS, "Names in KRL").
+const LONGEST: usize = 24;
+
+/// A name in capitals: KRL makes no difference of letters.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Name {
+    letters: [u8; LONGEST],
+    length: u8,
+}
+
+impl Name {
+    /// The name of that text; `None` where it is longer than a name may be.
+    pub(crate) fn of(text: &[u8]) -> Option<Name> {
+        let mut letters = [0; LONGEST];
+        letters.get_mut(..text.len())?.copy_from_slice(text);
+        letters.make_ascii_uppercase();
+        Some(Name { letters, length: text.len() as u8 })
+    }
+
+    /// Its letters.
+    pub(crate) fn as_str(&self) -> &str {
+        let letters = self.letters.get(..usize::from(self.length)).unwrap_or_default();
+        std::str::from_utf8(letters).unwrap_or_default()
+    }
+}
+
+impl fmt::Debug for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// What an expression comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    Number(f64),
+    Flag(bool),
+    /// An entry of an enumeration: `#BASE`.
+    Entry(Name),
+    Text(Box<str>),
+    /// An aggregate, field by field in the order of the text.
+    Fields(Vec<(Name, Value)>),
+    /// A frame that the operator has measured: `TOOL_DATA[3]`.
+    OfOperator,
+}
+
+/// The coordinates of a position.
+pub(crate) const COORDINATES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
+
+/// The axes of the arm.
+pub(crate) const AXES: [&str; 6] = ["A1", "A2", "A3", "A4", "A5", "A6"];
+
+/// The axes beyond it.
+pub(crate) const OUTER: [&str; 6] = ["E1", "E2", "E3", "E4", "E5", "E6"];
+
+impl Value {
+    /// What it is, for an error.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Value::Number(_) => "a number",
+            Value::Flag(_) => "TRUE or FALSE",
+            Value::Entry(_) => "an entry of an enumeration",
+            Value::Text(_) => "a text",
+            Value::Fields(_) => "an aggregate",
+            Value::OfOperator => "a frame of the operator",
+        }
+    }
+
+    /// Its number.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self {
+            Value::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// The number of a field.
+    pub(crate) fn field(&self, name: &str) -> Option<f64> {
+        let Value::Fields(fields) = self else { return None };
+        fields.iter().find(|(field, _)| field.as_str() == name)?.1.number()
+    }
+
+    /// Whether every field is one of `names`.
+    pub(crate) fn has_only(&self, names: &[&[&str]]) -> bool {
+        let Value::Fields(fields) = self else { return false };
+        fields.iter().all(|(field, _)| names.iter().any(|list| list.contains(&field.as_str())))
+    }
+}
+
+/// The frame of X, Y, Z (mm), A, B, C (degrees): turned about Z by A, about the new Y by B, about the new X by C.
+pub(crate) fn frame([x, y, z, a, b, c]: [f64; 6]) -> Frame {
+    let turns = [c, b, a].map(f64::to_radians);
+    Frame::from_mat3_translation(Euler::FixedXyz.matrix(turns), Vec3::new(x, y, z))
+}
+
+/// The same six numbers of a frame.
+pub(crate) fn coordinates(frame: &Frame) -> [f64; 6] {
+    let [c, b, a] = Euler::FixedXyz.angles(&frame.matrix3).map(f64::to_degrees);
+    let Vec3 { x, y, z } = frame.translation;
+    [x, y, z, a, b, c]
+}

@@ -1,0 +1,23 @@
+//! KRL, the language of KUKA's controllers (KRC2, KRC4): programs of motions, assignments, outputs and calls.
+//!
+//! `language` takes a line apart, `flow` goes through programs and what they call, `execution` keeps what is active and reports
+//! motions. What each statement does, with its source, is in `docs/controls/krl.md`. Control structures of hand-written programs
+//! (`IF`, `FOR`, `LOOP`) are refused, not skipped.
+
+mod execution;
+mod flow;
+mod language;
+
+use crate::Settings;
+use crate::kernel::Channel;
+use program::Outcome;
+
+/// Runs a program.
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
+    flow::run(settings, text, channel)
+}
+
+/// A statement of each word that is understood.
+pub(crate) fn vocabulary() -> Vec<String> {
+    language::SAMPLES.iter().map(|sample| String::from(*sample)).collect()
+}
