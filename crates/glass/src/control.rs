@@ -1,4 +1,4 @@
-//! Virtual machines: a program in, the pulses that it makes out. Nothing here knows how programs are written.
+//! Virtual machines: a program in, the places where the axes stop and the laser fires out. Nothing here knows how programs are written.
 //!
 //! A line that is not understood ends the reading with an error, and a coordinate that no line has stated is not zero.
 
@@ -14,32 +14,54 @@ pub struct Pulse {
     pub at: [f64; 3],
 }
 
+/// A place where the axes stop and the laser does not fire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// The line of the program, from 1.
+    pub line: u32,
+    /// Where each axis stands, mm; `None` where no line has sent it anywhere.
+    pub at: [Option<f64>; 3],
+    /// How many pulses were made before.
+    pub pulses: u32,
+}
+
+/// What a program does.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Run {
+    /// The sides of the block that the program states, mm.
+    pub block: Option<[f64; 3]>,
+    /// Its pulses, in their order.
+    pub pulses: Vec<Pulse>,
+    /// Where else the axes stop, in their order.
+    pub stops: Vec<Stop>,
+}
+
 /// Runs the program `text` on `machine`.
 ///
 /// # Errors
 /// The first line that the machine would not take, or that the program ends too early.
-pub fn read(text: &[u8], machine: &Machine) -> Result<Vec<Pulse>, Vec<Diagnostic>> {
+pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
     let read = match machine.program.format {
         Format::Numbered => numbered(text),
         Format::Points => points(text),
         Format::Gcode => gcode(text, machine.program.fire.as_deref().unwrap_or_default()),
     };
-    let pulses = read.map_err(|(line, message)| {
+    let run = read.map_err(|(line, message)| {
         let number = u32::try_from(line).unwrap_or(u32::MAX);
         let shown =
             text.split(|byte| *byte == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
         let found = Diagnostic::error(Rule::Program, message).on(number, shown);
         vec![found.help("write the program anew; docs/sources/glass.md says what a program is")]
     })?;
-    if pulses.len() as u64 > machine.program.points {
+    if run.pulses.len() as u64 > machine.program.points {
         let message = format!(
             "{} pulses are more than the {} that the controller holds",
-            pulses.len(),
+            run.pulses.len(),
             machine.program.points
         );
         return Err(vec![Diagnostic::error(Rule::Points, message).help("take fewer points")]);
     }
-    Ok(pulses)
+    Ok(run)
 }
 
 /// A line, from 1, and what is wrong with it.
@@ -58,6 +80,12 @@ fn lines(text: &[u8]) -> Result<impl Iterator<Item = (usize, &str)>, Wrong> {
         ));
     }
     Ok(text.lines().enumerate().map(|(i, line)| (i + 1, line)))
+}
+
+/// A whole number: digits alone, without a sign.
+fn whole(word: &str) -> Option<u64> {
+    let digits = !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit());
+    digits.then(|| word.parse().ok()).flatten()
 }
 
 /// A plain decimal number: sign, digits, point, digits.
@@ -79,8 +107,8 @@ fn place<'w>(words: &mut impl Iterator<Item = &'w str>) -> Result<[f64; 3], Stri
     Ok(at)
 }
 
-fn numbered(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
-    let mut pulses = Vec::new();
+fn numbered(text: &[u8]) -> Result<Run, Wrong> {
+    let mut run = Run::default();
     let mut promised: Option<u64> = None;
     let mut ended = false;
     let mut last = 0;
@@ -92,7 +120,7 @@ fn numbered(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
         }
         let mut words = line.split(' ');
         let number = words.next().and_then(|word| word.strip_prefix('N'));
-        if number.and_then(|number| number.parse().ok()) != Some(at) {
+        if number.and_then(whole) != Some(at as u64) {
             return Err((at, format!("the line must have the number N{at}")));
         }
         match (words.next(), promised) {
@@ -100,22 +128,22 @@ fn numbered(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
                 if words.next() != Some("BLOCK") {
                     return wrong("BEGIN needs BLOCK and its sides");
                 }
-                place(&mut words).map_err(|message| (at, message))?;
+                run.block = Some(place(&mut words).map_err(|message| (at, message))?);
                 let count = (words.next() == Some("POINTS")).then(|| words.next()).flatten();
-                promised = count.and_then(|count| count.parse().ok());
+                promised = count.and_then(whole);
                 if promised.is_none() {
                     return wrong("BEGIN needs POINTS and their number");
                 }
             }
             (Some("PULSE"), Some(_)) => {
                 let place = place(&mut words).map_err(|message| (at, message))?;
-                pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
+                run.pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
             }
             (Some("END"), Some(count)) => {
-                if pulses.len() as u64 != count {
+                if run.pulses.len() as u64 != count {
                     return Err((
                         at,
-                        format!("{} pulses where BEGIN states {count}", pulses.len()),
+                        format!("{} pulses where BEGIN states {count}", run.pulses.len()),
                     ));
                 }
                 ended = true;
@@ -127,10 +155,10 @@ fn numbered(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
             return wrong("the command has a word too many");
         }
     }
-    if ended { Ok(pulses) } else { Err((last, String::from("the program has no END"))) }
+    if ended { Ok(run) } else { Err((last, String::from("the program has no END"))) }
 }
 
-fn points(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
+fn points(text: &[u8]) -> Result<Run, Wrong> {
     let mut pulses = Vec::new();
     for (at, line) in lines(text)? {
         if line.starts_with('#') {
@@ -142,58 +170,106 @@ fn points(text: &[u8]) -> Result<Vec<Pulse>, Wrong> {
         };
         pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
     }
-    Ok(pulses)
+    Ok(Run { pulses, ..Run::default() })
 }
 
-/// The G-code of LinuxCNC and GRBL, as far as an engraver needs it: G21, G90, G0 and G1 with X, Y and Z, the word that fires, and M2
-/// or M30.
-fn gcode(text: &[u8], fire: &str) -> Result<Vec<Pulse>, Wrong> {
-    let mut pulses = Vec::new();
-    let (mut metric, mut absolute, mut motion, mut ended) = (false, false, false, false);
-    let mut at: [Option<f64>; 3] = [None; 3];
-    let mut last = 0;
-    for (number, line) in lines(text)? {
-        last = number;
-        let wrong = |message: String| Err((number, message));
-        let line = line.trim();
-        if line.is_empty()
-            || line.starts_with(';')
-            || (line.starts_with('(') && line.ends_with(')'))
-        {
-            continue;
+/// The G-code of LinuxCNC and GRBL, as far as an engraver needs it: G21, G90, G0 with X, Y and Z, the word that fires, and M2 or
+/// M30. G1 is none of its words: it needs a feed, and how long it takes depends on that.
+struct Gcode<'f> {
+    fire: &'f str,
+    metric: bool,
+    absolute: bool,
+    rapid: bool,
+    ended: bool,
+    at: [Option<f64>; 3],
+    /// The line of a motion after which the laser has not fired.
+    open: Option<u32>,
+    run: Run,
+}
+
+/// Whether a line is a comment and nothing more: what stands between two comments is run.
+fn is_comment(line: &str) -> bool {
+    let inner = line.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
+    line.starts_with(';') || inner.is_some_and(|inner| !inner.contains(['(', ')']))
+}
+
+impl Gcode<'_> {
+    /// Notes the place of a motion after which the laser did not fire.
+    fn pass(&mut self) {
+        if let Some(line) = self.open.take() {
+            let pulses = u32::try_from(self.run.pulses.len()).unwrap_or(u32::MAX);
+            self.run.stops.push(Stop { line, at: self.at, pulses });
         }
-        if ended {
-            return wrong(String::from("nothing may follow the end of the program"));
+    }
+
+    fn line(&mut self, number: u32, line: &str) -> Result<(), String> {
+        if line.is_empty() || is_comment(line) {
+            return Ok(());
         }
-        if line == fire {
-            let [Some(x), Some(y), Some(z)] = at else {
-                return wrong(String::from(
-                    "a pulse where not every axis has been sent to a place",
-                ));
+        if self.ended {
+            return Err(String::from("nothing may follow the end of the program"));
+        }
+        if line == self.fire {
+            let [Some(x), Some(y), Some(z)] = self.at else {
+                return Err(String::from("a pulse where not every axis has been sent to a place"));
             };
-            pulses.push(Pulse { line: u32::try_from(number).unwrap_or(u32::MAX), at: [x, y, z] });
-            continue;
+            self.open = None;
+            self.run.pulses.push(Pulse { line: number, at: [x, y, z] });
+            return Ok(());
         }
+        if ["M2", "M30"].contains(&line) {
+            self.ended = true;
+            self.pass();
+            return Ok(());
+        }
+        let mut sent = [None; 3];
         for word in line.split_whitespace() {
             match word {
-                "G21" => metric = true,
-                "G90" => absolute = true,
-                "G0" | "G1" => motion = true,
-                "M2" | "M30" => ended = true,
+                "G21" => self.metric = true,
+                "G90" => self.absolute = true,
+                "G0" => self.rapid = true,
                 _ => {
                     let axis = ["X", "Y", "Z"].iter().position(|name| word.starts_with(name));
                     let (Some(axis), Some(value)) = (axis, word.get(1..).and_then(decimal)) else {
-                        return wrong(format!("`{word}` is no word of this machine"));
+                        return Err(format!("`{word}` is no word of this machine"));
                     };
-                    if !(metric && absolute && motion) {
-                        return wrong(String::from(
-                            "an axis moves before G21, G90 and G0 or G1 are set",
-                        ));
+                    if !(self.metric && self.absolute && self.rapid) {
+                        return Err(String::from("an axis moves before G21, G90 and G0 are set"));
                     }
-                    at[axis] = Some(value);
+                    if sent[axis].replace(value).is_some() {
+                        return Err(format!("`{word}` is the second word of its axis in the line"));
+                    }
                 }
             }
         }
+        if sent.iter().any(Option::is_some) {
+            self.pass();
+            self.at = [0, 1, 2].map(|axis| sent[axis].or(self.at[axis]));
+            self.open = Some(number);
+        }
+        Ok(())
     }
-    if ended { Ok(pulses) } else { Err((last, String::from("the program has no end (M2)"))) }
+}
+
+fn gcode(text: &[u8], fire: &str) -> Result<Run, Wrong> {
+    let mut machine = Gcode {
+        fire,
+        metric: false,
+        absolute: false,
+        rapid: false,
+        ended: false,
+        at: [None; 3],
+        open: None,
+        run: Run::default(),
+    };
+    let mut last = 0;
+    for (number, line) in lines(text)? {
+        last = number;
+        let own = u32::try_from(number).unwrap_or(u32::MAX);
+        machine.line(own, line.trim()).map_err(|message| (number, message))?;
+    }
+    match machine.ended {
+        true => Ok(machine.run),
+        false => Err((last, String::from("the program has no end (M2)"))),
+    }
 }

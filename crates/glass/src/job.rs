@@ -1,13 +1,15 @@
 //! A job: bodies and points placed in a block, made into a cloud, ordered, written, read back and proven.
 
 use crate::cloud::{self, Distances, Point};
+use crate::control::Run;
 use crate::machine::{Lens, Machine};
 use crate::material::Material;
 use crate::mesh::{self, Health, Mesh, Shape};
 use crate::optics::{self, Beam, Cut, Ray};
 use crate::order::{self, Effort, Shadow};
 use crate::proof::{self, Proof};
-use crate::{control, post, sample, weld};
+use crate::sample::{self, Apart};
+use crate::{control, post, weld};
 use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
 use serde::Serialize;
@@ -80,18 +82,20 @@ pub struct Report {
     pub spacing: f64,
     /// What it is.
     pub distances: Distances,
-    /// What is unusual about the body; of points nothing.
-    pub health: Option<Health>,
+    /// What is unusual about each body; of points nothing.
+    pub health: Vec<Health>,
     /// Index of refraction.
     pub index: f64,
     /// The ray by which the focus is found.
     pub ray: Ray,
-    /// How far the two rays are apart at the deepest point, mm of drive.
+    /// How much deeper the deepest point lies when the other ray is meant, mm in the glass.
     pub rays_apart: f64,
     /// Where side faces cut the beam.
     pub cut: Cut,
-    /// Ticks as planned.
-    pub planned_ticks: u64,
+    /// Ticks as planned; of a program that was not made here none.
+    pub planned_ticks: Option<u64>,
+    /// Rules that were let pass, and broken.
+    pub accepted: Vec<Rule>,
     /// What the proof found.
     pub proof: Proof,
 }
@@ -101,8 +105,10 @@ pub struct Report {
 pub struct Made {
     /// The program.
     pub text: Vec<u8>,
-    /// The cloud in the frame of the block, in the order of the program, µm.
+    /// The cloud in the frame of the block, µm; of a program that was made here in its order.
     pub cloud: Vec<Point>,
+    /// What the program does, as the virtual machine reads it.
+    pub run: Run,
     /// The report.
     pub report: Report,
     /// Whether it is proven.
@@ -125,97 +131,176 @@ pub fn make(
     machine: &Machine,
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
-    let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
-    check(&settings.placing, &lens)?;
-    let spacing = settings.spacing.unwrap_or(lens.spacing);
-    let micrometres = spacing_in_micrometres(spacing, &lens)?;
-    let mut findings = Vec::new();
-
-    let (mesh, points) = parted(shapes);
-    let health = (!mesh.triangles.is_empty()).then(|| mesh.health());
-    findings.extend(health.and_then(unhealthy));
-    let (mesh, points, scale) = place(mesh, points, &settings.placing)?;
-    let (cloud, welded) = discretise(&mesh, &points, micrometres, settings.seed)?;
-    if cloud.len() as u64 > machine.program.points {
-        let message = format!(
-            "{} points are more than the {} that {} holds",
-            cloud.len(),
-            machine.program.points,
-            machine.title
-        );
-        return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
-    }
-
-    let beam = Beam::new(&lens, machine.laser.beam, material.index);
-    let planned = Plan { cloud, lens, beam, machine, settings };
-    let cut = optics::cut(&planned.cloud, settings.placing.block, beam.slope_in_glass());
-    findings.extend(cut_off(cut, settings.placing.margin));
-    let (cloud, axes) = planned.ordered();
-    let distances = cloud::distances(&cloud, i64::from(micrometres));
-    if distances.too_close > 0 {
-        let message =
-            format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
-        return Err(error(
-            Rule::Spacing,
-            message,
-            "this is a mistake in Toolpost: report it with the body",
-        ));
-    }
+    let mut job = Job::new(shapes, material, machine, settings)?;
+    let axes = job.order();
     let order: Vec<u32> = (0..axes.len() as u32).collect();
-    let planned_ticks = 1 + order::ticks(&axes, &order, &machine.clock());
+    let planned = 1 + order::ticks(&axes, &order, &machine.clock());
     let text = post::write(&axes, machine, settings.placing.block);
-
-    let task = proof::Task {
-        cloud: &cloud,
-        machine,
-        lens: &lens,
-        index: material.index,
-        block: settings.placing.block,
-        accept_shadowed: settings.accept_shadowed,
-    };
-    let judged = control::read(&text, machine).and_then(|pulses| proof::prove(&pulses, &task));
-    let (proof, found) = judged?;
-    findings.extend(found);
-    if proof.ticks != planned_ticks {
-        let message =
-            format!("the program takes {} ticks, planned were {planned_ticks}", proof.ticks);
-        findings.extend(error(
-            Rule::Ticks,
-            message,
-            "this is a mistake in Toolpost: report it with the body",
-        ));
-    }
-    let (low, high) = cloud::bounds(&cloud).unwrap_or_default();
-    findings.extend(small(cloud::place(low), cloud::place(high), &settings.placing));
-    let deepest = settings.placing.block[2] - f64::from(low[2]) * 1e-3;
-    let report = Report {
-        points: cloud.len() as u64,
-        welded,
-        from: low.map(|value| f64::from(value) / 1e3),
-        to: high.map(|value| f64::from(value) / 1e3),
-        scale,
-        spacing,
-        distances,
-        health,
-        index: material.index,
-        ray: settings.ray,
-        rays_apart: deepest * (beam.drive(Ray::Paraxial) - beam.drive(Ray::Marginal)),
-        cut,
-        planned_ticks,
-        proof,
-    };
-    let proven = !findings.iter().any(Diagnostic::is_error);
-    Ok(Made { text, cloud, report, proven, findings })
+    job.judge(text, Some(planned))
 }
 
-/// What is needed to order a cloud.
-struct Plan<'m> {
+/// Proves the program `text`, also one edited by hand, against `shapes` in one block of `material`: the cloud is made anew.
+///
+/// # Errors
+/// As [`make`]; or where the machine would not take the program.
+pub fn prove(
+    text: Vec<u8>,
+    shapes: Vec<Shape>,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+) -> Result<Made, Vec<Diagnostic>> {
+    Job::new(shapes, material, machine, settings)?.judge(text, None)
+}
+
+/// A cloud in its block, and what was found of it.
+struct Job<'m> {
     cloud: Vec<Point>,
+    welded: u64,
+    scale: f64,
+    spacing: f64,
+    micrometres: u32,
+    health: Vec<Health>,
     lens: Lens,
     beam: Beam,
+    material: &'m Material,
     machine: &'m Machine,
     settings: &'m Settings,
+    findings: Vec<Diagnostic>,
 }
+
+impl<'m> Job<'m> {
+    fn new(
+        shapes: Vec<Shape>,
+        material: &'m Material,
+        machine: &'m Machine,
+        settings: &'m Settings,
+    ) -> Result<Job<'m>, Vec<Diagnostic>> {
+        let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
+        check(&settings.placing, &lens)?;
+        let spacing = settings.spacing.unwrap_or(lens.spacing);
+        let micrometres = spacing_in_micrometres(spacing, &lens)?;
+        let beam = Beam::new(&lens, machine.laser.beam, material.index);
+        let (mesh, points, health) = parted(shapes);
+        let findings = health.iter().filter_map(unhealthy).collect();
+        let (mesh, points, scale) = place(mesh, points, &settings.placing)?;
+        // Two heights are rounded by half a µm of drive each.
+        let apart = Apart { spacing: micrometres, lost: 1.0 / beam.drive(Ray::Marginal) };
+        let (cloud, welded) = discretise(&mesh, &points, apart, settings.seed)?;
+        if cloud.len() as u64 > machine.program.points {
+            let message = format!(
+                "{} points are more than the {} that {} holds",
+                cloud.len(),
+                machine.program.points,
+                machine.title
+            );
+            let help = "take a larger --spacing or a smaller --scale";
+            return Err(error(Rule::Points, message, help));
+        }
+        Ok(Job {
+            cloud,
+            welded,
+            scale,
+            spacing,
+            micrometres,
+            health,
+            lens,
+            beam,
+            material,
+            machine,
+            settings,
+            findings,
+        })
+    }
+
+    /// Puts the cloud in the order of its pulses; answers where the axes stand at each point, µm.
+    fn order(&mut self) -> Vec<Point> {
+        let Job { lens, beam, machine, settings, .. } = *self;
+        let top = settings.placing.block[2] * 1e3;
+        let drive = beam.drive(settings.ray);
+        let at = |point: &Point| {
+            [point[0], point[1], ((f64::from(point[2]) - top) * drive).round() as i32]
+        };
+        let axes: Vec<Point> = self.cloud.iter().map(at).collect();
+        let shadow = Shadow {
+            slope: beam.slope_in_glass() * WIDER,
+            radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
+        };
+        let cloud = &self.cloud;
+        let order = match settings.order {
+            Order::Fastest => {
+                order::fastest(cloud, &axes, shadow, &machine.clock(), settings.effort)
+            }
+            Order::Kdz(up, down) => order::kdz(cloud, up, down),
+            Order::Layers(height) => {
+                let height = height.or(settings.spacing).unwrap_or(lens.spacing);
+                order::layers(cloud, (height * 1e3).round().max(1.0) as u32)
+            }
+        };
+        let own = |all: &[Point]| order.iter().map(|&i| all[i as usize]).collect();
+        let axes = own(&axes);
+        self.cloud = own(cloud);
+        axes
+    }
+
+    /// Reads the program back and compares it with the cloud; `planned` are the ticks of the order that was written.
+    fn judge(mut self, text: Vec<u8>, planned: Option<u64>) -> Result<Made, Vec<Diagnostic>> {
+        let Job { spacing, lens, beam, material, machine, settings, .. } = self;
+        let (cloud, mut findings) = (&self.cloud, std::mem::take(&mut self.findings));
+        let placing = &settings.placing;
+        let cut = optics::cut(cloud, placing.block, beam.slope_in_glass());
+        findings.extend(cut_off(cut, placing.margin));
+        let distances = cloud::distances(cloud, i64::from(self.micrometres));
+        if distances.too_close > 0 {
+            let message =
+                format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
+            return Err(error(Rule::Spacing, message, MISTAKE));
+        }
+        let task = proof::Task {
+            cloud,
+            machine,
+            lens: &lens,
+            index: material.index,
+            block: placing.block,
+            spacing,
+            accept_shadowed: settings.accept_shadowed,
+        };
+        let run = control::read(&text, machine)?;
+        let (proof, found) = proof::prove(&run, &task)?;
+        findings.extend(found);
+        if let Some(planned) = planned.filter(|planned| *planned != proof.ticks) {
+            let message =
+                format!("the program takes {} ticks, planned were {planned}", proof.ticks);
+            findings.extend(error(Rule::Ticks, message, MISTAKE));
+        }
+        let (low, high) = cloud::bounds(cloud).unwrap_or_default();
+        findings.extend(small(cloud::place(low), cloud::place(high), placing));
+        let deepest = placing.block[2] - f64::from(low[2]) * 1e-3;
+        let accepts = settings.accept_shadowed && proof.shadowed > 0;
+        let report = Report {
+            points: cloud.len() as u64,
+            welded: self.welded,
+            from: low.map(|value| f64::from(value) / 1e3),
+            to: high.map(|value| f64::from(value) / 1e3),
+            scale: self.scale,
+            spacing,
+            distances,
+            health: self.health,
+            index: material.index,
+            ray: settings.ray,
+            rays_apart: deepest * (beam.drive(Ray::Paraxial) / beam.drive(Ray::Marginal) - 1.0),
+            cut,
+            planned_ticks: planned,
+            accepted: if accepts { vec![Rule::Shadowed] } else { vec![] },
+            proof,
+        };
+        let proven = !findings.iter().any(Diagnostic::is_error);
+        Ok(Made { text, cloud: self.cloud, run, report, proven, findings })
+    }
+}
+
+/// The way out of what cannot be.
+const MISTAKE: &str = "this is a mistake in Toolpost: report it with the body";
 
 /// mm in an inch.
 const INCH: f64 = 25.4;
@@ -241,35 +326,6 @@ fn small(low: DVec3, high: DVec3, placing: &Placing) -> Option<Diagnostic> {
 
 /// The cone that the planning keeps is wider by this part than the rule's, so that rounding breaks nothing.
 const WIDER: f64 = 1.0 + 1e-9;
-
-impl Plan<'_> {
-    /// The cloud in its order, and where the axes stand at each point, µm.
-    fn ordered(self) -> (Vec<Point>, Vec<Point>) {
-        let Plan { cloud, lens, beam, machine, settings } = self;
-        let top = settings.placing.block[2] * 1e3;
-        let drive = beam.drive(settings.ray);
-        let at = |point: &Point| {
-            [point[0], point[1], ((f64::from(point[2]) - top) * drive).round() as i32]
-        };
-        let axes: Vec<Point> = cloud.iter().map(at).collect();
-        let shadow = Shadow {
-            slope: beam.slope_in_glass() * WIDER,
-            radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
-        };
-        let order = match settings.order {
-            Order::Fastest => {
-                order::fastest(&cloud, &axes, shadow, &machine.clock(), settings.effort)
-            }
-            Order::Kdz(up, down) => order::kdz(&cloud, up, down),
-            Order::Layers(height) => {
-                let height = height.or(settings.spacing).unwrap_or(lens.spacing);
-                order::layers(&cloud, (height * 1e3).round().max(1.0) as u32)
-            }
-        };
-        let own = |all: &[Point]| order.iter().map(|&i| all[i as usize]).collect();
-        (own(&cloud), own(&axes))
-    }
-}
 
 fn check(placing: &Placing, lens: &Lens) -> Result<(), Vec<Diagnostic>> {
     let Placing { block, margin, .. } = *placing;
@@ -308,20 +364,25 @@ fn spacing_in_micrometres(spacing: f64, lens: &Lens) -> Result<u32, Vec<Diagnost
     Ok(micrometres as u32)
 }
 
-/// All bodies as one, and all points.
-fn parted(shapes: Vec<Shape>) -> (Mesh, Vec<DVec3>) {
-    let (mut mesh, mut points) = (Mesh::default(), Vec::new());
+/// All bodies as one, all points, and what is unusual about each body.
+fn parted(shapes: Vec<Shape>) -> (Mesh, Vec<DVec3>, Vec<Health>) {
+    let (mut mesh, mut points, mut health) = (Mesh::default(), Vec::new(), Vec::new());
     for shape in shapes {
         match shape {
-            Shape::Mesh(body) => mesh.join(body),
+            Shape::Mesh(body) => {
+                if !body.triangles.is_empty() {
+                    health.push(body.health());
+                }
+                mesh.join(body);
+            }
             Shape::Points(more) => points.extend(more),
         }
     }
-    (mesh, points)
+    (mesh, points, health)
 }
 
-fn unhealthy(health: Health) -> Option<Diagnostic> {
-    let Health { open, first_open, flat, .. } = health;
+fn unhealthy(health: &Health) -> Option<Diagnostic> {
+    let Health { open, first_open, flat, crowded, turned, volume } = *health;
     let mut parts = Vec::new();
     if let (true, Some([x, y, z])) = (open > 0, first_open) {
         parts.push(format!("{open} open edges, one of them at {x:.3} {y:.3} {z:.3}"));
@@ -329,8 +390,16 @@ fn unhealthy(health: Health) -> Option<Diagnostic> {
     if flat > 0 {
         parts.push(format!("{flat} triangles without area"));
     }
+    if crowded > 0 {
+        parts.push(format!("{crowded} edges of more than two triangles"));
+    }
+    if turned > 0 {
+        parts.push(format!("{turned} edges at which a triangle is inside out"));
+    } else if open == 0 && volume < 0.0 {
+        parts.push(String::from("all triangles inside out"));
+    }
     let found = Diagnostic::warning(Rule::Mesh, format!("the body has {}", parts.join("; ")));
-    (!parts.is_empty()).then(|| found.help("its surface is engraved as it is; close it in the program that made it if holes are not wanted"))
+    (!parts.is_empty()).then(|| found.help("its surface is engraved as it is; repair it in the program that made it if that is not wanted"))
 }
 
 fn cut_off(cut: Cut, margin: f64) -> Option<Diagnostic> {
@@ -422,17 +491,17 @@ fn place(
 fn discretise(
     mesh: &Mesh,
     points: &[DVec3],
-    spacing: u32,
+    apart: Apart,
     seed: u64,
 ) -> Result<(Vec<Point>, u64), Vec<Diagnostic>> {
     // A saturated packing has 0.6966 points in a square of the spacing; some more where it is curved.
-    let expected = mesh.area() * 1e6 / f64::from(spacing).powi(2);
+    let expected = mesh.area() * 1e6 / f64::from(apart.spacing).powi(2);
     if expected > MOST_POINTS {
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
         return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
-    let mut cloud = sample::surface(mesh, spacing, seed);
+    let mut cloud = sample::surface(mesh, apart, seed);
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
     let Some(given) = given else {
         return Err(error(
@@ -444,7 +513,7 @@ fn discretise(
     let asked = cloud.len() + given.len();
     if !given.is_empty() {
         cloud.extend(given);
-        cloud = weld::welded(&cloud, spacing);
+        cloud = weld::welded(&cloud, apart.spacing);
     }
     if cloud.is_empty() {
         return Err(error(

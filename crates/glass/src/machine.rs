@@ -107,6 +107,29 @@ pub struct Lens {
     pub block: f64,
 }
 
+impl Lens {
+    /// Whether it is the lens of this focal length (mm).
+    fn is(&self, focal: f64) -> bool {
+        (self.focal - focal).abs() < 1e-6
+    }
+
+    /// A pulse belongs to the point in whose crack it lies: cracks that reach half way to the next point, and more, prove nothing.
+    fn check(&self, beam: f64) -> Result<(), String> {
+        let Lens { focal, crack: [diameter, height], spacing, .. } = *self;
+        if focal < beam {
+            return Err(format!(
+                "a lens of f = {focal} mm is shorter than its beam of {beam} mm is wide"
+            ));
+        }
+        if diameter.max(height) > 2.0 * spacing {
+            return Err(format!(
+                "the crack of f = {focal} mm, {diameter} x {height} mm, is more than twice as large as its spacing of {spacing} mm"
+            ));
+        }
+        Ok(())
+    }
+}
+
 /// How programs are written.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -167,37 +190,23 @@ impl Machine {
     }
 
     fn check(&self) -> Result<(), String> {
-        let Laser { rate, wavelength, beam } = self.laser;
-        let mut positive = vec![
-            (String::from("laser.rate"), rate),
-            (String::from("laser.wavelength"), wavelength),
-            (String::from("laser.beam"), beam),
-        ];
-        for (name, axis) in self.axes.named() {
-            let name = name.to_lowercase();
-            positive.push((format!("axes.{name}.acceleration"), axis.acceleration));
-            positive.push((format!("axes.{name}.speed"), axis.speed));
-            positive.push((
-                format!("axes.{name}: the length of `travel`"),
-                axis.travel[1] - axis.travel[0],
-            ));
-        }
-        for lens in &self.lenses {
-            let Lens { focal, crack, spacing, block } = *lens;
-            positive.push((String::from("lenses.focal"), focal));
-            positive.extend(crack.map(|size| (String::from("lenses.crack"), size)));
-            positive.push((String::from("lenses.spacing"), spacing));
-            positive.push((String::from("lenses.block"), block));
-            if focal < beam {
+        for (name, value, range) in self.figures() {
+            // NaN is in no range.
+            if !(range[0]..=range[1]).contains(&value) {
                 return Err(format!(
-                    "a lens of f = {focal} mm is shorter than its beam of {beam} mm is wide"
+                    "{name} must be from {} to {}, not {value}",
+                    range[0], range[1]
                 ));
             }
         }
-        if let Some((name, value)) =
-            positive.iter().find(|(_, value)| !(*value > 0.0 && value.is_finite()))
-        {
-            return Err(format!("{name} must be more than 0, not {value}"));
+        if self.lenses.is_empty() {
+            return Err(String::from("there is no lens: add [[lenses]]"));
+        }
+        for (i, lens) in self.lenses.iter().enumerate() {
+            lens.check(self.laser.beam)?;
+            if self.lenses[..i].iter().any(|other| other.is(lens.focal)) {
+                return Err(format!("two lenses have f = {} mm: leave one out", lens.focal));
+            }
         }
         match (&self.program.fire, self.program.format) {
             (None, Format::Gcode) => {
@@ -213,12 +222,37 @@ impl Machine {
         }
     }
 
+    /// Every figure with its name, and from what to what it may be.
+    fn figures(&self) -> Vec<(String, f64, [f64; 2])> {
+        let Laser { rate, wavelength, beam } = self.laser;
+        let mut figures = vec![
+            (String::from("laser.rate"), rate, [0.1, 1e6]),
+            (String::from("laser.wavelength"), wavelength, [100.0, 20_000.0]),
+            (String::from("laser.beam"), beam, [0.1, 100.0]),
+        ];
+        for (name, axis) in self.axes.named() {
+            let name = name.to_lowercase();
+            figures.push((format!("axes.{name}.acceleration"), axis.acceleration, [1e-3, 1e4]));
+            figures.push((format!("axes.{name}.speed"), axis.speed, [1e-4, 100.0]));
+            let [low, high] = axis.travel;
+            figures.push((format!("axes.{name}: the length of `travel`"), high - low, [0.1, 1e4]));
+            figures.push((format!("axes.{name}.travel[0]"), low, [-1e4, 1e4]));
+        }
+        for Lens { focal, crack, spacing, block } in &self.lenses {
+            figures.push((String::from("lenses.focal"), *focal, [1.0, 2000.0]));
+            figures.extend(crack.map(|size| (String::from("lenses.crack"), size, [1e-3, 1.0])));
+            figures.push((String::from("lenses.spacing"), *spacing, [1e-3, 10.0]));
+            figures.push((String::from("lenses.block"), *block, [1.0, 1000.0]));
+        }
+        figures
+    }
+
     /// The lens of this focal length (mm).
     ///
     /// # Errors
     /// The machine has none.
     pub fn lens(&self, focal: f64) -> Result<Lens, Box<Diagnostic>> {
-        let found = self.lenses.iter().copied().find(|lens| (lens.focal - focal).abs() < 1e-6);
+        let found = self.lenses.iter().copied().find(|lens| lens.is(focal));
         found.ok_or_else(|| {
             let all: Vec<String> = self.lenses.iter().map(|lens| lens.focal.to_string()).collect();
             let found = Diagnostic::error(

@@ -1,12 +1,14 @@
 //! The judge: pulses of a program compared with the cloud that they are to make.
 //!
-//! Every pulse lies within the crack of its point, no point is lost and none gets two pulses, the axes stay within their travels, and no
-//! finished point shadows one below it. The focus is traced by Snell's law, and the shadow is looked for in a tree of boxes: neither is shared with the
-//! planning. The cloud is that of the job; its minimum distance is proven by [`crate::cloud::distances`].
+//! Every pulse lies within the crack of its point, no point is lost and none gets two pulses, no two pulses are nearer than the
+//! spacing, the axes stay within their travels, and no finished point shadows one below it. The focus is traced by Snell's law, and
+//! the shadow is looked for in a tree of boxes: neither is shared with the planning. The cloud is that of the job; its minimum
+//! distance is proven by [`crate::cloud::distances`].
 
-use crate::cloud::{Grid, Point};
-use crate::control::Pulse;
+use crate::cloud::{self, Grid, Pair, Point};
+use crate::control::{Pulse, Run};
 use crate::machine::{Lens, Machine};
+use glam::DVec3;
 use program::{Diagnostic, Findings, Rule};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -24,6 +26,8 @@ pub struct Task<'t> {
     pub index: f64,
     /// Sides of the block, mm.
     pub block: [f64; 3],
+    /// Smallest distance of two pulses, mm.
+    pub spacing: f64,
     /// Whether shadowed points pass.
     pub accept_shadowed: bool,
 }
@@ -37,6 +41,10 @@ pub struct Proof {
     pub across: f64,
     /// And along it, mm.
     pub along: f64,
+    /// The nearest two pulses in the glass, by their numbers from 0; `None` where no two are within twice the spacing.
+    pub nearest: Option<Pair>,
+    /// Pairs of pulses that are nearer than the spacing.
+    pub too_close: u64,
     /// Points that a point finished before them shadows.
     pub shadowed: u64,
     /// Ticks of the laser.
@@ -54,47 +62,35 @@ fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
     (in_air.tan() / in_glass.tan(), in_glass.tan())
 }
 
-/// Compares `pulses` with `task`.
+/// Compares the pulses of `run` with `task`.
 ///
 /// # Errors
 /// Where there are no pulses.
-pub fn prove(pulses: &[Pulse], task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Diagnostic>> {
+pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let pulses = &run.pulses;
     if pulses.is_empty() {
         let found = Diagnostic::error(Rule::Lost, "the program makes no pulse");
         return Err(vec![found.help("write the program anew")]);
     }
     let mut findings = Findings::default();
-    travels(pulses, task, &mut findings);
+    findings_of_block(run, task, &mut findings);
+    travels(run, task, &mut findings);
     let (deeper, slope) = depth(task.lens, task.machine.laser.beam, task.index);
     let in_glass = |pulse: &Pulse| [pulse.at[0], pulse.at[1], task.block[2] + pulse.at[2] * deeper];
     let (order, across, along) = matched(pulses, task, in_glass, &mut findings);
+    let places: Vec<DVec3> = pulses.iter().map(|pulse| DVec3::from(in_glass(pulse))).collect();
+    let (nearest, too_close) = distances(&places, task.spacing);
+    let apart = apart(nearest, too_close, pulses, task.spacing, deeper);
     let shadowed = shadows(&order, task.cloud, slope, 500.0 * task.lens.crack[0]);
-    let pair = shadowed.iter().min();
-    if let (Some(&(below, above)), false) = (pair, task.accept_shadowed) {
-        let show = |i: u32| {
-            let [x, y, z] = task.cloud[i as usize].map(|value| f64::from(value) * 1e-3);
-            format!("{x:.3} {y:.3} {z:.3}")
-        };
-        let message = format!(
-            "{} points are made below a finished point that scatters their beam; the first one at {} mm, below {} mm",
-            shadowed.len(),
-            show(order[below as usize]),
-            show(order[above as usize])
-        );
-        findings.push(
-            Diagnostic::error(Rule::Shadowed, message).line(pulses[below as usize].line).help(
-                "order by `--order fastest`, which keeps the rule, or add `--accept shadowed`",
-            ),
-        );
-    }
-    let clock = task.machine.clock();
-    let micrometres = |pulse: &Pulse| pulse.at.map(|value| (value * 1e3).round() as i32);
-    let step = |pair: &[Pulse]| u64::from(clock.step(micrometres(&pair[0]), micrometres(&pair[1])));
-    let ticks = 1 + pulses.par_windows(2).map(step).sum::<u64>();
+    let hidden = finding_of_shadows(&shadowed, &order, pulses, task);
+    apart.into_iter().chain(hidden).for_each(|found| findings.push(found));
+    let ticks = ticks(run, task.machine);
     let proof = Proof {
         pulses: pulses.len() as u64,
         across,
         along,
+        nearest,
+        too_close,
         shadowed: shadowed.len() as u64,
         ticks,
         seconds: ticks as f64 / task.machine.laser.rate,
@@ -103,14 +99,147 @@ pub fn prove(pulses: &[Pulse], task: &Task) -> Result<(Proof, Vec<Diagnostic>), 
     Ok((proof, findings.finish()))
 }
 
-/// Every axis stays within its travel.
-fn travels(pulses: &[Pulse], task: &Task, findings: &mut Findings) {
+/// The program states the block that the task has.
+fn findings_of_block(run: &Run, task: &Task, findings: &mut Findings) {
+    let Some(block) = run.block else { return };
+    if block.iter().zip(task.block).any(|(stated, side)| (stated - side).abs() > 5e-4) {
+        let ([a, b, c], [x, y, z]) = (block, task.block);
+        let message =
+            format!("the program is for a block of {a} x {b} x {c} mm, not of {x} x {y} x {z} mm");
+        findings.push(
+            Diagnostic::error(Rule::Block, message)
+                .line(1)
+                .help("give the block of the program, or write the program anew"),
+        );
+    }
+}
+
+/// What is said of shadowed points: where they are accepted, a warning.
+fn finding_of_shadows(
+    shadowed: &[(u32, u32)],
+    order: &[u32],
+    pulses: &[Pulse],
+    task: &Task,
+) -> Option<Diagnostic> {
+    let &(below, above) = shadowed.iter().min()?;
+    let show = |i: u32| {
+        let [x, y, z] = task.cloud[i as usize].map(|value| f64::from(value) * 1e-3);
+        format!("{x:.3} {y:.3} {z:.3}")
+    };
+    let message = format!(
+        "{} points are made below a finished point that scatters their beam; the first one at {} mm, below {} mm",
+        shadowed.len(),
+        show(order[below as usize]),
+        show(order[above as usize])
+    );
+    let line = pulses[below as usize].line;
+    Some(match task.accept_shadowed {
+        true => Diagnostic::warning(Rule::Shadowed, message)
+            .line(line)
+            .help("accepted by `--accept shadowed`; `--order fastest` shadows none"),
+        false => Diagnostic::error(Rule::Shadowed, message)
+            .line(line)
+            .help("order by `--order fastest`, which keeps the rule, or add `--accept shadowed`"),
+    })
+}
+
+/// The ticks of a run, from its first pulse to its last: every motion from stop to stop takes whole ticks.
+fn ticks(run: &Run, machine: &Machine) -> u64 {
+    let clock = machine.clock();
+    let whole = |value: f64| (value * 1e3).round() as i32;
+    let step = |from: [f64; 3], to: [f64; 3]| u64::from(clock.step(from.map(whole), to.map(whole)));
+    let straight = |pair: &[Pulse]| step(pair[0].at, pair[1].at);
+    let mut ticks = 1 + run.pulses.par_windows(2).map(straight).sum::<u64>();
+    for stops in run.stops.chunk_by(|a, b| a.pulses == b.pulses) {
+        let next = stops[0].pulses as usize;
+        let (Some(before), Some(after)) =
+            (next.checked_sub(1).and_then(|i| run.pulses.get(i)), run.pulses.get(next))
+        else {
+            continue;
+        };
+        // After the first pulse every axis has been sent to a place.
+        let known = stops.iter().filter_map(|stop| match stop.at {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+            _ => None,
+        });
+        let chain: Vec<[f64; 3]> =
+            std::iter::once(before.at).chain(known).chain([after.at]).collect();
+        ticks += chain.windows(2).map(|pair| step(pair[0], pair[1])).sum::<u64>();
+        ticks -= step(before.at, after.at);
+    }
+    ticks
+}
+
+/// The nearest two of `places` (mm), and how many pairs are nearer than `spacing` (mm). Places beyond 2 m are left out: they are stray.
+fn distances(places: &[DVec3], spacing: f64) -> (Option<Pair>, u64) {
+    let far = |place: &DVec3| cloud::point(*place);
+    let known: Vec<(u32, Point)> =
+        places.iter().zip(0..).filter_map(|(place, i)| Some((i, far(place)?))).collect();
+    let points: Vec<Point> = known.iter().map(|(_, point)| *point).collect();
+    // Places are up to a µm from their points in each axis.
+    let grid = Grid::new(&points, (2e3 * spacing).ceil() as i64 + 2);
+    let of = |&(i, point): &(u32, Point)| {
+        let (mut nearest, mut close) = ((f64::MAX, 0, 0), 0u64);
+        for j in grid.near(point).map(|near| known[near as usize].0).filter(|j| *j > i) {
+            let distance = places[i as usize].distance(places[j as usize]);
+            if distance < nearest.0 {
+                nearest = (distance, i, j);
+            }
+            close += u64::from(distance < spacing - ROUNDING);
+        }
+        (nearest, close)
+    };
+    let less = |a: (f64, u32, u32), b: (f64, u32, u32)| match a.0.total_cmp(&b.0) {
+        std::cmp::Ordering::Greater => b,
+        std::cmp::Ordering::Less => a,
+        std::cmp::Ordering::Equal if (a.1, a.2) <= (b.1, b.2) => a,
+        std::cmp::Ordering::Equal => b,
+    };
+    let join = |a: ((f64, u32, u32), u64), b: ((f64, u32, u32), u64)| (less(a.0, b.0), a.1 + b.1);
+    let (nearest, close) = known.par_iter().map(of).reduce(|| ((f64::MAX, 0, 0), 0), join);
+    let pair = |(distance, a, b)| Pair { points: [a, b], distance };
+    ((nearest.0 <= 2.0 * spacing).then(|| pair(nearest)), close)
+}
+
+/// Part of a mm that sums of coordinates lose.
+const ROUNDING: f64 = 1e-9;
+
+/// What is said of pulses that are too close: an error beyond what whole µm of the drive take, `deeper` µm of depth.
+fn apart(
+    nearest: Option<Pair>,
+    too_close: u64,
+    pulses: &[Pulse],
+    spacing: f64,
+    deeper: f64,
+) -> Option<Diagnostic> {
+    let Pair { points: [a, b], distance } = nearest.filter(|_| too_close > 0)?;
+    let [first, second] = [a, b].map(|i| pulses[i as usize].line);
+    let message = format!(
+        "{too_close} pairs of pulses are nearer than {spacing} mm, the nearest {distance:.4} mm, of the lines {first} and {second}"
+    );
+    let found = if distance < spacing - 1e-3 * deeper - ROUNDING {
+        Diagnostic::error(Rule::Spacing, message)
+            .help("their cracks join and break the glass: write the program anew")
+    } else {
+        Diagnostic::warning(Rule::Spacing, message).help(format!(
+            "whole µm of the drive are {deeper:.2} µm of depth; --spacing {:.3} keeps {spacing} mm",
+            spacing + 1e-3 * deeper.ceil()
+        ))
+    };
+    Some(found.line(second))
+}
+
+/// Every axis stays within its travel, wherever it stops.
+fn travels(run: &Run, task: &Task, findings: &mut Findings) {
+    let pulses = run.pulses.iter().map(|pulse| (pulse.line, pulse.at.map(Some)));
+    let stops = run.stops.iter().map(|stop| (stop.line, stop.at));
+    let all: Vec<(u32, [Option<f64>; 3])> = pulses.chain(stops).collect();
     for (i, (name, axis)) in task.machine.axes.named().into_iter().enumerate() {
         let [low, high] = axis.travel;
-        for pulse in pulses.iter().filter(|pulse| !(low..=high).contains(&pulse.at[i])) {
-            let message =
-                format!("{name}{:.3} is beyond the travel from {low} to {high} mm", pulse.at[i]);
-            let found = Diagnostic::error(Rule::Travel, message).line(pulse.line);
+        let beyond = all.iter().filter_map(|(line, at)| Some((*line, at[i]?)));
+        for (line, at) in beyond.filter(|(_, at)| !(low..=high).contains(at)) {
+            let message = format!("{name}{at:.3} is beyond the travel from {low} to {high} mm");
+            let found = Diagnostic::error(Rule::Travel, message).line(line);
             findings.push(found.help("take a smaller block, or move the body"));
         }
     }

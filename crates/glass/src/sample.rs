@@ -22,7 +22,8 @@ const COARSEST: f64 = 0.75;
 /// Longest edge of a cell that is given up, spacings.
 const FINEST: f64 = 0.25;
 
-/// The largest distance of a place of the surface from a point, spacings, but for the rounding of points to whole µm.
+/// The largest distance of a place of the surface from a point, spacings, but for the rounding of points to whole µm and what
+/// [`Apart::lost`] adds.
 pub const LARGEST_GAP: f64 = 1.0 + FINEST;
 
 /// Side of a tile, spacings.
@@ -36,9 +37,27 @@ const CELLS: usize = (TILE + 2.0 * BORDER) as usize + 2;
 
 type Triangle = [DVec3; 3];
 
-/// Points on all faces of `mesh` (mm), at least `spacing` (µm, 1 at least) apart. Another `seed` gives other points.
-pub fn surface(mesh: &Mesh, spacing: u32, seed: u64) -> Vec<Point> {
-    let spacing = f64::from(spacing.max(1));
+/// How far points are to stay apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Apart {
+    /// The smallest distance, µm, 1 at least.
+    pub spacing: u32,
+    /// By how much less the heights of two points may differ in the glass than in the cloud, µm: what a program's rounding of the
+    /// drive takes. Points keep their distance all the same.
+    pub lost: f64,
+}
+
+impl Apart {
+    /// The square of the least distance that two places so far apart may come to, µm².
+    pub(crate) fn squared(&self, way: DVec3) -> f64 {
+        let height = (way.z.abs() - self.lost).max(0.0);
+        way.x * way.x + way.y * way.y + height * height
+    }
+}
+
+/// Points on all faces of `mesh` (mm), as far apart as `apart` says. Another `seed` gives other points.
+pub fn surface(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Point> {
+    let spacing = f64::from(apart.spacing.max(1));
     let tiles = tiles(mesh, spacing);
     let mut done: Vec<Vec<Point>> = vec![Vec::new(); tiles.len()];
     for turn in 0..8 {
@@ -49,7 +68,7 @@ pub fn surface(mesh: &Mesh, spacing: u32, seed: u64) -> Vec<Point> {
         let turn: Vec<usize> = (0..tiles.len()).filter(in_turn).collect();
         let work = |room: &mut Room, &at: &usize| {
             let (tile, triangles) = &tiles[at];
-            room.enter(*tile, spacing);
+            room.enter(*tile, apart);
             for near in around(*tile) {
                 if let Ok(near) = tiles.binary_search_by_key(&near, |(tile, _)| *tile) {
                     done[near].iter().for_each(|&point| room.see(point));
@@ -122,9 +141,12 @@ fn halves(triangle: &Triangle, at: usize) -> [Triangle; 2] {
     [[a, b, middle], [a, middle, c]]
 }
 
-/// A tile being filled: the points that its darts must see, in cubes as large as a spacing.
+/// A tile being filled: the points that its darts must see, in cubes as large as darts see.
 struct Room {
+    apart: Apart,
     spacing: f64,
+    /// Side of a cube, µm: as far as a dart sees.
+    side: f64,
     /// Corner of the look-up grid, µm.
     low: DVec3,
     /// The tile's own box, µm.
@@ -140,7 +162,9 @@ struct Room {
 impl Default for Room {
     fn default() -> Room {
         Room {
+            apart: Apart { spacing: 1, lost: 0.0 },
             spacing: 1.0,
+            side: 1.0,
             low: DVec3::ZERO,
             tile: (DVec3::ZERO, DVec3::ZERO),
             number: [0; 3],
@@ -152,7 +176,8 @@ impl Default for Room {
 }
 
 impl Room {
-    fn enter(&mut self, number: [i32; 3], spacing: f64) {
+    fn enter(&mut self, number: [i32; 3], apart: Apart) {
+        let spacing = f64::from(apart.spacing.max(1));
         for i in 0..self.points.len() {
             if let Some(cube) = self.cube(DVec3::from_array(self.points[i])) {
                 self.last[cube] = 0;
@@ -162,14 +187,15 @@ impl Room {
         self.before.clear();
         let corner = DVec3::from_array(number.map(f64::from)) * (TILE * spacing);
         self.tile = (corner, corner + TILE * spacing);
+        (self.apart, self.spacing, self.number) = (apart, spacing, number);
+        self.side = spacing + apart.lost;
         // One cube more below, so that the cubes around a dart are all there.
-        self.low = corner - (BORDER + 1.0) * spacing;
-        (self.spacing, self.number) = (spacing, number);
+        self.low = corner - (BORDER + 1.0) * self.side;
     }
 
     /// The cube of a place that darts can see.
     fn cube(&self, place: DVec3) -> Option<usize> {
-        let cell = (place - self.low) / self.spacing;
+        let cell = (place - self.low) / self.side;
         let inside = cell.min_element() >= 0.0 && cell.max_element() < CELLS as f64;
         inside.then(|| (cell.z as usize * CELLS + cell.y as usize) * CELLS + cell.x as usize)
     }
@@ -238,7 +264,8 @@ impl Room {
         }
     }
 
-    /// What a dart in `cell` hits within a spacing. Darts and points are whole µm: the comparison is exact.
+    /// What a dart in `cell` hits within a spacing. Darts and points are whole µm: the comparison is exact. Places that are near
+    /// a point are a convex set: it holds a cell where it holds its corners.
     fn hit(&self, dart: DVec3, cell: &Triangle) -> Hit {
         let Some(cube) = self.cube(dart) else { return Hit::Covers };
         let square = self.spacing * self.spacing;
@@ -249,8 +276,9 @@ impl Room {
                     let mut at = last;
                     while at > 0 {
                         let point = DVec3::from_array(self.points[at as usize - 1]);
-                        if point.distance_squared(dart) < square {
-                            if cell.iter().all(|corner| corner.distance_squared(point) < square) {
+                        let near = |place: DVec3| self.apart.squared(place - point) < square;
+                        if near(dart) {
+                            if cell.iter().all(|&corner| near(corner)) {
                                 return Hit::Covers;
                             }
                             hit = Hit::Point;
@@ -306,7 +334,8 @@ impl Dice {
         ((u128::from(self.roll()) * count as u128) >> 64) as usize
     }
 
-    fn shuffle<T>(&mut self, all: &mut [T]) {
+    /// Puts `all` in another order, every one as likely as every other.
+    pub fn shuffle<T>(&mut self, all: &mut [T]) {
         for i in (1..all.len()).rev() {
             all.swap(i, self.below(i + 1));
         }

@@ -5,7 +5,7 @@ mod bodies;
 use bodies::sphere;
 use toolpost_glass::cloud::{Point, distances};
 use toolpost_glass::control::read;
-use toolpost_glass::job::{Made, Order, Placing, Settings, make};
+use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
 use toolpost_glass::material::{Material, TABLE, find};
 use toolpost_glass::mesh::{Mesh, Shape};
@@ -73,8 +73,11 @@ fn a_body_becomes_a_proven_program_in_every_form() {
             let made = made(body(), format, &settings);
             let report = &made.report;
             assert!(made.proven && made.findings.is_empty(), "{format}: {:?}", made.findings);
-            let Proof { pulses, across, along, shadowed, ticks, seconds, used } = report.proof;
-            assert_eq!((pulses, shadowed, ticks), (report.points, 0, report.planned_ticks));
+            let Proof { pulses, across, along, nearest, too_close, shadowed, ticks, seconds, used } =
+                report.proof;
+            assert_eq!((pulses, shadowed, Some(ticks)), (report.points, 0, report.planned_ticks));
+            // Rounding the drive to whole µm keeps the distance.
+            assert!(too_close == 0 && nearest.unwrap().distance >= 0.13, "{format} {nearest:?}");
             assert_eq!((across, seconds), (0.0, ticks as f64 / 100.0));
             // Whole µm of drive are 0.76 µm of depth; 15 mm deep the paraxial focus lies 0.0054 mm off the marginal one.
             let most = if ray == Ray::Marginal { 0.000_77 } else { 0.007 };
@@ -110,9 +113,10 @@ fn judged(text: &[u8], cloud: &[Point], format: &str) -> Vec<&'static str> {
         lens: &lens,
         index: 1.5195,
         block,
+        spacing: 0.13,
         accept_shadowed: false,
     };
-    let found = match read(text, &machine).and_then(|pulses| prove(&pulses, &task)) {
+    let found = match read(text, &machine).and_then(|run| prove(&run, &task)) {
         Ok((_, found)) | Err(found) => found,
     };
     assert!(found.iter().all(|finding| !finding.help.is_empty()), "{found:?}");
@@ -133,7 +137,7 @@ fn programs_that_lose_repeat_move_or_exchange_pulses_are_refused() {
     assert_eq!(judged(joined(&less).as_bytes(), cloud, "points"), ["lost"]);
     let mut twice = lines.clone();
     twice.push(lines[100]);
-    assert_eq!(judged(joined(&twice).as_bytes(), cloud, "points"), ["twice"]);
+    assert_eq!(judged(joined(&twice).as_bytes(), cloud, "points"), ["twice", "spacing"]);
     // Farther than the radius of a crack.
     let moved = |axis: usize, by: f64| {
         let mut lines: Vec<String> = lines.iter().map(|line| line.to_string()).collect();
@@ -154,6 +158,77 @@ fn programs_that_lose_repeat_move_or_exchange_pulses_are_refused() {
     let wrong = text.replace(" -9.", " -9.3").replace(" -10.", " -10.3");
     assert!(judged(wrong.as_bytes(), cloud, "points").contains(&"lost"));
     assert_eq!(judged(b"# nothing\n", cloud, "points"), ["lost"]);
+}
+
+#[test]
+fn pulses_that_come_too_near_are_refused_and_those_that_rounding_brings_near_are_pointed_out() {
+    // 10 mm deep; 0.13 mm of depth are 0.085_523 mm of drive: 0.085 mm are 0.1292 mm, 0.084 mm are 0.1277 mm.
+    let cloud = [[10_000, 10_000, 20_000], [10_000, 10_000, 20_130]];
+    let judge = |z: &str| {
+        let text = format!("10.000 10.000 -6.579\n10.000 10.000 {z}\n");
+        let machine = machine("points");
+        let lens = machine.lens(70.0).unwrap();
+        let block = [20.0, 20.0, 30.0];
+        let task = Task {
+            cloud: &cloud,
+            machine: &machine,
+            lens: &lens,
+            index: 1.5195,
+            block,
+            spacing: 0.13,
+            accept_shadowed: false,
+        };
+        let (proof, found) = prove(&read(text.as_bytes(), &machine).unwrap(), &task).unwrap();
+        let found = found.iter().map(|found| (found.rule.name(), found.is_error())).collect();
+        (proof.nearest.unwrap().distance, proof.too_close, found)
+    };
+    let near = |found: (f64, u64, Vec<(&'static str, bool)>), distance: f64| {
+        assert!((found.0 - distance).abs() < 5e-5, "{found:?}");
+        (found.1, found.2)
+    };
+    assert_eq!(near(judge("-6.493"), 0.1307), (0, vec![]));
+    assert_eq!(near(judge("-6.494"), 0.1292), (1, vec![("spacing", false)]));
+    assert_eq!(near(judge("-6.495"), 0.1277), (1, vec![("spacing", true)]));
+}
+
+#[test]
+fn a_program_that_is_edited_is_proven_against_the_body_again() {
+    let settings = settings();
+    let first = made(body(), "gcode", &settings);
+    let text = String::from_utf8(first.text).unwrap();
+    let prove = |text: &str| {
+        let text = text.as_bytes().to_vec();
+        job::prove(text, vec![body()], &k9(), &machine("gcode"), &settings)
+    };
+    let again = prove(&text).unwrap();
+    assert!(again.proven && again.report.planned_ticks.is_none(), "{:?}", again.findings);
+    assert_eq!(again.report.proof, first.report.proof);
+    let rules = |text: &str| -> Vec<_> {
+        let found = prove(text).unwrap().findings;
+        found.iter().map(|found| found.rule.name()).collect()
+    };
+    let pulse = text.match_indices("G0 X").nth(100).unwrap().0;
+    let end = pulse + text[pulse..].find("M64 P0\n").unwrap() + "M64 P0\n".len();
+    let with = |piece: &str| format!("{}{piece}{}", &text[..pulse], &text[end..]);
+    // A pulse that is deleted, one that is made twice, and a detour out of the travel.
+    assert_eq!(rules(&with("")), ["lost"]);
+    let own = &text[pulse..end];
+    assert_eq!(rules(&with(&format!("{own}M64 P0\n"))), ["twice", "spacing"]);
+    assert_eq!(rules(&with(&format!("G0 X171\n{own}"))), ["travel"]);
+    // A detour takes time: to X0 and back, some 10 mm, 110 ms each, in whole ticks.
+    let away = prove(&with(&format!("G0 X0\n{own}"))).unwrap();
+    let more = away.report.proof.ticks - first.report.proof.ticks;
+    assert!(away.proven && (20..=28).contains(&more), "{more}");
+    // Moved by 0.1 mm: out of its crack.
+    let x = own.split(['X', ' ']).nth(2).unwrap();
+    let moved = format!("{:.3}", x.parse::<f64>().unwrap() + 0.1);
+    assert!(rules(&with(&own.replacen(x, &moved, 1))).contains(&"lost"));
+    // The numbered form states the block.
+    let numbered = made(body(), "numbered", &settings);
+    let text = String::from_utf8(numbered.text).unwrap().replacen("Z30.000", "Z31.000", 1);
+    let found =
+        job::prove(text.into(), vec![body()], &k9(), &machine("numbered"), &settings).unwrap();
+    assert_eq!(found.findings[0].rule, "block");
 }
 
 #[test]
@@ -179,6 +254,8 @@ fn programs_that_a_controller_would_not_take_are_refused() {
         ("N3 END\n", "N3 END"),
         ("N3 END\n", "N3 END\nN4 PULSE X1 Y1 Z1\n"),
         ("BEGIN", "PULSE"),
+        ("N2", "N+2"),
+        ("POINTS 1", "POINTS +1"),
     ] {
         refused(&good.replacen(from, to, 1), "numbered");
     }
@@ -194,6 +271,11 @@ fn programs_that_a_controller_would_not_take_are_refused() {
         ("M2\n", "M2\nM64 P0\n"),
         ("M64 P0", "M64 P1"),
         ("G0 X", "G2 X"),
+        // G1 needs a feed, an axis stands once in a line, and what is between two comments is run.
+        ("G0 X", "G1 X"),
+        ("X10.000", "X9.000 X10.000"),
+        ("(one)", "(one) G0 X5 (two)"),
+        ("M2\n", "X5 M2\n"),
     ] {
         refused(&good.replacen(from, to, 1), "gcode");
     }
@@ -245,6 +327,12 @@ fn small_and_open_bodies_and_cut_beams_are_pointed_out() {
     let mut open = sphere(1.5, 10);
     open.triangles.truncate(200);
     assert!(rules(Shape::Mesh(open), &settings()).contains(&"mesh"));
+    let mut inverted = sphere(1.5, 10);
+    inverted.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    // Next to a larger body that is as it should be.
+    let shapes = vec![Shape::Mesh(inverted), Shape::Mesh(sphere(2.0, 10))];
+    let both = make(shapes, &k9(), &machine("numbered"), &settings()).unwrap();
+    assert!(both.findings[0].message.contains("inside out"), "{:?}", both.findings);
     // A ball of 16 mm at the bottom of a block of 90 mm: 1 mm from its sides the cone has up to 2 mm.
     let mut deep = settings();
     deep.placing = Placing {
@@ -276,6 +364,9 @@ fn the_orders_of_the_source_shadow_points_and_pass_only_where_that_is_accepted()
     assert!(!found.proven && found.findings.iter().any(|found| found.rule == "shadowed"));
     let accepted = made(body(), "numbered", &Settings { accept_shadowed: true, ..kdz });
     assert!(accepted.proven && accepted.report.proof.shadowed > 0);
+    assert_eq!(accepted.report.accepted, ["shadowed"]);
+    let said = accepted.findings.iter().find(|found| found.rule == "shadowed").unwrap();
+    assert!(!said.is_error() && said.help.contains("--accept shadowed"), "{said}");
 }
 
 #[test]

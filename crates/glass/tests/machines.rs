@@ -35,6 +35,14 @@ fn a_machine_file_that_cannot_be_is_refused_with_its_line() {
     assert!(refused("travel = [0, 170]", "travel = [170, 0]").1.contains("travel"));
     assert!(refused("spacing = 0.09", "spacing = nan").1.contains("spacing"));
     assert!(refused("focal = 43", "focal = 4").1.contains("shorter than its beam"));
+    // A tolerance of 25 mm; a crack that reaches over the next point; figures of another unit.
+    assert!(refused("crack = [0.095, 0.135]", "crack = [50, 50]").1.contains("lenses.crack"));
+    assert!(refused("crack = [0.095, 0.135]", "crack = [0.2, 0.135]").1.contains("its spacing"));
+    assert!(refused("acceleration = 7.5", "acceleration = 1e9").1.contains("axes.x.acceleration"));
+    assert!(refused("speed = 0.1", "speed = 1e300").1.contains("axes.x.speed"));
+    assert!(refused("travel = [0, 170]", "travel = [-1e9, 170]").1.contains("travel"));
+    assert!(refused("rate = 100", "rate = 1e300").1.contains("laser.rate"));
+    assert!(refused("focal = 43", "focal = 70").1.contains("two lenses have f = 70 mm"));
     assert!(refused("\"numbered\"", "\"gcode\"").1.contains("program.fire"));
     assert!(refused("\"triangle\"", "\"square\"").1.contains("square"));
     for word in ["M30", "M2", "G91", "G20", "X5", "N5", "M64 X5", "M", "", "M98 P1", "(M64)"] {

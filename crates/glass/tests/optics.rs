@@ -11,14 +11,18 @@ fn lens(focal: f64) -> Lens {
 #[test]
 fn the_focus_is_driven_less_deep_than_the_point_lies() {
     // (focal length, drive by the outermost ray for 50 mm, both rays apart): tan(asin(sin(atan(2.5 / f)) / n)) / (2.5 / f).
-    for (focal, marginal, apart) in
-        [(70.0, 32.893_670_9, 0.011_890_1), (43.0, 32.874_079_4, 0.031_481_6)]
-    {
+    for (focal, marginal, apart, deeper) in [
+        (70.0, 32.893_670_9, 0.011_890_1, 0.018_073_5),
+        (43.0, 32.874_079_4, 0.031_481_6, 0.047_882_1),
+    ] {
         let beam = Beam::new(&lens(focal), 5.0, 1.5195);
         let drive = |ray| 50.0 * beam.drive(ray);
         assert!((drive(Ray::Paraxial) - 50.0 / 1.5195).abs() < 1e-12);
         assert!((drive(Ray::Marginal) - marginal).abs() < 1e-7, "{}", drive(Ray::Marginal));
         assert!((drive(Ray::Paraxial) - drive(Ray::Marginal) - apart).abs() < 1e-7);
+        // The point is moved by more than the drive: by 50 mm x (32.905_560_8 / 32.893_670_9 - 1) at f = 70 mm.
+        let moved = 50.0 * (drive(Ray::Paraxial) / drive(Ray::Marginal) - 1.0);
+        assert!((moved - deeper).abs() < 1e-6, "{moved}");
     }
     // Without glass the focus is where it is driven.
     let air = Beam::new(&lens(70.0), 5.0, 1.0);

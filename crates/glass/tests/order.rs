@@ -7,7 +7,7 @@ use toolpost_glass::clock::Clock;
 use toolpost_glass::cloud::Point;
 use toolpost_glass::order::{Effort, Shadow, fastest, kdz, layers, ticks};
 use toolpost_glass::profile::{Limits, Profile};
-use toolpost_glass::sample::surface;
+use toolpost_glass::sample::{Apart, surface};
 
 fn clock() -> Clock {
     Clock::new(100.0, Profile::Triangle, [Limits::metric(7.5, 0.1); 3])
@@ -42,7 +42,7 @@ fn the_fastest_order_shadows_no_point_and_uses_nearly_every_pulse() {
             sphere(f64::from(spacing) * 0.021, 40),
             torus(f64::from(spacing) * 0.025, f64::from(spacing) * 0.006, 30),
         ] {
-            let points = surface(&body, spacing, 1);
+            let points = surface(&body, Apart { spacing, lost: 0.0 }, 1);
             let effort = Effort { rounds: 1, ..Effort::default() };
             let order = fastest(&points, &points, shadow, &clock, effort);
             assert!(is_permutation(&order, points.len()));
@@ -60,7 +60,7 @@ fn the_fastest_order_shadows_no_point_and_uses_nearly_every_pulse() {
 
 #[test]
 fn the_order_is_the_same_on_one_thread_and_on_four() {
-    let points = surface(&sphere(2.0, 40), 90, 1);
+    let points = surface(&sphere(2.0, 40), Apart { spacing: 90, lost: 0.0 }, 1);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let effort = Effort { rounds: 2, tries: 300, until: None };

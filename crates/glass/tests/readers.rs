@@ -102,6 +102,10 @@ fn open_and_inverted_bodies_and_flat_triangles_are_reported() {
     assert!(open.first_open.is_some());
     let inverted = FACES.map(|[a, b, c]| [a, c, b]);
     assert!(mesh(&binary_stl("", &inverted), Form::Stl).health().volume < 0.0);
+    let [first, ..] = inverted;
+    let one = mesh(&binary_stl("", &[first, FACES[1], FACES[2], FACES[3]]), Form::Stl).health();
+    // All three edges of the triangle that is turned.
+    assert_eq!((one.open, one.turned), (0, 3));
     let flat = mesh(&binary_stl("", &[FACES[0], [1, 1, 2]]), Form::Stl).health();
     assert_eq!(flat.flat, 1);
     let twice = [FACES[0], FACES[0], FACES[1]];

@@ -6,13 +6,33 @@ use bodies::{sphere, torus};
 use glam::DVec3;
 use toolpost_glass::cloud::{distances, squared};
 use toolpost_glass::mesh::Mesh;
-use toolpost_glass::sample::{LARGEST_GAP, surface};
+use toolpost_glass::sample::{Apart, LARGEST_GAP, surface};
+
+fn apart(spacing: u32) -> Apart {
+    Apart { spacing, lost: 0.0 }
+}
+
+#[test]
+fn heights_may_come_nearer_by_what_rounding_takes_and_no_two_points_do() {
+    // Upright walls, on which neighbours lie above each other; 2 µm of each height are lost.
+    let mesh = sphere(2.0, 60);
+    let points = surface(&mesh, Apart { spacing: 90, lost: 2.0 }, 1);
+    let squeezed = |a: &[i32; 3], b: &[i32; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|axis| i64::from((a[axis] - b[axis]).abs()));
+        x * x + y * y + (z - 2).max(0).pow(2)
+    };
+    let pairs =
+        points.iter().enumerate().flat_map(|(i, a)| points[..i].iter().map(move |b| (a, b)));
+    assert!(pairs.map(|(a, b)| squeezed(a, b)).min().unwrap() >= 90 * 90);
+    // It costs less than 3 points of 100.
+    assert!(points.len() * 100 > surface(&mesh, apart(90), 1).len() * 97);
+}
 
 #[test]
 fn no_two_points_of_a_sampled_surface_are_nearer_than_the_spacing() {
     for (mesh, spacing) in [(sphere(3.0, 60), 90), (torus(3.0, 1.0, 40), 130), (sphere(1.0, 4), 90)]
     {
-        let points = surface(&mesh, spacing, 1);
+        let points = surface(&mesh, apart(spacing), 1);
         let found = distances(&points, i64::from(spacing));
         assert_eq!((found.too_close, found.crowded), (0, 0));
         // The saturated random packing has 0.6966 points in a square of the spacing; curved surfaces hold a few more.
@@ -33,7 +53,7 @@ fn no_place_of_the_surface_is_farther_from_a_point_than_1_3_spacings() {
     let spacing = 130u32;
     // Triangles smaller than a spacing, and faces that are much larger.
     for mesh in [sphere(2.0, 100), sphere(2.0, 3)] {
-        let points = surface(&mesh, spacing, 7);
+        let points = surface(&mesh, apart(spacing), 7);
         let mut worst = 0.0f64;
         for triangle in 0..mesh.triangles.len() as u32 {
             let [a, b, c] = mesh.corners(triangle).map(|corner| corner * 1e3);
@@ -59,10 +79,10 @@ fn the_points_are_the_same_on_one_thread_and_on_four() {
     let mesh = torus(3.0, 1.0, 40);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| surface(&mesh, 90, 3))
+        pool.install(|| surface(&mesh, apart(90), 3))
     };
     assert_eq!(on(1), on(4));
-    assert_ne!(on(1), surface(&mesh, 90, 4));
+    assert_ne!(on(1), surface(&mesh, apart(90), 4));
 }
 
 #[test]
@@ -80,9 +100,9 @@ fn the_nearest_pair_of_a_cloud_is_named_and_the_pairs_that_are_too_close_are_cou
 
 #[test]
 fn a_mesh_without_area_or_without_triangles_gives_no_endless_work() {
-    assert!(surface(&Mesh::default(), 90, 1).is_empty());
+    assert!(surface(&Mesh::default(), apart(90), 1).is_empty());
     let line =
         Mesh { vertices: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0], triangles: vec![[0, 1, 2]] };
-    let points = surface(&line, 90, 1);
+    let points = surface(&line, apart(90), 1);
     assert_eq!(distances(&points, 90).too_close, 0);
 }

@@ -1,12 +1,13 @@
 //! `toolpost glass`: engraving inside glass.
 
 use crate::answer::{Answer, not_saved};
-use crate::args::glass::{Engrave, Glass, GlassCommand, Sorting};
+use crate::args::glass::{Engrave, Glass, GlassCommand, Job, Ordering, Sorting};
 use crate::progress::Progress;
 use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
 use ::glass::machine::{LIBRARY, Machine};
 use ::glass::mesh::{self, Form, Shape};
+use ::glass::optics::Ray;
 use ::glass::order::Effort;
 use ::glass::{cloud, material, source};
 use app::files::{self, Target};
@@ -22,6 +23,7 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
         Glass::Engrave(engraving) => engrave(engraving, silent),
         Glass::Command(GlassCommand::Tables) => Ok(tables()),
         Glass::Command(GlassCommand::Show { name }) => show(name),
+        Glass::Command(GlassCommand::Prove { program, job }) => prove(program, job, silent),
         Glass::Command(GlassCommand::Check { points, spacing, columns }) => {
             check(points, *spacing, *columns)
         }
@@ -118,8 +120,8 @@ fn nearest(found: &cloud::Distances, points: &[cloud::Point]) -> String {
     }
 }
 
-fn settings(args: &Engrave, begun: Instant) -> Settings {
-    let ordering = &args.ordering;
+/// What a job takes besides its bodies; the order is left as it is where there is none to make.
+fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
     let placing = Placing {
         block: args.block,
         margin: args.placing.margin,
@@ -129,51 +131,77 @@ fn settings(args: &Engrave, begun: Instant) -> Settings {
         mirror: [0, 1, 2].map(|axis| args.placing.mirror.contains(&axis)),
         shift: args.placing.r#move,
     };
-    let order = match ordering.order {
-        Sorting::Fastest => Order::Fastest,
-        Sorting::Kdz => Order::Kdz(ordering.slopes[0], ordering.slopes[1]),
-        Sorting::Layers => Order::Layers(ordering.layer),
-    };
-    let until =
-        ordering.seconds.and_then(|s| begun.checked_add(Duration::try_from_secs_f64(s).ok()?));
     Settings {
         placing,
         focal: args.lens,
         spacing: args.spacing,
-        ray: args.ray,
+        ray,
         order,
-        effort: Effort { rounds: ordering.rounds, until, ..Effort::default() },
+        effort,
         seed: args.seed,
         accept_shadowed: !args.accept.is_empty(),
     }
 }
 
+/// The order that is asked for, and how much is tried for it.
+fn ordering(args: &Ordering, begun: Instant) -> (Order, Effort) {
+    let order = match args.order {
+        Sorting::Fastest => Order::Fastest,
+        Sorting::Kdz => Order::Kdz(args.slopes[0], args.slopes[1]),
+        Sorting::Layers => Order::Layers(args.layer),
+    };
+    let until = args.seconds.and_then(|s| begun.checked_add(Duration::try_from_secs_f64(s).ok()?));
+    (order, Effort { rounds: args.rounds, until, ..Effort::default() })
+}
+
+/// The files of a job, read.
+struct Read {
+    machine: Machine,
+    material: material::Material,
+    shapes: Vec<Shape>,
+}
+
+impl Read {
+    fn new(job: &Job) -> Result<Read, Stop> {
+        let machine = match Path::new(&job.machine) {
+            path if path.extension().is_some_and(|ending| ending == "toml") => {
+                Machine::read(&text(path)?, &files::name(path))?
+            }
+            _ => Machine::read(library(&job.machine)?, &job.machine)?,
+        };
+        let (table, file) = match &job.materials {
+            Some(path) => (text(path)?, files::name(path)),
+            None => (material::TABLE.to_owned(), String::from("materials.toml")),
+        };
+        let material = material::find(&table, &file, &job.material, machine.laser.wavelength)?;
+        let shape = |path| shape(path, job.columns);
+        let shapes = job.bodies.iter().map(|path| shape(path)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Read { machine, material, shapes })
+    }
+}
+
+/// The files that a job is made of, which nothing may be saved over.
+fn inputs(job: &Job) -> Vec<&Path> {
+    let mut inputs: Vec<&Path> = job.bodies.iter().map(|path| path.as_path()).collect();
+    inputs.push(Path::new(&job.machine));
+    inputs.extend(job.materials.as_deref());
+    inputs
+}
+
 /// Makes a program, proves it, and only then saves it with its report.
 fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     let begun = Instant::now();
-    let mut inputs: Vec<&Path> = args.bodies.iter().map(|path| path.as_path()).collect();
-    inputs.push(Path::new(&args.machine));
-    inputs.extend(args.materials.as_deref());
+    let inputs = inputs(&args.job);
     let report_path = files::report_of(&args.output);
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
     let progress = Progress::new(3, silent);
     progress.step("reading");
-    let machine = match Path::new(&args.machine) {
-        path if path.extension().is_some_and(|ending| ending == "toml") => {
-            Machine::read(&text(path)?, &files::name(path))?
-        }
-        _ => Machine::read(library(&args.machine)?, &args.machine)?,
-    };
-    let (table, file) = match &args.materials {
-        Some(path) => (text(path)?, files::name(path)),
-        None => (material::TABLE.to_owned(), String::from("materials.toml")),
-    };
-    let material = material::find(&table, &file, &args.material, machine.laser.wavelength)?;
-    let shapes =
-        args.bodies.iter().map(|path| shape(path, args.columns)).collect::<Result<Vec<_>, _>>()?;
+    let Read { machine, material, shapes } = Read::new(&args.job)?;
     progress.step("engraving");
-    let made = job::make(shapes, &material, &machine, &settings(args, begun))?;
+    let (order, effort) = ordering(&args.ordering, begun);
+    let settings = settings(&args.job, args.ray, order, effort);
+    let made = job::make(shapes, &material, &machine, &settings)?;
     let mut account = account(&made, &machine, &material);
     if account.verdict != Verdict::Done {
         return Ok(not_saved(account));
@@ -183,6 +211,31 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
     Ok(account.into())
+}
+
+/// Proves a program, also one edited by hand.
+fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
+    let progress = Progress::new(2, silent);
+    progress.step("reading");
+    let text = files::read(program)?;
+    let Read { machine, material, shapes } = Read::new(job)?;
+    progress.step("proving");
+    let settings = settings(job, Ray::Marginal, Order::Fastest, Effort::default());
+    let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
+        found.into_iter().map(|found| in_file(found, &files::name(program))).collect()
+    };
+    let made = job::prove(text, shapes, &material, &machine, &settings).map_err(in_program)?;
+    let mut account = account(&made, &machine, &material);
+    account.findings = in_program(account.findings);
+    Ok(account.into())
+}
+
+/// A finding with a line is one of the program.
+fn in_file(found: Diagnostic, program: &str) -> Diagnostic {
+    match found.line > 0 && found.file.is_empty() {
+        true => found.file(program),
+        false => found,
+    }
 }
 
 /// What is reported of a job.
@@ -206,17 +259,19 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
         ));
     }
     rows.push(("nearest", nearest(&report.distances, cloud)));
-    rows.push((
-        "refraction",
-        format!(
-            "focus by the {} ray; the other one is {:.3} mm of drive away at the deepest point",
-            match report.ray {
-                ::glass::optics::Ray::Marginal => "marginal",
-                ::glass::optics::Ray::Paraxial => "paraxial",
-            },
-            report.rays_apart
-        ),
-    ));
+    if made.report.planned_ticks.is_some() {
+        let ray = match report.ray {
+            Ray::Marginal => "marginal",
+            Ray::Paraxial => "paraxial",
+        };
+        rows.push((
+            "refraction",
+            format!(
+                "focus by the {ray} ray; by the other one the deepest point is {:.3} mm off",
+                report.rays_apart
+            ),
+        ));
+    }
     rows.push((
         "time",
         format!(
@@ -229,11 +284,19 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
     ));
     rows.push(("proof", match made.proven {
         true => format!(
-            "passed: {} pulses, each within {:.4} mm across and {:.4} mm along the beam of its point; {} points shadowed",
-            proof.pulses, proof.across, proof.along, proof.shadowed
+            "passed: {} pulses, each within {:.4} mm across and {:.4} mm along the beam of its point{}; {} points shadowed",
+            proof.pulses,
+            proof.across,
+            proof.along,
+            proof.nearest.map_or(String::new(), |pair| format!(", no two nearer than {:.4} mm", pair.distance)),
+            proof.shadowed
         ),
         false => String::from("FAILED"),
     }));
+    if !report.accepted.is_empty() {
+        let rules: Vec<&str> = report.accepted.iter().map(|rule| rule.name()).collect();
+        rows.push(("accepted", format!("{}, which the proof would refuse", rules.join(", "))));
+    }
     Account {
         verdict: if made.proven { Verdict::Done } else { Verdict::Failed },
         rows,

@@ -50,6 +50,8 @@ pub struct Health {
     pub open: u64,
     /// Edges that more than two triangles have.
     pub crowded: u64,
+    /// Edges whose two triangles face opposite sides: one of them is inside out.
+    pub turned: u64,
     /// The middle of the first open edge, mm.
     pub first_open: Option<[f64; 3]>,
     /// The volume, mm³: less than 0 where the body is inside out.
@@ -214,7 +216,8 @@ impl Mesh {
             })
             .collect();
         drop(places);
-        let mut edges: HashMap<(u32, u32), u32> = HashMap::new();
+        // Of each edge how many triangles have it, and how many more of them go along it upwards than downwards.
+        let mut edges: HashMap<(u32, u32), (u32, i32)> = HashMap::new();
         let (mut flat, mut volume) = (0, 0.0);
         for triangle in 0..self.triangles.len() as u32 {
             let [a, b, c] = self.corners(triangle);
@@ -226,17 +229,20 @@ impl Mesh {
             }
             for i in 0..3 {
                 let (from, to) = (corners[i], corners[(i + 1) % 3]);
-                *edges.entry((from.min(to), from.max(to))).or_default() += 1;
+                let (count, along) = edges.entry((from.min(to), from.max(to))).or_default();
+                *count += 1;
+                *along += if from < to { 1 } else { -1 };
             }
         }
-        let open = edges.iter().filter(|(_, count)| **count == 1).map(|(edge, _)| *edge);
+        let open = edges.iter().filter(|(_, (count, _))| *count == 1).map(|(edge, _)| *edge);
         let first = open.clone().min();
         let middle =
             |(a, b): (u32, u32)| 0.5 * (self.vertices[a as usize] + self.vertices[b as usize]);
         Health {
             flat,
             open: open.count() as u64,
-            crowded: edges.values().filter(|count| **count > 2).count() as u64,
+            crowded: edges.values().filter(|(count, _)| *count > 2).count() as u64,
+            turned: edges.values().filter(|edge| [(2, 2), (2, -2)].contains(*edge)).count() as u64,
             first_open: first.map(|edge| middle(edge).to_array()),
             volume,
         }

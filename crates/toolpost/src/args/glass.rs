@@ -54,6 +54,13 @@ pub enum GlassCommand {
         /// Name of a machine, or `materials`.
         name: String,
     },
+    /// Prove a program, also one edited by hand, against what it was made of; give the same bodies and options as for it.
+    Prove {
+        /// The program.
+        program: PathBuf,
+        #[command(flatten)]
+        job: Box<Job>,
+    },
     /// Check the smallest distance of the points of a list or a cloud, and name the nearest two.
     Check {
         /// The points (.xyz, .txt, .csv, .cft, .ply).
@@ -70,6 +77,21 @@ pub enum GlassCommand {
 /// Arguments of an engraving.
 #[derive(Debug, Args)]
 pub struct Engrave {
+    #[command(flatten)]
+    pub job: Job,
+    /// Where to save the program; the report goes next to it.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub ordering: Ordering,
+    /// By which ray of the beam the focus is found.
+    #[arg(long, value_name = "RAY", default_value = "marginal", value_parser = choice(&RAYS))]
+    pub ray: Ray,
+}
+
+/// What is engraved, and on what: the points of a job, the same whenever the same is given.
+#[derive(Debug, Args)]
+pub struct Job {
     /// Bodies (.stl, .obj, .ply) and lists of points (.xyz, .txt, .csv, .cft), all in one block and in one frame; mm.
     #[arg(value_name = "BODY", required = true)]
     pub bodies: Vec<PathBuf>,
@@ -88,9 +110,6 @@ pub struct Engrave {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
-    /// Where to save the program; the report goes next to it.
-    #[arg(long, short, value_name = "FILE")]
-    pub output: PathBuf,
     /// Smallest distance of two points [default: that of the lens].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub spacing: Option<f64>,
@@ -99,11 +118,6 @@ pub struct Engrave {
     pub columns: Columns,
     #[command(flatten)]
     pub placing: Placing,
-    #[command(flatten)]
-    pub ordering: Ordering,
-    /// By which ray of the beam the focus is found.
-    #[arg(long, value_name = "RAY", default_value = "marginal", value_parser = choice(&RAYS))]
-    pub ray: Ray,
     /// Take another cloud that is as good.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,

@@ -96,6 +96,34 @@ fn what_cannot_be_engraved_is_refused_and_saves_nothing() {
 }
 
 #[test]
+fn an_edited_program_is_proven_against_its_body() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    assert_eq!(engrave(&folder, &[]).code, 0);
+    let prove = |block: &str| {
+        let words =
+            ["glass", "prove", "roof.prg", "roof.stl", "--block", block, "--material", "k9"];
+        folder.run(&[&words[..], &["--lens", "70", "--machine", "glass-xyz-100hz"]].concat())
+    };
+    let said = prove("20x20x30");
+    assert!(said.code == 0 && said.out.contains("passed: 810 pulses"), "{said:?}");
+    // For another block.
+    let said = prove("20x20x31");
+    assert!(said.code == 1 && said.err.contains("roof.prg:1: error[block]"), "{said:?}");
+    // The tenth pulse is that of the eleventh.
+    let text = folder.read("roof.prg");
+    let lines: Vec<&str> = text.lines().collect();
+    let eleventh = lines[11].split_once(' ').unwrap().1;
+    folder.write("roof.prg", text.replace(lines[10], &format!("N11 {eleventh}")));
+    let said = prove("20x20x30");
+    assert!(said.code == 1 && said.err.contains("roof.prg:12: error[twice]"), "{said:?}");
+    assert!(said.err.contains("error[lost]"), "{said:?}");
+    folder.write("roof.prg", text.replace("N12 PULSE", "N12 PULZE"));
+    let said = prove("20x20x30");
+    assert!(said.code == 2 && said.err.contains("roof.prg:12: error[program]"), "{said:?}");
+}
+
+#[test]
 fn a_list_of_points_is_checked_for_its_smallest_distance() {
     let folder = Folder::empty();
     folder.write("cloud.csv", "x;y;z;n\n0;0;0;7\n0;0;0.129;8\n1;1;1;9\n");
