@@ -350,8 +350,8 @@ impl Risk {
     pub(crate) const PROGRAM_REPEATS: Risk = Risk {
         rule: Rule::ProgramRepeats,
         what: "ends with M99, by which the control begins it again without end",
-        help: "write M30 where it shall run once",
-        refused: false,
+        help: "write M30 where it shall run once; where it is to run again and again, `--accept program-repeats` lets it pass",
+        refused: true,
     };
 
     /// LinuxCNC `M61` ("Set Current Tool"): the spindle keeps the tool that it has.

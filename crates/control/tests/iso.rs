@@ -373,7 +373,7 @@ fn grbl_has_no_cycles_no_compensation_no_length_register_and_no_tool_change() {
     assert_eq!(rule(GRBL, "%\n"), "syntax");
     assert_eq!(rule(GRBL, "$H\n"), "syntax");
     let exact = Action::PathMode(PathMode::ExactStop);
-    assert_eq!(ops(GRBL, "M1\nG40 G49 G61 G92.1 G91.1\n"), [exact]);
+    assert_eq!(ops(GRBL, "M1\nG40 G49 G61 G91.1\n"), [exact]);
 }
 
 #[test]
@@ -422,7 +422,7 @@ fn two_words_of_a_modal_group_are_refused() {
 
 #[test]
 fn a_word_that_nothing_uses_is_refused() {
-    for block in ["G0 X1. R5.", "G0 X1. P1", "G1 I5.", "G0 X1. K1.", "J1."] {
+    for block in ["G0 X1. R5.", "G0 X1. P1", "G1 F9. I5.", "G0 X1. K1.", "J1."] {
         for dialect in [FANUC, LINUXCNC, GRBL] {
             assert_eq!(rule(dialect, &format!("{block}\n")), "unused-word", "{block}");
         }

@@ -350,3 +350,61 @@ fn the_ends_of_an_arc_may_differ_in_radius_as_they_may_on_linuxcnc() {
     }
     is_refused_by_both("G90 G0 X0 Y0 Z0 F50\nG2 X0.001 Y0.001 I0.001 J0\nM2\n");
 }
+
+/// `convert_feed_mode` sets F to 0 whatever was on before.
+#[test]
+fn a_word_of_the_feed_mode_ends_f_also_where_it_is_on_already() {
+    for program in [
+        "G94 F100\nG1 X1\nG94\nX2\nM2\n",
+        "G94 F100\nG1 X1\nG94 X2\nM2\n",
+        "F100\nG94\nG1 X2\nM2\n",
+        "G94 F100\nG93\nG94\nG1 X2\nM2\n",
+        "M3 S100\nG95 F0.1\nG1 X1\nG95\nX2\nM2\n",
+    ] {
+        is_refused_by_both(program);
+    }
+    for program in [
+        "G94 F100\nG1 X1\nG94 F50 X2\nM2\n",
+        "G94 F100\nG1 X1\nG94\nG0 X2\nM2\n",
+        "G94 F100\nG1 X1\nG94\nF50\nX2\nM2\n",
+        "G93\nG1 X1 F5\nG93 X2 F6\nM2\n",
+    ] {
+        makes_the_same_moves(program);
+    }
+}
+
+#[test]
+fn g1_needs_its_f_also_where_it_names_no_axis() {
+    for program in [
+        "G94\nG1\nM2\n",
+        "G94\nG1\nF100 X1\nM2\n",
+        "G93\nG1\nX1 F3\nM2\n",
+        "G94\nG2\nF9\nM2\n",
+        "G33\nM2\n",
+    ] {
+        is_refused_by_both(program);
+    }
+    for program in ["G94\nG1 F100\nX1\nM2\n", "G94 F9\nG1\nX1\nM2\n", "G93\nG1 F5\nX1 F3\nM2\n"] {
+        makes_the_same_moves(program);
+    }
+}
+
+/// The whole text, without a unit before it.
+#[test]
+fn a_percent_sign_stands_before_the_first_block_and_once_behind_it() {
+    for (program, takes) in [
+        ("%\nG21\nG94 F100\nG1 X1\n%\n", true),
+        ("%\nG21\nG94 F100\nG1 X1\nM2\n%\n", true),
+        ("\n \n%\nG21\nG94 F100\nG1 X1\n%\n", true),
+        ("G21\nG94 F100\nG1 X1\n%\nG1 X2\nM2\n", false),
+        ("G21\nG94 F100\nG1 X1\n%\n", false),
+        ("G21\n%\nG94 F100\nG1 X1\n%\n", false),
+        ("(c)\n%\nG21\nG94 F100\nG1 X1\n%\n", false),
+        ("% x\nG21\nG94 F100\nG1 X1\n%\n", false),
+    ] {
+        assert_eq!(ours(program.as_bytes(), MILL, &[]).is_ok(), takes, "{program}");
+        if let Some(theirs) = theirs(program.as_bytes(), &[]) {
+            assert_eq!(theirs.is_ok(), takes, "{program}");
+        }
+    }
+}

@@ -1019,10 +1019,12 @@ fn a_word_that_leans_on_an_older_block_is_refused() {
 
 /// B-64484EN-2, "M99": in a main program it goes back to its begin.
 #[test]
-fn m99_begins_a_fanuc_program_again_and_is_told() {
-    let found = actions(Dialect::Fanuc, "G21\nG90\nM99\n");
-    let [.., Action::Risk(risk), Action::End] = &found[..] else { panic!("{found:?}") };
-    assert_eq!((risk.rule.name(), risk.refused), ("program-repeats", false));
+fn m99_begins_a_program_of_fanuc_and_haas_again_and_is_refused() {
+    for dialect in [Dialect::Fanuc, Dialect::Haas] {
+        let found = actions(dialect, "G21\nG90\nM99\n");
+        let [.., Action::Risk(risk), Action::End] = &found[..] else { panic!("{found:?}") };
+        assert_eq!((risk.rule.name(), risk.refused), ("program-repeats", true));
+    }
 }
 
 /// Marlin's G-code index, "G0-G1": both have one feed.

@@ -4,7 +4,7 @@
 use program::Rule;
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(Rule, &str); 25] = [
+pub const ACCEPTABLE: [(Rule, &str); 26] = [
     (Rule::AdaptiveFeed, "an input of the machine multiplies the feed"),
     (Rule::AxisDynamics, "axes may be faster than their machine data allow"),
     (Rule::DwellUnit, "what a dwell counts in"),
@@ -23,6 +23,7 @@ pub const ACCEPTABLE: [(Rule, &str); 25] = [
     ),
     (Rule::OrientationWay, "how the tool turns within a block while the control keeps its tip"),
     (Rule::PathTolerance, "corners may be cut by more than the machine's file allows"),
+    (Rule::ProgramRepeats, "the program begins again at its end, without end"),
     (Rule::RapidPath, "room for the tool where it goes by rapid on another path than the source"),
     (Rule::ReplacementTool, "where and how the control changes a tool whose life is over"),
     (Rule::RotaryWay, "which way the rotary axes turn"),

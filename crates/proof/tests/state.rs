@@ -397,7 +397,9 @@ fn other_axes_go_home_with_z_only_from_above_the_part() {
     };
     let from_above = report(5.0);
     proven(&from_above);
-    assert_eq!(from_above.warnings[0].rule, "home");
+    // The program changes the first tool before anything goes home.
+    let warned: Vec<_> = from_above.warnings.iter().map(|found| found.rule.name()).collect();
+    assert_eq!(warned[..2], ["tool-change-height", "home"]);
     assert_eq!(rules(&report(4.0)), ["home"]);
 }
 
@@ -476,7 +478,7 @@ fn a_first_cut_from_an_unknown_place_has_to_go_straight_to_its_end() {
     let own = source(cut()[1..].to_vec());
     let report = judge(&mill(), &own, cut_nc()[1..].to_vec());
     proven(&report);
-    assert_eq!(report.warnings[0].rule, "unknown-start");
+    assert!(report.warnings.iter().any(|found| found.rule == "unknown-start"));
     let mut nc = cut_nc()[1..].to_vec();
     nc.insert(0, Action::Line(block(0.0, 3.0, -1.0)));
     assert_eq!(rules(&judge(&mill(), &own, nc)), ["unknown-start"]);

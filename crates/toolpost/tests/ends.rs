@@ -49,7 +49,8 @@ impl Job {
     fn twice(&self, blocks: &str) -> String {
         let starts = |line: &&String| !line.starts_with(['%', 'O']) && !line.contains("BEGIN PGM");
         let resets = match self.dialect() {
-            Dialect::LinuxCnc => "G17 G90 G94 G40 G54 G1\nM5\nM9",
+            // `G1` wants an F there, and `G94` leaves none.
+            Dialect::LinuxCnc => "G94 F9\nG17 G90 G40 G54 G1\nG94\nM5\nM9",
             // The operator puts the first tool in.
             Dialect::Grbl => "G17 G90 G94 G40 G54 G1\nM5\nM9\nT1\nM0",
             Dialect::Marlin => "T1\nM0",

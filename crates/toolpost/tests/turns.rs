@@ -92,3 +92,36 @@ fn how_the_tool_turns_in_a_cut_has_to_be_said() {
         }
     }
 }
+
+/// Where a program begins, Z stands wherever the operator has left it; most machines bring it up for a tool change, and nobody
+/// guarantees it.
+#[test]
+fn a_first_tool_change_before_z_is_home_is_reported() {
+    for (name, retract) in [
+        ("generic-3axis-fanuc", "G91 G28 Z0"),
+        ("generic-3axis-haas", "G91 G28 Z0"),
+        ("linuxcnc-mill", "G53 G0 Z0"),
+        ("generic-3axis-sinumerik", "SUPA Z0"),
+    ] {
+        let machine = load(name).unwrap();
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../machines/samples/three-axes.cls");
+        let source = std::fs::read(file).unwrap();
+        let source = source::apt::read("sample.cls", &source, &Default::default()).unwrap().program;
+        let text = String::from_utf8(post::write(&source, &machine).unwrap().text).unwrap();
+        let reported = |text: &str| {
+            let report = proof::prove(&source, &machine, "p", text.as_bytes(), &Default::default());
+            assert!(report.proven, "{name}: {:?}\n{text}", report.mismatches);
+            report.warnings.iter().any(|found| found.rule.name() == "tool-change-height")
+        };
+        assert!(!reported(&text), "{name}");
+        let first = text.lines().position(|line| line.contains(retract)).unwrap();
+        let without: String = text
+            .lines()
+            .enumerate()
+            .filter(|(i, _)| *i != first)
+            .map(|(_, line)| format!("{line}\n"))
+            .collect();
+        assert!(reported(&without), "{name}\n{without}");
+    }
+}

@@ -20,6 +20,14 @@ impl Prover<'_> {
                         tool change brings Z up by itself";
             self.found(Diagnostic::error(Rule::ToolChangeHeight, message).help(help).line(line));
         }
+        if !self.gauge.machine.tools.retracts && !self.raised && !self.has_stood {
+            let message =
+                "changes the first tool wherever Z stands: nothing before it has sent Z home";
+            let message = format!("source line {}: the program {message}", self.cursor.line);
+            let help = "send Z home before it, or bring the spindle up before you start";
+            let found = Diagnostic::warning(Rule::ToolChangeHeight, message).help(help);
+            self.report.warn(found.line(line));
+        }
         if self.gauge.machine.tools.retracts {
             self.leaves_for_home(line);
             self.raised = true;

@@ -238,6 +238,10 @@ pub(crate) struct FeedRules {
     pub pitch_by_f: bool,
     /// In which unit F is in the block that changes units.
     pub unit: FeedUnit,
+    /// A word of the feed mode ends F, also the one that is on already.
+    pub mode_ends_feed: bool,
+    /// `G1` needs its F also in a block that names no axis.
+    pub word_needs_feed: bool,
 }
 
 /// What F is, apart from its modes.
@@ -264,8 +268,13 @@ pub(crate) enum FeedUnit {
 }
 
 impl FeedRules {
-    pub const ISO: FeedRules =
-        FeedRules { meaning: FeedMeaning::PerMinute, pitch_by_f: false, unit: FeedUnit::Unclear };
+    pub const ISO: FeedRules = FeedRules {
+        meaning: FeedMeaning::PerMinute,
+        pitch_by_f: false,
+        unit: FeedUnit::Unclear,
+        mode_ends_feed: false,
+        word_needs_feed: false,
+    };
     pub const FANUC: FeedRules =
         FeedRules { pitch_by_f: true, unit: FeedUnit::OfFirst, ..FeedRules::ISO };
 }

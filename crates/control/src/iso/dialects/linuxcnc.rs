@@ -102,7 +102,13 @@ pub(crate) static FACTS: Facts = Facts {
         further_axes: "U, V and W are axes of machines whose [TRAJ]COORDINATES name them, and not followed: write the move as X, Y and Z",
         ..Syntax::ISO
     },
-    feed: FeedRules { unit: FeedUnit::OfBefore, ..FeedRules::ISO },
+    // Both found with `rs274`: "Cannot do g1 with zero feed rate".
+    feed: FeedRules {
+        unit: FeedUnit::OfBefore,
+        mode_ends_feed: true,
+        word_needs_feed: true,
+        ..FeedRules::ISO
+    },
     functions: Functions { orients_by_pq: true, ..Functions::ISO },
     motion: MotionRules {
         rollover: Rollover::BySign,

@@ -59,6 +59,8 @@ impl Step<'_, '_, '_> {
                 let known = self.state.frames.unshift(keep);
                 self.reframe();
                 if !known {
+                    // A shift that somebody else has set.
+                    self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
                     self.state.position = UNKNOWN;
                 }
             }

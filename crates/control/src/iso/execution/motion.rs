@@ -194,7 +194,11 @@ impl Step<'_, '_, '_> {
             Motion::Rapid | Motion::Line => {
                 let target = self.target(false)?;
                 if target.named == 0 {
-                    return Ok(());
+                    let says = self.block.g(Group::Motion) == Some(G::Motion(Motion::Line));
+                    return match says && self.facts.feed.word_needs_feed {
+                        true => self.has_feed(),
+                        false => Ok(()),
+                    };
                 }
                 if motion == Motion::Line {
                     self.feed_for_cut()?;
@@ -440,6 +444,12 @@ impl Step<'_, '_, '_> {
     /// # Errors
     /// No feed is active, or in `G93` the block has none of its own, or the tool is not in.
     pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
+        self.has_feed()?;
+        self.state.cut |= self.state.feed.is_some();
+        Ok(())
+    }
+
+    fn has_feed(&self) -> Result<(), Fault> {
         let message = match self.state.feed {
             // A wire goes as fast as its generator lets it.
             None if self.state.wire.is_some() || !self.state.purpose.asks_technology() => {
@@ -456,10 +466,7 @@ impl Step<'_, '_, '_> {
                 let message = "T has named a tool, and no M0 has stopped the program to put it in";
                 return Err(self.block.whole(Rule::Tool, message));
             }
-            Some(_) => {
-                self.state.cut = true;
-                return Ok(());
-            }
+            Some(_) => return Ok(()),
         };
         Err(self.block.whole(Rule::Feed, message))
     }

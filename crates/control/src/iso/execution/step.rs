@@ -150,7 +150,7 @@ impl Step<'_, '_, '_> {
 
     fn feed(&mut self) -> Result<(), Fault> {
         if let Some(G::FeedMode(mode)) = self.block.g(Group::FeedMode)
-            && mode != self.state.feed_mode
+            && (mode != self.state.feed_mode || self.facts.feed.mode_ends_feed)
         {
             // The old number means nothing in the new mode.
             self.state.feed_mode = mode;

@@ -164,7 +164,7 @@ impl<'a, 's> Run<'a, 's> {
     ) -> Result<(), Fault> {
         self.onward = None;
         if text.first() == Some(&b'%') && self.facts.syntax.percent {
-            return self.percent(text, line);
+            return self.percent(from, text, line);
         }
         if self.settings.setup.block_delete && text.trim_ascii_start().first() == Some(&b'/') {
             return Ok(());
@@ -200,9 +200,22 @@ impl<'a, 's> Run<'a, 's> {
         self.execute()
     }
 
-    /// `%` stands alone on its line; a program ends at the second.
-    fn percent(&mut self, text: &[u8], line: u32) -> Result<(), Fault> {
-        self.here.percent_signs += 1;
+    /// `%` stands alone on its line, which begins at byte `from`; a program ends at the second, or at one behind its first block.
+    /// LinuxCNC takes none behind the first block but the second ("Bad character '%' used", found with `rs274`).
+    fn percent(&mut self, from: usize, text: &[u8], line: u32) -> Result<(), Fault> {
+        let before = &self.here.source.text[..from];
+        let is_late = self.here.percent_signs == 0
+            && !self.control.state.ended
+            && !before.trim_ascii().is_empty();
+        if is_late && self.language == Language::Ngc {
+            let fault = Diagnostic::error(
+                Rule::Syntax,
+                "% stands behind the first block of a program that does not begin with it",
+            );
+            let help = "begin the program with %, or leave both out";
+            return Err(fault.help(help).at(line, text, 0, text.len()).into());
+        }
+        self.here.percent_signs += if is_late { 2 } else { 1 };
         let alone = text[1..].iter().all(|b| matches!(b, b' ' | b'\t'));
         if !alone || self.here.percent_signs > 2 {
             let message = "a line with % holds nothing else, and a program has two at most";
