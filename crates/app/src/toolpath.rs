@@ -5,7 +5,7 @@ use crate::fcstd;
 use crate::files;
 use crate::input::Source;
 use crate::summary::{Shape, number};
-use control::{Dialect, Setup, Units, WholeNumbers};
+use control::{Setup, Units, WholeNumbers};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, Reach, library};
@@ -630,15 +630,7 @@ fn checked(machine: Machine) -> Result<Machine, Stop> {
             .file(&machine.file)
             .into());
     }
-    let settings = nc::settings(&machine, Setup::default())?;
-    if settings.dialect == Dialect::FreeCad {
-        let message = "no machine reads FreeCAD's commands: they are a source alone";
-        let place = &machine.reader_place;
-        return Err(Diagnostic::error(Rule::Reader, message)
-            .file(&place.file)
-            .line(place.line)
-            .into());
-    }
+    nc::settings(&machine, Setup::default())?;
     Ok(machine)
 }
 

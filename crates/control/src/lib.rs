@@ -11,7 +11,7 @@
 
 mod arm;
 mod event;
-mod iso;
+pub mod iso;
 pub mod kernel;
 mod klartext;
 mod krl;
@@ -22,8 +22,8 @@ pub mod tools;
 pub use arm::{ArmAction, ArmMove, ArmPath, Corner, Turning};
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
 use geom::Vec3;
-use iso::dialects::facts::Facts;
-use iso::dialects::{fanuc, freecad, grbl, haas, linuxcnc, mach3, marlin, wire};
+use iso::Facts;
+use iso::dialects::{fanuc, grbl, haas, linuxcnc, mach3, marlin, wire};
 use kernel::compensation::Rules;
 pub use kernel::folders::Folders;
 use program::{Diagnostic, Purpose, WorkOffset};
@@ -59,13 +59,13 @@ pub enum Dialect {
     Points,
     /// KUKA's robot language (KRC2, KRC4).
     Krl,
-    /// The commands in which FreeCAD keeps a toolpath: a source, which no machine reads.
-    FreeCad,
+    /// ISO code in which a CAM system keeps its toolpaths and which no machine reads: the crate that reads them describes it.
+    Source(&'static Facts),
 }
 
 impl Dialect {
-    /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 15] = [
+    /// Every dialect of a control with the name that its file gives as its `reader`.
+    pub const NAMES: [(&'static str, Dialect); 14] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -80,7 +80,6 @@ impl Dialect {
         ("agie", Dialect::Agie),
         ("points", Dialect::Points),
         ("krl", Dialect::Krl),
-        ("freecad", Dialect::FreeCad),
     ];
 
     /// The dialect of that name.
@@ -100,7 +99,7 @@ impl Dialect {
             Dialect::FanucWire => Language::Iso(&wire::FANUC),
             Dialect::Sodick => Language::Iso(&wire::SODICK),
             Dialect::Agie => Language::Iso(&wire::AGIE),
-            Dialect::FreeCad => Language::Iso(&freecad::FACTS),
+            Dialect::Source(facts) => Language::Iso(facts),
             Dialect::Sinumerik | Dialect::Sinumerik828d => Language::Sinumerik,
             Dialect::Klartext => Language::Klartext,
             Dialect::Points => Language::Points,

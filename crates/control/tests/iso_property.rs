@@ -266,7 +266,7 @@ proptest! {
         let text = format!("G21\nG90\nS100 M3\nG0 X1. Y2. Z30.\nG1 F100\n{}\n", blocks.join("\n"));
         let start = known.then_some(Vec3::ZERO);
         let setup = Setup { start, whole_numbers: whole, ..Setup::default() };
-        for dialect in DIALECTS.into_iter().chain([Dialect::FreeCad, Dialect::FanucWire]) {
+        for dialect in DIALECTS.into_iter().chain([Dialect::FanucWire]) {
             let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
             let run = |lines: &[&str], parted: bool| {
                 let text = lines.join("\n");

@@ -5,7 +5,7 @@
 //!
 //! A job is a list of operations, each with a label and its commands as text: as JSON, which our part of
 //! FreeCAD writes, or as FreeCAD's own dump (a [`Job`]). Joined to one [`Listing`], with what the job alone
-//! says as commands of their own (coolant), they run on a virtual control that knows FreeCAD's words and
+//! says as commands of their own (coolant), they run on the virtual control of ISO code, in the dialect of FreeCAD's words (`commands`), and
 //! become a neutral program as any NC program does. The names of the operations and the data of the tools, which the commands
 //! lack, are added.
 //!
@@ -29,6 +29,7 @@
 //! It never runs FreeCAD and never changes a job: what is wrong in it is refused with where FreeCAD corrects it.
 
 mod between_holes;
+mod commands;
 mod dump;
 mod job;
 mod listing;

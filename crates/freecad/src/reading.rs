@@ -1,9 +1,10 @@
 //! From a job to a neutral program.
 
 use crate::between_holes::BetweenHoles;
+use crate::commands::COMMANDS;
 use crate::job::{Job, Tool};
 use crate::listing::Listing;
-use control::Setup;
+use control::{Dialect, Setup};
 use geom::Vec3;
 use machine::Machine;
 use program::{Diagnostic, Op, Program, Purpose, Record, Rule, Spindle};
@@ -42,15 +43,16 @@ pub fn read(
         .filter(|_| purpose.asks_technology())
         .map(|(operation, tool)| (operation.to_owned(), tool.to_owned()));
     let listing = Listing::of(file_name, &mut job)?;
-    let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
+    let mut turning = machine.clone();
     if !listing.turns() {
-        speaks.rotary.clear();
+        turning.rotary.clear();
     }
     let mut collector = Collector::new(&job, &listing, purpose);
     let keep =
         &mut |records: &mut Vec<Record>, record, several| collector.keep(records, record, several);
     let setup = Setup { purpose, ..Setup::default() };
-    let read = nc::read_by(&speaks, setup, "", listing.text(), keep);
+    let settings = nc::settings_in(Dialect::Source(&COMMANDS), &turning, setup);
+    let read = nc::read_by(&turning, &settings, "", listing.text(), keep);
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let (mut reading, several) = read.map_err(|found| located(way_out(*found)))?;
     let mut records = std::mem::take(&mut reading.program.records);
@@ -115,6 +117,8 @@ fn way_out(mut found: Diagnostic) -> Diagnostic {
         Rule::Spindle => "give the tool controller of the operation its speed, and recompute",
         Rule::Tool => "give the tool controller a number above 0, and recompute",
         Rule::UnknownWord => "change the commands of the operation",
+        // FreeCAD writes what it could not work out as a huge number, or as a word.
+        Rule::Number => "recompute the operation in FreeCAD, and look at what it is made from",
         _ => return found,
     };
     found.help_too(way_out);

@@ -90,6 +90,11 @@ pub fn settings(machine: &Machine, setup: Setup) -> Outcome<Settings> {
             .line(place.line)
             .into());
     };
+    Ok(settings_in(dialect, machine, setup))
+}
+
+/// The settings of a virtual control with the axes of `machine` that reads `dialect`, as [`settings`].
+pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Settings {
     let (mut rotary, mut table, mut modulo) = ([false; 3], [false; 3], [None; 3]);
     for axis in &machine.rotary {
         rotary[axis.index()] = true;
@@ -98,7 +103,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Outcome<Settings> {
     }
     let clamps = machine.rotary.iter().filter_map(|axis| axis.clamp);
     let clamps = clamps.flat_map(|clamp| [clamp.open, clamp.close]);
-    Ok(Settings {
+    Settings {
         auxiliary: machine.auxiliary.iter().copied().chain(clamps).collect(),
         modulo,
         floating_holder: machine.settings.floating_holder,
@@ -125,13 +130,18 @@ pub fn settings(machine: &Machine, setup: Setup) -> Outcome<Settings> {
         orientation_tolerance: machine.orientation_tolerance(),
         setup,
         ..Settings::new(dialect, rotary)
-    })
+    }
 }
 
 /// Along which path the control of `machine` counts the feed until a program states it. Where a parameter of the control
 /// decides, the machine file may state it.
 pub fn feed_path(machine: &Machine) -> FeedPath {
-    let path = Dialect::named(&machine.reader).map_or(FeedPath::AsSetUp, Dialect::feed_path);
+    feed_path_in(Dialect::named(&machine.reader), machine)
+}
+
+/// The same of a control that reads `dialect`.
+fn feed_path_in(dialect: Option<Dialect>, machine: &Machine) -> FeedPath {
+    let path = dialect.map_or(FeedPath::AsSetUp, Dialect::feed_path);
     match (path, machine.settings.rotary_feed) {
         (FeedPath::AsSetUp, Some(RotaryFeed::AllAxes)) => FeedPath::AllAxes,
         (FeedPath::AsSetUp, Some(RotaryFeed::LinearAxes)) => FeedPath::LinearAxes,
@@ -146,7 +156,8 @@ pub fn feed_path(machine: &Machine) -> FeedPath {
 /// with `file_name`, line and the way out.
 pub fn read(machine: &Machine, setup: Setup, file_name: &str, text: &[u8]) -> Outcome<Reading> {
     let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
-    let (mut reading, several) = read_by(machine, setup, file_name, text, keep)?;
+    let settings = settings(machine, setup)?;
+    let (mut reading, several) = read_by(machine, &settings, file_name, text, keep)?;
     let records = &mut reading.program.records;
     let is_offset = |record: &Record| matches!(record.op, Op::WorkOffset(_));
     // There is one at most: another one would be one of several.
@@ -169,7 +180,7 @@ pub fn read_with_rapids_sampled(
 ) -> Outcome<Program> {
     let settings = settings(machine, setup)?;
     let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
-    let mut conversion = Conversion::new(machine, &settings.setup, file_name, keep);
+    let mut conversion = Conversion::new(machine, &settings, file_name, keep);
     let mut before: Option<Position> = None;
     let run = control::read(&settings, file_name, text, &mut |event| {
         let line = event.line;
@@ -197,7 +208,7 @@ pub fn read_in_machine(
 ) -> Outcome<Program> {
     let settings = settings(machine, setup)?;
     let drop = &mut |_: &mut Vec<Record>, _, _| {};
-    let mut conversion = Conversion::new(machine, &settings.setup, file_name, drop);
+    let mut conversion = Conversion::new(machine, &settings, file_name, drop);
     let mut program = Program::new(file_name);
     let mut before: Option<Position> = None;
     let run = control::read(&settings, file_name, text, &mut |event| {
@@ -273,24 +284,21 @@ fn axes_at(machine: &Machine, position: &Position, length: Option<f64>) -> Outco
     }
 }
 
-/// The same with a function that receives each record. The second answer is whether the program works in more than the
+/// The same by a control of these settings, with a function that receives each record. The second answer is whether the program works in more than the
 /// first work offset; where it does not, the machine decides the offset, and the record of it does not belong to the program.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_by(
     machine: &Machine,
-    setup: Setup,
+    settings: &Settings,
     file_name: &str,
     text: &[u8],
     keep: &mut Sink,
 ) -> Outcome<(Reading, bool)> {
-    let settings = settings(machine, setup)?;
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
-    let mut conversion = Conversion::new(machine, &settings.setup, name, keep);
-    // FreeCAD's commands call no lengths: the post does.
-    conversion.calls_lengths &= settings.dialect != Dialect::FreeCad;
-    let run = control::read(&settings, file_name, text, &mut |event| {
+    let mut conversion = Conversion::new(machine, settings, name, keep);
+    let run = control::read(settings, file_name, text, &mut |event| {
         let line = event.line;
         conversion.event(event).map_err(|found| found.line(line).into())
     });
@@ -332,7 +340,7 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
     }
     let ending = dialect.ending();
     let has_percent = !matches!(dialect, Dialect::Klartext | Dialect::Grbl | Dialect::Marlin)
-        && !matches!(dialect, Dialect::Sinumerik | Dialect::Sinumerik828d | Dialect::FreeCad);
+        && !matches!(dialect, Dialect::Sinumerik | Dialect::Sinumerik828d | Dialect::Source(_));
     let percent_signs = if has_percent { control::percent_signs(text) } else { 0 };
     if percent_signs == 1 {
         let message = "`%` opens the program, and none closes it";
@@ -363,6 +371,8 @@ fn way_out(mut found: Box<Diagnostic>) -> Box<Diagnostic> {
 /// The conversion of the events of a control into a neutral program.
 struct Conversion<'a> {
     machine: &'a Machine,
+    /// The program is what a CAM system keeps, and no control reads it.
+    is_source: bool,
     setup: &'a Setup,
     program: Program,
     keep: &'a mut Sink<'a>,
@@ -450,13 +460,16 @@ impl ToolPosition {
 impl<'a> Conversion<'a> {
     fn new(
         machine: &'a Machine,
-        setup: &'a Setup,
+        settings: &'a Settings,
         name: &str,
         keep: &'a mut Sink<'a>,
     ) -> Conversion<'a> {
+        let is_source = matches!(settings.dialect, Dialect::Source(_));
+        let registers = machine.capabilities.length_offset == LengthOffset::ToolNumber;
         Conversion {
             machine,
-            setup,
+            is_source,
+            setup: &settings.setup,
             program: Program {
                 // What the control offsets is the contour.
                 compensated_path: Some(CompensatedPath::Contour),
@@ -466,12 +479,12 @@ impl<'a> Conversion<'a> {
             count: 0,
             ended: false,
             warnings: Vec::new(),
-            tool_at: setup.start.map_or(ToolPosition::Unknown, |tip| {
+            tool_at: settings.setup.start.map_or(ToolPosition::Unknown, |tip| {
                 ToolPosition::Start(PartialPose { tip, axis: Vec3::Z })
             }),
             position: None,
             feed: None,
-            feed_path: feed_path(machine),
+            feed_path: feed_path_in(Some(settings.dialect), machine),
             written_feed: None,
             home: None,
             tool: None,
@@ -481,7 +494,8 @@ impl<'a> Conversion<'a> {
             numbers: HashMap::new(),
             named: HashMap::new(),
             free_from: 1,
-            calls_lengths: machine.capabilities.length_offset == LengthOffset::ToolNumber,
+            // The post calls the lengths of what a CAM system keeps.
+            calls_lengths: registers && !is_source,
             length_offset: None,
             bare: BTreeSet::new(),
         }
@@ -681,8 +695,8 @@ impl<'a> Conversion<'a> {
     /// F is taken as the speed of the tip where it is not known what it counts.
     #[cold]
     fn unknown_speed(&mut self, line: u32) {
-        // FreeCAD's feeds are those of the tool.
-        if Dialect::named(&self.machine.reader) == Some(Dialect::FreeCad) {
+        // The feeds of a CAM system are those of the tool.
+        if self.is_source {
             return;
         }
         let message = "rotary axes turn in the cut, and a parameter of the control decides which axes F in mm/min counts: it is \

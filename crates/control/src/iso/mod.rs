@@ -1,5 +1,5 @@
-//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; of wire-EDM
-//! machines; and what FreeCAD's CAM workbench keeps.
+//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; and of wire-EDM machines. What a CAM
+//! system keeps in ISO code and no machine reads is described by the crate that reads it ([`Facts::source`]).
 //!
 //! They share the words and the order of execution and differ in tables ([`dialects`]) and in
 //! the rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
@@ -14,11 +14,15 @@ mod language;
 
 use crate::Settings;
 use crate::kernel::Channel;
-use dialects::facts::Facts;
+pub use dialects::facts::{Facts, SourceRules};
 use flow::ahead::Ahead;
 use flow::run::Run;
 use flow::source::Source;
 use language::block::Fault;
+pub use language::words::{
+    Canned, Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Path, Pattern, Plane, Refused,
+    Side,
+};
 
 /// The G and M words of the dialect of these facts.
 pub(crate) fn vocabulary(facts: &Facts) -> Vec<String> {

@@ -1,9 +1,8 @@
-//! The dialects, each a file of [`facts`]: which words it has, in which modal group, why it refuses others, and in what it
+//! The dialects of controls, each a file of [`facts`]: which words it has, in which modal group, why it refuses others, and in what it
 //! differs from others besides. No other file of `iso` asks for a maker by name; compensation has its table in `kernel`.
 
 pub(crate) mod facts;
 pub(crate) mod fanuc;
-pub(crate) mod freecad;
 pub(crate) mod grbl;
 pub(crate) mod haas;
 pub(crate) mod linuxcnc;

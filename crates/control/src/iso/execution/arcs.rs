@@ -139,8 +139,8 @@ impl Step<'_, '_, '_> {
         Ok(center)
     }
 
-    /// The word of the centre along the axis of the arc. GRBL drops it (`gcode.c`, step 20), as FreeCAD's
-    /// own posts do; LinuxCNC refuses it (found with `rs274`); that it is 0 says nothing anywhere.
+    /// The word of the centre along the axis of the arc. GRBL drops it (`gcode.c`, step 20), as the
+    /// posts of FreeCAD do; LinuxCNC refuses it (found with `rs274`); that it is 0 says nothing anywhere.
     fn pass_outer_center(&mut self, letter: u8) -> Result<(), Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(()) };
         match self.facts.arcs.outer_center {

@@ -367,7 +367,7 @@ impl Step<'_, '_, '_> {
         } else if self.state.spindle != needed {
             let message = "the spindle does not turn the way this tapping cycle needs";
             return Err(self.wrong(message));
-        } else if !self.state.floating_holder && !self.facts.cycles.chuck_is_open {
+        } else if !self.state.floating_holder && self.facts.source.is_none() {
             self.actions.push(Action::Risk(Risk::FLOATING_TAP.into()));
         }
         let pitch = match self.state.feed {

@@ -63,7 +63,7 @@ impl State {
     /// "M2, M30 Program End"; `gcode.c`, step 21). On a FANUC parameters 3402#6 and 1202#3 decide what a reset clears and the
     /// builder whether `M30` is one, on Haas setting 56, on Mach3 the page "Logic" of its configuration.
     pub(in crate::iso) fn left_on(&self, facts: &Facts) -> impl Iterator<Item = Risk> {
-        let is_read = facts.reset.at_end != AtEnd::Unread;
+        let is_read = facts.source.is_none();
         let keeps_modes = facts.reset.at_end == AtEnd::Keeps;
         let returns_up = facts.cycles.returns == Some(false);
         let found = [

@@ -202,7 +202,7 @@ impl State {
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            inches: match facts.reset.millimeters {
+            inches: match facts.source.is_some() {
                 true => Some(false),
                 false => settings.setup.units.map(|units| units == Units::Inches),
             },

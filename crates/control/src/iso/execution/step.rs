@@ -2,12 +2,12 @@
 
 use super::state::State;
 use crate::event::{Action, Risk};
-use crate::iso::dialects::facts::{AtEnd, Facts, FeedMeaning, FeedUnit};
+use crate::iso::dialects::facts::{AtEnd, Facts};
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
 use crate::{Settings, WholeNumbers};
 use program::Rule;
-use program::{Coolant, Feed, PathMode, Spindle, WorkOffset};
+use program::{Coolant, PathMode, Spindle, WorkOffset};
 
 /// A virtual control: its dialect, its axes and its state.
 #[derive(Debug)]
@@ -146,76 +146,6 @@ impl Step<'_, '_, '_> {
             }
         }
         Ok(())
-    }
-
-    fn feed(&mut self) -> Result<(), Fault> {
-        if let Some(G::FeedMode(mode)) = self.block.g(Group::FeedMode)
-            && (mode != self.state.feed_mode || self.facts.feed.mode_ends_feed)
-        {
-            // The old number means nothing in the new mode.
-            self.state.feed_mode = mode;
-            self.state.feed = None;
-        }
-        if self.facts.feed.pitch_by_f && self.motion_of_block() == Some(Motion::Thread) {
-            return Ok(());
-        }
-        if self.facts.feed.meaning == FeedMeaning::PerSecond {
-            return self.feed_of_command();
-        }
-        if self.facts.feed.meaning == FeedMeaning::PointedTime
-            && self.state.feed_mode == FeedMode::InverseTime
-        {
-            return self.feed_as_time();
-        }
-        let Some(word) = self.block.take(b'F') else { return Ok(()) };
-        let inches = self.inches_of_feed()?;
-        if word.value <= 0.0 {
-            return Err(self.block.at_word(b'F', Rule::Feed, "the feed must be greater than 0"));
-        }
-        self.state.f = Some(word.value);
-        let feed = match self.state.feed_mode {
-            FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(inches, b'F')?),
-            FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(inches, b'F')?),
-            FeedMode::InverseTime => Feed::InverseTime(word.value),
-        };
-        if self.state.feed.replace(feed) != Some(feed) {
-            self.actions.push(Action::Feed(feed));
-        }
-        Ok(())
-    }
-
-    /// F in `G93` of a FANUC (B-62764EN, "Inverse time feed"): 0.001 to 9999.999, and a thousandth of a number that has no
-    /// point, unless parameter 3401#0 says otherwise.
-    fn feed_as_time(&mut self) -> Result<(), Fault> {
-        let Some((value, thousandths)) = self.take_pointed(b'F')? else { return Ok(()) };
-        let rate = if thousandths { value / 1000.0 } else { value };
-        if !(0.001..=9999.999).contains(&rate) {
-            let message = "F takes 0.001 to 9999.999 in G93";
-            return Err(self.block.at_word(b'F', Rule::Feed, message));
-        }
-        self.state.f = Some(value);
-        let feed = Feed::InverseTime(rate);
-        if self.state.feed.replace(feed) != Some(feed) {
-            self.actions.push(Action::Feed(feed));
-        }
-        Ok(())
-    }
-
-    /// The unit that F is in, where the block itself changes units, too.
-    fn inches_of_feed(&self) -> Result<Option<bool>, Fault> {
-        let before = self.state.inches;
-        let Some(G::Inches(inches)) = self.block.g(Group::Units) else { return Ok(before) };
-        match self.facts.feed.unit {
-            FeedUnit::OfBlock => Ok(Some(inches)),
-            _ if before == Some(inches) => Ok(before),
-            FeedUnit::OfBefore if before.is_some() => Ok(before),
-            FeedUnit::OfFirst if before.is_none() => Ok(Some(inches)),
-            _ => {
-                let message = "F in the block that changes the units counts in those of before";
-                let fault = self.block.at_word(b'F', Rule::Feed, message);
-                Err(fault.help("write G20 or G21 in a block before").into())
-            }
-        }
     }
 
     fn speed(&mut self) -> Result<(), Fault> {

@@ -8,7 +8,7 @@ use super::state::{State, Tilt};
 use super::step::Control;
 use crate::WholeNumbers;
 use crate::event::Action;
-use crate::iso::language::block::{Block, NOTHING, Word};
+use crate::iso::language::block::{Block, Word};
 use crate::iso::language::words::{Motion, bit, index};
 use program::Feed;
 
@@ -39,7 +39,7 @@ impl StraightContinuation {
             && state.compensation.active == state.compensation.asked
             && !state.awaits_tool(block.facts);
         let goes = is_simple && block.only_moves() && is_feed_per_minute && state.cut && state.told;
-        // FreeCAD's F beside a rapid is none of the moves behind it, and FANUC's beside G33 is a pitch.
+        // F of a CAM system next to a rapid is none of the moves behind it, and that of FANUC next to G33 is a pitch.
         let cuts = matches!(state.motion, Some(Motion::Line | Motion::Arc { .. }));
         let feed = (cuts && block.gives(b'F')).then(|| block.words[index(b'F')]);
         goes.then_some(StraightContinuation { unit, feed })
@@ -59,8 +59,8 @@ impl Control {
         let mut given = 0;
         for word in words {
             let letter = bit(word.letter);
-            // What is so large is looked at once more.
-            if given & letter != 0 || word.value.abs() >= NOTHING {
+            let largest = self.facts.source.map_or(f64::INFINITY, |source| source.largest);
+            if given & letter != 0 || word.value.abs() >= largest {
                 return None;
             }
             match word.letter {

@@ -84,7 +84,7 @@ impl Step<'_, '_, '_> {
             let message = "M6 and no tool has been named by T";
             return Err(self.block.at_group(Group::ToolChange, Rule::Tool, message));
         };
-        if number == 0 && self.facts.tools.numbered {
+        if number == 0 && self.facts.source.is_some() {
             let message = "the tool has no number";
             return Err(self.block.at_group(Group::ToolChange, Rule::Tool, message));
         }

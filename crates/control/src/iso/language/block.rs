@@ -9,10 +9,6 @@ use crate::iso::dialects::facts::{BlockDelete, Brackets, CornerWords, Facts, Lan
 use crate::kernel::decimal::{self, Decimal};
 use program::{Diagnostic, Rule};
 
-/// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
-/// kilometre long.
-pub(crate) const NOTHING: f64 = 1e6;
-
 /// The letters of a block that only moves, by [`bit`].
 const MOVES: u32 = set(b"NXYZABCIJKRF");
 
@@ -195,9 +191,8 @@ impl<'a> Block<'a> {
                     self.end_of_block(at)?;
                     break;
                 }
-                // FreeCAD itself passes over it and takes the words behind it.
-                b';' if facts.syntax.semicolon == Semicolon::Refused => {
-                    let message = "FreeCAD knows no comment behind ;";
+                b';' if facts.source.is_some() => {
+                    let message = "; begins no comment: the words behind it would count";
                     let fault = self.fault(Rule::Syntax, message, at, text.len());
                     return Err(fault.help("put it into ( ) as a command of its own").into());
                 }
@@ -332,7 +327,7 @@ impl<'a> Block<'a> {
         let facts = self.facts;
         let letter = word.letter;
         let (at, end) = (word.start as usize, word.end as usize);
-        if facts.syntax.writes_nothing && word.value.abs() >= NOTHING {
+        if facts.source.is_some_and(|source| word.value.abs() >= source.largest) {
             return Err(self.nothing(at, end));
         }
         if self.calls && !matches!(letter, b'N' | b'P' | b'L' | b'G') {
@@ -526,10 +521,10 @@ impl<'a> Block<'a> {
 
     /// Reads the comment at `at` and gives the place after it. On GRBL it ends at the first `)`,
     /// whatever stands in it (`protocol_main_loop`).
-    /// One of FreeCAD is a command of its own, and may hold the brackets of a label.
+    /// That of a CAM system is a command of its own, and may hold the brackets of a label.
     fn comment(&mut self, at: usize) -> Result<usize, Fault> {
         let rest = self.text.get(at + 1..).unwrap_or_default();
-        if self.facts.syntax.brackets == Brackets::Line {
+        if self.facts.source.is_some() {
             let text = rest.strip_suffix(b")").unwrap_or(rest);
             self.comments.push((at + 1, at + 1 + text.len()));
             return Ok(self.text.len());

@@ -92,7 +92,7 @@ impl Block<'_> {
     pub(super) fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {
             Some(&byte @ (b'#' | b'[')) => self.stray(byte, from),
-            Some(byte) if self.facts.syntax.writes_nothing && !byte.is_ascii_whitespace() => {
+            Some(byte) if self.facts.source.is_some() && !byte.is_ascii_whitespace() => {
                 let rest = self.text.get(from..).unwrap_or_default();
                 let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
                 self.nothing(at, from + length)
@@ -104,14 +104,12 @@ impl Block<'_> {
         }
     }
 
-    /// The word of FreeCAD's from `start` to `end` has a number that is none.
+    /// The word of a CAM system's from `start` to `end` has a number that is none.
     #[cold]
     pub(super) fn nothing(&self, start: usize, end: usize) -> Fault {
         let word = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
-        let message = format!("{word} is no number: FreeCAD writes what it could not work out so");
-        let help = "recompute the operation in FreeCAD, and look at what it is made from";
-        let found = Diagnostic::error(Rule::Number, message).help(help);
-        found.at(self.line, self.text, start, end).into()
+        let message = format!("{word} is no number: it could not be calculated");
+        Diagnostic::error(Rule::Number, message).at(self.line, self.text, start, end).into()
     }
 
     #[cold]

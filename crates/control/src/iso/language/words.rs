@@ -3,33 +3,48 @@
 
 /// The meaning of a G word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum G {
+pub enum G {
+    /// `G0` to `G3` and the like.
     Motion(Motion),
+    /// `G73` to `G89`.
     Cycle(Canned),
+    /// `G80`.
     CancelCycle,
+    /// `G17` to `G19`.
     Plane(Plane),
+    /// `G90`, `G91`.
     Incremental(bool),
+    /// `G90.1`, `G91.1`: the centres of arcs.
     CentersAbsolute(bool),
+    /// `G93` to `G95`.
     FeedMode(FeedMode),
+    /// `G20`, `G21`, or `G70`, `G71`.
     Inches(bool),
+    /// `G40` to `G42`.
     Compensation(Side),
     /// With the diameter in the block (`G41.1`).
     DynamicCompensation(Side),
     /// Lean of a wire by the control, `G50` to `G52`.
     Taper(Side),
+    /// `G43`.
     Length,
+    /// `G43.4`: the control keeps the tool centre point.
     ToolCenter,
+    /// `G43.1`.
     DynamicLength,
+    /// `G49`.
     CancelLength,
+    /// `G98`, `G99`: holes end at the initial level, or at R.
     ReturnToR(bool),
     /// By its number in the neutral program: `G54` is 54.
     WorkOffset(u32),
     /// `G54.1 P`, `G154 P`: those after `G59`.
     FurtherOffset {
+        /// How many there are.
         most: u32,
     },
     /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
-    /// letters may stand beside it.
+    /// letters may stand next to it.
     Neutral(&'static [u8]),
     /// `G61`, `G61.1`, `G64`: what happens at corners.
     Path(Path),
@@ -53,24 +68,33 @@ pub(crate) enum G {
     Diameter(bool),
     /// `G96`; `G97`, where there is such a thing.
     SurfaceSpeed(bool),
+    /// `G4`.
     Dwell,
+    /// `G28`.
     Home,
+    /// `G30`.
     SecondHome,
     /// `G28.1`, `G30.1`
     StoreHome {
+        /// `G30.1`, not `G28.1`.
         second: bool,
     },
     /// `G29`
     FromHome,
+    /// `G53`.
     Machine,
     /// `G5 P`, `G5.1 Q`, `G8 P`: on with this number and off with 0.
     LookAhead {
+        /// The letter of the number.
         letter: u8,
+        /// The number that switches it on.
         on: u32,
     },
+    /// `G53.1`.
     SwingToTilt,
     /// `G65`, `G66`: the macro that P names, once or after each move.
     MacroCall {
+        /// After each move (`G66`).
         modal: bool,
     },
     /// `G67`.
@@ -87,12 +111,14 @@ pub(crate) enum G {
     ShiftTo,
     /// `G92.1`; with `keep` `G92.2`
     CancelShift {
+        /// The shift can be restored.
         keep: bool,
     },
     /// `G92.3`
     RestoreShift,
     /// `G12`, `G13`
     Pocket {
+        /// Clockwise, seen against the normal of the plane.
         clockwise: bool,
     },
     /// Haas `G70`, `G71`, `G72`
@@ -101,9 +127,12 @@ pub(crate) enum G {
 
 /// Holes in a pattern, each made by the active cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Pattern {
+pub enum Pattern {
+    /// `G70`.
     Circle,
+    /// `G71`.
     Arc,
+    /// `G72`.
     Line,
 }
 
@@ -113,14 +142,19 @@ pub(crate) const WHOLE_NUMBERS_HELP: &str = "write the point, or say what whole 
 
 /// Interpolation (`G0` to `G3` and the like).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Motion {
+pub enum Motion {
+    /// `G0`.
     Rapid,
+    /// `G1`.
     Line,
+    /// `G2`, `G3`.
     Arc {
+        /// Clockwise, seen against the normal of the plane.
         clockwise: bool,
     },
     /// Cubic or, `G5.1`, quadratic spline.
     Spline {
+        /// Cubic (`G5`), not quadratic.
         cubic: bool,
     },
     /// `G5.2`: control points of a NURBS.
@@ -133,97 +167,142 @@ pub(crate) enum Motion {
     RigidTap,
     /// `G38.2` to `G38.5`: until the probe lets go or touches, with or without an error where it does not.
     Probe {
+        /// Away from what is touched.
         away: bool,
+        /// It is an error where the probe does not answer.
         must_answer: bool,
     },
 }
 
 /// The canned cycles that can be told in the neutral program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Canned {
+pub enum Canned {
+    /// `G73`.
     BreakChip,
+    /// `G74`.
     LeftTap,
+    /// `G81`.
     Drill,
+    /// `G82`.
     DwellDrill,
+    /// `G83`.
     Deep,
+    /// `G84`.
     Tap,
+    /// `G85`.
     Ream,
+    /// `G86`.
     Bore,
+    /// `G89`.
     DwellReam,
     /// `G88`: out of the hole by hand.
     HandBore,
+    /// `G76`.
     FineBore,
+    /// `G87`, or `G77`.
     BackBore,
 }
 
 /// The working plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Plane {
+pub enum Plane {
+    /// `G17`.
     Xy,
+    /// `G18`.
     Zx,
+    /// `G19`.
     Yz,
 }
 
 /// What happens at corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Path {
+pub enum Path {
     /// The axes stop at each.
     ExactStop,
     /// The path is kept to.
     Exact,
     /// They are cut: by P, and lines within Q are made one, where `bounded` says that the control has these words.
-    Blend { bounded: bool },
+    Blend {
+        /// The control has these words.
+        bounded: bool,
+    },
 }
 
 /// What F means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FeedMode {
+pub enum FeedMode {
+    /// `G94`.
     PerMinute,
+    /// `G95`.
     PerTurn,
+    /// `G93`.
     InverseTime,
 }
 
 /// On which side of the path the tool is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Side {
+pub enum Side {
+    /// `G40`.
     Off,
+    /// `G41`.
     Left,
+    /// `G42`.
     Right,
 }
 
 /// The meaning of an M word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum M {
+pub enum M {
+    /// `M0`.
     Stop,
+    /// `M1`.
     OptionalStop,
+    /// `M2`, `M30`.
     End,
+    /// `M3`.
     Clockwise,
+    /// `M4`.
     CounterClockwise,
+    /// `M5`.
     SpindleOff,
+    /// `M19`.
     Orient,
+    /// `M6`.
     ChangeTool,
     /// `M61`: which tool is in.
     ToolIsIn,
+    /// `M7`.
     Mist,
+    /// `M8`.
     Flood,
+    /// Coolant through the spindle.
     Through,
+    /// That off.
     ThroughOff,
+    /// `M9`.
     CoolantOff,
+    /// `M29`.
     RigidTap,
-    /// `M98`, Haas `M97`, `M99`: the subprogram that P names, the one that begins at a block of this
-    /// program, and the way back.
+    /// `M98`: the subprogram that P names.
     Call,
+    /// Haas `M97`: the one that begins at a block of this program.
     CallBlock,
+    /// `M99`: back to the caller.
     Return,
-    /// `M70` to `M73`: the modes kept for `M72`, and for the end of the subroutine too.
+    /// `M70`, `M73`: the modes are kept for `M72`, and for the end of the subroutine too.
     SaveModes {
+        /// Until the subroutine ends.
         until_return: bool,
     },
+    /// `M71`.
     ForgetModes,
+    /// `M72`.
     RestoreModes,
+    /// The wire is threaded.
     ThreadWire,
+    /// The wire is cut.
     CutWire,
-    /// Nothing moves for it; the letters may stand beside it.
+    /// Nothing moves for it; the letters may stand next to it.
     Neutral(&'static [u8]),
     /// `M49`: overrides do nothing from here on.
     LockOverrides,
@@ -237,11 +316,14 @@ pub(crate) enum M {
     IdleTime,
     /// `M62` to `M65`: the digital output that P names.
     Digital {
+        /// On, not off.
         on: bool,
+        /// With the next move, not at once.
         with_motion: bool,
     },
     /// `M67`, `M68`: the analog output that E names, to Q.
     Analog {
+        /// With the next move, not at once.
         with_motion: bool,
     },
     /// `M66`: waits for the input that P or E names.
@@ -255,37 +337,66 @@ pub(crate) enum M {
 
 /// Words of one group exclude each other in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Group {
+pub enum Group {
+    /// What acts in its own block (group 00).
     OneShot,
+    /// Interpolation (group 01).
     Motion,
+    /// Canned cycles, where they are no interpolation (group 09).
     Cycle,
+    /// The working plane.
     Plane,
+    /// Absolute or incremental.
     Distance,
+    /// The same of the centres of arcs.
     ArcDistance,
+    /// What F means.
     FeedMode,
+    /// What lengths count.
     Units,
+    /// Cutter radius compensation.
     Compensation,
+    /// Tool length.
     Length,
+    /// Where a cycle ends.
     Return,
+    /// Work offset.
     WorkOffset,
+    /// What happens at corners.
     Path,
+    /// What S means.
     SpindleMode,
+    /// Turned and tilted coordinates.
     Tilt,
+    /// Scaled coordinates.
     Scaling,
+    /// Mirrored coordinates.
     Mirror,
+    /// Lean of the wire.
     Taper,
+    /// Calls of macros.
     Macro,
+    /// Polar coordinates.
     Polar,
+    /// Diameter or radius (lathe).
     Diameter,
-    // M words
+    /// M: stops, the end, calls.
     Flow,
+    /// M: tool change.
     ToolChange,
+    /// M: spindle.
     Spindle,
+    /// M: coolant.
     Coolant,
+    /// M: overrides.
     Override,
+    /// M: signals.
     Output,
+    /// M: modes that are kept.
     Modes,
+    /// M: the wire.
     Wire,
+    /// M: which kinematics are on.
     Kinematics,
 }
 
@@ -300,13 +411,13 @@ impl Group {
 }
 
 /// A G word: ten times its number (`G43.4` is 434), its group, its meaning.
-pub(in crate::iso) type GRow = (u16, Group, G);
+pub type GRow = (u16, Group, G);
 
 /// An M word: its number, its group, its meaning.
-pub(in crate::iso) type MRow = (u16, Group, M);
+pub type MRow = (u16, Group, M);
 
 /// A word that exists and is refused on purpose, with the reason.
-pub(in crate::iso) type Refused = (u16, &'static str);
+pub type Refused = (u16, &'static str);
 
 /// What a word may begin with, beside the letters: LinuxCNC's polar words and the number of a spindle.
 pub(in crate::iso) const LETTERS: [u8; 30] = *b"ABCDEFGHIJKLMNOPQRSTUVWXYZ@$ ^";
@@ -345,8 +456,7 @@ pub(in crate::iso) const fn set(letters: &[u8]) -> u32 {
 }
 
 /// The words of one dialect, found by number.
-#[derive(Debug)]
-pub(crate) struct Dictionary {
+pub struct Dictionary {
     /// By ten times the number.
     g: [Option<(Group, G)>; 2400],
     /// By the number.
@@ -354,13 +464,21 @@ pub(crate) struct Dictionary {
     refused_g: &'static [Refused],
     refused_m: &'static [Refused],
     /// The letters that the dialect has, by [`bit`].
-    pub letters: u32,
+    pub(in crate::iso) letters: u32,
     /// The longest block in bytes, blanks and comments apart.
-    pub longest: usize,
+    pub(in crate::iso) longest: usize,
+}
+
+/// Its 2900 places say little.
+impl std::fmt::Debug for Dictionary {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("Dictionary").field("words", &self.vocabulary().len()).finish()
+    }
 }
 
 impl Dictionary {
-    pub(in crate::iso) const fn new(letters: &[u8], longest: usize) -> Dictionary {
+    /// No words, with these letters; a block has `longest` bytes at most, blanks and comments apart.
+    pub const fn new(letters: &[u8], longest: usize) -> Dictionary {
         Dictionary {
             g: [None; 2400],
             m: [None; 500],
@@ -372,7 +490,7 @@ impl Dictionary {
     }
 
     /// With these words, too.
-    pub(in crate::iso) const fn with(mut self, g: &[GRow], m: &[MRow]) -> Dictionary {
+    pub const fn with(mut self, g: &[GRow], m: &[MRow]) -> Dictionary {
         let mut row = 0;
         while row < g.len() {
             self.g[g[row].0 as usize] = Some((g[row].1, g[row].2));
@@ -387,11 +505,7 @@ impl Dictionary {
     }
 
     /// With reasons for what it refuses.
-    pub(in crate::iso) const fn refusing(
-        mut self,
-        g: &'static [Refused],
-        m: &'static [Refused],
-    ) -> Dictionary {
+    pub const fn refusing(mut self, g: &'static [Refused], m: &'static [Refused]) -> Dictionary {
         (self.refused_g, self.refused_m) = (g, m);
         self
     }

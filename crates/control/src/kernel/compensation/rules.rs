@@ -78,8 +78,8 @@ impl Rules {
             Dialect::FanucWire | Dialect::Sodick | Dialect::Agie => None,
             // Robots have none: what writes for them works it out.
             Dialect::Krl => None,
-            // FreeCAD has worked its paths out already; what it has not, is the new control's.
-            Dialect::Grbl | Dialect::Marlin | Dialect::Points | Dialect::FreeCad => None,
+            // A CAM system has worked its paths out already; what it has not, is the new control's.
+            Dialect::Grbl | Dialect::Marlin | Dialect::Points | Dialect::Source(_) => None,
         }
     }
 }
