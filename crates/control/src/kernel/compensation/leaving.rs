@@ -1,7 +1,7 @@
 //! The way off a contour, and the way to it: neither may cut into it.
 
-use super::plane::Plane;
-use super::{SAME, error};
+use super::faults::error;
+use super::plane::{Plane, SAME};
 use crate::event::Position;
 use crate::kernel::Outcome;
 use geom::{Element, Vec2};

@@ -6,6 +6,7 @@
 //! next one says where it ends ([`path`]). With any other tool compensation stays a state and nothing
 //! is changed. What each control does is in `docs/controls/compensation.md`, with sources.
 
+mod faults;
 mod leaving;
 mod path;
 mod plane;
@@ -14,15 +15,12 @@ mod rules;
 use crate::event::{Action, Event, Orientation, Position};
 use crate::kernel::Outcome;
 use crate::{Dialect, Settings, Sink, ToolData};
+use faults::{error, inverse_time, on_arc};
 use geom::Vec3;
 use leaving::Leaving;
 use path::Path;
-use program::Rule;
-use program::{Axes, Compensation, Diagnostic, Feed};
+use program::{Axes, Compensation, Feed, Rule};
 pub(crate) use rules::{Outer, Rules};
-
-/// Points closer than this are one, mm: rounding of what is computed from four decimals.
-const SAME: f64 = 1e-6;
 
 /// What a control says of compensation beside its side and register.
 #[derive(Clone, Copy, Debug)]
@@ -200,8 +198,6 @@ impl<'a> Compensator<'a> {
         Ok(())
     }
 
-    /// The tool moves to `pose`, without compensation.
-    #[inline]
     /// The axes go where only the machine knows.
     fn leave_for(&mut self, axes: Axes) {
         self.leaving = None;
@@ -210,6 +206,8 @@ impl<'a> Compensator<'a> {
         }
     }
 
+    /// The tool moves to `pose`, without compensation.
+    #[inline]
     fn arrive(&mut self, line: u32, pose: Position) -> Outcome {
         if let Some(leaving) = self.leaving.take() {
             leaving.check(line, &pose)?;
@@ -238,23 +236,4 @@ impl<'a> Compensator<'a> {
         };
         tool.map(|tool| tool.radius)
     }
-}
-
-/// An error of `rule` in `line`.
-fn error(rule: Rule, line: u32, message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(rule, message).line(line)
-}
-
-/// Only LinuxCNC has a way for that, and it needs the radius.
-fn on_arc(line: u32) -> Box<Diagnostic> {
-    error(Rule::CompensationEntry, line, "compensation is switched on in an arc")
-        .help("switch it on in a straight move before the arc")
-        .into()
-}
-
-/// Elements that corners add would take the time of a move once more.
-fn inverse_time(line: u32) -> Box<Diagnostic> {
-    error(Rule::CompensationFeed, line, "compensation with the feed as inverse time (G93)")
-        .help("corners add moves, whose time is then not known: use G94")
-        .into()
 }

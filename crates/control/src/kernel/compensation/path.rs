@@ -1,9 +1,9 @@
 //! The path of the centre along one contour, from switching on to switching off.
 
+use super::faults::{error, inverse_time, on_arc};
 use super::leaving::{self, Leaving};
-use super::plane::Plane;
+use super::plane::{Plane, SAME};
 use super::rules::{Entry, Outer, Rules};
-use super::{SAME, error, inverse_time, on_arc};
 use crate::Sink;
 use crate::event::{Action, ArcTo, Event, Orientation, Position};
 use crate::kernel::Outcome;

@@ -2,6 +2,9 @@
 
 use geom::{Vec2, Vec3};
 
+/// Points closer than this are one, mm: rounding of what is computed from four decimals.
+pub(super) const SAME: f64 = 1e-6;
+
 /// Two axes and the normal, right-handed, in the frame of the poses.
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
