@@ -7,6 +7,7 @@ use crate::material::Material;
 use crate::mesh::{self, Health, Mesh, Shape};
 use crate::optics::{self, Beam, Cut, Ray};
 use crate::order::{self, Effort, Shadow};
+use crate::picture::{Picture, Sheet};
 use crate::proof::{self, Proof};
 use crate::sample::{self, Apart};
 use crate::{control, post, weld};
@@ -70,7 +71,7 @@ pub struct Settings {
 pub struct Report {
     /// Points of the cloud.
     pub points: u64,
-    /// Points of lists that were too close to others and left out.
+    /// Points of lists and pictures that were too close to others and left out.
     pub welded: u64,
     /// Where the cloud lies, mm.
     pub from: [f64; 3],
@@ -181,12 +182,18 @@ impl<'m> Job<'m> {
         let spacing = settings.spacing.unwrap_or(lens.spacing);
         let micrometres = spacing_in_micrometres(spacing, &lens)?;
         let beam = Beam::new(&lens, machine.laser.beam, material.index);
-        let (mesh, points, health) = parted(shapes);
-        let findings = health.iter().filter_map(unhealthy).collect();
-        let (mesh, points, scale) = place(mesh, points, &settings.placing)?;
         // Two heights are rounded by half a µm of drive each.
         let apart = Apart { spacing: micrometres, lost: 1.0 / beam.drive(Ray::Marginal) };
-        let (cloud, welded) = discretise(&mesh, &points, apart, settings.seed)?;
+        let Placing { block, margin, .. } = settings.placing;
+        let room = DVec3::from_array(block) - 2.0 * margin;
+        let mut parts = Parts::new(shapes, room, apart)?;
+        let findings = parts.health.iter().filter_map(unhealthy).collect();
+        let scale = place(
+            [&mut parts.mesh.vertices, &mut parts.points, &mut parts.corners],
+            &settings.placing,
+        )?;
+        let (cloud, welded) = discretise(&parts, apart, settings.seed)?;
+        let health = parts.health;
         if cloud.len() as u64 > machine.program.points {
             let message = format!(
                 "{} points are more than the {} that {} holds",
@@ -364,21 +371,63 @@ fn spacing_in_micrometres(spacing: f64, lens: &Lens) -> Result<u32, Vec<Diagnost
     Ok(micrometres as u32)
 }
 
-/// All bodies as one, all points, and what is unusual about each body.
-fn parted(shapes: Vec<Shape>) -> (Mesh, Vec<DVec3>, Vec<Health>) {
-    let (mut mesh, mut points, mut health) = (Mesh::default(), Vec::new(), Vec::new());
-    for shape in shapes {
-        match shape {
-            Shape::Mesh(body) => {
-                if !body.triangles.is_empty() {
-                    health.push(body.health());
+/// What shapes are made of.
+#[derive(Default)]
+struct Parts {
+    /// All bodies as one.
+    mesh: Mesh,
+    /// What is unusual about each of them.
+    health: Vec<Health>,
+    /// All points.
+    points: Vec<DVec3>,
+    /// Pictures, each with the number of its sheets.
+    pictures: Vec<(Picture, usize)>,
+    /// Three corners of each sheet, and the fourth: what has to fit into the block.
+    corners: Vec<DVec3>,
+}
+
+impl Parts {
+    /// Of `shapes` in a block with `room` (mm) within its margins.
+    fn new(shapes: Vec<Shape>, room: DVec3, apart: Apart) -> Result<Parts, Vec<Diagnostic>> {
+        let mut parts = Parts::default();
+        for shape in shapes {
+            match shape {
+                Shape::Mesh(body) => {
+                    if !body.triangles.is_empty() {
+                        parts.health.push(body.health());
+                    }
+                    parts.mesh.join(body);
                 }
-                mesh.join(body);
+                Shape::Points(more) => parts.points.extend(more),
+                Shape::Picture(picture) => {
+                    let least = apart.rounded();
+                    let (_, distance) = picture.setting.sheets;
+                    if distance.is_some_and(|distance| distance < least - 1e-9) {
+                        let message =
+                            format!("sheets of a picture are at least {least:.3} mm apart");
+                        return Err(error(
+                            Rule::Spacing,
+                            message,
+                            "take a larger --sheet-distance",
+                        ));
+                    }
+                    // Its edges are open on purpose: nothing is reported of its health.
+                    parts.mesh.join(picture.relief(room, apart));
+                    let sheets = picture.sheets(room, apart);
+                    parts.corners.extend(sheets.iter().flat_map(Sheet::corners));
+                    parts.pictures.push((picture, sheets.len()));
+                }
             }
-            Shape::Points(more) => points.extend(more),
         }
+        Ok(parts)
     }
-    (mesh, points, health)
+
+    /// The pictures with their sheets, as they are placed.
+    fn sheets(&self) -> impl Iterator<Item = (&Picture, Sheet)> {
+        let pictures = self.pictures.iter();
+        let each = pictures.flat_map(|(picture, count)| std::iter::repeat_n(picture, *count));
+        each.zip(self.corners.chunks_exact(4).map(Sheet::new))
+    }
 }
 
 fn unhealthy(health: &Health) -> Option<Diagnostic> {
@@ -414,12 +463,8 @@ fn cut_off(cut: Cut, margin: f64) -> Option<Diagnostic> {
     })
 }
 
-/// Moves bodies and points to their place in the block; answers the scale as well.
-fn place(
-    mut mesh: Mesh,
-    mut points: Vec<DVec3>,
-    placing: &Placing,
-) -> Result<(Mesh, Vec<DVec3>, f64), Vec<Diagnostic>> {
+/// Moves bodies, points and pictures to their place in the block; answers their scale.
+fn place(mut groups: [&mut Vec<DVec3>; 3], placing: &Placing) -> Result<f64, Vec<Diagnostic>> {
     let [x, y, z] = placing.turn.map(f64::to_radians);
     let mirror =
         DVec3::from_array(placing.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 }));
@@ -428,9 +473,10 @@ fn place(
         * DMat3::from_rotation_x(x)
         * DMat3::from_diagonal(mirror);
     let mut each = |change: &dyn Fn(DVec3) -> DVec3| {
-        mesh.vertices.iter_mut().chain(&mut points).for_each(|place| *place = change(*place));
-        let both = [mesh::bounds(&mesh.vertices), mesh::bounds(&points)];
-        both.into_iter().flatten().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        let all = groups.iter_mut().flat_map(|places| places.iter_mut());
+        all.for_each(|place| *place = change(*place));
+        let bounds = groups.iter().filter_map(|places| mesh::bounds(places));
+        bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     };
     let Some((low, high)) = each(&|place| turn * place) else {
         return Err(error(
@@ -448,7 +494,7 @@ fn place(
         0.5 * DVec3::from_array(placing.block) + DVec3::from_array(placing.shift),
     );
     let Some((low, high)) = each(&|place| (place - middle) * scale + target) else {
-        return Ok((mesh, points, scale));
+        return Ok(scale);
     };
     // Points are rounded to whole µm: half of one beyond the margin is no matter.
     let slack = 1e-3;
@@ -484,18 +530,19 @@ fn place(
         };
         return Err(error(Rule::DoesNotFit, message, &help));
     }
-    Ok((mesh, points, scale))
+    Ok(scale)
 }
 
-/// The cloud of bodies and points, and how many points of lists were too close to others.
+/// The cloud of bodies, pictures and points, and how many points of them were too close to others.
 fn discretise(
-    mesh: &Mesh,
-    points: &[DVec3],
+    parts: &Parts,
     apart: Apart,
     seed: u64,
 ) -> Result<(Vec<Point>, u64), Vec<Diagnostic>> {
+    let Parts { mesh, points, .. } = parts;
     // A saturated packing has 0.6966 points in a square of the spacing; some more where it is curved.
-    let expected = mesh.area() * 1e6 / f64::from(apart.spacing).powi(2);
+    let area = mesh.area() + parts.sheets().map(|(_, sheet)| sheet.area()).sum::<f64>();
+    let expected = area * 1e6 / f64::from(apart.spacing).powi(2);
     if expected > MOST_POINTS {
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
@@ -503,13 +550,16 @@ fn discretise(
     }
     let mut cloud = sample::surface(mesh, apart, seed);
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
-    let Some(given) = given else {
+    let Some(mut given) = given else {
         return Err(error(
             Rule::Coordinate,
             String::from("a point is beyond 2 m"),
             "lengths are mm: take a --scale",
         ));
     };
+    for (number, (picture, sheet)) in parts.sheets().enumerate() {
+        given.extend(picture.points(&sheet, apart, seed.wrapping_add(number as u64)));
+    }
     let asked = cloud.len() + given.len();
     if !given.is_empty() {
         cloud.extend(given);
@@ -519,7 +569,7 @@ fn discretise(
         return Err(error(
             Rule::Empty,
             String::from("there is no point to engrave"),
-            "give a body or points",
+            "give a body, points, or a picture that is not black (--invert)",
         ));
     }
     let left_out = (asked - cloud.len()) as u64;

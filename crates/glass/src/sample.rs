@@ -48,6 +48,11 @@ pub struct Apart {
 }
 
 impl Apart {
+    /// A distance that keeps the smallest one whatever is rounded, of points to whole µm and of the drive: mm.
+    pub fn rounded(&self) -> f64 {
+        (f64::from(self.spacing) + self.lost.ceil() + 1.0) * 1e-3
+    }
+
     /// The square of the least distance that two places so far apart may come to, µm².
     pub(crate) fn squared(&self, way: DVec3) -> f64 {
         let height = (way.z.abs() - self.lost).max(0.0);

@@ -54,7 +54,7 @@ fn ply(format: &str, number: impl Fn(f32) -> Vec<u8>, count: impl Fn(u32) -> Vec
 fn mesh(bytes: &[u8], form: Form) -> Mesh {
     match read(bytes, form, "body").unwrap() {
         Shape::Mesh(mesh) => mesh,
-        Shape::Points(points) => panic!("{points:?}"),
+        other => panic!("{other:?}"),
     }
 }
 
@@ -161,7 +161,7 @@ fn lists_of_points_are_read_from_any_columns() {
             .unwrap()
         {
             Shape::Points(points) => points,
-            Shape::Mesh(mesh) => panic!("{mesh:?}"),
+            other => panic!("{other:?}"),
         };
     let expected = vec![DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.5, 6e-1)];
     assert_eq!(points("# a cloud\n1 2 3\n\n-4 .5 6e-1\n", [0, 1, 2]), expected);

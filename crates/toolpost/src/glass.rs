@@ -1,7 +1,7 @@
 //! `toolpost glass`: engraving inside glass.
 
 use crate::answer::{Answer, not_saved};
-use crate::args::glass::{Engrave, Glass, GlassCommand, Job, Ordering, Sorting};
+use crate::args::glass::{Drawn, Engrave, Glass, GlassCommand, Job, Ordering, Sorting};
 use crate::progress::Progress;
 use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
@@ -9,6 +9,7 @@ use ::glass::machine::{LIBRARY, Machine};
 use ::glass::mesh::{self, Form, Shape};
 use ::glass::optics::Ray;
 use ::glass::order::Effort;
+use ::glass::picture::{self, Manner};
 use ::glass::{cloud, material, source};
 use app::files::{self, Target};
 use app::{Account, Stop, Verdict, Watch};
@@ -59,14 +60,14 @@ fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
         "stl" => Ok(Form::Stl),
         "obj" => Ok(Form::Obj),
         "ply" => Ok(Form::Ply),
+        "3mf" => Ok(Form::ThreeMf),
         "xyz" | "txt" | "csv" | "cft" | "asc" | "pts" => Ok(Form::List(columns)),
         _ => {
             let found = Diagnostic::error(
                 Rule::Form,
-                format!("`.{ending}` is no form of bodies or points"),
+                format!("`.{ending}` is no form of bodies, pictures or points"),
             );
-            let help = "give .stl, .obj or .ply, or a list of points in .xyz, .txt, .csv or .cft";
-            Err(found.file(files::name(path)).help(help).into())
+            Err(found.file(files::name(path)).into())
         }
     }
 }
@@ -74,6 +75,28 @@ fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
 fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
     let form = form(path, columns)?;
     Ok(mesh::read(&files::read(path)?, form, &files::name(path))?)
+}
+
+/// What a file of a job holds.
+fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if !["png", "jpg", "jpeg", "bmp"].contains(&ending.as_str()) {
+        return shape(path, job.columns);
+    }
+    let args = &job.picture;
+    let setting = picture::Setting {
+        plane: args.plane,
+        width: args.width,
+        manner: match args.manner {
+            Drawn::Dither => Manner::Dither,
+            Drawn::Raster => Manner::Raster(args.threshold),
+            // Without a depth the command line is not taken.
+            Drawn::Relief => Manner::Relief(args.depth.unwrap_or_default()),
+        },
+        invert: args.invert,
+        sheets: (args.sheets, args.sheet_distance),
+    };
+    Ok(Shape::Picture(picture::read(&files::read(path)?, setting, &files::name(path))?))
 }
 
 /// The text of a file that must be UTF-8.
@@ -87,6 +110,8 @@ fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
     let places = match shape(path, columns)? {
         Shape::Points(places) => places,
         Shape::Mesh(mesh) => mesh.vertices,
+        // No form of lists is one.
+        Shape::Picture(_) => Vec::new(),
     };
     let points: Option<Vec<_>> = places.iter().map(|place| cloud::point(*place)).collect();
     let points = points.ok_or_else(|| {
@@ -174,8 +199,8 @@ impl Read {
             None => (material::TABLE.to_owned(), String::from("materials.toml")),
         };
         let material = material::find(&table, &file, &job.material, machine.laser.wavelength)?;
-        let shape = |path| shape(path, job.columns);
-        let shapes = job.bodies.iter().map(|path| shape(path)).collect::<Result<Vec<_>, _>>()?;
+        let shapes = job.bodies.iter().map(|path| shape_of_job(path, job));
+        let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
         Ok(Read { machine, material, shapes })
     }
 }

@@ -3,8 +3,10 @@
 mod obj;
 mod ply;
 mod stl;
+mod threemf;
 
 use crate::list::{self, Columns};
+use crate::picture::Picture;
 use glam::DVec3;
 use program::{Diagnostic, Rule, encoding};
 use serde::Serialize;
@@ -26,6 +28,8 @@ pub enum Shape {
     Mesh(Mesh),
     /// Points without faces, mm.
     Points(Vec<DVec3>),
+    /// A picture, on a sheet or as a relief.
+    Picture(Picture),
 }
 
 /// The form of a file.
@@ -37,6 +41,8 @@ pub enum Form {
     Obj,
     /// PLY, ASCII or binary.
     Ply,
+    /// 3MF.
+    ThreeMf,
     /// Points, one a line, with X, Y and Z in these columns.
     List(Columns),
 }
@@ -69,8 +75,8 @@ const LARGEST: f64 = 1e6;
 /// # Errors
 /// What is wrong with it, with the line where there are lines.
 pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnostic>> {
-    // The title of a binary file is no text.
-    let bytes = if form == Form::Stl && stl::is_binary(bytes) {
+    // An archive is no text, nor is the title of a binary file.
+    let bytes = if form == Form::ThreeMf || (form == Form::Stl && stl::is_binary(bytes)) {
         bytes
     } else if encoding::is_utf_16(bytes) {
         return Err(encoding::utf_16().file(file).into());
@@ -81,12 +87,15 @@ pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnosti
         Form::Stl => stl::read(bytes).map(Shape::Mesh),
         Form::Obj => obj::read(bytes).map(Shape::Mesh),
         Form::Ply => ply::read(bytes),
+        Form::ThreeMf => threemf::read(bytes).map(Shape::Mesh),
         Form::List(columns) => list::read(bytes, columns).map(Shape::Points),
     };
     let shape = read.map_err(|fault| fault.diagnostic(file))?;
     let (places, empty) = match &shape {
         Shape::Mesh(mesh) => (&mesh.vertices, mesh.triangles.is_empty()),
         Shape::Points(points) => (points, points.is_empty()),
+        // No form of this reader is one.
+        Shape::Picture(_) => return Ok(shape),
     };
     if empty {
         return Err(Fault::new(Rule::Empty, "has no triangle and no point").diagnostic(file));

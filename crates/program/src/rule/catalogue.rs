@@ -628,8 +628,8 @@ rules! {
         "check the name of the folder and the right to read it"
         "`toolpost pcb no-such-folder`";
     Form "form" []
-        "The ending of a file names no form of bodies or points that is read."
-        "give .stl, .obj or .ply, or a list of points"
+        "A file has no form of bodies, pictures or points that is read, or a body is made of more than triangles."
+        "give .stl, .obj, .ply or .3mf with triangles, a .png, .jpg or .bmp, or a list of points"
         "`roof.step`";
     Format "format" []
         "A drill file has numbers that its format does not take."
@@ -727,6 +727,10 @@ rules! {
         "A word of the source is not used."
         "nothing to do, if the part does not need it"
         "`CYCLE/DRILL,...,RAPOUT,5`";
+    Image "image" []
+        "A picture cannot be read."
+        "save it again as PNG, JPEG or BMP"
+        "A photograph that ends within its pixels";
     ImageTransformation "image-transformation" []
         "A Gerber file moves, turns or inverts the image as a whole."
         "write the file again without it"

@@ -3,6 +3,7 @@
 use super::{Choice, choice, length, lengths, point};
 use ::glass::list::Columns;
 use ::glass::optics::Ray;
+use ::glass::picture::{MOST_SHEETS, Plane};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::path::PathBuf;
 
@@ -92,7 +93,8 @@ pub struct Engrave {
 /// What is engraved, and on what: the points of a job, the same whenever the same is given.
 #[derive(Debug, Args)]
 pub struct Job {
-    /// Bodies (.stl, .obj, .ply) and lists of points (.xyz, .txt, .csv, .cft), all in one block and in one frame; mm.
+    /// Bodies (.stl, .obj, .ply, .3mf), pictures (.png, .jpg, .bmp) and lists of points (.xyz, .txt, .csv, .cft), all in one block
+    /// and in one frame; mm.
     #[arg(value_name = "BODY", required = true)]
     pub bodies: Vec<PathBuf>,
     /// Sides of the block along X, Y and Z.
@@ -117,6 +119,8 @@ pub struct Job {
     #[arg(long, value_name = "N,N,N", value_parser = columns, default_value = "1,2,3")]
     pub columns: Columns,
     #[command(flatten)]
+    pub picture: Picture,
+    #[command(flatten)]
     pub placing: Placing,
     /// Take another cloud that is as good.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
@@ -125,6 +129,63 @@ pub struct Job {
     #[arg(long, value_name = "RULE", value_parser = ["shadowed"])]
     pub accept: Vec<String>,
 }
+
+/// What becomes of pictures.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Pictures")]
+pub struct Picture {
+    /// What becomes of a picture; points are bright in glass, so white is dense.
+    #[arg(long = "image", value_name = "HOW", default_value = "dither", value_parser = choice(&MANNERS))]
+    pub manner: Drawn,
+    /// In which plane it stands.
+    #[arg(long, value_name = "PLANE", default_value = "xz", value_parser = choice(&PLANES))]
+    pub plane: Plane,
+    /// How wide it is [default: as large as fits within the margins].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub width: Option<f64>,
+    /// Exchange black and white.
+    #[arg(long)]
+    pub invert: bool,
+    /// From which part of white on a cell of `raster` gets a point.
+    #[arg(long, value_name = "PART", value_parser = part, default_value = "0.5")]
+    pub threshold: f64,
+    /// How much nearer white is than black, of `relief`.
+    #[arg(long, value_name = "MM", value_parser = length, required_if_eq("manner", "relief"))]
+    pub depth: Option<f64>,
+    /// How many sheets of it stand behind each other, of `dither` and `raster`.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SHEETS)))]
+    pub sheets: u32,
+    /// Distance of the sheets [default: the spacing and what rounding takes].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub sheet_distance: Option<f64>,
+}
+
+/// What becomes of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Drawn {
+    /// Dots.
+    Dither,
+    /// A grid.
+    Raster,
+    /// A surface.
+    Relief,
+}
+
+const MANNERS: [Choice<Drawn>; 3] = [
+    ("dither", "Photograph: dots, as dense as it is bright", Drawn::Dither),
+    ("raster", "Black and white: a point in each bright cell of a grid", Drawn::Raster),
+    (
+        "relief",
+        "Depth map: a surface, nearer where it is bright; none where it is black",
+        Drawn::Relief,
+    ),
+];
+
+const PLANES: [Choice<Plane>; 3] = [
+    ("xz", "Upright, seen from the front", Plane::Xz),
+    ("xy", "Lying, seen from above", Plane::Xy),
+    ("yz", "Upright, seen from the right", Plane::Yz),
+];
 
 /// How bodies lie in the block.
 #[derive(Debug, Args)]
@@ -201,6 +262,12 @@ fn block(text: &str) -> Result<[f64; 3], String> {
     let sides: Option<[f64; 3]> = lengths(&text.replace(['x', 'X'], ","));
     let sides = sides.filter(|sides| sides.iter().all(|side| *side > 0.0 && *side <= 1000.0));
     sides.ok_or_else(|| String::from("three sides in mm are needed, up to 1000, such as 50x50x80"))
+}
+
+/// A part of the whole.
+fn part(text: &str) -> Result<f64, String> {
+    let part = text.parse::<f64>().ok().filter(|part| *part > 0.0 && *part <= 1.0);
+    part.ok_or_else(|| String::from("a number greater than 0 is needed, up to 1, such as 0.5"))
 }
 
 /// Two slopes.

@@ -136,3 +136,39 @@ fn a_list_of_points_is_checked_for_its_smallest_distance() {
         folder.run(&["glass", "check", "cloud.csv", "--spacing", "0.13", "--columns", "1,2,4"]);
     assert_eq!(said.code, 0, "{said:?}");
 }
+
+#[test]
+fn a_photograph_a_depth_map_and_a_3mf_become_proven_programs() {
+    let folder = Folder::empty();
+    let picture =
+        image::GrayImage::from_fn(30, 20, |x, y| image::Luma([(x * 6 + y * 3) as u8 + 10]));
+    picture.save(folder.path().join("face.png")).unwrap();
+    let mut zip =
+        zip::ZipWriter::new(std::fs::File::create(folder.path().join("roof.3mf")).unwrap());
+    zip.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
+    let model = "<model unit=\"centimeter\"><resources><object id=\"1\"><mesh><vertices>\
+        <vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\".3\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\".3\" z=\"0\"/>\
+        </vertices><triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources>\
+        <build><item objectid=\"1\"/></build></model>";
+    std::io::Write::write_all(&mut zip, model.as_bytes()).unwrap();
+    zip.finish().unwrap();
+    let engrave = |words: &[&str]| {
+        let more = ["--block", "10x10x10", "--material", "k9", "--lens", "70", "--rounds", "1"];
+        let more2 = ["--machine", "glass-xyz-100hz", "-o", "out.prg"];
+        folder.run(&[&["glass"][..], words, &more, &more2].concat())
+    };
+    for words in [
+        &["face.png"][..],
+        &["face.png", "--image", "raster", "--threshold", "0.4", "--plane", "xy", "--invert"],
+        &["face.png", "--image", "relief", "--depth", "2"],
+        &["face.png", "--width", "4", "--sheets", "2", "roof.3mf"],
+    ] {
+        let said = engrave(words);
+        assert!(said.code == 0 && said.out.contains("passed: "), "{words:?}: {said:?}");
+    }
+    let said = engrave(&["face.png", "--image", "relief"]);
+    assert!(said.code == 2 && said.err.contains("--depth"), "{said:?}");
+    folder.write("face.jpg", "no picture");
+    let said = engrave(&["face.jpg"]);
+    assert!(said.code == 2 && said.err.contains("face.jpg: error[image]"), "{said:?}");
+}

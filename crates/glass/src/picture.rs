@@ -1,0 +1,396 @@
+//! Pictures: photographs as dots, black and white pictures as rows of points, depth maps as reliefs.
+//!
+//! Dots are a subset of the points that [`crate::sample`] puts on the sheet of a picture, so that their distance holds exactly.
+//! Each of those points has a rank: the first ones by rank are as far apart as that many points can be. A point is kept where
+//! the picture is brighter there than its rank, so that the density of dots follows the light of the picture, and dots never
+//! gather by chance. In the glass a point is bright: white is dense, black is empty.
+
+use crate::cloud::{self, Point};
+use crate::mesh::{Fault, Mesh};
+use crate::sample::{self, Apart, Dice};
+use glam::{DVec2, DVec3};
+use image::{ImageDecoder, ImageReader, Limits};
+use program::{Diagnostic, Rule};
+use std::io::Cursor;
+
+/// The plane in which a picture stands, and from where it is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// Upright, seen from the front.
+    Xz,
+    /// Lying, seen from above.
+    Xy,
+    /// Upright, seen from the right.
+    Yz,
+}
+
+impl Plane {
+    /// To the right in the picture, up in it, and towards who looks at it.
+    pub fn directions(self) -> [DVec3; 3] {
+        match self {
+            Plane::Xz => [DVec3::X, DVec3::Z, DVec3::NEG_Y],
+            Plane::Xy => [DVec3::X, DVec3::Y, DVec3::Z],
+            Plane::Yz => [DVec3::Y, DVec3::Z, DVec3::X],
+        }
+    }
+}
+
+/// What becomes of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Manner {
+    /// Dots, dense where the picture is bright.
+    Dither,
+    /// A point in each cell of a square grid whose mean brightness is at least this part of white.
+    Raster(f64),
+    /// A surface that is so many mm nearer to who looks at it where the picture is white; none where it is black.
+    Relief(f64),
+}
+
+/// How a picture stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// In which plane.
+    pub plane: Plane,
+    /// How wide it is, mm; without, as large as its room.
+    pub width: Option<f64>,
+    /// What becomes of it.
+    pub manner: Manner,
+    /// Whether black is white.
+    pub invert: bool,
+    /// How often it stands behind itself, with the distance, mm (without, the smallest that keeps the spacing).
+    pub sheets: (u32, Option<f64>),
+}
+
+/// The most pixels of a picture.
+const MOST_PIXELS: u64 = 64_000_000;
+
+/// Up to this part of white a depth map is black: what JPEG makes of it is no exact 0.
+const BLACK: f64 = 0.02;
+
+/// The most sheets of a picture.
+pub const MOST_SHEETS: u32 = 100;
+
+/// A grey picture, row by row from above.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    width: usize,
+    height: usize,
+    /// Its grey values, from 0 to 65535, as they are coded; where it is transparent, 0.
+    values: Vec<u16>,
+    /// How it stands.
+    pub setting: Setting,
+}
+
+/// Reads the bytes of the picture `file`: PNG, JPEG or BMP, upright as its camera says.
+///
+/// # Errors
+/// It is none, is cut off, or has more pixels than are read.
+pub fn read(bytes: &[u8], setting: Setting, file: &str) -> Result<Picture, Box<Diagnostic>> {
+    decoded(bytes, setting).map_err(|fault| fault.diagnostic(file))
+}
+
+fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
+    let wrong = |error: image::ImageError| Fault::new(Rule::Image, error.to_string());
+    let open = |error: std::io::Error| Fault::new(Rule::Image, error.to_string());
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(open)?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(8 * MOST_PIXELS);
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(wrong)?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        let message = format!(
+            "{width} x {height} pixels are more than the {} million that are read",
+            MOST_PIXELS / 1_000_000
+        );
+        return Err(Fault::new(Rule::TooLarge, message));
+    }
+    let orientation = decoder.orientation().map_err(wrong)?;
+    let mut picture = image::DynamicImage::from_decoder(decoder).map_err(wrong)?;
+    picture.apply_orientation(orientation);
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    if width == 0 || height == 0 {
+        return Err(Fault::new(Rule::Empty, "has no pixel"));
+    }
+    let grey = picture.into_luma_alpha16();
+    let value = |pixel: &image::LumaA<u16>| {
+        let image::LumaA([grey, alpha]) = *pixel;
+        let grey = if setting.invert { u16::MAX - grey } else { grey };
+        (u32::from(grey) * u32::from(alpha) / u32::from(u16::MAX)) as u16
+    };
+    let values = grey.pixels().map(value).collect();
+    Ok(Picture { width, height, values, setting })
+}
+
+/// The light of a grey value of an sRGB picture, both from 0 to 1 (IEC 61966-2-1).
+pub fn light(value: f64) -> f64 {
+    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
+/// Where a picture stands: a corner, and how far it goes to the right and up from there, mm.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheet {
+    /// The lower left corner.
+    pub corner: DVec3,
+    /// To the lower right corner.
+    pub right: DVec3,
+    /// To the upper left corner.
+    pub up: DVec3,
+}
+
+impl Picture {
+    /// Its sides where it is as large as fits into `room` (mm along X, Y and Z), or has the width that is set, mm.
+    fn size(&self, room: DVec3) -> (f64, f64) {
+        let [right, up, _] = self.setting.plane.directions();
+        let ratio = self.height as f64 / self.width as f64;
+        let fitting = room.dot(right).min(room.dot(up) / ratio);
+        let width = self.setting.width.unwrap_or(fitting.max(0.0));
+        (width, width * ratio)
+    }
+
+    /// The sheets on which it stands, from the front; a relief has none. `room` (mm) is that within the margins of the block.
+    pub fn sheets(&self, room: DVec3, apart: Apart) -> Vec<Sheet> {
+        let [right, up, towards] = self.setting.plane.directions();
+        let (width, height) = self.size(room);
+        let (count, distance) = self.setting.sheets;
+        let behind = distance.unwrap_or(apart.rounded());
+        let sheet = |number: u32| Sheet {
+            corner: towards * (-f64::from(number) * behind),
+            right: right * width,
+            up: up * height,
+        };
+        let is_relief = matches!(self.setting.manner, Manner::Relief(_));
+        (0..if is_relief { 0 } else { count }).map(sheet).collect()
+    }
+
+    /// The points on a sheet; another `seed` gives other ones.
+    pub fn points(&self, sheet: &Sheet, apart: Apart, seed: u64) -> Vec<Point> {
+        match self.setting.manner {
+            Manner::Dither => self.dots(sheet, apart, seed),
+            Manner::Raster(threshold) => self.raster(sheet, apart, threshold),
+            Manner::Relief(_) => Vec::new(),
+        }
+    }
+
+    /// The points of a saturated sheet whose rank is below the light of the picture.
+    fn dots(&self, sheet: &Sheet, apart: Apart, seed: u64) -> Vec<Point> {
+        let Sheet { corner, right, up } = *sheet;
+        let vertices = vec![corner, corner + right, corner + right + up, corner + up];
+        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+        let points = sample::surface(&mesh, apart, seed);
+        let sides = DVec2::new(right.length(), up.length()) * 1e3;
+        let flat = |point: &Point| DVec2::from(sheet.seen(cloud::place(*point))) * sides;
+        let flat: Vec<DVec2> = points.iter().map(flat).collect();
+        let ranked = ranked(&flat, f64::from(apart.spacing), seed);
+        let count = ranked.len() as f64;
+        // Half a pixel on each side of the place, so that a fine grain is not sampled by chance.
+        let bright = |(rank, &i): (usize, &u32)| {
+            let (u, v) = sheet.seen(cloud::place(points[i as usize]));
+            let reach = 0.5 * f64::from(apart.spacing) * 1e-3;
+            let (du, dv) = (reach / right.length(), reach / up.length());
+            let light = light(self.mean([u - du, v - dv], [u + du, v + dv]));
+            (rank as f64 + 0.5 < light * count).then(|| points[i as usize])
+        };
+        ranked.iter().enumerate().filter_map(bright).collect()
+    }
+
+    /// A point in the middle of each cell, as large as the spacing, whose mean value reaches the threshold.
+    fn raster(&self, sheet: &Sheet, apart: Apart, threshold: f64) -> Vec<Point> {
+        let side = apart.rounded();
+        let (width, height) = (sheet.right.length(), sheet.up.length());
+        let (columns, rows) = ((width / side).floor() as u32, (height / side).floor() as u32);
+        let mut points = Vec::new();
+        for row in 0..rows {
+            for column in 0..columns {
+                let from = [f64::from(column) * side / width, f64::from(row) * side / height];
+                let to = [from[0] + side / width, from[1] + side / height];
+                if self.mean(from, to) >= threshold {
+                    let (u, v) = (0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]));
+                    points.extend(cloud::point(sheet.corner + sheet.right * u + sheet.up * v));
+                }
+            }
+        }
+        points
+    }
+
+    /// The mean value, from 0 to 1, between two places of the sheet; these are parts of its width from the left and of its height
+    /// from below.
+    fn mean(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+        // The pixels whose middles lie between, or else the one that holds the middle.
+        let span = |low: f64, high: f64, count: usize| {
+            let [first, last] = [low, high]
+                .map(|part| (part * count as f64 - 0.5).ceil().clamp(0.0, count as f64) as usize);
+            let middle = (0.5 * (low + high)).clamp(0.0, 1.0) * count as f64;
+            let middle = (middle as usize).min(count - 1);
+            if first < last { first..last } else { middle..middle + 1 }
+        };
+        let columns = span(from[0], to[0], self.width);
+        let rows = span(1.0 - to[1], 1.0 - from[1], self.height);
+        let count = (columns.len() * rows.len()) as f64;
+        let row = |row: usize| -> u64 {
+            let start = row * self.width;
+            self.values[start + columns.start..start + columns.end]
+                .iter()
+                .map(|&v| u64::from(v))
+                .sum()
+        };
+        let sum: u64 = rows.map(row).sum();
+        sum as f64 / (count * f64::from(u16::MAX))
+    }
+
+    /// The surface of a depth map, mm; of other pictures nothing. Its facets are at least half a spacing wide.
+    pub fn relief(&self, room: DVec3, apart: Apart) -> Mesh {
+        let spacing = f64::from(apart.spacing) * 1e-3;
+        let Manner::Relief(depth) = self.setting.manner else { return Mesh::default() };
+        let [right, up, towards] = self.setting.plane.directions();
+        let (width, height) = self.size(room);
+        let nodes = |length: f64, pixels: usize| {
+            let most = (2.0 * length / spacing).ceil().clamp(2.0, 10_000.0) as usize;
+            most.min(pixels.max(2))
+        };
+        let (columns, rows) = (nodes(width, self.width), nodes(height, self.height));
+        let mut mesh = Mesh::default();
+        // The numbers of the nodes that are not black.
+        let mut numbers: Vec<Option<u32>> = Vec::with_capacity(columns * rows);
+        // The nodes are the middles of cells, moved apart so that the outer ones lie on the edges of the sheet.
+        let span =
+            |i: usize, count: usize| [i as f64 / count as f64, (i + 1) as f64 / count as f64];
+        let part = |i: usize, count: usize| i as f64 / (count - 1) as f64;
+        for row in 0..rows {
+            for column in 0..columns {
+                let ([left, end], [low, high]) = (span(column, columns), span(row, rows));
+                let value = self.mean([left, low], [end, high]);
+                if value <= BLACK {
+                    numbers.push(None);
+                    continue;
+                }
+                numbers.push(Some(mesh.vertices.len() as u32));
+                mesh.vertices.push(
+                    right * (part(column, columns) * width)
+                        + up * (part(row, rows) * height)
+                        + towards * (value * depth),
+                );
+            }
+        }
+        let number = |row: usize, column: usize| numbers[row * columns + column];
+        for row in 0..rows - 1 {
+            for column in 0..columns - 1 {
+                let [a, b] = [number(row, column), number(row, column + 1)];
+                let [c, d] = [number(row + 1, column + 1), number(row + 1, column)];
+                if let (Some(a), Some(b), Some(c), Some(d)) = (a, b, c, d) {
+                    mesh.triangles.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+        }
+        mesh
+    }
+}
+
+impl Sheet {
+    /// The sheet with these corners: those of [`Sheet::corners`], moved as one; four at least.
+    pub fn new(corners: &[DVec3]) -> Sheet {
+        Sheet { corner: corners[0], right: corners[1] - corners[0], up: corners[2] - corners[0] }
+    }
+
+    /// Its four corners: lower left, lower right, upper left, upper right.
+    pub fn corners(&self) -> [DVec3; 4] {
+        let Sheet { corner, right, up } = *self;
+        [corner, corner + right, corner + up, corner + right + up]
+    }
+
+    /// Its surface, mm².
+    pub fn area(&self) -> f64 {
+        self.right.length() * self.up.length()
+    }
+
+    /// Which part of the sheet's width and height a place is from its corner.
+    fn seen(&self, place: DVec3) -> (f64, f64) {
+        let from = place - self.corner;
+        let part = |side: DVec3| from.dot(side) / side.length_squared();
+        (part(self.right), part(self.up))
+    }
+}
+
+/// By how much the distance shrinks from one turn of [`ranked`] to the next.
+const SHRINK: f64 = 0.93;
+
+/// No number of a place.
+const NONE: u32 = u32::MAX;
+
+/// The numbers of `places` on a sheet (µm), which are at least `spacing` apart, in an order in which the first ones always lie as far
+/// apart as that many can: those that are farther from all before them than a distance that shrinks turn by turn.
+fn ranked(places: &[DVec2], spacing: f64, seed: u64) -> Vec<u32> {
+    let mut waiting: Vec<u32> = (0..places.len() as u32).collect();
+    Dice(seed).shuffle(&mut waiting);
+    let mut ranked = Vec::with_capacity(places.len());
+    let most = places.iter().fold(DVec2::ZERO, |most, place| most.max(*place));
+    let mut distance = spacing * (places.len() as f64).sqrt().max(1.0);
+    while !waiting.is_empty() && distance > spacing {
+        distance = (distance * SHRINK).max(spacing);
+        let mut near = Near::new(places, most, distance);
+        ranked.iter().for_each(|&i| near.add(i));
+        waiting.retain(|&i| {
+            let waits = near.is_near(i);
+            if !waits {
+                near.add(i);
+                ranked.push(i);
+            }
+            waits
+        });
+    }
+    ranked.extend(waiting);
+    ranked
+}
+
+/// Places in squares whose side is a distance.
+struct Near<'p> {
+    places: &'p [DVec2],
+    distance: f64,
+    columns: usize,
+    rows: usize,
+    /// The last place of each square, and of each place the one before it in its square.
+    last: Vec<u32>,
+    before: Vec<u32>,
+}
+
+impl<'p> Near<'p> {
+    fn new(places: &'p [DVec2], most: DVec2, distance: f64) -> Near<'p> {
+        let count = |length: f64| (length / distance).floor() as usize + 1;
+        let (columns, rows) = (count(most.x), count(most.y));
+        let (last, before) = (vec![NONE; columns * rows], vec![NONE; places.len()]);
+        Near { places, distance, columns, rows, last, before }
+    }
+
+    fn square(&self, i: u32) -> (usize, usize) {
+        let place = (self.places[i as usize] / self.distance).floor();
+        // Rounding may put a place some µm beyond the edge.
+        let within = |value: f64, count: usize| (value.max(0.0) as usize).min(count - 1);
+        (within(place.x, self.columns), within(place.y, self.rows))
+    }
+
+    fn add(&mut self, i: u32) {
+        let (column, row) = self.square(i);
+        let last = &mut self.last[row * self.columns + column];
+        self.before[i as usize] = std::mem::replace(last, i);
+    }
+
+    /// Whether a place that was added is nearer than the distance.
+    fn is_near(&self, i: u32) -> bool {
+        let (column, row) = self.square(i);
+        let here = self.places[i as usize];
+        let least = self.distance * self.distance;
+        let around = |at: usize, count: usize| at.saturating_sub(1)..=(at + 1).min(count - 1);
+        around(row, self.rows).any(|row| {
+            around(column, self.columns).any(|column| {
+                let mut at = self.last[row * self.columns + column];
+                while at != NONE {
+                    if self.places[at as usize].distance_squared(here) < least {
+                        return true;
+                    }
+                    at = self.before[at as usize];
+                }
+                false
+            })
+        })
+    }
+}
