@@ -228,7 +228,7 @@ pub fn pcb<'py>(
         Ok::<_, Stop>((account, contents, order, inputs))
     })?;
     let report = reported(py, &account, &format!("{:#}\n", account.data))?;
-    if account.verdict != Verdict::Done {
+    if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         let error = raised(py, &account.findings);
         error.value(py).setattr("report", report)?;
         return Err(error);

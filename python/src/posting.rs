@@ -128,7 +128,7 @@ pub fn reported<'py>(
     saved: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
     let rows = PyTuple::new(py, &account.rows)?;
-    let proven = account.verdict == Verdict::Done;
+    let proven = matches!(account.verdict, Verdict::Done | Verdict::Partly);
     class(py, "Report")?.call1((proven, rows, findings(py, &account.findings)?, saved))
 }
 

@@ -91,6 +91,14 @@ def test_a_board_that_was_built_needs_no_file():
     assert b"G81" in made.programs["drill"]
 
 
+def test_what_cannot_be_made_of_a_board_is_left_out_and_the_rest_is_made():
+    made = lamp(tool=9)
+    assert made.left_out == ("front", "back")
+    assert list(made.programs) == ["drill", "outline"]
+    assert {str(found.rule) for found in made.report.findings} >= {"tool-too-wide"}
+    assert [left["name"] for left in made.report.data()["left_out"]] == ["front", "back"]
+
+
 @pytest.mark.parametrize(
     ("more", "rule"),
     [
@@ -103,7 +111,7 @@ def test_a_board_that_was_built_needs_no_file():
         ({"only": ["lid"]}, "argument"),
         ({"tool": None}, "no-tool"),
         ({"travel": 0.1}, "travel"),
-        ({"tool": 9}, "tool-too-wide"),
+        ({"tool": 9, "strict": True}, "tool-too-wide"),
     ],
 )
 def test_a_board_that_cannot_be_made_raises(more, rule):

@@ -196,6 +196,8 @@ class BoardResult:
     ----------
     programs : dict of str to bytes
         The programs by their names (``front``, ``drill``), in the order in which they are run.
+    left_out : tuple of str
+        The programs that cannot be made; the findings of the report say why.
     files : dict of str to bytes
         All that is saved, by file name: programs, pictures and the report.
     report : Report
@@ -212,6 +214,7 @@ class BoardResult:
         self.files = files
         self.programs = {file.rsplit(".", 1)[0]: files[file] for file in order}
         self.report = report
+        self.left_out = tuple(str(left["name"]) for left in report.data()["left_out"])
         # The files that they were made of, which stay.
         self._inputs = tuple(inputs)
 

@@ -8,6 +8,8 @@ use serde_json::{Value, json};
 pub enum Verdict {
     /// The command is done.
     Done,
+    /// What could be made is made, and something is left out: the findings say what, and why.
+    Partly,
     /// The machine cannot do it, or the proof failed.
     Failed,
     /// The input or the call is wrong.
@@ -36,6 +38,18 @@ impl Account {
         let findings = self.findings.iter().cloned().collect::<Findings>().finish();
         report["warnings"] = json!(findings);
         format!("{report:#}\n")
+    }
+}
+
+impl From<Account> for Stop {
+    fn from(Account { verdict, findings, .. }: Account) -> Stop {
+        Stop { verdict, findings }
+    }
+}
+
+impl From<Stop> for Account {
+    fn from(Stop { verdict, findings }: Stop) -> Account {
+        Account { verdict, rows: Vec::new(), data: json!({}), findings }
     }
 }
 

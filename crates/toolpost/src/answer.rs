@@ -10,6 +10,7 @@ use std::io::{self, Write};
 fn ending(verdict: Verdict) -> (&'static str, u8) {
     match verdict {
         Verdict::Done => ("done", 0),
+        Verdict::Partly => ("partly", 3),
         Verdict::Failed => ("failed", 1),
         Verdict::Invalid => ("invalid", 2),
         Verdict::Cancelled => ("cancelled", crate::INTERRUPTED),

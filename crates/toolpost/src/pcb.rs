@@ -23,7 +23,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let board: Vec<Source> = args.board.iter().cloned().map(Source::File).collect();
     let made = job.make(&board, &progress)?;
     let mut account = made.account(&job, older(args, &made.programs));
-    if account.verdict != Verdict::Done {
+    if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         return Ok(not_saved(account));
     }
     progress.step("saving");

@@ -32,14 +32,16 @@ pub struct Job<'a> {
     pub surface: Option<input::Source>,
     /// How a picture is drawn next to each program; `None`: not at all.
     pub picture: Option<Format>,
-    /// Whether a warning about the board stops the work.
+    /// Whether a warning about the board, or a program that cannot be made, stops the work.
     pub strict: bool,
 }
 
-/// The programs of a board, proven or not.
+/// The programs of a board.
 pub struct Made {
-    /// In the order in which they are run.
+    /// Those that are proven, in the order in which they are run.
     pub programs: Vec<Program>,
+    /// Those that are not made.
+    pub left_out: Vec<LeftOut>,
     /// The files that were read.
     pub files: Vec<input::Source>,
     layers: Vec<(String, String)>,
@@ -72,7 +74,8 @@ impl<'a> Job<'a> {
     /// proves them, all at the same time.
     ///
     /// # Errors
-    /// What is wrong with the board, or cannot be cut. Where a program is not proven, its account says so.
+    /// What is wrong with the board; where none of its programs can be made, or one cannot and the job is strict, why. A program
+    /// that cannot be made is left out otherwise, and all others are made.
     pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
         watch.begin("reading")?;
         let Job { machine, settings, .. } = *self;
@@ -87,20 +90,36 @@ impl<'a> Job<'a> {
         let side =
             |face: Face, board: Board| planned(face, board, &parts, settings, machine.spindle.max);
         let ([front, back], mut warnings) = source.artwork.each_side(side)?;
-        let ((front, mut works), (back, more)) = (front?, back?);
-        works.extend(more);
-        works.sort_by_key(|(part, _)| plan::order(*part, settings));
+        let ((front, mut planned), (back, more)) = (front?, back?);
+        planned.extend(more);
+        planned.sort_by_key(|(part, _)| plan::order(*part, settings));
+        let (works, mut left_out) = self.divided(planned)?;
         warnings.extend(plan::late_pins(&parts, settings));
         let rack = Rack::of(&works);
         watch.begin("writing and proving")?;
         let shop = Shop { job: self, front, back, rack, watch, surface };
         let mut programs = Vec::with_capacity(works.len() + 1);
         if let Some(grid) = running.probe.filter(|_| !running.on_control) {
-            programs.push(shop.probing(grid)?);
+            let probing = shop.probing(grid)?;
+            if probing.posted.account.verdict != Verdict::Done {
+                return Err(probing.posted.account.into());
+            }
+            programs.push(probing);
         }
         let made: Vec<_> = works.par_iter().map(|(part, work)| shop.made(*part, work)).collect();
         for (made, (part, work)) in made.into_iter().zip(works) {
-            let (posted, picture) = made?;
+            let (posted, picture) = match made {
+                Ok(made) => made,
+                Err(stop) if stop.verdict == Verdict::Cancelled => return Err(stop),
+                Err(stop) => {
+                    left_out.push(LeftOut::of(part, stop));
+                    continue;
+                }
+            };
+            if posted.account.verdict != Verdict::Done {
+                left_out.push(LeftOut { part, account: posted.account });
+                continue;
+            }
             let probes = shop.probes(part, &work);
             let up = Some(plan::face(part, settings));
             programs.push(Program { name: part.name(), up, work, posted, picture, probes });
@@ -109,26 +128,48 @@ impl<'a> Job<'a> {
             let file = format!("{}.nc", made.name);
             warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&file)));
         }
-        if programs.iter().all(|made| made.posted.account.verdict == Verdict::Done) {
+        if left_out.is_empty() {
             warnings = toolpath::held(warnings, self.strict)?;
         }
         let source::Source { layers, files, .. } = source;
-        Ok(Made { programs, files, layers, front: shop.front.board, warnings })
+        Ok(Made { programs, left_out, files, layers, front: shop.front.board, warnings })
+    }
+
+    /// The work of programs, apart from those that cannot be made.
+    ///
+    /// # Errors
+    /// A setting is wrong, no program can be made, or one cannot and the job is strict.
+    fn divided(&self, planned: Vec<Planned>) -> Result<(Works, Vec<LeftOut>), Stop> {
+        let (mut works, mut left_out) = (Vec::with_capacity(planned.len()), Vec::new());
+        for (part, work) in planned {
+            match work {
+                Ok(work) => works.push((part, work)),
+                Err(findings) => left_out.push(LeftOut::of(part, Stop::invalid(findings))),
+            }
+        }
+        let findings = || left_out.iter().flat_map(|left| &left.account.findings);
+        let is_refused = self.strict || findings().any(plan::is_about_settings);
+        if works.is_empty() || is_refused && !left_out.is_empty() {
+            return Err(Stop::invalid(findings().cloned().collect()));
+        }
+        Ok((works, left_out))
     }
 }
 
 impl Made {
-    /// What is reported of all programs together, and of `more` that the caller has found; of a program that is not
-    /// proven, that.
+    /// What is reported of all programs together, and of `more` that the caller has found; where nothing is saved, what is
+    /// reported of the first program that is not proven.
     pub fn account(&self, job: &Job, more: Option<Diagnostic>) -> Account {
-        let failed = self.programs.iter().map(|made| &made.posted.account);
-        if let Some(failed) = failed.clone().find(|account| account.verdict != Verdict::Done) {
-            return failed.clone();
+        let nothing = self.programs.iter().all(|made| made.up.is_none());
+        if let Some(first) = self.left_out.first().filter(|_| nothing || job.strict) {
+            return first.account.clone();
         }
         let mut findings = self.warnings.clone();
         findings.extend(more);
         let report = report::of(self, job.settings, job.machine, &findings);
-        Account { verdict: Verdict::Done, rows: report.rows, data: report.data, findings }
+        findings.extend(self.left_out.iter().flat_map(LeftOut::findings));
+        let verdict = if self.left_out.is_empty() { Verdict::Done } else { Verdict::Partly };
+        Account { verdict, rows: report.rows, data: report.data, findings }
     }
 }
 
@@ -155,6 +196,12 @@ impl Watch for Quiet<'_> {
     }
 }
 
+/// What programs do.
+type Works = Vec<(Part, Work)>;
+
+/// What a program does, or why it cannot.
+type Planned = (Part, Result<Work, Vec<Diagnostic>>);
+
 /// How the board lies with a side up, and what is cut of it then.
 fn planned(
     face: Face,
@@ -162,11 +209,11 @@ fn planned(
     parts: &[Part],
     settings: &Settings,
     fastest: f64,
-) -> Result<(Setup, Vec<(Part, Work)>), Stop> {
+) -> Result<(Setup, Vec<Planned>), Stop> {
     let setup = Setup::of(face, board, settings)?;
     let parts = parts.par_iter().filter(|part| plan::face(**part, settings) == face);
-    let works = parts.map(|part| Ok((*part, Work::of(*part, &setup, settings, fastest)?)));
-    let works = works.collect::<Vec<_>>().into_iter().collect::<Result<_, Stop>>()?;
+    let works = parts.map(|part| (*part, Work::of(*part, &setup, settings, fastest)));
+    let works = works.collect();
     Ok((setup, works))
 }
 
@@ -286,6 +333,29 @@ pub struct Program {
     pub picture: Option<Vec<u8>>,
     /// Columns and rows of the heights that it measures itself.
     probes: Option<[u32; 2]>,
+}
+
+/// A program that is not made.
+pub struct LeftOut {
+    /// What it is about.
+    pub part: Part,
+    account: Account,
+}
+
+impl LeftOut {
+    fn of(part: Part, stop: Stop) -> LeftOut {
+        LeftOut { part, account: stop.into() }
+    }
+
+    /// Why, each with a file: that of the board which is wrong, or the program.
+    pub fn findings(&self) -> impl Iterator<Item = Diagnostic> {
+        let file = format!("{}.nc", self.part.name());
+        let errors = self.account.findings.iter().filter(|found| found.is_error()).cloned();
+        errors.map(move |found| match found.file.is_empty() {
+            true => found.file(&file),
+            false => found,
+        })
+    }
 }
 
 /// How the height of the board is probed: slowly, and a millimetre above what it may rise to from place to place.

@@ -49,6 +49,10 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         }
         rows.extend(made.rows());
     }
+    rows.extend(made.left_out.iter().map(|left| {
+        let why = left.findings().next().map_or_else(String::new, |found| found.message);
+        ("left out", format!("{}.nc: {why}", left.part.name()))
+    }));
     let places = programs
         .iter()
         .flat_map(|made| made.work.places.iter().map(|(place, what)| (made.name, *place, what)));
@@ -71,6 +75,10 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         },
         "machine": toolpath::describe(machine),
         "programs": programs.iter().map(Program::describe).collect::<Vec<_>>(),
+        "left_out": made.left_out.iter().map(|left| json!({
+            "name": left.part.name(),
+            "errors": left.findings().collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
         "warnings": warnings,
     });
     Report { rows, data }

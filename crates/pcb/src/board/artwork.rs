@@ -75,18 +75,22 @@ impl Artwork {
     /// The board with all of its copper, and what is odd about it.
     ///
     /// # Errors
-    /// `layer` where copper cannot be united, `copper-outside` where copper and outline cannot be compared.
+    /// `layer` where copper cannot be united, `copper-outside` where copper and outline cannot be compared, and what is wrong
+    /// with a [broken edge](Board::broken_edge).
     pub fn united(self) -> Result<(Board, Vec<Diagnostic>), Vec<Diagnostic>> {
         let ([mut board, back], warnings) = self.each_side(|_, board| board)?;
         board.back = back.back;
-        Ok((board, warnings))
+        match board.broken_edge {
+            Some(edge) => Err(edge.findings),
+            None => Ok((board, warnings)),
+        }
     }
 
     /// What `go_on` makes of the front and of the back, each by itself and both at the same time, and what is odd
     /// about the board. It is given the board with the copper of that side.
     ///
     /// # Errors
-    /// As [`united`](Artwork::united).
+    /// `layer` where copper cannot be united, `copper-outside` where copper and outline cannot be compared.
     pub fn each_side<T: Send>(
         mut self,
         go_on: impl Fn(Face, Board) -> T + Sync,

@@ -79,6 +79,7 @@ pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> 
     let legend = |side: &Side| side.legend.as_ref().and_then(Image::extents);
     let layers = [
         ("outline", of(board.outline.as_ref())),
+        ("edge", board.broken_edge.as_ref().and_then(|edge| edge.extents)),
         ("front copper", copper(&board.front.copper)),
         ("back copper", copper(&board.back.copper)),
         ("front solder mask", of(board.front.mask.as_ref())),

@@ -4,6 +4,7 @@
 //! name, is left out or had to be mended is a warning. Two files of one layer are refused.
 
 use super::layer::{Face, Format, Layer};
+use super::outline::BrokenEdge;
 use super::{Artwork, Board, Drawn, Pattern, covered, holes, outline};
 use crate::{excellon, gerber};
 use program::{Diagnostic, Rule};
@@ -49,7 +50,8 @@ pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
 /// # Errors
 /// `layer-twice` where two files hold the same layer, `layer-negative`, `no-board` where no file has
 /// anything of a board, `layers-apart` where a layer lies wholly outside the board, and all that the readers
-/// and [`outline::of_image`] refuse; `layer` where copper cannot be united that reaches beyond the outline.
+/// refuse; `layer` where copper cannot be united that reaches beyond the outline. An edge that is no outline is the board's
+/// [`broken_edge`](Board::broken_edge).
 pub fn artwork(name: &str, files: &[File]) -> Result<(Artwork, Layers), Vec<Diagnostic>> {
     let mut artwork = Artwork::default();
     artwork.board.name = name.into();
@@ -183,14 +185,15 @@ impl Known<'_> {
                 board.side_mut(face).mask = Some(mask);
             }
             Layer::Legend(face) => board.side_mut(face).legend = Some(image),
-            Layer::Outline => {
-                let outlined = outline::of_image(&image);
-                let (region, found) = outlined.map_err(|errors| {
-                    errors.into_iter().map(placed).collect::<Vec<Diagnostic>>()
-                })?;
-                board.outline = Some(region);
-                warnings.extend(found.into_iter().map(placed));
-            }
+            Layer::Outline => match outline::of_image(&image) {
+                Ok((region, found)) => {
+                    board.outline = Some(region);
+                    warnings.extend(found.into_iter().map(placed));
+                }
+                Err(findings) => {
+                    board.broken_edge = Some(BrokenEdge::of_image(findings, &image).file(name));
+                }
+            },
             Layer::Holes(plated) => {
                 let found =
                     holes::of_image(&image, plated).map_err(|error| vec![placed(*error)])?;

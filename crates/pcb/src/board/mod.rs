@@ -27,8 +27,10 @@ pub use placed::Axis;
 use crate::Hole;
 use crate::contour::around;
 use crate::gerber::Image;
-use geom::Vec2;
 use geom::region::Region;
+use geom::{Element, Vec2};
+use outline::BrokenEdge;
+use program::Diagnostic;
 
 /// A board, seen from the front: X to the right, Y up, mm.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,6 +43,8 @@ pub struct Board {
     pub back: Side,
     /// Where there is board: within its edge, and not in its cut-outs. `None` where no file says so.
     pub outline: Option<Region>,
+    /// An edge that a file draws, and that encloses no board: there is no outline then.
+    pub broken_edge: Option<BrokenEdge>,
     /// What is drilled, chained or routed through it.
     pub holes: Vec<Hole>,
 }
@@ -57,6 +61,20 @@ pub struct Side {
 }
 
 impl Board {
+    /// Takes the outline from the lines that draw its edge, each with its line in the file; answers what had to be mended.
+    pub(crate) fn take_edge(&mut self, lines: &[(Element, u32)]) -> Vec<Diagnostic> {
+        match outline::of_lines(lines) {
+            Ok((region, mended)) => {
+                self.outline = Some(region);
+                mended
+            }
+            Err(findings) => {
+                self.broken_edge = Some(BrokenEdge::of_lines(findings, lines));
+                Vec::new()
+            }
+        }
+    }
+
     /// A side of it.
     pub fn side(&self, face: Face) -> &Side {
         match face {
@@ -78,7 +96,8 @@ impl Board {
     pub fn extents(&self) -> Option<(Vec2, Vec2)> {
         let copper = [&self.front, &self.back].into_iter().filter_map(|side| side.copper.as_ref());
         let regions = copper.map(|copper| &copper.region).chain(&self.outline);
-        let holes = self.holes.iter().map(Hole::extents);
-        regions.filter_map(Region::extents).chain(holes).reduce(around)
+        let edge = self.broken_edge.as_ref().and_then(|edge| edge.extents);
+        let others = self.holes.iter().map(Hole::extents).chain(edge);
+        regions.filter_map(Region::extents).chain(others).reduce(around)
     }
 }

@@ -7,6 +7,7 @@
 
 use super::copper::covered;
 use crate::SAME;
+use crate::contour::around;
 use crate::crossing::self_crossing;
 use crate::gerber::{Image, Object, Shape};
 use geom::region::{Fill, Region, Ring};
@@ -24,6 +25,40 @@ const MOST_ENDS: usize = 20;
 
 /// An outline, and what had to be mended.
 pub type Outlined = (Region, Vec<Diagnostic>);
+
+/// An edge that says where the board is, and not where it ends: no program that needs the outline can be made, all others can.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BrokenEdge {
+    /// Why no outline comes of it.
+    pub findings: Vec<Diagnostic>,
+    /// The corners of the box around what it draws, mm; `None` where it draws nothing.
+    pub extents: Option<(Vec2, Vec2)>,
+}
+
+impl BrokenEdge {
+    /// An edge on a layer of which [`of_image`] makes no outline: it is the middle of lines, or the rim of all that is drawn where
+    /// there are none.
+    pub(crate) fn of_image(findings: Vec<Diagnostic>, image: &Image) -> BrokenEdge {
+        let lines = image.objects.iter().filter_map(|object| match object.shape {
+            Shape::Stroke { path, .. } => Some(path.extents()),
+            Shape::Region { .. } | Shape::Flash { .. } => None,
+        });
+        let extents = lines.reduce(around).or_else(|| image.extents());
+        BrokenEdge { findings, extents }
+    }
+
+    /// An edge of `lines` of which [`of_lines`] makes no outline.
+    pub(crate) fn of_lines(findings: Vec<Diagnostic>, lines: &[(Element, u32)]) -> BrokenEdge {
+        let extents = lines.iter().map(|(element, _)| element.extents()).reduce(around);
+        BrokenEdge { findings, extents }
+    }
+
+    /// The same, with the file of which its findings are.
+    pub(crate) fn file(self, name: &str) -> BrokenEdge {
+        let findings = self.findings.into_iter().map(|found| found.file(name)).collect();
+        BrokenEdge { findings, ..self }
+    }
+}
 
 /// The outline that an edge layer describes.
 ///

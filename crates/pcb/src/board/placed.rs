@@ -1,6 +1,8 @@
 //! A board elsewhere: moved, turned over, many of it on a panel, and the pins that keep its place.
 
+use super::outline::BrokenEdge;
 use super::{Board, Copper, Side};
+use crate::contour::around;
 use crate::{Hole, HoleShape};
 use geom::region::Region;
 use geom::{Transform, Vec2};
@@ -59,8 +61,8 @@ impl Board {
     /// The board turned over about `axis`: the back is looked at, and so is the front.
     pub fn turned_over(&self, axis: Axis) -> Board {
         let (mirror, at) = axis.reflection();
-        let Board { name, front, back, outline, holes } = self.placed(&mirror, at);
-        Board { name, front: back, back: front, outline, holes }
+        let turned = self.placed(&mirror, at);
+        Board { front: turned.back, back: turned.front, ..turned }
     }
 
     /// The place in the middle between its ends, mm; the origin where there is nothing.
@@ -150,6 +152,9 @@ impl Board {
     pub(super) fn take(&mut self, other: Board) {
         self.holes.extend(other.holes);
         take(&mut self.outline, other.outline, Region::extend);
+        take(&mut self.broken_edge, other.broken_edge, |edge, more| {
+            edge.extents = edge.extents.into_iter().chain(more.extents).reduce(around);
+        });
         for (side, more) in [(&mut self.front, other.front), (&mut self.back, other.back)] {
             take(&mut side.mask, more.mask, Region::extend);
             take(&mut side.legend, more.legend, |legend, more| legend.objects.extend(more.objects));
@@ -172,6 +177,13 @@ impl Board {
             mask: side.mask.as_ref().map(place),
             legend: side.legend.as_ref().map(|image| image.placed(transform, at)),
         };
+        let edge = |edge: &BrokenEdge| BrokenEdge {
+            findings: edge.findings.clone(),
+            extents: edge.extents.map(|(low, high)| {
+                let (low, high) = (point(low), point(high));
+                (low.min(high), low.max(high))
+            }),
+        };
         let hole = |hole: &Hole| Hole {
             shape: match &hole.shape {
                 HoleShape::Round(at) => HoleShape::Round(point(*at)),
@@ -189,6 +201,7 @@ impl Board {
             front: side(&self.front),
             back: side(&self.back),
             outline: self.outline.as_ref().map(place),
+            broken_edge: self.broken_edge.as_ref().map(edge),
             holes: self.holes.iter().map(hole).collect(),
         }
     }

@@ -7,7 +7,7 @@ use super::pad::{self, Pad};
 use super::text::Text;
 use super::tree::{Node, Outcome, Tree};
 use super::zone::Zone;
-use crate::board::{Artwork, Pattern, Shape, holes, outline};
+use crate::board::{Artwork, Pattern, Shape, holes};
 use crate::contour::{Contour, Piece};
 use crate::report::Report;
 use crate::{Board, Hole, HoleShape};
@@ -333,16 +333,15 @@ impl Reader<'_> {
         let placed = |found: Diagnostic| found.file(file_name);
         let all = |found: Vec<Diagnostic>| found.into_iter().map(placed).collect::<Vec<_>>();
         let mut warnings = self.report.warnings;
-        let mut outlined = None;
+        let mut board = Board::default();
         if !self.edges.is_empty() {
-            let (region, found) = outline::of_lines(&self.edges).map_err(all)?;
-            warnings.extend(all(found));
-            outlined = Some(region);
+            warnings.extend(all(board.take_edge(&self.edges)));
         }
+        board.broken_edge = board.broken_edge.map(|edge| edge.file(file_name));
         warnings.extend(holes::once(&mut self.holes).map(placed));
         let name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
         let name = name.strip_suffix(".kicad_pcb").unwrap_or(name).to_owned();
-        let board = Board { name, outline: outlined, holes: self.holes, ..Board::default() };
+        let board = Board { name, holes: self.holes, ..board };
         let side = |shapes| Pattern::of_shapes(file_name, shapes);
         let (front, back) = (side(self.front), side(self.back));
         Artwork { board, front, back, file: Some(file_name.to_owned()), warnings }.whole()

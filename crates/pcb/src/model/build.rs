@@ -4,7 +4,7 @@ use super::Findings;
 use super::net::Nets;
 use super::scope::{Scopes, no_angle};
 use super::sheet::{Bore, Edge, Form, Group, Pad, Track};
-use crate::board::{Artwork, Board, Face, Pattern, Shape, outline};
+use crate::board::{Artwork, Board, Face, Pattern, Shape};
 use crate::{Contour, Hole, HoleShape, Piece, Transform};
 use geom::{Element, Vec2};
 use program::{Diagnostic, Rule};
@@ -168,13 +168,8 @@ impl<'a> Maker<'a, '_, '_> {
         });
         let mut board = Board { holes, ..Board::default() };
         if !edge.is_empty() {
-            match outline::of_lines(&edge) {
-                Ok((region, found)) => {
-                    board.outline = Some(region);
-                    findings.report.warnings.extend(found);
-                }
-                Err(found) => findings.report.errors.extend(found),
-            }
+            findings.report.warnings.extend(board.take_edge(&edge));
+            board.broken_edge = board.broken_edge.map(|edge| edge.file(file_name));
         }
         Artwork { board, front, back, ..Artwork::default() }
     }

@@ -60,12 +60,12 @@ fn is_usual(part: Part, settings: &Settings) -> bool {
 
 /// Whether the board has what a program is about.
 fn has(artwork: &Artwork, part: Part, settings: &Settings) -> bool {
-    let Board { front, back, outline, holes, .. } = artwork.board();
+    let Board { front, back, outline, broken_edge, holes, .. } = artwork.board();
     match part {
         Part::Front => artwork.has_copper(Face::Front),
         Part::Back => artwork.has_copper(Face::Back),
         Part::Drill => !holes.is_empty() || settings.placing.alignment.is_some(),
-        Part::Outline => outline.is_some(),
+        Part::Outline => outline.is_some() || broken_edge.is_some(),
         Part::FrontMask => front.mask.is_some(),
         Part::BackMask => back.mask.is_some(),
         Part::FrontLegend => front.legend.is_some(),
@@ -100,6 +100,23 @@ pub fn is_drilled(part: Part, settings: &Settings) -> bool {
 pub fn order(part: Part, settings: &Settings) -> (bool, bool, bool) {
     let is_back = face(part, settings) == Face::Back;
     (part == Part::Outline, is_back, part == Part::Drill)
+}
+
+/// Whether a setting is wrong, for whatever board: nothing is made then. All else is about one program of this board.
+pub fn is_about_settings(found: &Diagnostic) -> bool {
+    let settings = [
+        Rule::NoTool,
+        Rule::Setting,
+        Rule::Length,
+        Rule::Step,
+        Rule::Passes,
+        Rule::Overlap,
+        Rule::Cutter,
+        Rule::ToolWidth,
+        Rule::TabHeight,
+        Rule::TabCount,
+    ];
+    settings.contains(&found.rule)
 }
 
 /// What is said of a board with nothing on it.

@@ -434,6 +434,9 @@ fn area(board: &Board) -> Result<Region, Vec<Diagnostic>> {
     if let Some(outline) = &board.outline {
         return Ok(outline.clone());
     }
+    if let Some(edge) = &board.broken_edge {
+        return Err(edge.findings.clone());
+    }
     let message = "no file says where the board ends";
     let help = "give the layer of its outline too";
     Err(vec![Diagnostic::error(Rule::NoOutline, message).help(help)])

@@ -28,7 +28,7 @@ pub struct Pcb {
     /// What to make [default: all that the board has and that tools are given for].
     #[arg(long, value_name = "WHAT,...", value_delimiter = ',', value_parser = choice(&PARTS))]
     pub only: Vec<Part>,
-    /// Take every warning about the board as an error.
+    /// Take every warning about the board as an error, and make all programs or none.
     #[arg(long)]
     pub strict: bool,
     /// How pictures are saved.

@@ -104,11 +104,32 @@ fn layers_of_different_origins() {
 #[test]
 fn an_outline_that_is_not_closed() {
     let folder = small();
+    let said = call(&folder, &[]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let programs = ["front.nc", "back.nc", "drill.nc"];
+    let whole = programs.map(|name| folder.read(&format!("out/{name}")));
+    fs::remove_dir_all(folder.path().join("out")).unwrap();
     edge(&folder, &EDGE.replace("\nY0D01*", "\nY1000D01*"));
-    bad(
-        &folder,
-        &["edge.gbr:10:", "error[outline-open]", "1.0000 mm", "X 0.0000 Y 1.0000", "0.05 mm"],
-    );
+    let words =
+        ["edge.gbr:10:", "error[outline-open]", "1.0000 mm", "X 0.0000 Y 1.0000", "0.05 mm"];
+    bad_call(&folder, &["--strict"], &words);
+    bad_call(&folder, &["--only", "outline"], &words);
+    // The rest of the board is made, and lies where it lies with a closed outline.
+    let said = call(&folder, &[]);
+    assert_eq!(said.code, 3, "{said:?}");
+    for word in words.iter().chain(&["left out", "outline.nc: the outline is not closed"]) {
+        assert!(said.err.contains(word) || said.out.contains(word), "`{word}`: {said:?}");
+    }
+    assert_eq!(programs.map(|name| folder.read(&format!("out/{name}"))), whole);
+    assert!(!folder.path().join("out/outline.nc").exists());
+    let report = folder.read("out/report.json");
+    let left_out = report.split("\"left_out\": [").nth(1).unwrap();
+    for word in ["\"name\": \"outline\"", "\"rule\": \"outline-open\""] {
+        assert!(left_out.contains(word), "{left_out}");
+    }
+    let said = call(&folder, &["--only", "front,back,drill"]);
+    assert_eq!((said.code, said.err.contains("outline-open")), (0, false), "{said:?}");
+    fs::remove_dir_all(folder.path().join("out")).unwrap();
     // The tolerance closes it.
     edge(&folder, &EDGE.replace("\nY0D01*", "\nY40D01*"));
     odd(&folder, &["warning[outline-gap]", "0.0400 mm"]);
@@ -228,14 +249,14 @@ fn drills_and_mills_that_do_not_fit() {
     let folder = small();
     bad_call(
         &folder,
-        &["--drills", "0.6,1.2"],
+        &["--strict", "--drills", "0.6,1.2"],
         &["error[no-drill]", "0.8 mm at X 4.000 Y 5.000", "0.6 mm", "0.05 mm", "2 times"],
     );
     // A slot of 0.8 mm.
     folder.write("board/holes.drl", DRILL.replace("X4.0Y5.0", "X4.0Y5.0G85X6.0Y5.0"));
     bad_call(
         &folder,
-        &["--hole-mill", "1"],
+        &["--strict", "--hole-mill", "1"],
         &["error[no-cutter]", "slot of 0.8 mm at X 4.000 Y 5.000", "1 mm", "at most 0.8 mm"],
     );
 }
@@ -264,7 +285,7 @@ fn sides_that_are_not_there() {
     bad_call(&folder, &["--only", "back"], &["error[no-such-part]", "copper of the back"]);
     fs::remove_file(folder.path().join("board/edge.gbr")).unwrap();
     bad_call(&folder, &["--only", "outline"], &["error[no-such-part]", "outline"]);
-    bad_call(&folder, &["--clear", "0.8"], &["error[no-outline]"]);
+    bad_call(&folder, &["--clear", "0.8", "--only", "front"], &["error[no-outline]"]);
     bad_call(&folder, &["--only", "left"], &["left", "front"]);
 }
 
@@ -319,10 +340,10 @@ fn heights_are_not_measured_in_holes() {
         "back.nc",
         "X16.000 Y5.000, in the hole of 0.8 mm at X16.000 Y5.000",
     ];
-    refused(&folder, &[&call[..], &inside].concat(), 2, &words);
+    refused(&folder, &[&call[..], &inside, &["--strict"]].concat(), 2, &words);
     let more = ["4x3", "--vee", "90"];
     let words = ["X7.000 Y5.000", "hole of 0.8 mm at X6.000 Y5.000", "1.050 mm", "--from back"];
-    refused(&folder, &[&call[..], &more].concat(), 2, &words);
+    refused(&folder, &[&call[..], &more, &["--strict"]].concat(), 2, &words);
     for (good, run) in [
         (&["4x3", "--tool", "0.4"][..], &["front", "drill", "back", "outline"][..]),
         (&[&inside[..], &["--from", "back"]].concat(), &["front", "back", "drill", "outline"]),

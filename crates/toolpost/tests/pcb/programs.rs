@@ -613,8 +613,11 @@ fn what_is_said_and_to_whom() {
     let narrow = ["--drills", "0.6"];
     let said = folder.run(&[&["--json"], &call[..], &narrow].concat());
     let answer = said.json();
-    assert_eq!((said.code, &answer["status"]), (2, &"invalid".into()));
+    assert_eq!((said.code, &answer["status"]), (3, &"partly".into()));
+    assert_eq!(answer["left_out"][0]["name"], "drill");
     assert_eq!(answer["errors"][0]["rule"], "no-drill");
+    let said = folder.run(&[&["--json"], &call[..], &narrow, &["--strict"]].concat());
+    assert_eq!((said.code, &said.json()["status"]), (2, &"invalid".into()));
     let said = folder.run(&call);
     let saved = "in out: report.json, front.svg, drill.svg, back.svg, outline.svg, front.nc, drill.nc, back.nc, outline.nc";
     assert!(said.out.contains(saved), "{}", said.out);
