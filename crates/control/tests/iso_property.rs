@@ -5,7 +5,7 @@ mod common;
 
 use geom::Vec3;
 use proptest::prelude::*;
-use toolpost_control::{Action, Dialect, Event, Settings, Setup, WholeNumbers, read};
+use toolpost_control::{Action, Dialect, Event, Settings, Setup, read};
 
 const DIALECTS: [Dialect; 5] =
     [Dialect::Fanuc, Dialect::Haas, Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl];
@@ -228,71 +228,6 @@ proptest! {
             }
         }
     }
-}
-
-/// A straight move as many write it, with an F that is the last one's or another.
-fn straight() -> impl Strategy<Value = String> {
-    let word = |letter: char| {
-        let number = prop_oneof![
-            8 => (-9..99i64).prop_map(|n| written(n * 500)),
-            2 => prop::sample::select(&["0", "-0", "-0.", "7", "2000000."][..]).prop_map(String::from),
-        ];
-        prop::option::of(number.prop_map(move |number| format!(" {letter}{number}")))
-    };
-    const HEADS: [&str; 11] =
-        ["", "", "N5", "N5.", "G1", "G01", "G0", "N7 G1", "G1 G1", "G1 N7", "G2"];
-    const TAILS: [&str; 12] =
-        ["", "", "", " F100", " F100.", " F100", " F50", " F0", " F200", " X1.", " A9.", " T2"];
-    let (head, tail) = (prop::sample::select(&HEADS), prop::sample::select(&TAILS));
-    (head, word('X'), word('Y'), word('Z'), tail).prop_map(|(head, x, y, z, tail)| {
-        let words = [x, y, z].map(Option::unwrap_or_default).concat();
-        format!("{head}{words}{tail}")
-    })
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
-
-    /// A line is run by another way where it has no blank within its words, and goes on behind another.
-    #[test]
-    fn blanks_within_words_change_nothing(
-        known in any::<bool>(),
-        whole in prop::sample::select(&WHOLE_NUMBERS),
-        blocks in prop::collection::vec(prop_oneof![
-            1 => prop::sample::select(BLOCKS).prop_map(String::from),
-            4 => straight(),
-        ], 1..30)
-    ) {
-        let text = format!("G21\nG90\nS100 M3\nG0 X1. Y2. Z30.\nG1 F100\n{}\n", blocks.join("\n"));
-        let start = known.then_some(Vec3::ZERO);
-        let setup = Setup { start, whole_numbers: whole, ..Setup::default() };
-        for dialect in DIALECTS.into_iter().chain([Dialect::FanucWire]) {
-            let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
-            let run = |lines: &[&str], parted: bool| {
-                let text = lines.join("\n");
-                let text = if parted { blanks_within_words(&text) } else { text };
-                let read = common::records(&settings, "t.nc", text);
-                // As text, in which a place that is not known is as good as another.
-                read.map(|records| format!("{records:?}")).map_err(|found| (found.rule, found.line))
-            };
-            let mut kept: Vec<&str> = text.lines().collect();
-            loop {
-                let read = run(&kept, false);
-                prop_assert_eq!(&read, &run(&kept, true), "{:?}\n{}", dialect, kept.join("\n"));
-                let Err((_, line)) = read else { break };
-                kept.remove(line as usize - 1);
-            }
-        }
-    }
-}
-
-const WHOLE_NUMBERS: [WholeNumbers; 3] =
-    [WholeNumbers::Unknown, WholeNumbers::Units, WholeNumbers::Increments];
-
-/// The same with a blank between each letter and its number.
-fn blanks_within_words(text: &str) -> String {
-    let parted = |c: char| if c.is_ascii_uppercase() { format!("{c} ") } else { c.to_string() };
-    text.chars().map(parted).collect()
 }
 
 /// What holds for every record.

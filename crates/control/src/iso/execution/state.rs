@@ -303,6 +303,90 @@ impl State {
         self.frames.used();
     }
 
+    /// Whether a block of X, Y and Z behind one that only moved is a straight move to there and nothing else: the one condition
+    /// of the short path ([`super::straight`]). Every field is named, so that a new one stops the compiler here.
+    pub(super) fn moves_straight(&self, facts: &Facts) -> bool {
+        let State {
+            // What such a block means depends on them.
+            incremental,
+            diameter,
+            polar,
+            tilt,
+            loose,
+            frames,
+            compensation,
+            cycle,
+            nurbs,
+            wire,
+            feed,
+            told,
+            cut,
+            length_is_suspended,
+            // The block says them itself, or the short path asks for them.
+            motion: _,
+            inches: _,
+            flat: _,
+            position: _,
+            rotary: _,
+            place: _,
+            kinematics: _,
+            length: _,
+            // T is asked for where the operator changes tools.
+            selected: _,
+            tool: _,
+            // They change how arcs, cycles, splines and words of other letters are read, ...
+            plane: _,
+            centers_absolute: _,
+            feed_mode: _,
+            f: _,
+            modulo: _,
+            floating_holder: _,
+            knows_peck_retract: _,
+            length_along_z: _,
+            length_moves_axis: _,
+            dwell_p_milliseconds: _,
+            rotary_by_sign: _,
+            rotary_at_zero: _,
+            table: _,
+            table_frame_at_zero: _,
+            sets_work_offsets: _,
+            registers: _,
+            aside: _,
+            touches: _,
+            probed: _,
+            return_to_r: _,
+            cycle_dwell: _,
+            // ... what the machine does besides, or what is asked of the program as a whole.
+            spindle: _,
+            speed: _,
+            surface: _,
+            rigid: _,
+            coolant: _,
+            work_offset: _,
+            purpose: _,
+            homes: _,
+            via: _,
+            z_is_home: _,
+            moved: _,
+            looks_ahead: _,
+            rounds_corners: _,
+            ended: _,
+        } = self;
+        !(*incremental || *diameter || *length_is_suspended)
+            && polar.is_none()
+            && cycle.is_none()
+            && nurbs.is_none()
+            && wire.is_none()
+            && *tilt == Tilt::None
+            && *loose == 0
+            && frames.lost.is_none()
+            && compensation.active == compensation.asked
+            && matches!(feed, Some(Feed::PerMinute(_)))
+            && *cut
+            && *told
+            && !self.awaits_tool(facts)
+    }
+
     /// Whether the spindle turns or coolant runs.
     pub(crate) fn is_running(&self) -> bool {
         self.spindle != Spindle::Off || self.coolant != Coolant::Off

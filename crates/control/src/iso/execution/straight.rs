@@ -4,13 +4,12 @@
 //! all of them: the modes that answer it are looked at once, behind the block before them.
 
 use super::motion::LINEAR;
-use super::state::{State, Tilt};
+use super::state::State;
 use super::step::Control;
 use crate::WholeNumbers;
 use crate::event::Action;
 use crate::iso::language::block::{Block, Word};
 use crate::iso::language::words::{Motion, bit, index};
-use program::Feed;
 
 /// What holds from one straight move to the next.
 #[derive(Clone, Copy, Debug)]
@@ -28,17 +27,7 @@ impl StraightContinuation {
             true => geom::INCH,
             false => 1.0,
         };
-        let is_feed_per_minute = matches!(state.feed, Some(Feed::PerMinute(_)));
-        let is_simple = !(state.incremental || state.diameter)
-            && state.polar.is_none()
-            && state.cycle.is_none()
-            && state.wire.is_none()
-            && state.tilt == Tilt::None
-            && state.loose == 0
-            && state.frames.lost.is_none()
-            && state.compensation.active == state.compensation.asked
-            && !state.awaits_tool(block.facts);
-        let goes = is_simple && block.only_moves() && is_feed_per_minute && state.cut && state.told;
+        let goes = block.only_moves() && state.moves_straight(block.facts);
         // F of a CAM system next to a rapid is none of the moves behind it, and that of FANUC next to G33 is a pitch.
         let cuts = matches!(state.motion, Some(Motion::Line | Motion::Arc { .. }));
         let feed = (cuts && block.gives(b'F')).then(|| block.words[index(b'F')]);
