@@ -1,4 +1,4 @@
-//! Pictures, as SVG or PNG: of a tool path, of the path of a wire, of a board.
+//! Pictures, as SVG or PNG: of a tool path, of the path of a wire, of a board, of points in glass.
 //!
 //! The crate promises the same bytes for the same input on every machine (letters are strokes of our own, there are no fonts in
 //! them), of bounded size, however long the program.
@@ -28,6 +28,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod board;
+mod glass;
 mod lettering;
 mod paper;
 mod tool_path;
@@ -37,6 +38,7 @@ mod walk;
 mod wire_path;
 
 pub use board::{BoardPicture, board};
+pub use glass::{GlassPicture, glass};
 pub use tool_path::tool_path;
 pub use walk::{Segment, walk};
 pub use wire_path::{WirePicture, WireSegment, wire_path};

@@ -1,7 +1,6 @@
 //! A job: bodies and points placed in a block, made into a cloud, ordered, written, read back and proven.
 
 use crate::cloud::{self, Distances, Point};
-use crate::control::Run;
 use crate::machine::{Lens, Machine};
 use crate::material::Material;
 use crate::mesh::{self, Health, Mesh, Shape};
@@ -108,8 +107,8 @@ pub struct Made {
     pub text: Vec<u8>,
     /// The cloud in the frame of the block, µm; of a program that was made here in its order.
     pub cloud: Vec<Point>,
-    /// What the program does, as the virtual machine reads it.
-    pub run: Run,
+    /// Where the pulses of the program lie in the glass, in their order, mm.
+    pub places: Vec<DVec3>,
     /// The report.
     pub report: Report,
     /// Whether it is proven.
@@ -302,7 +301,8 @@ impl<'m> Job<'m> {
             proof,
         };
         let proven = !findings.iter().any(Diagnostic::is_error);
-        Ok(Made { text, cloud: self.cloud, run, report, proven, findings })
+        let places = proof::places(&run, &task);
+        Ok(Made { text, cloud: self.cloud, places, report, proven, findings })
     }
 }
 

@@ -62,6 +62,16 @@ fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
     (in_air.tan() / in_glass.tan(), in_glass.tan())
 }
 
+/// Where the pulses of a run lie in the glass, in their order, mm.
+pub fn places(run: &Run, task: &Task) -> Vec<DVec3> {
+    let (deeper, _) = depth(task.lens, task.machine.laser.beam, task.index);
+    let in_glass = |pulse: &Pulse| {
+        let [x, y, z] = pulse.at;
+        DVec3::new(x, y, task.block[2] + z * deeper)
+    };
+    run.pulses.iter().map(in_glass).collect()
+}
+
 /// Compares the pulses of `run` with `task`.
 ///
 /// # Errors
@@ -76,9 +86,8 @@ pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Dia
     findings_of_block(run, task, &mut findings);
     travels(run, task, &mut findings);
     let (deeper, slope) = depth(task.lens, task.machine.laser.beam, task.index);
-    let in_glass = |pulse: &Pulse| [pulse.at[0], pulse.at[1], task.block[2] + pulse.at[2] * deeper];
-    let (order, across, along) = matched(pulses, task, in_glass, &mut findings);
-    let places: Vec<DVec3> = pulses.iter().map(|pulse| DVec3::from(in_glass(pulse))).collect();
+    let places = places(run, task);
+    let (order, across, along) = matched(pulses, &places, task, &mut findings);
     let (nearest, too_close) = distances(&places, task.spacing);
     let apart = apart(nearest, too_close, pulses, task.spacing, deeper);
     let shadowed = shadows(&order, task.cloud, slope, 500.0 * task.lens.crack[0]);
@@ -251,14 +260,14 @@ const NONE: u32 = u32::MAX;
 /// Gives each pulse the nearest point: the points in the order of their pulses, and the largest distances across and along the beam, mm.
 fn matched(
     pulses: &[Pulse],
+    places: &[DVec3],
     task: &Task,
-    in_glass: impl Fn(&Pulse) -> [f64; 3] + Sync,
     findings: &mut Findings,
 ) -> (Vec<u32>, f64, f64) {
     let [radius, height] = task.lens.crack.map(|size| 500.0 * size);
     let grid = Grid::new(task.cloud, radius.max(height).ceil() as i64);
-    let nearest = |pulse: &Pulse| {
-        let place = in_glass(pulse).map(|value| value * 1e3);
+    let nearest = |place: &DVec3| {
+        let place = place.to_array().map(|value| value * 1e3);
         let rounded = place.map(|value| value.round() as i32);
         let way = |j: u32| {
             let point = task.cloud[j as usize].map(f64::from);
@@ -271,13 +280,13 @@ fn matched(
         let far = |((across, along), j): &((f64, f64), u32)| (across * across + along * along, *j);
         inside.min_by(|a, b| far(a).0.total_cmp(&far(b).0).then(a.1.cmp(&b.1)))
     };
-    let found: Vec<_> = pulses.par_iter().map(nearest).collect();
+    let found: Vec<_> = places.par_iter().map(nearest).collect();
     let mut by: Vec<u32> = vec![NONE; task.cloud.len()];
     let mut order = Vec::with_capacity(pulses.len());
     let (mut most_across, mut most_along) = (0.0f64, 0.0f64);
     for (i, (pulse, found)) in pulses.iter().zip(found).enumerate() {
         let Some(((across, along), j)) = found else {
-            let [x, y, z] = in_glass(pulse);
+            let DVec3 { x, y, z } = places[i];
             let message =
                 format!("the pulse at {x:.3} {y:.3} {z:.3} mm lies in the crack of no point");
             findings.push(

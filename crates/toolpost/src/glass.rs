@@ -13,6 +13,7 @@ use ::glass::picture::{self, Manner};
 use ::glass::{cloud, material, source};
 use app::files::{self, Target};
 use app::{Account, Stop, Verdict, Watch};
+use drawing::Format;
 use program::{Diagnostic, Rule, encoding};
 use serde_json::json;
 use std::path::Path;
@@ -83,7 +84,7 @@ fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
     if !["png", "jpg", "jpeg", "bmp"].contains(&ending.as_str()) {
         return shape(path, job.columns);
     }
-    let args = &job.picture;
+    let args = &job.image;
     let setting = picture::Setting {
         plane: args.plane,
         width: args.width,
@@ -220,6 +221,7 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     let report_path = files::report_of(&args.output);
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
+    let drawing = Drawing::new(&args.job, &inputs)?;
     let progress = Progress::new(3, silent);
     progress.step("reading");
     let Read { machine, material, shapes } = Read::new(&args.job)?;
@@ -232,15 +234,47 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
         return Ok(not_saved(account));
     }
     progress.step("saving");
-    files::save(&[(&report_target, account.report().as_bytes()), (&target, &made.text)])?;
+    let picture =
+        drawing.as_ref().map(|drawing| drawing.drawn(&made, args.job.block)).transpose()?;
+    let report = account.report();
+    let mut saved: Vec<(&Target, &[u8])> =
+        vec![(&report_target, report.as_bytes()), (&target, &made.text)];
+    saved
+        .extend(drawing.iter().zip(&picture).map(|(drawing, bytes)| (&drawing.target, &bytes[..])));
+    files::save(&saved)?;
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
+    account.rows.extend(args.job.picture.iter().map(|file| ("", file.display().to_string())));
     Ok(account.into())
+}
+
+/// Where the picture of a job is saved.
+struct Drawing {
+    target: Target,
+    format: Format,
+    title: String,
+}
+
+impl Drawing {
+    /// That of `job`, where one is asked for; nothing of `inputs` is saved over.
+    fn new(job: &Job, inputs: &[&Path]) -> Result<Option<Drawing>, Stop> {
+        let Some(file) = &job.picture else { return Ok(None) };
+        let title = job.bodies.iter().map(|path| files::name(path)).collect::<Vec<_>>().join(", ");
+        Ok(Some(Drawing { target: Target::new(file, inputs)?, format: Format::of(file)?, title }))
+    }
+
+    fn drawn(&self, made: &Made, block: [f64; 3]) -> Result<Vec<u8>, Stop> {
+        let picture = drawing::GlassPicture { block, points: &made.places };
+        Ok(self.format.bytes(drawing::glass(&self.title, &picture))?)
+    }
 }
 
 /// Proves a program, also one edited by hand.
 fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(2, silent);
+    let mut inputs = inputs(job);
+    inputs.push(program);
+    let drawing = Drawing::new(job, &inputs)?;
     progress.step("reading");
     let text = files::read(program)?;
     let Read { machine, material, shapes } = Read::new(job)?;
@@ -252,6 +286,11 @@ fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
     let made = job::prove(text, shapes, &material, &machine, &settings).map_err(in_program)?;
     let mut account = account(&made, &machine, &material);
     account.findings = in_program(account.findings);
+    if let Some(drawing) = drawing {
+        let picture = drawing.drawn(&made, job.block)?;
+        files::save(&[(&drawing.target, &picture)])?;
+        account.rows.extend(job.picture.iter().map(|file| ("picture", file.display().to_string())));
+    }
     Ok(account.into())
 }
 

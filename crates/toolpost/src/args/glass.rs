@@ -119,7 +119,7 @@ pub struct Job {
     #[arg(long, value_name = "N,N,N", value_parser = columns, default_value = "1,2,3")]
     pub columns: Columns,
     #[command(flatten)]
-    pub picture: Picture,
+    pub image: Image,
     #[command(flatten)]
     pub placing: Placing,
     /// Take another cloud that is as good.
@@ -128,12 +128,15 @@ pub struct Job {
     /// Let a rule pass in this run; the report names it.
     #[arg(long, value_name = "RULE", value_parser = ["shadowed"])]
     pub accept: Vec<String>,
+    /// Draw the pulses in the block, as the eye sees them and in their order, as .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
 }
 
 /// What becomes of pictures.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Pictures")]
-pub struct Picture {
+#[command(next_help_heading = "Photographs, black and white pictures and depth maps")]
+pub struct Image {
     /// What becomes of a picture; points are bright in glass, so white is dense.
     #[arg(long = "image", value_name = "HOW", default_value = "dither", value_parser = choice(&MANNERS))]
     pub manner: Drawn,

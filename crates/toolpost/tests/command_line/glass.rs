@@ -124,6 +124,30 @@ fn an_edited_program_is_proven_against_its_body() {
 }
 
 #[test]
+fn the_pulses_are_drawn_where_a_picture_is_asked_for() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    let said = engrave(&folder, &["--picture", "roof.svg"]);
+    assert!(said.code == 0 && said.out.contains("roof.svg"), "{said:?}");
+    let svg = folder.read("roof.svg");
+    assert!(svg.contains("<title>Points in glass of roof.stl</title>"), "{svg:.300}");
+    assert!(svg.matches("h.1").count() > 800, "{}", svg.len());
+    let said = engrave(&folder, &["--picture", "roof.png"]);
+    assert!(said.code == 0, "{said:?}");
+    let png = std::fs::read(folder.path().join("roof.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG"));
+    // A program that is not proven is not drawn where it would be saved; one that is looked at is.
+    let words = ["glass", "prove", "roof.prg", "roof.stl", "--block", "20x20x31", "--lens", "70"];
+    let more = ["--material", "k9", "--machine", "glass-xyz-100hz", "--picture", "edited.svg"];
+    assert_eq!(folder.run(&[&words[..], &more].concat()).code, 1);
+    assert!(folder.read("edited.svg").starts_with("<svg"));
+    let said = engrave(&folder, &["--picture", "roof.gif"]);
+    assert!(said.code == 2 && said.err.contains("error[drawing]"), "{said:?}");
+    let said = engrave(&folder, &["--picture", "roof.stl"]);
+    assert!(said.code == 2 && !folder.read("roof.stl").is_empty(), "{said:?}");
+}
+
+#[test]
 fn a_list_of_points_is_checked_for_its_smallest_distance() {
     let folder = Folder::empty();
     folder.write("cloud.csv", "x;y;z;n\n0;0;0;7\n0;0;0.129;8\n1;1;1;9\n");
