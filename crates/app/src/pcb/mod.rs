@@ -79,7 +79,7 @@ impl<'a> Job<'a> {
     pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
         watch.begin("reading")?;
         let Job { machine, settings, .. } = *self;
-        let source = source::read(board)?;
+        let source = source::read(board, settings)?;
         let parts = plan::parts(&source.artwork, settings)?;
         let surface = surface(&parts, settings, self.surface.as_ref())?;
         let running = &settings.running;

@@ -4,6 +4,7 @@ use crate::account::Stop;
 use crate::files;
 use crate::input;
 use pcb::board::{Artwork, File};
+use pcb::plan::{self, Settings};
 use program::{Diagnostic, Rule};
 use std::path::Path;
 
@@ -20,11 +21,11 @@ pub struct Source {
     pub files: Vec<input::Source>,
 }
 
-/// Reads the board that `given` is.
+/// Reads the board that `given` is, with the layers that programs need for which `settings` ask.
 ///
 /// # Errors
 /// What is wrong with a file, or with all of them together.
-pub fn read(given: &[input::Source]) -> Result<Source, Stop> {
+pub fn read(given: &[input::Source], settings: &Settings) -> Result<Source, Stop> {
     let name = name(given);
     let all = match given {
         [input::Source::File(folder)] if folder.is_dir() => within(folder)?,
@@ -47,7 +48,9 @@ pub fn read(given: &[input::Source]) -> Result<Source, Stop> {
         _ => {
             let all = texts.iter().map(|(name, text)| File { name, layer: None, text });
             let all: Vec<File> = all.collect();
-            let (artwork, layers) = pcb::board::artwork(&name, &all).map_err(Stop::invalid)?;
+            let wanted = |layer| plan::needs(layer, settings);
+            let (artwork, layers) =
+                pcb::board::artwork(&name, &all, wanted).map_err(Stop::invalid)?;
             let named = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());
             (artwork, layers.into_iter().map(named).collect())
         }

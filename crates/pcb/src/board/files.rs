@@ -40,22 +40,26 @@ pub struct Reading {
 /// # Errors
 /// All that [`artwork`] and [`Artwork::united`] refuse.
 pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
-    let (artwork, layers) = artwork(name, files)?;
+    let (artwork, layers) = artwork(name, files, |_| true)?;
     let (board, warnings) = artwork.united()?;
     Ok(Reading { board, layers, warnings })
 }
 
-/// The same, with copper that is still to be united.
+/// The same, with copper that is still to be united, of the layers that are `wanted`: others are not read.
 ///
 /// # Errors
 /// `layer-twice` where two files hold the same layer, `layer-negative`, `no-board` where no file has
 /// anything of a board, `layers-apart` where a layer lies wholly outside the board, and all that the readers
 /// refuse; `layer` where copper cannot be united that reaches beyond the outline. An edge that is no outline is the board's
 /// [`broken_edge`](Board::broken_edge).
-pub fn artwork(name: &str, files: &[File]) -> Result<(Artwork, Layers), Vec<Diagnostic>> {
+pub fn artwork(
+    name: &str,
+    files: &[File],
+    wanted: impl Fn(Layer) -> bool,
+) -> Result<(Artwork, Layers), Vec<Diagnostic>> {
     let mut artwork = Artwork::default();
     artwork.board.name = name.into();
-    let known = told_apart(files, &mut artwork.warnings)?;
+    let known = told_apart(files, &wanted, &mut artwork.warnings)?;
     let mut errors = Vec::new();
     // Some at the same time, and put together in the order of the files.
     for part in known.par_iter().map(Known::read).collect::<Vec<_>>() {
@@ -79,12 +83,14 @@ struct Known<'a> {
     format: Format,
 }
 
-/// Which file is which: those that have something of a board.
+/// Which file is which: those that have something of a board that is wanted.
 fn told_apart<'a>(
     files: &'a [File<'a>],
+    wanted: &impl Fn(Layer) -> bool,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Vec<Known<'a>>, Vec<Diagnostic>> {
-    let (mut known, mut others, mut not_through) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut known, mut unwanted) = (Vec::new(), Vec::new());
+    let (mut others, mut not_through) = (Vec::new(), Vec::new());
     for file in files {
         let format = Format::of(file.text);
         let named = || match (format, Layer::named(file.name)) {
@@ -99,6 +105,7 @@ fn told_apart<'a>(
             None if format == Some(Format::Gerber) => warnings.push(unknown(file.name)),
             Some(Layer::Other) if Layer::is_not_through(file.text) => not_through.push(file.name),
             None | Some(Layer::Other) => others.push(file.name),
+            Some(layer) if !wanted(layer) => unwanted.push(file.name),
             Some(layer) => {
                 if stated.is_none() && format == Some(Format::Gerber) {
                     let message = format!("taken as {layer}, by its name");
@@ -124,7 +131,7 @@ fn told_apart<'a>(
         let help = "drill them in their layers, before these are joined";
         warnings.push(Diagnostic::warning(Rule::HolesNotThrough, message).help(help));
     }
-    if known.is_empty() {
+    if known.is_empty() && unwanted.is_empty() {
         let message = format!("none of {} files is a layer of a board", files.len());
         let help = "give the Gerber and Excellon files of a board; copper files end in .gtl and .gbl, \
                     or -F_Cu.gbr and -B_Cu.gbr, or say what they are (X2)";

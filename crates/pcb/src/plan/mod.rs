@@ -10,7 +10,7 @@ pub use setup::Setup;
 pub use work::Work;
 
 use crate::Board;
-use crate::board::{Artwork, Face};
+use crate::board::{Artwork, Face, Layer};
 use program::{Diagnostic, Rule};
 
 /// The programs that `settings` ask for of a board, in the order in which they are run.
@@ -35,7 +35,8 @@ pub fn parts(artwork: &Artwork, settings: &Settings) -> Result<Vec<Part>, Vec<Di
         (settings.clearing.mask_tool, [Part::FrontMask, Part::BackMask]),
         (settings.clearing.legend_tool, [Part::FrontLegend, Part::BackLegend]),
     ];
-    for (_, parts) in tools.iter().filter(|(tool, _)| tool.is_some()) {
+    let asked = |tool: Option<f64>| tool.is_some() && settings.only.is_empty();
+    for (_, parts) in tools.iter().filter(|(tool, _)| asked(*tool)) {
         if !parts.iter().any(|part| has(*part)) {
             let message =
                 format!("a tool is given, and there is no {} nor of the back", parts[0].what());
@@ -47,6 +48,22 @@ pub fn parts(artwork: &Artwork, settings: &Settings) -> Result<Vec<Part>, Vec<Di
         return Err(vec![empty()]);
     }
     Ok(parts)
+}
+
+/// Whether a program that `settings` ask for cuts a layer, or lies where it does by it. What masks and legends hold is
+/// asked by their own programs alone: they do not say how large the board is.
+pub fn needs(layer: Layer, settings: &Settings) -> bool {
+    let made = |part: Part| match &settings.only[..] {
+        [] => is_usual(part, settings),
+        only => only.contains(&part),
+    };
+    match layer {
+        Layer::Mask(Face::Front) => made(Part::FrontMask),
+        Layer::Mask(Face::Back) => made(Part::BackMask),
+        Layer::Legend(Face::Front) => made(Part::FrontLegend),
+        Layer::Legend(Face::Back) => made(Part::BackLegend),
+        Layer::Copper(_) | Layer::Outline | Layer::Holes(_) | Layer::Other => true,
+    }
 }
 
 /// Whether a program is made where nobody says which, of a board that has what it is about.

@@ -299,7 +299,7 @@ fn how_large_a_board_is_is_known_before_its_copper_is_united() {
         let file = |(name, text)| File { name, layer: None, text };
         let files: Vec<File> =
             texts.iter().map(|(name, text)| file((*name, text.as_slice()))).collect();
-        let (artwork, _) = board::artwork("board", &files).unwrap();
+        let (artwork, _) = board::artwork("board", &files, |_| true).unwrap();
         let known = artwork.board().extents();
         let (sides, _) = artwork.each_side(|_, board| board.extents()).unwrap();
         assert_eq!(sides, [known; 2]);
@@ -331,7 +331,7 @@ fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
     ];
     let files: Vec<File> =
         texts.iter().map(|(name, text)| File { name, layer: None, text }).collect();
-    let (artwork, _) = board::artwork("board", &files).unwrap();
+    let (artwork, _) = board::artwork("board", &files, |_| true).unwrap();
     assert!(artwork.has_copper(Face::Front) && artwork.has_copper(Face::Back));
     let (sides, odd) = artwork.each_side(|face, board| (face, board)).unwrap();
     for ((face, board), expected) in sides.iter().zip([Face::Front, Face::Back]) {

@@ -1,6 +1,6 @@
 //! Programs as they are asked for: what is cut where, worked out by hand for a small board.
 
-use crate::board::{DRILL, EDGE, FRONT, Made, NEAR, edge, front, gerber, small};
+use crate::board::{DRILL, EDGE, FRONT, Made, NEAR, call, edge, front, gerber, small};
 use crate::folder::Folder;
 use control::{Action, Setup};
 use geom::{Vec2, Vec3};
@@ -259,6 +259,28 @@ fn solder_mask_is_opened() {
     let made = self::made(&folder, &["--mask-tool", "0.4"]);
     assert_eq!(made.report_of("front-mask")["proof"]["proven"], true);
     assert_eq!(made.report()["programs"].as_array().unwrap().len(), 5);
+}
+
+/// A layer that no program of the call cuts changes nothing, whatever is wrong with it; one that is cut is read.
+#[test]
+fn a_mask_or_legend_that_no_program_cuts_is_not_read() {
+    let folder = small();
+    let copper = made(&folder, &[]).text("front");
+    let lost = "D77*\nX0Y0D03*\n";
+    let far = "D10*\nX900000Y900000D03*\n";
+    for (function, part) in [("Legend,Top", "front-legend"), ("Soldermask,Top", "front-mask")] {
+        for body in [lost, far] {
+            let folder = small();
+            folder.write("board/more.gbr", gerber(function, body));
+            folder.write("board/same.gbr", gerber(function, body));
+            assert_eq!(made(&folder, &[]).text("front"), copper);
+            let asked =
+                call(&folder, &["--only", part, "--mask-tool", "0.4", "--legend-tool", "0.4"]);
+            assert!(asked.code == 2 && asked.err.contains("error[layer-twice]"), "{asked:?}");
+        }
+    }
+    // A tool for a mask is no question about it, where other programs are asked for.
+    assert_eq!(made(&small(), &["--mask-tool", "0.4", "--only", "front"]).text("front"), copper);
 }
 
 #[test]
