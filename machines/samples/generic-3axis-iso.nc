@@ -1,7 +1,7 @@
 N10 (SAMPLE)
 N20 G21
 N30 G17 G40 G49 G80 G90 G94 G54
-N40 (What every machine with three axes can make: a slot with a round end  a helix into a ring  two)
+N40 (What every machine with three axes can make: a slot with a round end a helix into a ring two)
 N50 (holes. The programs beside it are what the machines of the library run for it.)
 N60 (SLOT)
 N70 G91 G28 Z0

@@ -25,8 +25,25 @@ pub(crate) fn printed(machine: &Machine, text: &str) -> String {
     let format = &machine.format;
     let text = with_signs(text, |c| HARMLESS_SIGNS.contains(c) || c == COMMA);
     let has = |c: char| c.is_ascii_alphanumeric() || format.comment_signs.contains(c);
-    let text: String = text.chars().map(|c| if has(c) { c } else { ' ' }).collect();
-    shortened(text.trim(), format.comment_length, has('.'))
+    shortened(spaced(&text, has).trim(), format.comment_length, has('.'))
+}
+
+/// The same with blanks for what a control does not print, none of them next to another blank.
+fn spaced(text: &str, has: impl Fn(char) -> bool) -> String {
+    let mut spaced = String::with_capacity(text.len());
+    let mut replaced = false;
+    for c in text.chars() {
+        if !has(c) {
+            replaced = true;
+            if !spaced.ends_with(' ') {
+                spaced.push(' ');
+            }
+        } else if !(replaced && c == ' ') {
+            replaced = false;
+            spaced.push(c);
+        }
+    }
+    spaced
 }
 
 /// Text of ASCII, cut at a word where it is longer than `most`, with dots where the control prints them.
@@ -71,7 +88,7 @@ mod tests {
     fn a_control_declares_its_signs_and_its_longest_comment() {
         let control = "extends = \"grbl\"\n[format]\ncomment_signs = \" -\"\ncomment_length = 12";
         let machine = machine::load_text("m.toml", control).unwrap();
-        assert_eq!(printed(&machine, "  pocket-1 (é) and more"), "pocket-1  e");
+        assert_eq!(printed(&machine, "  pocket-1 (é) and more"), "pocket-1 e");
     }
 
     #[test]
@@ -90,6 +107,6 @@ mod tests {
     fn a_comma_stands_where_a_control_reads_it_as_text() {
         let of = |name| printed(&machine::load(name).unwrap(), "MSG, 2 holes");
         assert_eq!(of("generic-3axis-fanuc"), "MSG, 2 holes");
-        assert_eq!(of("generic-3axis-linuxcnc"), "MSG  2 holes");
+        assert_eq!(of("generic-3axis-linuxcnc"), "MSG 2 holes");
     }
 }
