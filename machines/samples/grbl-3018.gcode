@@ -5,11 +5,13 @@ G21 G17 G40 G49 G90 G94 G54
 (What every machine with three axes can...)
 (holes. The programs beside it are what the...)
 (SLOT)
-G53 G0 Z0
 M5
+(fit the tool, and set Z 0 with it)
+(Z goes to machine zero next: that must be its top)
+M0
+G53 G0 Z0
 T1
 (MILL_6)
-(machine zero must be at the top of Z)
 S3000 M3
 G4 P2
 G0 X10 Y10
