@@ -16,11 +16,12 @@ use ::pcb::{Board, Operation};
 use drawing::{BoardPicture, Format};
 use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
-use machine::Machine;
+use machine::{Machine, OptionValue};
 use program::heights::HeightMap;
 use program::{Diagnostic, Op, Record, Rule};
 use proof::Tolerances;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// What is made of a board, and on which machine.
 pub struct Job<'a> {
@@ -253,7 +254,7 @@ fn heights(running: &Running) -> Result<Heights, Stop> {
     let message =
         format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
     let help = "give --travel no less than --approach";
-    Err(Diagnostic::error(Rule::Travel, message).help(help).into())
+    Err(Diagnostic::error(Rule::TravelHeight, message).help(help).into())
 }
 
 /// How far inside the edge of the board the outermost places are, mm: on the edge itself there may be no copper.
@@ -417,8 +418,9 @@ impl Shop<'_> {
             widths: &widths,
             problems: &work.places,
         };
+        let place = Part::ALL.iter().position(|other| *other == part).unwrap_or_default();
         let (posted, picture) = rayon::join(
-            || self.proven(&toolpath, part.name()),
+            || self.proven(&toolpath, part.name(), place),
             || format.map(|format| format.bytes(drawing::board(&name, &picture))).transpose(),
         );
         Ok((posted?, picture?))
@@ -468,18 +470,42 @@ impl Shop<'_> {
             ..program::Tool::default()
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
-        let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE)?;
+        let place = Part::ALL.len();
+        let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE, place)?;
         let (work, picture, probes) = (Work::default(), None, None);
         Ok(Program { name: PROBE, up: None, work, posted, picture, probes })
     }
 
-    /// The text of a program, proven.
-    fn proven(&self, toolpath: &Toolpath, name: &str) -> Result<Posted, Stop> {
+    /// The text of a program, proven, that is so many places behind the first of all programs that a board can have.
+    fn proven(&self, toolpath: &Toolpath, name: &str, place: usize) -> Result<Posted, Stop> {
         let file = format!("{name}.nc");
         let Job { machine, tolerances, .. } = self.job;
-        post::proven(toolpath, machine, &file, tolerances, &Quiet(self.watch))
+        let machine = numbered(machine, place);
+        post::proven(toolpath, &machine, &file, tolerances, &Quiet(self.watch))
     }
 }
+
+/// The machine with the number of the program that is so many places behind the first, whose number `program_number` says
+/// (1 where it says none): programs of one number replace each other in the memory of a control. What says no number is left
+/// to the writer, which refuses it.
+fn numbered(machine: &Machine, place: usize) -> Cow<'_, Machine> {
+    let first = match machine.options.get(PROGRAM_NUMBER) {
+        Some(OptionValue::Number(number)) => Some(*number),
+        Some(OptionValue::Text(text)) => match text.trim() {
+            "" => Some(1.0),
+            said => said.trim_start_matches(['O', 'o']).parse().ok(),
+        },
+        Some(OptionValue::Flag(_)) | None => None,
+    };
+    let Some(first) = first else { return Cow::Borrowed(machine) };
+    let mut machine = machine.clone();
+    let number = OptionValue::Text((first + place as f64).to_string());
+    machine.options.insert(PROGRAM_NUMBER.into(), number);
+    Cow::Owned(machine)
+}
+
+/// The option of machines whose control knows programs by numbers.
+const PROGRAM_NUMBER: &str = "program_number";
 
 /// So many columns and rows of places over a board, [`INSIDE`] its edge; on a small one a quarter of it.
 fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {

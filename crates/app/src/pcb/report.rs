@@ -5,7 +5,7 @@ use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
 use pcb::board::Face;
-use pcb::plan::{Settings, Turn};
+use pcb::plan::{Part, Settings, Turn};
 use program::Diagnostic;
 use serde_json::{Value, json};
 
@@ -36,6 +36,8 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         ),
     ];
     rows.extend(layers.iter().map(|(file, layer)| ("read", format!("{file}: {layer}"))));
+    let missing = missing(made, settings);
+    rows.extend(missing.iter().map(|what| ("missing", (*what).to_owned())));
     rows.push(("machine", format!("{} ({})", machine.title, machine.name)));
     let mut up = Face::Front;
     for made in programs {
@@ -72,6 +74,7 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
             "low_mm": low.to_array(),
             "high_mm": high.to_array(),
             "holes": board.holes.len(),
+            "missing": missing,
         },
         "machine": toolpath::describe(machine),
         "programs": programs.iter().map(Program::describe).collect::<Vec<_>>(),
@@ -82,6 +85,22 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         "warnings": warnings,
     });
     Report { rows, data }
+}
+
+/// What a board lacks that boards have, where nobody has said which programs are made: a file that was not exported, or not
+/// taken for what it is, leaves out a program without an error.
+fn missing(made: &Made, settings: &Settings) -> Vec<&'static str> {
+    let has = |part: Part| made.programs.iter().any(|made| made.name == part.name());
+    let all = [
+        (has(Part::Front) || has(Part::Back), "copper: no file has any, and nothing is isolated"),
+        (has(Part::Drill), "holes: no file has any, and nothing is drilled"),
+        (
+            has(Part::Outline),
+            "the outline: no file has the edge of the board, and nothing cuts it out",
+        ),
+    ];
+    let lacks = all.into_iter().filter(|(has, _)| !has && settings.only.is_empty());
+    lacks.map(|(_, what)| what).collect()
 }
 
 impl Program {

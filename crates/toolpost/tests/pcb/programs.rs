@@ -662,6 +662,52 @@ fn a_tool_has_one_number_in_all_programs() {
     assert_eq!(calls("probe.nc"), ["T4"]);
 }
 
+/// Programs of one number replace each other in the memory of a FANUC or Haas. Each kind has its own place, whichever of
+/// them a call makes.
+#[test]
+fn the_programs_of_a_board_have_a_number_each() {
+    let folder = small();
+    let numbers = |machine: &str, more: &[&str]| -> Vec<String> {
+        let call = ["pcb", "board", "-o", "out", "-m", machine, "--tool", "0.4", "--quiet"];
+        let said = folder.run(&[&call[..], more].concat());
+        assert_eq!(said.code, 0, "{}", said.err);
+        let number = |name: &&str| {
+            let text = folder.read(&format!("out/{name}.nc"));
+            text.lines().nth(1).unwrap().split(' ').next().unwrap().to_owned()
+        };
+        let made = ["front", "drill", "back", "outline", "probe"];
+        let made = made.iter().filter(|name| folder.path().join(format!("out/{name}.nc")).exists());
+        let numbers = made.map(number).collect();
+        std::fs::remove_dir_all(folder.path().join("out")).unwrap();
+        numbers
+    };
+    let all = ["O0001", "O0004", "O0005", "O0008"];
+    assert_eq!(numbers("generic-3axis-fanuc", &[]), all);
+    assert_eq!(numbers("generic-3axis-fanuc", &["--only", "drill,back"]), all[1..3]);
+    let haas = numbers("generic-3axis-haas", &["--option", "program_number=O00101"]);
+    assert_eq!(haas, ["O00101", "O00104", "O00105", "O00108"]);
+    // 7999 is the last that everybody may use.
+    let call = ["pcb", "board", "-o", "out", "-m", "generic-3axis-haas", "--tool", "0.4"];
+    let said = folder.run(&[&call[..], &["--option", "program_number=7998"]].concat());
+    assert!(said.code == 2 && said.err.contains("8001"), "{said:?}");
+}
+
+#[test]
+fn what_a_board_lacks_is_in_the_summary() {
+    let folder = small();
+    std::fs::remove_file(folder.path().join("board/edge.gbr")).unwrap();
+    std::fs::remove_file(folder.path().join("board/holes.drl")).unwrap();
+    let said = call(&folder, &[]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    for line in ["missing  holes: no file has any", "missing  the outline: no file has the edge"] {
+        assert!(said.out.contains(line), "{}", said.out);
+    }
+    let report: Value = serde_json::from_str(&folder.read("out/report.json")).unwrap();
+    assert_eq!(report["board"]["missing"].as_array().unwrap().len(), 2);
+    assert!(!call(&folder, &["--only", "front"]).out.contains("missing"));
+    assert!(!call(&small(), &[]).out.contains("missing"));
+}
+
 #[test]
 fn programs_of_an_earlier_call_are_told() {
     let folder = small();
