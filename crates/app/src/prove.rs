@@ -59,7 +59,10 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
     let rotary =
         rotary.filter(|(letter, _)| machine.rotary.iter().any(|r| letter.starts_with(r.letter)));
     let axes = linear.map(|axis| (axis, "mm")).chain(rotary.map(|axis| (axis, "degrees")));
-    for ((letter, extent), unit) in axes {
+    let leans = |extent: &proof::Extent| extent.min != extent.max || extent.min != Some(0.0);
+    let uv = program.uv_extents_mm;
+    let uv = ["U", "V"].into_iter().zip(uv).filter(|_| uv.iter().any(leans));
+    for ((letter, extent), unit) in axes.chain(uv.map(|axis| (axis, "mm"))) {
         if let (Some(min), Some(max)) = (extent.min, extent.max) {
             rows.push((letter, summary::extent(min, max, unit)));
         }

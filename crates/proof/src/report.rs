@@ -2,7 +2,7 @@
 
 use crate::tolerance::Applied;
 use control::{Orientation, Position};
-use geom::{Arc, Vec3};
+use geom::{Arc, Vec2, Vec3};
 use machine::Unsaid;
 use machine::limits::Travel;
 use program::{Diagnostic, Severity};
@@ -173,6 +173,8 @@ pub struct Summary {
     pub rapid_length_mm: f64,
     /// Programmed positions of X, Y and Z, mm.
     pub linear_extents_mm: [Extent; 3],
+    /// U and V of a wire in the upper plane of its machine, mm; none of what has no wire.
+    pub uv_extents_mm: [Extent; 2],
     /// Positions of A, B and C, degrees: programmed, or to which the control turns them in tilted planes and along vectors; all
     /// that are possible where several are.
     pub rotary_extents_degrees: [Extent; 3],
@@ -210,6 +212,13 @@ impl Summary {
         }
         if let Orientation::Rotary { degrees, .. } = pose.orientation {
             self.include_rotary(degrees);
+        }
+    }
+
+    /// Takes the lean of a wire, U and V in mm, into the extents.
+    pub(crate) fn include_lean(&mut self, uv: Vec2) {
+        for (extent, value) in self.uv_extents_mm.iter_mut().zip(uv.to_array()) {
+            extent.include(value);
         }
     }
 

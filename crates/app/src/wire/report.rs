@@ -172,8 +172,14 @@ impl Cut {
         rows.push(("length", length(self.length())));
         if let Some(points) = self.points() {
             let step = self.segments.iter().find_map(|segment| Some(segment.points.as_ref()?.step));
-            rows.push(("points", format!("{points}, {}", step.map_or(String::new(), shown))));
             let chords = self.chords();
+            // What has no arcs has no chords either: its points are where the source has them.
+            let step = if chords.count > 0 {
+                step.map_or(String::new(), shown)
+            } else {
+                "the ends of straight moves".into()
+            };
+            rows.push(("points", format!("{points}, {step}")));
             if chords.count > 0 {
                 let (largest, mean) = (small(chords.largest), small(chords.mean));
                 let of_radius = small(chords.mean_relative);
@@ -181,7 +187,7 @@ impl Cut {
                     format!("{largest} mm at most, mean {mean} mm, {of_radius} of the radius");
                 rows.push(("chord error", text));
             }
-            if let Some(area) = self.area_error(End::Lower) {
+            if let Some(area) = self.area_error(End::Lower).filter(|_| chords.count > 0) {
                 let upper = self.area_error(End::Upper);
                 let upper = upper.map(|area| format!(" below, {} mm² above", number(area, 6)));
                 let text = format!("{} mm²{}", number(area, 6), upper.unwrap_or_default());

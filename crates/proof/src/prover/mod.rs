@@ -438,7 +438,7 @@ impl<'a> Prover<'a> {
                     Err(self.lost_at(line, Rule::SingleBlock, &message))
                 }
                 Kind::Broken(why) => {
-                    let message = format!("has no motion to hold against: {why}");
+                    let message = format!("has no motion to compare with: {why}");
                     Err(self.lost_at(line, Rule::Source, &message).help(COMPARABLE).into())
                 }
             },
@@ -632,6 +632,13 @@ impl<'a> Prover<'a> {
     ) {
         let summary = &mut self.report.program;
         summary.include(&to.position);
+        let lean = self
+            .gauge
+            .machine
+            .wire
+            .zip(to.position.axis())
+            .and_then(|(wire, axis)| wire.lean(axis));
+        lean.into_iter().for_each(|uv| summary.include_lean(uv));
         let length = block.map_or(self.here.place.tip.distance(to.place.tip), Arc::length);
         if length.is_finite() {
             match gait {
