@@ -1,4 +1,4 @@
-//! Keys on which a machine's programs hang, and which its file does not say: files that are older than a key lack it.
+//! Keys that a machine's programs depend on, and that its file does not state: files that are older than a key lack it.
 
 use crate::model::{Machine, Mount, OptionValue, OrientationMode};
 
@@ -7,10 +7,74 @@ use crate::model::{Machine, Mount, OptionValue, OrientationMode};
 pub struct Missing {
     /// The table that it stands in; empty for the top of the file.
     pub table: String,
-    /// The line to add, with the value of a control as it is delivered.
+    /// The line to add, with the value of a control as it is delivered, or an example where each machine has its own.
     pub line: String,
-    /// Where on the control the value is read, and what hangs on it.
+    /// Where on the control the value is read, and what depends on it.
     pub place: &'static str,
+}
+
+/// Keys of which no control is delivered with a value that may stay.
+const OWN: [&str; 6] =
+    ["safe_height", "work_zero", "point", "tip_kinematics", "axis_kinematics", "swivel_direction"];
+
+impl Missing {
+    /// The line below a comment that says where its value comes from.
+    fn explained(&self) -> String {
+        let key = self.line.split(' ').next().unwrap_or_default();
+        let origin = match OWN.contains(&key) {
+            true => "an example: write the value of your machine",
+            false => "as delivered: read it on yours",
+        };
+        format!("# {}\n# ({origin})\n{}\n", self.place, self.line)
+    }
+}
+
+/// The text of a machine file with the keys that it lacks, each in its table.
+pub fn upgraded(text: &str, missing: &[Missing]) -> String {
+    let mut lines: Vec<String> = text.lines().map(|line| format!("{line}\n")).collect();
+    for key in missing {
+        let place = match key.table.split_once("]] letter = ") {
+            None => table(&lines, &key.table),
+            Some((_, letter)) => rotary(&lines, letter),
+        };
+        match place {
+            Some(at) => lines.insert(at, key.explained()),
+            None if key.table.starts_with("[[") => {
+                // The axis stands in a file that this one extends.
+                let commented = key.explained().replace(&key.line, &format!("# {}", key.line));
+                lines.push(format!("\n# In the file that has {}:\n{commented}", key.table));
+            }
+            None => lines.push(format!("\n{}\n{}", key.table, key.explained())),
+        }
+    }
+    lines.concat()
+}
+
+/// Where a new key of a table stands: at the top of the file behind the last key there, in a table before its first.
+fn table(lines: &[String], table: &str) -> Option<usize> {
+    let begins_with = |line: &String, signs: &[char]| line.trim_start().starts_with(signs);
+    match table {
+        "" => {
+            let first = lines.iter().position(|line| begins_with(line, &['[']));
+            let top = lines.iter().take(first.unwrap_or(lines.len()));
+            let says = |line: &String| !line.trim().is_empty() && !begins_with(line, &['#']);
+            let behind = top.enumerate().filter(|(_, line)| says(line)).last();
+            Some(behind.map_or(first.unwrap_or(lines.len()), |(last, _)| last + 1))
+        }
+        table => {
+            let is = |line: &String| line.split('#').next().unwrap_or_default().trim() == table;
+            lines.iter().position(is).map(|at| at + 1)
+        }
+    }
+}
+
+/// Where a key of the rotary axis of this letter (in quotes) stands: behind its letter.
+fn rotary(lines: &[String], letter: &str) -> Option<usize> {
+    let says = |line: &String| {
+        let pair = line.split('#').next().and_then(|line| line.split_once('='));
+        pair.is_some_and(|(key, value)| key.trim() == "letter" && value.trim() == letter)
+    };
+    lines.iter().position(says).map(|at| at + 1)
 }
 
 /// All keys that the file of `machine` lacks, in the order of their tables.
@@ -37,7 +101,7 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         lacks(
             String::new(),
             "work_zero = [0, 0, 0]",
-            "G54 in machine coordinates (mm): every position on a turned table hangs on how far the work is from its axes",
+            "G54 in machine coordinates (mm): every position on a turned table depends on how far the work is from its axes",
         );
     }
     if machine.reader == "linuxcnc" && follows_tip && machine.settings.kinematics.is_none() {
@@ -66,7 +130,7 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         lacks(
             "[settings]".into(),
             "length_along_z = false",
-            "SD42940: true where it is 17; arcs of other planes than XY hang on it",
+            "SD42940: true where it is 17; arcs of other planes than XY depend on it",
         );
     }
     if machine.reader == "fanuc" {
@@ -118,14 +182,14 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         lacks(
             "[settings]".into(),
             "tilt_within_travel = true",
-            "parameters 19741 to 19744: true where they hold the travel of the rotary axes; which solution G53.1 takes hangs on it",
+            "parameters 19741 to 19744: true where they hold the travel of the rotary axes; which solution G53.1 takes depends on it",
         );
     }
     if tilts && machine.reader == "fanuc" && machine.settings.tilt_second_axis_first.is_none() {
         lacks(
             "[settings]".into(),
             "tilt_second_axis_first = false",
-            "parameter 19608#5: true where it is 1; which solution G53.1 takes hangs on it",
+            "parameter 19608#5: true where it is 1; which solution G53.1 takes depends on it",
         );
     }
     if let Some(axis) = machine.rotary.first()
@@ -143,7 +207,7 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         lacks(
             "[settings]".into(),
             "rotary_feed = \"all-axes\"",
-            "FANUC parameter 1408#0 is 0, HEIDENHAIN, SINUMERIK after FGROUP with the rotary axes: \"all-axes\"; LinuxCNC: \"linear-axes\"; F of a cut in which rotary axes turn hangs on it",
+            "FANUC parameter 1408#0 is 0, HEIDENHAIN, SINUMERIK after FGROUP with the rotary axes: \"all-axes\"; LinuxCNC: \"linear-axes\"; F of a cut in which rotary axes turn depends on it",
         );
     }
     let rolls_over = machine.rotary.iter().any(|axis| axis.modulo != Some(false));

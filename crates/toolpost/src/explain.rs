@@ -42,8 +42,8 @@ impl Row {
     }
 }
 
-/// Explains one name, or all of them. The last part of a key is enough: `min` is that of every table. A rule is also
-/// found by a former name.
+/// Explains one name, or all of them. The last part of a key is enough: `min` is that of every table. A table is
+/// explained with its keys. A rule is also found by a former name.
 pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     let names = post::catalogue().iter();
     let names = names.map(|p| Row::new(p.name.to_owned(), p.unit, p.help, json!(p)));
@@ -97,8 +97,9 @@ fn written(block: &str) -> Result<Vec<(&'static str, String)>, Stop> {
     Ok(all)
 }
 
-/// Whether `topic` is `name` or its last part.
+/// Whether `topic` is `name`, its last part, or the table that it stands in.
 fn matches(name: &str, topic: &str) -> bool {
     let last = name.rsplit('.').next().unwrap_or(name);
-    [name, last].iter().any(|name| name.eq_ignore_ascii_case(topic))
+    let table = name.split('.').next().unwrap_or(name);
+    [name, last, table].iter().any(|name| name.eq_ignore_ascii_case(topic))
 }

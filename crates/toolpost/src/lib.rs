@@ -25,6 +25,7 @@ mod wire;
 use answer::Answer;
 use app::files;
 use args::{Command, CommandLine};
+use clap::error::ContextValue;
 use clap::{CommandFactory, Parser};
 use serde_json::json;
 use std::ffi::OsString;
@@ -47,6 +48,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let CommandLine { command, quiet, json } = match CommandLine::try_parse_from(words) {
         Ok(line) => line,
         Err(usage) => {
+            let usage = shortened(usage);
             // Nobody is left to be told where this cannot be printed.
             let _ = usage.print();
             return u8::try_from(usage.exit_code()).unwrap_or(u8::MAX);
@@ -66,6 +68,27 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Completions { shell } => Ok(completions(shell)),
     };
     answer.unwrap_or_else(Answer::from).say(quiet, json)
+}
+
+/// The most characters of an argument that is wrong that are printed.
+const MOST_SHOWN: usize = 80;
+
+/// The same without the rest of an argument that fills the terminal.
+fn shortened(mut usage: clap::Error) -> clap::Error {
+    let long: Vec<_> = usage
+        .context()
+        .filter_map(|(kind, value)| match value {
+            ContextValue::String(text) if text.chars().count() > MOST_SHOWN => {
+                Some((kind, text.clone()))
+            }
+            _ => None,
+        })
+        .collect();
+    for (kind, text) in long {
+        let start: String = text.chars().take(MOST_SHOWN).collect();
+        usage.insert(kind, ContextValue::String(format!("{start}...")));
+    }
+    usage
 }
 
 fn completions(shell: clap_complete::Shell) -> Answer {

@@ -117,7 +117,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     }
     let path = Path::new(name).with_extension("toml");
     if path.symlink_metadata().is_ok() {
-        return Err(Diagnostic::error(Rule::Output, "there is such a file already")
+        return Err(Diagnostic::error(Rule::OutputFile, "there is such a file already")
             .file(path.display().to_string())
             .help("give another name, or edit the file that is there")
             .into());
@@ -254,7 +254,7 @@ fn sample(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
 
 /// Loads a file and compiles its templates.
 fn check(file: &str) -> Result<Answer, Stop> {
-    let machine = toolpath::machine_or_arm(file)?;
+    let machine = toolpath::machine_or_arm(file).map_err(|first| all_mistakes(file, first))?;
     if let Some(arm) = machine.arm.as_ref().filter(|_| !machine.has_control()) {
         return Ok(arms::check(&machine, arm));
     }
@@ -267,6 +267,19 @@ fn check(file: &str) -> Result<Answer, Stop> {
     ];
     let data = json!({ "machine": describe(&machine), "not_checked": unchecked });
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+}
+
+/// All mistakes of a file of which the first is known; of a name of the library that one.
+fn all_mistakes(file: &str, first: Stop) -> Stop {
+    if !machine::is_path(file) {
+        return first;
+    }
+    let (mut found, rest) = machine::Reach::Anywhere.mistakes(Path::new(file));
+    // A block may be missing since it was taken out.
+    let stands_there = |found: &Diagnostic| found.line > 0 && found.rule != Rule::MissingBlock;
+    let templates = rest.filter(Machine::has_control).and_then(|rest| post::check(&rest).err());
+    found.extend(templates.unwrap_or_default().into_iter().filter(stands_there));
+    if found.is_empty() { first } else { Stop { findings: found, ..first } }
 }
 
 /// What a file without mistakes leaves open.
@@ -283,24 +296,19 @@ fn unchecked(machine: &Machine) -> Vec<&'static str> {
     open
 }
 
-/// Says which keys a file lacks that is older than they are.
+/// Prints a file with the keys that it lacks, where it is older than they are.
 fn upgrade(file: &str) -> Result<Answer, Stop> {
     let machine = toolpath::machine(file)?;
     let missing = machine::upgrade::missing(&machine);
-    let mut text = String::new();
-    if missing.is_empty() {
-        text.push_str("nothing is missing\n");
+    let text = if missing.is_empty() {
+        String::from("nothing is missing\n")
+    } else if machine::is_path(file) {
+        let bytes = files::read(Path::new(file))?;
+        let old = encoding::utf_8(&bytes).map_err(|found| found.file(file))?;
+        machine::upgrade::upgraded(old, &missing)
     } else {
-        text.push_str("# As controls are delivered: read each value on yours.\n");
-    }
-    let mut table = "";
-    for key in &missing {
-        if key.table != table {
-            table = &key.table;
-            text.push_str(&format!("\n{}\n", key.table.replacen("]] ", "]]  # the one with ", 1)));
-        }
-        text.push_str(&format!("# {}\n{}\n", key.place, key.line));
-    }
+        machine::upgrade::upgraded(library_text(file)?, &missing)
+    };
     let keys = missing
         .iter()
         .map(|key| json!({ "table": key.table, "line": key.line, "place": key.place }));
@@ -312,7 +320,7 @@ fn library_text(name: &str) -> Result<&'static str, Stop> {
     let found = library::find(name, library::EVERYTHING).map(|(_, text)| text);
     found.ok_or_else(|| {
         let names: Vec<_> = library::names(library::EVERYTHING).collect();
-        Diagnostic::error(Rule::UnknownMachine, format!("`{name}` is not in the library"))
+        Diagnostic::error(Rule::MachineUnknown, format!("`{name}` is not in the library"))
             .help(format!("there are {}", names.join(", ")))
             .into()
     })

@@ -14,6 +14,7 @@ use toml::Spanned;
 const LARGEST_FILE: u64 = 4 << 20;
 
 /// A file with its text.
+#[derive(Clone)]
 pub(super) struct SheetFile {
     pub(super) path: PathBuf,
     pub(super) text: String,

@@ -7,6 +7,7 @@
 mod arm;
 mod checked;
 mod file;
+mod mistakes;
 
 use crate::library;
 use crate::model::{LoadedFrom, Machine};

@@ -408,7 +408,7 @@ pub struct Cutting {
     /// Let inner corners that the wire is too thick for become as round as the wire.
     #[arg(long, requires = "side")]
     pub round_corners: bool,
-    /// Feed, for the cutting time and the program: one for all passes, or one for each.
+    /// Feed in mm/s, for the cutting time and the program: one for all passes, or one for each.
     #[arg(long, value_name = "MM/S,...", value_parser = length, value_delimiter = ',')]
     pub feed: Vec<f64>,
 }

@@ -302,16 +302,16 @@ pub struct Placing {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Feeds and heights")]
 pub struct Running {
-    /// Feed along copper.
+    /// Feed along copper, mm/min.
     #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "200")]
     pub feed: f64,
-    /// Feed straight down into copper.
+    /// Feed straight down into copper, mm/min.
     #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "60")]
     pub plunge: f64,
-    /// Feed of drills.
+    /// Feed of drills, mm/min.
     #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "100")]
     pub drill_feed: f64,
-    /// Feed of the end mill that cuts the board out.
+    /// Feed of the end mill that cuts the board out, mm/min.
     #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "150")]
     pub outline_feed: f64,
     /// Speed of the spindle, 1/min [default: 10000, or what the machine has].

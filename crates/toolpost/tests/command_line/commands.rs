@@ -328,6 +328,17 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     let linuxcnc = format!(
         "extends = \"linuxcnc\"\n[orientation]\nsimultaneous = \"tool-center-angles\"\n{rotary}"
     );
+    // What is printed is the whole file, which takes the place of the old one.
+    assert!(said.out.contains("an example: write the value of your machine)\nsafe_height = 0\n"));
+    assert!(said.out.contains("as delivered: read it on yours)\nlength_along_z = false\n"));
+    folder.write("upgraded.toml", &said.out);
+    let again = folder.run(&["machines", "check", "--upgrade", "upgraded.toml"]);
+    assert_eq!((again.code, again.out.as_str()), (0, "nothing is missing\n"), "{}", said.out);
+    folder.write("settings.toml", format!("{old}[settings] # ours\ntool_radius = \"wear\"\n"));
+    let said = folder.run(&["machines", "check", "--upgrade", "settings.toml"]);
+    assert_eq!(said.out.matches("[settings]").count(), 1, "{}", said.out);
+    folder.write("upgraded.toml", &said.out);
+    assert_eq!(folder.run(&["machines", "check", "upgraded.toml"]).code, 0, "{}", said.out);
     folder.write("linuxcnc.toml", &linuxcnc);
     let said = folder.run(&["machines", "check", "--upgrade", "linuxcnc.toml"]);
     assert!(said.out.contains("\ntip_kinematics = 428\n"), "{}", said.out);
@@ -339,6 +350,45 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     folder.write("new.toml", &new);
     let said = folder.run(&["machines", "check", "--upgrade", "new.toml"]);
     assert_eq!((said.code, said.out.as_str()), (0, "nothing is missing\n"));
+}
+
+/// Each run named the first only.
+#[test]
+fn every_mistake_of_a_machine_file_is_named_in_one_run() {
+    let folder = Folder::new();
+    let text = "extends = \"fanuc-31i\"\nfeed_maxx = 3\n[axes]\nX = { min = 10, max = -10 }\nY = { rapid = 0 }\n\
+                [spindle]\nmax = \"fast\"\n[blocks]\ndwell = \"\"\"\n{{N}} G4 {{DWEL}}\n\"\"\"\ncoolant_flood = \"{{N}} M8\"\n";
+    folder.write("mine.toml", text);
+    let said = folder.run(&["machines", "check", "mine.toml"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    for place in ["2:1", "4:5", "5:15", "7:7", "10:12"] {
+        assert!(said.err.contains(&format!("mine.toml:{place}: error[")), "{place}: {}", said.err);
+    }
+    assert_eq!(said.err.matches("error[").count(), 5, "{}", said.err);
+}
+
+#[test]
+fn a_table_is_explained_with_its_keys() {
+    let folder = Folder::new();
+    let said = folder.run(&["explain", "axes"]);
+    for key in ["axes.X.min", "axes.X.rapid", "axes.X.acceleration"] {
+        assert!(said.out.contains(key), "{key}: {}", said.out);
+    }
+}
+
+#[test]
+fn of_an_argument_that_fills_the_terminal_the_start_is_printed() {
+    let folder = Folder::new();
+    let long = "x".repeat(300);
+    for words in [
+        vec!["wire", "part.cls", "-m", "bp-95d", "-o", "x.pts", "--step", &long[..]],
+        vec!["wire", "part.cls", &long[..], "-m", "bp-95d", "-o", "x.pts"],
+        vec![&long[..]],
+    ] {
+        let said = folder.run(&words);
+        let shown = said.err.contains(&format!("{}...", &long[..80]));
+        assert!(said.code == 2 && shown && !said.err.contains(&long[..81]), "{said:?}");
+    }
 }
 
 #[test]
