@@ -97,21 +97,21 @@ impl Target {
             Err(about(path, rule, format!("cannot be saved: {why}")).help(way_out).into())
         };
         if path.file_name().is_none() {
-            return refused(Rule::Output, "it names no file", "give a file name");
+            return refused(Rule::OutputFile, "it names no file", "give a file name");
         }
         let existing = fs::metadata(path);
         let linked = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink());
         let resolved = match &existing {
             Ok(metadata) if !metadata.is_file() => {
-                return refused(Rule::Output, "it is not a file", "give the name of a file");
+                return refused(Rule::OutputFile, "it is not a file", "give the name of a file");
             }
             Ok(metadata) if metadata.permissions().readonly() => {
                 let way_out = "allow writing to it, or give another name";
-                return refused(Rule::Output, "it is there already, and read-only", way_out);
+                return refused(Rule::OutputFile, "it is there already, and read-only", way_out);
             }
             Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
             Err(_) if linked => {
-                return refused(Rule::Output, "it is a link to nothing", "remove the link");
+                return refused(Rule::OutputFile, "it is a link to nothing", "remove the link");
             }
             Err(_) => path.to_owned(),
         };
@@ -137,14 +137,14 @@ impl Target {
         match inputs.iter().find(|input| same_file(&self.path, input.as_ref())) {
             Some(input) => {
                 let message = format!("cannot be saved: it is the input {}", name(input.as_ref()));
-                Err(about(&self.given, Rule::Output, message).help("give another name").into())
+                Err(about(&self.given, Rule::OutputFile, message).help("give another name").into())
             }
             None => Ok(()),
         }
     }
 
     fn full(&self, error: &io::Error) -> Diagnostic {
-        about(&self.given, Rule::Output, format!("cannot be saved: {error}"))
+        about(&self.given, Rule::OutputFile, format!("cannot be saved: {error}"))
             .help("nothing was changed; make room or give another folder")
     }
 

@@ -50,7 +50,7 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
         let number = u32::try_from(line).unwrap_or(u32::MAX);
         let shown =
             text.split(|byte| *byte == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-        let found = Diagnostic::error(Rule::Program, message).on(number, shown);
+        let found = Diagnostic::error(Rule::GlassProgram, message).on(number, shown);
         vec![found.help("write the program anew; docs/sources/glass.md says what a program is")]
     })?;
     if run.pulses.len() as u64 > machine.program.points {

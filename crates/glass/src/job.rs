@@ -341,11 +341,11 @@ fn check(placing: &Placing, lens: &Lens) -> Result<(), Vec<Diagnostic>> {
             "the block is {} mm high; f = {} mm is for {} mm at most",
             block[2], lens.focal, lens.block
         );
-        return Err(error(Rule::Block, message, "take a lens of a longer focal length"));
+        return Err(error(Rule::GlassBlock, message, "take a lens of a longer focal length"));
     }
     if block.iter().any(|side| *side <= 2.0 * margin) {
         let message = format!("a margin of {margin} mm leaves nothing of a block of {block:?} mm");
-        return Err(error(Rule::Block, message, "take a smaller --margin"));
+        return Err(error(Rule::GlassBlock, message, "take a smaller --margin"));
     }
     Ok(())
 }

@@ -235,7 +235,7 @@ fn a_program_that_is_edited_is_proven_against_the_body_again() {
 fn programs_that_a_controller_would_not_take_are_refused() {
     let cloud = [[10_000, 10_000, 15_000]];
     let refused = |text: &str, format| {
-        assert_eq!(judged(text.as_bytes(), &cloud, format), ["program"], "{text}")
+        assert_eq!(judged(text.as_bytes(), &cloud, format), ["glass-program"], "{text}")
     };
     let good = "N1 BEGIN BLOCK X20.000 Y20.000 Z30.000 POINTS 1\nN2 PULSE X10.000 Y10.000 Z-9.868\nN3 END\n";
     assert!(judged(good.as_bytes(), &cloud, "numbered").is_empty());
@@ -282,7 +282,7 @@ fn programs_that_a_controller_would_not_take_are_refused() {
     for text in ["1 2\n", "1 2 3 4\n", "1 2 x\n", "1 2 3", "1 2 \u{b2}\n"] {
         refused(text, "points");
     }
-    assert_eq!(judged(&[b'1', 0xff, b'\n'], &cloud, "points"), ["program"]);
+    assert_eq!(judged(&[b'1', 0xff, b'\n'], &cloud, "points"), ["glass-program"]);
 }
 
 #[test]
@@ -302,8 +302,8 @@ fn bodies_that_cannot_be_engraved_are_refused_with_a_way_out() {
         settings
     };
     assert_eq!(refusals(body(), &with(&|s| s.placing.shift = [8.0, 0.0, 0.0])), ["does-not-fit"]);
-    assert_eq!(refusals(body(), &with(&|s| s.placing.margin = 10.0)), ["block"]);
-    assert_eq!(refusals(body(), &with(&|s| s.placing.block[2] = 101.0)), ["block"]);
+    assert_eq!(refusals(body(), &with(&|s| s.placing.margin = 10.0)), ["glass-block"]);
+    assert_eq!(refusals(body(), &with(&|s| s.placing.block[2] = 101.0)), ["glass-block"]);
     assert_eq!(refusals(body(), &with(&|s| s.focal = 50.0)), ["lens"]);
     assert_eq!(refusals(body(), &with(&|s| s.spacing = Some(0.1))), ["spacing"]);
     assert_eq!(refusals(body(), &with(&|s| s.spacing = Some(0.0))), ["spacing"]);

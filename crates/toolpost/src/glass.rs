@@ -49,7 +49,7 @@ fn library(name: &str) -> Result<&'static str, Stop> {
     ::glass::machine::library(name).ok_or_else(|| {
         let names = LIBRARY.map(|(name, _)| name).join(", ");
         let found =
-            Diagnostic::error(Rule::Machine, format!("there is no glass engraver `{name}`"));
+            Diagnostic::error(Rule::MachineUnknown, format!("there is no glass engraver `{name}`"));
         found.help(format!("there are: {names}; or give a file ending in .toml")).into()
     })
 }

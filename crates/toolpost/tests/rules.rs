@@ -6,9 +6,11 @@
 use control::{Action, Dialect, Settings};
 use program::{Diagnostic, Rule};
 use source::apt;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -75,15 +77,107 @@ fn some_source_makes_a_finding_of_each_rule() {
     }
     sources(&root().join("python/src"), &mut all);
     let made = |rule: &Rule| {
-        let names = std::iter::once(rule.name()).chain(rule.former_names().iter().copied());
-        all.split(&format!("Rule::{rule:?}"))
-            .skip(1)
-            .any(|rest| !rest.starts_with(char::is_alphanumeric))
-            || names.map(|name| format!("\"{name}\"")).any(|name| all.contains(&name))
+        let name = format!("Rule::{rule:?}");
+        all.split(&name).skip(1).any(|rest| !rest.starts_with(char::is_alphanumeric))
     };
     let unused: Vec<_> =
         Rule::ALL.iter().filter(|rule| !made(rule)).map(|rule| rule.name()).collect();
     assert!(unused.is_empty(), "no source makes a finding of {}", unused.join(", "));
+}
+
+/// The options of all commands, with their dashes.
+fn options() -> BTreeSet<String> {
+    let run = |words: &[&str]| {
+        let run = Command::new(env!("CARGO_BIN_EXE_toolpost")).args(words).output().unwrap();
+        String::from_utf8(run.stdout).unwrap()
+    };
+    let names = |help: &str| {
+        let commands = help.split("Commands:").nth(1).unwrap_or_default();
+        let lines = commands.lines().skip(1).take_while(|line| !line.trim().is_empty());
+        let names = lines.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+        names.map(|line| line.trim().split(' ').next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let mut all = BTreeSet::new();
+    for command in names(&run(&["-h"])) {
+        let help = run(&[&command, "-h"]);
+        let more = names(&help).into_iter().map(|below| run(&[&command, &below, "-h"]));
+        for text in [help].into_iter().chain(more) {
+            all.extend(named_options(&text).map(str::to_owned));
+        }
+    }
+    all
+}
+
+/// The options that a text names.
+fn named_options(text: &str) -> impl Iterator<Item = &str> {
+    let ends = |c: char| !(c.is_ascii_lowercase() || c == '-');
+    let starts = text
+        .match_indices("--")
+        .filter(|(at, _)| !text[..*at].ends_with(|c: char| c.is_ascii_alphanumeric() || c == '-'));
+    let named = starts.map(move |(at, _)| {
+        let rest = &text[at..];
+        &rest[..rest.find(ends).unwrap_or(rest.len())]
+    });
+    named.filter(|name| name[2..].starts_with(|c: char| c.is_ascii_lowercase()))
+}
+
+/// Whoever follows a way out types what it names.
+#[test]
+fn every_option_that_is_named_in_a_text_exists() {
+    let known = options();
+    for option in ["--units", "--folder", "--round-corners", "--thread", "--drill-tolerance"] {
+        assert!(known.contains(option), "{option}: {known:?}");
+    }
+    let mut wrong = Vec::new();
+    for rule in Rule::ALL {
+        for text in [rule.meaning(), rule.way_out(), rule.example()] {
+            let unknown = named_options(text).filter(|name| !known.contains(*name));
+            wrong.extend(unknown.map(|name| format!("{rule}: {name}")));
+        }
+    }
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        let mut all = String::new();
+        let folder = entry.unwrap().path();
+        sources(&folder.join("src"), &mut all);
+        // What tests within the sources name is theirs, and comments and code have dashes of their own.
+        let texts = all.lines().filter(|line| !line.trim_start().starts_with("//"));
+        let texts = texts.filter(|line| line.contains('"'));
+        for line in texts {
+            let unknown = named_options(line).filter(|name| !known.contains(*name));
+            wrong.extend(
+                unknown.map(|name| format!("{}: {name} in {}", folder.display(), line.trim())),
+            );
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The ways out of which a newcomer knew no option: these name it, as it is typed.
+#[test]
+fn ways_out_name_the_option_that_helps() {
+    for (rule, option) in [
+        ("units", "--units"),
+        ("called-program", "--folder"),
+        ("inner-corner", "--round-corners"),
+        ("no-thread", "--thread"),
+        ("no-drill", "--drill-tolerance"),
+        ("drill-differs", "--drills"),
+        ("compensation-open", "--tools"),
+        ("fit-without-memory", "--memory"),
+        ("sync-point", "--pair"),
+        ("dxf-layer", "--layer"),
+        ("gap", "--close"),
+        ("wire-height", "--height"),
+        ("block-skip", "--block-delete"),
+        ("unknown-start", "--start"),
+        ("decimal-point", "--whole-numbers"),
+        ("no-cutter", "--hole-mill"),
+        ("no-tool", "--vee"),
+        ("narrow-gap", "--narrow"),
+    ] {
+        let rule = Rule::named(rule).unwrap();
+        assert!(named_options(rule.way_out()).any(|named| named == option), "{rule}: {option}");
+    }
 }
 
 /// The quoted parts of an example.

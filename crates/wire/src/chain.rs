@@ -57,7 +57,7 @@ fn refused(error: &ChainError, pieces: &[Vec<Element>], gap: f64) -> Box<Diagnos
                 line(other)
             );
             Diagnostic::error(Rule::Branch, message)
-                .help("a contour has no branches: choose layers, or take out what is too much")
+                .help("a contour has no branches: choose layers by --layer, or take out what is too much")
                 .line(line(other))
                 .into()
         }
@@ -65,7 +65,7 @@ fn refused(error: &ChainError, pieces: &[Vec<Element>], gap: f64) -> Box<Diagnos
             let message =
                 format!("very many ends lie within {gap} mm of X{:.4} Y{:.4}", place.x, place.y);
             Diagnostic::error(Rule::TooTangled, message)
-                .help("allow smaller gaps, or choose layers")
+                .help("allow smaller gaps by --close, or choose layers by --layer")
                 .line(line(piece))
                 .into()
         }

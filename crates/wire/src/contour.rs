@@ -52,7 +52,7 @@ impl Contour {
                     last.x, last.y, next.start.x, next.start.y
                 );
                 return Err(Diagnostic::error(Rule::Gap, message)
-                    .help(format!("close it, or allow more than {gap} mm"))
+                    .help(format!("close it; of a drawing, --close allows more than {gap} mm"))
                     .line(next.line)
                     .into());
             }

@@ -218,7 +218,9 @@ fn openings(
     }
     if how.thread.len() > paths.len() {
         let message = format!("{} thread points for {} contours", how.thread.len(), paths.len());
-        return Err(Diagnostic::error(Rule::Thread, message).help("one for each contour").into());
+        return Err(Diagnostic::error(Rule::NoThread, message)
+            .help("one `--thread` for each contour")
+            .into());
     }
     let side_of = |contour: &Contour| match side {
         Side::Inside => plan::Side::Inside,

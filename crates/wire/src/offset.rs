@@ -103,7 +103,7 @@ pub fn offset(
                 rounded.len()
             );
             Err(Diagnostic::error(Rule::InnerCorner, message)
-                .help("round the corner by the wire's offset or more, or have it rounded")
+                .help("round the corner by the wire's offset or more, or have it rounded by --round-corners")
                 .line(corner.line)
                 .into())
         }

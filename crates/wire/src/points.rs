@@ -74,7 +74,8 @@ pub fn points(paths: &[&Path], step: Step, memory: Option<usize>) -> Result<Vec<
         Step::Fit if memory.is_some() => (Step::ChordError, 0.0, "chord error"),
         Step::Fit => {
             let message = "a step that fits the memory, and the memory is not known".into();
-            let way_out = "give the number of points that the control takes, or a step".into();
+            let way_out =
+                "give the number of points that the control holds by --memory, or a --step".into();
             return Err(refuse(Rule::FitWithoutMemory, message, way_out));
         }
     };

@@ -119,7 +119,7 @@ impl<'a> Room<'a> {
                     element.end.y
                 );
                 return Err(Diagnostic::error(Rule::CutsPart, message)
-                    .help("thread elsewhere, start elsewhere, or take a smaller lead-in")
+                    .help("thread elsewhere (--thread), start elsewhere (--begin), or take a shorter lead-in (--lead)")
                     .line(lines.into_iter().find(|line| *line > 0).unwrap_or_default())
                     .into());
             }

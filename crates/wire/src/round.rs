@@ -56,7 +56,7 @@ impl Round {
             None if closed => {
                 if settings.lead.length <= 0.0 {
                     let message = "the thread point is not given".into();
-                    let way_out = "give the thread point, or the length of the lead-in";
+                    let way_out = "give the place to thread by --thread, or the length of the lead-in by --lead";
                     return Err(refused(Rule::NoThread, message, way_out));
                 }
                 let travel =

@@ -28,7 +28,7 @@ impl Path {
             let line = side.get(n.min(m)).map_or(0, |element| element.line);
             let message = format!("the lower contour has {n} moves and the upper {m}");
             return Err(Diagnostic::error(Rule::SyncBlocks, message)
-                .help("synchronise them by arc length or by given points")
+                .help("synchronise them by arc length (--sync length) or by given points (--pair)")
                 .line(line)
                 .into());
         }

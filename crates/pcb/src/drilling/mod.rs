@@ -187,7 +187,7 @@ impl Drilling {
         );
         let message = format!("{}: {has}, the tolerance is {} mm", of(hole), shown(self.tolerance));
         let help = format!(
-            "add a drill of {} mm, allow a greater tolerance, or mill with a cutter of at most that",
+            "add a drill of {} mm to --drills, allow more by --drill-tolerance, or mill by a --hole-mill of at most that",
             shown(hole.diameter)
         );
         fault(Rule::NoDrill, message, &help)
@@ -200,7 +200,7 @@ impl Drilling {
                 format!("`{}` has {} mm", mill.tool.name, shown(mill.tool.cutter.width(0.0)))
             }
         };
-        let help = format!("give a cutter of at most {} mm", shown(hole.diameter));
+        let help = format!("give a --hole-mill of at most {} mm", shown(hole.diameter));
         fault(Rule::NoCutter, format!("{}: {has}", of(hole)), &help)
     }
 
@@ -227,7 +227,7 @@ impl Drilling {
         match (&hole.shape, self.slots) {
             (HoleShape::Slot(a, b), Slots::Chain { scallop }) => {
                 chain::places(*a, *b, drill, scallop).ok_or_else(|| {
-                    let help = "allow a higher scallop, or have slots milled";
+                    let help = "have slots milled by --hole-mill";
                     let message = format!("{} takes more holes than can be drilled", of(hole));
                     fault(Rule::ChainTooLong, message, help)
                 })
@@ -268,7 +268,10 @@ fn count(findings: &mut Vec<Diagnostic>, finding: Diagnostic) {
 
 fn differs(hole: &Hole, drill: f64) -> Diagnostic {
     let message = format!("{} is drilled with {} mm", of(hole), shown(drill));
-    let help = format!("add a drill of {} mm where that matters", shown(hole.diameter));
+    let help = format!(
+        "add a drill of {} mm to --drills where that matters, or allow less by --drill-tolerance",
+        shown(hole.diameter)
+    );
     Diagnostic::warning(Rule::DrillDiffers, message).help(help)
 }
 

@@ -18,7 +18,7 @@ rules! {
     Angle "angle" []
         "An angle is missing, out of range, or does not fit the move."
         "give the angle in degrees, within the range that the control takes"
-        "A KiCad arc of 400°";
+        "`rotation = nan` of a group in a board file";
     Aperture "aperture" []
         "The definition of a Gerber aperture is wrong, or its values are."
         "correct the definition: a number from 10 on, a template, and the values that it takes"
@@ -73,7 +73,7 @@ rules! {
         "linuxcnc: `#1=[1/0]`";
     ArmBranch "arm-branch" []
         "A joint of an arm carries nothing that leads to the flange."
-        "compare the reach of the new file with the data sheet"
+        "compare the reach of the new file with the data sheet: the joint is left out"
         "A joint for a hose, besides the six of the arm";
     ArmCalibration "arm-calibration" []
         "The calibration of an arm differs from the arm that it is for."
@@ -120,8 +120,8 @@ rules! {
         "write the name of the attribute, or leave it out"
         "`%TF*%`";
     Auxiliary "auxiliary" []
-        "A function of the machine's builder is left out, missing or not known to the machine."
-        "add the block `auxiliary` to the control's file where the machine needs this function"
+        "A function of the machine's builder is left out, or the machine does not know it."
+        "list the number under `auxiliary` of the machine file, where the machine has the function"
         "M81 in the source, and no 81 in `auxiliary` of the machine file";
     Axes "axes" []
         "A drill file gives its axes other directions."
@@ -136,9 +136,9 @@ rules! {
         "move the part in the machine (`work_zero`), or choose a machine with more travel"
         "Z -310 on a machine with Z from -300 to 0";
     AxisSwing "axis-swing" []
-        "A cut needs a turn of an axis by half a turn, and which way it would go is not known."
-        "split the cut, or tilt the tool a little there"
-        "A cut over the pole of a table";
+        "Between the ends of a cut the rotary axes swing the tool axis off its path by more than is allowed."
+        "make the steps of the tool axis smaller in the CAM system"
+        "A cut in which C turns by 180° while the tool leans";
     BeamCut "beam-cut" []
         "Side faces of a block of glass cut off part of the beam of some points."
         "take the margin that the finding names, or a larger block"
@@ -169,7 +169,7 @@ rules! {
         "linuxcnc: `G1 N5 X1`";
     BlockSkip "block-skip" []
         "Blocks are marked as skippable, and what the program does depends on the switch at the control."
-        "leave the marks out, or say which of the programs is meant"
+        "give `--block-delete`, where the operator skips them, or take the marks out of the program"
         "`/G1 X10`";
     Board "board" []
         "A file of a board is not what is needed here."
@@ -180,20 +180,20 @@ rules! {
         "check which files of the board were read, and as what"
         "A folder of Gerber files without copper, holes and outline";
     BoardFile "board-file" []
-        "A board file (TOML) cannot be read."
-        "correct the file at the mark; docs/pcb.md lists what stands in it"
-        "`[[pad]]` without `at`";
+        "A board file (TOML or JSON) cannot be read."
+        "correct the file at the mark; docs/sources/board.md lists what stands in it"
+        "`[[pads]]` without `node`";
     BoardTooLarge "board-too-large" []
         "A board is too large to be worked on in one piece."
         "take a part of the board, or a wider tool"
         "A board of 10 m with conductors of 0.1 mm";
     Branch "branch" []
         "More than two lines of a drawing meet in one point."
-        "choose layers so that a contour has no branches, or delete what is too much"
+        "choose layers by `--layer` so that a contour has no branches, or delete what is too much"
         "A T of three lines on the layer of the contour";
     ByControl "by-control" []
-        "Leads or corners that the control is to make do not go with other settings."
-        "leave `--by-control` out, or choose a machine that offsets the wire"
+        "The control cannot offset the wire: it has no offset, or the contour is open."
+        "leave `--by-control` out: the path of the wire's centre is then calculated here"
         "`--by-control` on a machine without wire offset";
     Calibration "calibration" []
         "A calibration cannot be read."
@@ -201,11 +201,11 @@ rules! {
         "A file with the rows of five links";
     Call "call" ["nc-call"]
         "A program is called by a wrong number, name or parameter."
-        "correct the name or the parameters of the call; a called program lies in the folder of the main program"
+        "correct the number, the name or the parameters of the call; called programs are looked for in the folder of `--folder`, and nowhere else"
         "fanuc: `M98`";
     CalledProgram "called-program" ["unknown-program"]
         "A called program cannot be found or used."
-        "save the called program, in the control's own format, in the folder of the main program"
+        "save the called program, in the control's own format, in the folder that `--folder` names"
         "klartext: `CALL PGM MISSING.H`";
     Cancelled "cancelled" []
         "The work was cancelled. There is no result."
@@ -216,9 +216,9 @@ rules! {
         "compare this with the manual of the machine, and correct the new file where they differ"
         "A post whose safe height is written in inches";
     ChainTooLong "chain-too-long" []
-        "A drill file has a chain of slots that is too long to be milled."
-        "divide the route"
-        "A route of a million points";
+        "A slot takes more holes than are drilled."
+        "have slots milled (`--hole-mill`), or divide the slot"
+        "A slot of 3 m with a drill of 0.8 mm";
     CircleWithoutGoto "circle-without-goto" []
         "A CIRCLE record has no GOTO that ends it."
         "add the GOTO that ends the arc"
@@ -252,9 +252,9 @@ rules! {
         "switch the compensation off (CUTCOM/OFF) before it"
         "A tool change between `CUTCOM/LEFT` and `CUTCOM/OFF`";
     CompensationArc "compensation-arc" []
-        "An inside arc is too small for the tool that is compensated."
-        "make the inside arc larger than the tool radius, or use a smaller tool"
-        "An inside arc of R 3 with a tool of R 5";
+        "An arc under compensation has no radius, or starts where the tool is not known to be."
+        "give the arc a radius above 0, and a move to its start before it"
+        "An arc of radius 0 under G41";
     CompensationArcRadius "compensation-arc-radius" []
         "An inside arc is smaller than the radius of the tool."
         "use a smaller tool"
@@ -292,8 +292,8 @@ rules! {
         "switch the compensation off (G40) before this block"
         "`M6` under G41";
     CompensationOpen "compensation-open" []
-        "Where compensation leads the tool's centre is not compared: the radius that the control takes, or how it joins the contour, is not known."
-        "give the diameters of the tools in a tool table (`--tools`), or try the contour on the machine"
+        "Where the control leads the tool's centre beside a contour is not compared: the tool's radius, or how the control joins the contour, is not known. The contour itself is compared."
+        "give the diameter of the tool: `CUTTER` or `TLDATA` in cutter-location data, a tool table (`--tools`) with an NC program; else try the contour on the machine"
         "A contour with `G41` and no tool table";
     CompensationOrientation "compensation-orientation" []
         "A rotary axis moves while compensation is on."
@@ -309,20 +309,20 @@ rules! {
         "`G18` under G41";
     CompensationRadius "compensation-radius" []
         "Compensation is switched on, and the radius of the tool is not known."
-        "give the radius of the tool, in the tool table or by the program"
+        "give the radius of the tool, in a tool table (`--tools`) or by the program"
         "`G41 D5` and no tool 5 in the tool table";
     CompensationUnknownPosition "compensation-unknown-position" []
         "Compensation is on at a position that is not known."
-        "move X, Y and Z to a known position before it is switched on"
+        "give a block with X, Y and Z before compensation is switched on, or `--start` with the place where the tool stands"
         "`G41` behind `G28`";
     CompensationUnsupported "compensation-unsupported" []
         "This form of compensation cannot be resolved into a path."
-        "leave the tool out of the tool table: compensation then stays a state"
+        "leave the tool out of the table of `--tools`: compensation then stays a state, as the program has it"
         "`KONT` with a tool table";
     ConductorSevered "conductor-severed" []
-        "A tool cuts through a conductor."
-        "use a narrower tool, or make the conductor wider"
-        "A track of 0.1 mm between two cuts of 0.2 mm";
+        "A cut down the middle of a narrow gap leaves a conductor in pieces."
+        "use a narrower tool, or leave narrow gaps out (`--narrow leave-out`)"
+        "A track of 0.1 mm, a cut of 0.2 mm and `--narrow middle`";
     Contour "contour" []
         "A contour cannot be approached, left or followed as the block says."
         "correct the approach or the departure: it needs a known start, a tangent, and a length or radius that fits"
@@ -341,23 +341,23 @@ rules! {
         "A vertex of a PLY file without z";
     CopperOutside "copper-outside" []
         "Copper lies outside the outline of the board."
-        "correct the outline or the copper in the CAD program; only copper within the outline is cut around"
+        "check whether the outline is the right one: the copper is cut through with it"
         "A pad on the edge of the board";
     Corner "corner" ["nc-corner"]
         "A chamfer or rounding of a corner does not fit the moves around it."
         "put the corner between two moves in the plane, each longer than it takes away"
         "fanuc: `G1 X10. ,R20.`, `G1 Y10.`";
     CornerRounded "corner-rounded" []
-        "The wire rounds an inside corner."
+        "An inside corner becomes as round as the wire, as `--round-corners` lets it."
         "a thinner wire leaves less"
-        "A sharp inside corner with a wire of 0.25 mm";
+        "A sharp inside corner with `--wire 0.25 --round-corners`";
     Curve "curve" []
         "A Bézier curve of a KiCad board has not four points."
         "draw it again in KiCad"
         "`(gr_curve (pts (xy 0 0) (xy 1 1)))`";
     CurveFit "curve-fit" []
-        "A curve of a drawing cannot be made of arcs within the tolerance."
-        "allow more deviation, or draw it again"
+        "Arcs do not follow a curve of a drawing within the tolerance."
+        "draw the curve again, as lines and arcs or in pieces"
         "An ellipse of 10 m with a tolerance of 0.000001 mm";
     CutTooWide "cut-too-wide" []
         "A cut is wider than the board can be worked with."
@@ -365,16 +365,16 @@ rules! {
         "A tool of 100 mm for isolation";
     CutoutTooSmall "cutout-too-small" []
         "A cutout of the board is too small for the tool."
-        "use a smaller tool for the outline, or a larger cutout"
+        "use a smaller `--outline-tool`, or draw the cutout larger"
         "A slot of 1 mm with a tool of 2 mm";
     CutsPart "cuts-part" []
         "The way of the wire to its contour cuts into the part."
-        "thread elsewhere, start elsewhere, or use a smaller lead-in"
+        "thread elsewhere (`--thread`), start elsewhere (`--begin`), or use a shorter lead-in (`--lead`)"
         "A place to thread on the wrong side of the contour";
     Cutter "cutter" []
         "The tool for the outline or for holes is no end mill."
         "use an end mill"
-        "`--outline-tool` with an engraver";
+        "A V-bit in place of the mill for the outline";
     Cycle "cycle" ["nc-cycle"]
         "A canned cycle lacks a word, or stands where the control does not take it."
         "define the cycle before it is called, and call it where nothing forbids it (compensation off, plane selected)"
@@ -404,16 +404,16 @@ rules! {
         "give a peck above 0, and less than the depth"
         "A peck of 0 mm";
     CycleTap "cycle-tap" []
-        "A tapping cycle has no pitch or no speed."
-        "give the pitch of the thread (feed divided by speed) and a spindle speed"
-        "`CYCLE/TAP` without a pitch, and the spindle off";
+        "A thread cannot be tapped: the control has no tapping cycle, or the spindle turns against the thread."
+        "tap by hand, mill the thread or take a machine whose control has a tapping cycle; turn the spindle as the hand of the thread needs"
+        "`CYCLE/TAP` for GRBL";
     Data "data" ["nc-data"]
         "Data of the control are written in a form that is not read."
         "write offsets and tool data by the forms that docs/controls names, or set them at the control"
         "fanuc: `G10 L99 P1 X0`";
     DecimalPoint "decimal-point" ["nc-decimal-point"]
         "A number has no decimal point, and how the control counts it is not known."
-        "write the decimal point, or say how numbers without it count (`--whole-numbers`)"
+        "write the decimal point, or say what numbers without it count: `--whole-numbers units` or `--whole-numbers increments`"
         "fanuc: `G1 X10` for a machine without `whole_numbers`";
     Definition "definition" []
         "The definition of a variable is wrong, or stands too late."
@@ -424,7 +424,7 @@ rules! {
         "nothing to do; newer CAD programs write it otherwise"
         "`G54D10*`";
     Diameter "diameter" []
-        "The diameter of a tool is not above 0, or is beyond what a tool can have."
+        "The diameter of a tool is not above 0, is beyond what a tool can have, or is given twice."
         "give the diameter of the tool, mm"
         "`T1C0` in a drill file";
     DocumentSize "document-size" []
@@ -445,7 +445,7 @@ rules! {
         "`(drill 0)`";
     DrillDiffers "drill-differs" []
         "No drill has the diameter of this hole; the nearest is used."
-        "nothing to do, if the difference does not matter; else add the drill"
+        "nothing to do, if the difference does not matter; else add the drill to `--drills`, or allow less by `--drill-tolerance`"
         "A hole of 0.85 mm with drills of 0.8 and 1.0 mm";
     Dwell "dwell" ["nc-dwell"]
         "A dwell is missing, negative, or stands where none may stand, or it is not that of the source."
@@ -473,7 +473,7 @@ rules! {
         "A CIRCLE of radius 0";
     DxfGap "dxf-gap" []
         "Gaps of the contour were closed."
-        "nothing to do, if the gaps are not meant; close them in the drawing"
+        "nothing to do, where the ends belong together; `--close` says how large a gap is closed"
         "Two lines whose ends are 0.0005 mm apart";
     DxfInsert "dxf-insert" []
         "A block of a drawing cannot be inserted as it stands."
@@ -481,7 +481,7 @@ rules! {
         "An INSERT of a block that is not there";
     DxfLayer "dxf-layer" []
         "There is no contour on this layer."
-        "name a layer that holds lines or arcs"
+        "name a layer by `--layer` that holds lines or arcs"
         "`--layer CONTOUR` for a drawing whose lines are on layer 0";
     DxfLeftOut "dxf-left-out" []
         "Entities of these kinds are not read."
@@ -497,7 +497,7 @@ rules! {
         "A gap of 100 mm";
     DxfSize "dxf-size" []
         "A drawing has too many entities."
-        "choose layers, or divide the drawing"
+        "choose layers by `--layer`, or divide the drawing"
         "A drawing of 10 million lines";
     DxfSlanted "dxf-slanted" []
         "An entity does not lie in the plane of the drawing."
@@ -509,7 +509,7 @@ rules! {
         "A SPLINE with fit points alone";
     DxfUnit "dxf-unit" []
         "The unit of a drawing is not known."
-        "set the unit of the drawing ($INSUNITS) in the CAD program, or give `unit` in Python"
+        "set the unit of the drawing ($INSUNITS) in the CAD program"
         "A drawing without $INSUNITS";
     Empty "empty" []
         "A file has no triangle and no point."
@@ -596,8 +596,8 @@ rules! {
         "give a feed above 0 that the decimals of the word F can hold"
         "0.2 mm/min on a control that writes whole numbers";
     FileOlder "file-older" []
-        "A program that is there already is older than the new one, and is not written anew."
-        "remove the old file, or write all programs"
+        "Programs of an earlier call are still in the folder, and this call does not write them anew."
+        "remove them, or write all programs in one call"
         "`front.nc` of an earlier run next to the new `drill.nc`";
     FileSize "file-size" []
         "The file is larger than is read."
@@ -612,8 +612,8 @@ rules! {
         "write yes or no"
         "`(fill maybe)`";
     FitWithoutMemory "fit-without-memory" []
-        "Points are to be fitted by arcs, and no memory of the control is given to keep to."
-        "give a larger tolerance, or divide the contour"
+        "Points are to fit the memory of the control, and how many it holds is not given."
+        "give `--memory`, or `memory` in [wire] of the machine file; or a `--step` or `--chord-error` in place of `--fit`"
         "`--fit` without `--memory`";
     FlatContour "flat-contour" []
         "The contour has no heights: it is taken as flat."
@@ -640,8 +640,8 @@ rules! {
         "correct the frame: one instruction a block, with axes and values that the control takes"
         "sinumerik: `ROT RPL=45 X10`";
     Freecad "freecad" []
-        "A FreeCAD document or job cannot be used."
-        "save the document again in FreeCAD 1.0 or newer, or export the job as G-code and read that by `--from`"
+        "There is no FreeCAD to open a document with, or it gives no job."
+        "install FreeCAD, or post from its window with the post `toolpost`"
         "A .FCStd without a job";
     FreecadDump "freecad-dump" []
         "A FreeCAD document could not be read whole."
@@ -656,21 +656,29 @@ rules! {
         "post from FreeCAD, or let FreeCAD write the job again"
         "A JSON file of something else";
     FreecadLines "freecad-lines" []
-        "An operation of a job has more commands than are read."
-        "divide the operation"
-        "An operation of 100 million commands";
+        "The commands of an operation do not stand on a line each."
+        "make the operation anew: no name of a command may have a line break"
+        "A command whose name has a line break";
     From "from" []
         "A FROM record is the first position, and how the tool came there is not known."
         "check that the way there is free"
         "`FROM/0,0,100`";
     Gap "gap" []
         "The ends of a contour are apart."
-        "close the gap, or allow a larger one"
+        "close the gap in the source; of a drawing, `--close` allows a larger one"
         "A profile that ends 0.5 mm from its start";
     Gear "gear" []
         "The program chooses a gear of the spindle."
         "leave it out or write M40; a machine with gears lists the number in `auxiliary`"
         "sinumerik: `M41`";
+    GlassBlock "glass-block" ["block"]
+        "A block of glass is higher than the lens can engrave, or its margins leave nothing of it."
+        "take a lens of a longer focal length (`--lens`), or a smaller `--margin`"
+        "A block of 20 mm with `--margin 10`";
+    GlassProgram "glass-program" ["program"]
+        "A line of a glass program is none that the machine takes, or the program is cut off."
+        "write the program again; docs/sources/glass.md says what stands in it"
+        "`N2 PULS X1 Y1 Z1`";
     Group "group" []
         "A group of a board file has no place of its own, or a name that another has."
         "give each group another name, and put none within itself"
@@ -688,13 +696,13 @@ rules! {
         "give a file with X, Y and Z in columns, on a grid of 2 columns and 2 rows or more"
         "A height map with one row";
     Heights "heights" []
-        "Measured heights do not go with other settings."
-        "give one of them"
-        "`--heights` with `--on-control`";
+        "Measured heights are of one side of the board, and programs of both sides would be written."
+        "make the programs of each side with its own heights: name them with `--only`"
+        "`--heights` of the front, and programs of front and back";
     HelixEndPoint "helix-end-point" []
-        "The end of a helix does not lie on its circle."
-        "give an end point that lies on the circle"
-        "A helix whose end is 0.02 mm off its circle";
+        "An arc that moves a third axis lacks an end point in its plane."
+        "give both coordinates of the end point, also one that does not change"
+        "sinumerik: `G2 X10 Z-5 CR=10`";
     Hole "hole" []
         "A hole of the program is not that of the source."
         "report this with the toolpath: the program differs from it"
@@ -702,7 +710,7 @@ rules! {
     HoleForm "hole-form" []
         "A layer of holes has something else on it."
         "draw holes by flashes of round apertures, or slots by lines"
-        "A line on a Gerber drill layer";
+        "A filled region on a Gerber layer of holes";
     HoleOutside "hole-outside" []
         "A hole lies outside the outline of the board."
         "correct the outline or the hole in the CAD program"
@@ -717,7 +725,7 @@ rules! {
         "A drill file for layers 1 to 2";
     Home "home" ["nc-home"]
         "Axes are sent home in a way that the control or the machine does not take."
-        "retract the tool first; then send axes home by the block `home` of the machine file"
+        "retract the tool first; then name the axes that go home, in a block that the control takes"
         "fanuc: `G28`";
     HomeHeight "home-height" []
         "The way from home to the first point may meet the part."
@@ -740,16 +748,16 @@ rules! {
         "begin with a machine of the library instead: `toolpost machines new NAME --from OTHER`"
         "A file without a block of a program";
     ImportControl "import-control" []
-        "For an imported post no control of the library fits."
-        "name the control by `--from`"
-        "A post of a lathe";
+        "A file that is imported does not say for which control it is, or names one that is not there."
+        "name the control by `--extends`"
+        "Templates that name no control";
     Index "index" []
         "An index of refraction is below 1 or above 4."
         "correct the index in the table of materials"
         "`index = 0.9`";
     InnerCorner "inner-corner" []
         "An inside corner is sharper than the wire can cut."
-        "round the corner by the offset of the wire or more"
+        "round the corner by the offset of the wire or more, or let it become as round as the wire by `--round-corners`"
         "An inside corner of R 0.05 with a wire of 0.25 mm";
     InnerLayer "inner-layer" []
         "Copper of an inner layer is left out."
@@ -816,8 +824,8 @@ rules! {
         "plot all layers with the same origin"
         "Copper 3 mm outside the edge";
     Lead "lead" []
-        "The way to or from a contour has no room, or no length that can be."
-        "give lengths from 0 mm on"
+        "A lead-in or lead-out has no length, or an arc, that can be."
+        "give `--lead` from 0 mm on, and `--lead-arc` above 0 mm and no more than the lead"
         "A lead-in of -1 mm";
     LeaningRetract "leaning-retract" []
         "The tool goes back along its axis, and Z may not be home behind it."
@@ -911,10 +919,6 @@ rules! {
         "An M function is wrong, or stands where the control does not take it."
         "correct the M function: its words, and where it may stand"
         "fanuc: `M3 M8`";
-    Machine "machine" []
-        "There is no machine of that name."
-        "take one of the names that the finding lists, or a file ending in .toml"
-        "`--machine glass-xyz-300hz`";
     MachineFile "machine-file" []
         "A machine or control file is wrong."
         "correct the file at the mark; `toolpost explain NAME` says what a name takes"
@@ -926,11 +930,11 @@ rules! {
     MachineIncomplete "machine-incomplete" []
         "A machine file lacks what every machine needs."
         "add what is missing to the machine file; `toolpost explain` lists names and units"
-        "A file without [axes]";
+        "A file without `reader` and `extends`";
     MachineIsControl "machine-is-control" []
         "The name is that of a control, and a machine is needed."
         "name a machine of that control (`toolpost machines list`)"
-        "`--machine fanuc`";
+        "`--machine fanuc-31i`";
     MachineKind "machine-kind" []
         "The machine does another kind of work."
         "choose a machine for this work (`toolpost machines list`)"
@@ -947,7 +951,7 @@ rules! {
         "A machine file may not be read from here."
         "put the file next to the one that names it"
         "`extends = \"../secret.toml\"` in a file of somebody else";
-    MachineUnknown "machine-unknown" []
+    MachineUnknown "machine-unknown" ["unknown-machine", "machine"]
         "There is no such machine or control in the library."
         "check the name (`toolpost machines list`)"
         "`--machine fanuk`";
@@ -992,9 +996,9 @@ rules! {
         "start from `toolpost glass show materials`"
         "`index = one`";
     Memory "memory" []
-        "The program is larger than the memory of the control."
-        "divide the contour into several programs"
-        "300 KB of points for a control with 256 KB";
+        "The program has more points than the control holds."
+        "take a larger `--step` or `--chord-error`, or `--fit`; or divide the contour into several programs"
+        "5000 points for a control that holds 4000";
     Mesh "mesh" []
         "A body has open edges or triangles without area."
         "close it in the program that made it if holes are not wanted"
@@ -1037,11 +1041,11 @@ rules! {
         "sinumerik: `G0 C=DC(400)` on a machine with C";
     NarrowCorner "narrow-corner" []
         "A corner of the board is narrower than the tool."
-        "nothing to do, if the rest may stay; else use a smaller tool"
+        "nothing to do, if the rest may stay; else use a smaller `--outline-tool`"
         "An inside corner of R 0.5 with a tool of 2 mm";
     NarrowGap "narrow-gap" []
         "Gaps between conductors are narrower than the cut."
-        "use a narrower tool, or `--narrow middle` to cut them all the same"
+        "use a narrower tool, or cut the gaps all the same by `--narrow middle`"
         "A gap of 0.15 mm with a cut of 0.2 mm";
     Nesting "nesting" ["call-depth"]
         "Calls, loops or brackets lie too deep within each other."
@@ -1069,19 +1073,19 @@ rules! {
         "apt: `CYCLE/DRILL,DEPTH,5,MMPM,100`";
     NoCutter "no-cutter" []
         "A hole needs to be milled, and there is no cutter for it."
-        "add a cutter that is small enough"
+        "give a `--hole-mill` that is no wider than the hole"
         "A slot of 0.6 mm with a cutter of 1 mm";
     NoCycle "no-cycle" ["cycle-missing"]
         "A hole has no cycle."
         "give a CYCLE record before the first hole"
-        "A hole of the Python builder without `cycle(...)`";
+        "A hole in front of the cycle, in a program that other software builds";
     NoDiameter "no-diameter" []
         "A tool of a drill file has no diameter."
         "define it in the header, such as T1C0.8"
         "`T1` in the header without C";
     NoDrill "no-drill" []
         "There is no drill for a hole."
-        "add the drill, or a cutter to mill the hole"
+        "add the drill to `--drills`, allow more by `--drill-tolerance`, or mill the hole by `--hole-mill`"
         "A hole of 3.2 mm with drills up to 1 mm";
     NoEnd "no-end" []
         "The file or the program has no end."
@@ -1109,8 +1113,8 @@ rules! {
         "`X0Y0*`";
     NoOutline "no-outline" []
         "There is no outline of the board, and it is needed."
-        "draw the edge of the board, or leave its part out"
-        "`--parts outline` for a board without an edge layer";
+        "give the layer of the outline too; isolating and drilling do without, `--only` names them"
+        "`--only outline` for a board without an edge layer";
     NoPlunge "no-plunge" []
         "A route of a drill file is not begun by M15."
         "write M15 where the tool goes down"
@@ -1132,16 +1136,16 @@ rules! {
         "give a move to the start point before the arc"
         "apt: `CIRCLE/0,0,0,0,0,1,10`, `GOTO/0,10,0` as the first records";
     NoSuchPart "no-such-part" []
-        "The board has nothing for a program that is asked for."
+        "The board has nothing for a program, or for a tool, that is asked for."
         "ask for parts that the board has"
-        "`--parts back` for a board with one side";
+        "`--only back` for a board with one side";
     NoThread "no-thread" []
-        "There is no place to thread the wire."
-        "name the place by `--thread`"
-        "An open contour without a place to thread";
+        "The places to thread the wire are missing, or are more than the contours."
+        "give one place for each contour by `--thread`, or the length of the lead-in by `--lead`"
+        "`--side inside` with neither `--thread` nor `--lead`";
     NoTool "no-tool" []
-        "A move or a hole has no tool."
-        "call the tool (LOAD/TOOL) before its first move"
+        "Something is cut, and no tool is given for it."
+        "call the tool (LOAD/TOOL) before its first move; for a board give `--tool` or `--vee`"
         "A cutter-location file whose first record is a cut";
     NoUnit "no-unit" []
         "A length comes before the unit."
@@ -1150,7 +1154,7 @@ rules! {
     NoWire "no-wire" ["wire-missing"]
         "The wire is used before it is threaded."
         "thread the wire before the first cut"
-        "A cut of the Python builder without `thread_wire()`";
+        "A list of moves of other software that cuts before it threads";
     NoZeros "no-zeros" []
         "A drill file does not say which zeros were left out."
         "write METRIC,LZ or METRIC,TZ"
@@ -1176,7 +1180,7 @@ rules! {
         "save the board again in KiCad"
         "`(width abc)`";
     NotAPlace "not-a-place" []
-        "A coordinate of a board is beyond what can be."
+        "A coordinate of a board or a contour is beyond what can be."
         "check the unit and the format"
         "X 9999999 mm in a drill file";
     NotAnEdge "not-an-edge" []
@@ -1197,7 +1201,7 @@ rules! {
         "A schematic given as a board";
     NotParted "not-parted" []
         "A tool is too wide to separate two pieces of the board."
-        "use a smaller tool, or move the pieces apart"
+        "use a smaller `--outline-tool`, or move the pieces apart (`--spacing`)"
         "Two boards 1 mm apart with a tool of 2 mm";
     NotReached "not-reached" []
         "A tool does not reach all of an area."
@@ -1242,15 +1246,15 @@ rules! {
     OneOpening "one-opening" []
         "The control cuts one opening in a program."
         "write a program for each opening"
-        "Two contours with one program for each to be";
+        "Two contours for a control that takes a list of points, and threads once";
     OpenCompensation "open-compensation" []
-        "A contour for a wire begins or ends within its offset."
-        "switch the offset by a straight move before and behind the contour"
-        "`G41` without a straight move before the contour";
+        "By how much the source offsets the wire is not known, or the offset is on where the wire goes to or from its contour."
+        "give `--side`, `--wire` and `--gap`: the offset path is then calculated here; a straight move switches the offset before the contour and behind it"
+        "`G41 D1` in the source, and no `--side`";
     OpenContour "open-contour" []
         "A contour for a wire is not closed."
-        "close the contour, or cut it without a side"
-        "A slot of two lines with `--side`";
+        "close the contour, or cut it by `--side left` or `--side right`, without a tab"
+        "A slot of two lines with `--side inside`";
     OpenTaper "open-taper" []
         "A contour for a wire leans by words of the control."
         "take the contour without it, and lean the wire with `--taper`"
@@ -1274,7 +1278,7 @@ rules! {
     Option "option" []
         "An option of the machine has a value that it does not take."
         "give a value of the kind that is named"
-        "`--set tool_length=long`";
+        "`--option path_tolerance=wide`";
     OptionalStop "optional-stop" []
         "An optional stop is left out, because the control has none."
         "add the block `optional_stop` to the control's file where the control has one"
@@ -1297,8 +1301,8 @@ rules! {
         "`TRAORI` without ORIWKS and ORIVECT";
     Origin "origin" []
         "A setting that tells how to read the source does not go with this source."
-        "leave it out"
-        "`--from` with cutter-location data";
+        "leave the option out"
+        "`--csys world` with an NC program";
     OutOfRange "out-of-range" []
         "A point is farther away than any machine reaches."
         "check units and frames of the file: the values lead too far away"
@@ -1346,10 +1350,10 @@ rules! {
     OutputFile "output-file" ["output"]
         "A file cannot be saved."
         "give another name, or allow writing to the file"
-        "`-o` with the name of a folder";
+        "`-o` with the name of an input";
     OutputFolder "output-folder" []
-        "The folder of a file that is to be saved is not there."
-        "make the folder first"
+        "The folder for the output is not there, cannot be made, or is that of the input."
+        "give another folder, or make it first"
         "`-o missing/part.nc`";
     Overlap "overlap" []
         "Passes are to overlap by more than can be."
@@ -1361,8 +1365,8 @@ rules! {
         "`(size 0 0)`";
     Panel "panel" []
         "A panel of boards cannot be made."
-        "give 1 or more in each direction, and no more than fit"
-        "0 by 3 boards";
+        "give `--panel` 1 or more in each direction, and no more than fit"
+        "`--panel 1000x1000` of a board of 100 mm";
     Parameter "parameter" ["nc-parameter"]
         "A parameter or variable is read before it is set, or there is none of that number."
         "set the parameter before it is read, within the numbers that the control has"
@@ -1372,9 +1376,9 @@ rules! {
         "give the height between the lower and the upper contour"
         "`--taper 2` without `--height`";
     Passes "passes" []
-        "More passes are asked for than can be."
-        "give fewer passes"
-        "1,000 passes around each conductor";
+        "Passes do not go with another setting, or their offsets grow from one to the next."
+        "leave `--passes` or `--isolate middle` out; let each pass of a wire leave less than the one before (`--leave`)"
+        "`--passes 2 --isolate middle`";
     Path "path" []
         "The program leaves the path of the source."
         "correct the block of an edited program; report a program that `post` has just made, with its toolpath"
@@ -1409,15 +1413,15 @@ rules! {
         "A closed slot around a piece of the board";
     Pins "pins" []
         "There is no place for pins."
-        "give a diameter and a distance above 0"
+        "give `--alignment` a diameter above 0 for which there is room"
         "Pins at a distance of -5 mm";
     PinsLate "pins-late" []
         "Pins are drilled behind a program that needs them."
         "begin with the holes"
         "The back before the holes of its pins";
     Pitch "pitch" []
-        "A pitch is given for a cycle that does not tap."
-        "use the kind `tap`, or leave the pitch out"
+        "A tap has no pitch, or another hole has one."
+        "give the kind `tap` a pitch, and no other kind"
         "`drill` of the Python builder with a pitch";
     Points "points" []
         "There are more points than the controller holds or than can be made."
@@ -1428,20 +1432,20 @@ rules! {
         "give pole, radius and angle in the plane"
         "linuxcnc: `G18`, `G1 @5 ^30`";
     PolarityChanges "polarity-changes" []
-        "A Gerber file changes its polarity behind objects."
-        "write it at the start of the file"
-        "`%IPNEG*%` behind the first flash";
+        "A Gerber file changes its polarity more often than is followed."
+        "write the layer again with what is clear in one place, or divide it"
+        "100,000 changes between `%LPD*%` and `%LPC*%`";
     PoleWay "pole-way" []
-        "A cut goes past the pole, where the rotary axes turn farther than the file allows."
-        "tilt the tool a little more there, or raise `pole` tolerance in the machine file"
+        "Along a vector the tool goes past the pole of the rotary axes, through which the control leads it in its own way."
+        "lead the tool axis round the pole or through it in the CAM system, or write positions of the rotary axes (`simultaneous = \"tool-center-angles\"` in [orientation])"
         "A cut within 0.1° of the tool upright";
     Probe "probe" ["nc-probe"]
         "A probing move is not as the control takes it."
         "give the probing move a feed in mm/min, a fixed tool axis, and an end other than its start"
         "`G38.2 A10 F100`: a probing move of a rotary axis";
     ProbeInHole "probe-in-hole" []
-        "A place to probe lies in a hole or outside of the copper."
-        "choose another grid"
+        "A place at which the height is measured lies in a hole or at its rim."
+        "another number of columns or rows (`--probe`), or `--from back`"
         "A grid whose corner is over a mounting hole";
     Probing "probing" []
         "A probing program cannot be made."
@@ -1450,26 +1454,22 @@ rules! {
     ProbingGrid "probing-grid" []
         "A grid of places to probe cannot be made."
         "give 2 columns and 2 rows or more"
-        "`--probe 1,5`";
-    Program "program" []
-        "A line of a glass program is none that the machine takes, or the program is cut off."
-        "write the program again"
-        "`N2 PULS X1 Y1 Z1`";
+        "`--probe 1x5`";
     ProgramEnd "program-end" []
         "Something is wrong with the end of the program."
         "add the end of the program; the file may be cut off"
         "sinumerik: a program without `M30`";
     ProgramFrame "program-frame" []
-        "BEGIN PGM and END PGM are missing or do not fit."
-        "begin the program with BEGIN PGM and end it with END PGM, both with its name and unit"
+        "What begins and ends a program is missing or does not fit: BEGIN PGM and END PGM of HEIDENHAIN, DEF and END of KUKA."
+        "begin and end the program as the control has it: BEGIN PGM and END PGM with one name and unit, DEF with a name and END"
         "klartext: `END PGM OTHER MM`";
     ProgramLength "program-length" []
         "The program has more moves than are read."
         "divide the program"
         "A loop of 100 million moves";
     ProgramNumber "program-number" ["nc-program-number"]
-        "A program number is out of range."
-        "give a program number from 1 to 9999 (or 8 digits where the control takes them)"
+        "A program number is out of range, or another program begins before this one has ended."
+        "give a number from 1 to 7999 (`program_number` of the options), and end each program by M30 or M99"
         "fanuc: `O12345678901`";
     ProgramRepeats "program-repeats" []
         "The program ends with M99, by which it begins again without end."
@@ -1567,10 +1567,6 @@ rules! {
         "A contour crosses itself."
         "give a contour that goes round once"
         "An eight as a contour for a wire";
-    SetUps "set-ups" []
-        "A file has several set-ups, and all are read as one."
-        "post each set-up by itself"
-        "Two MSYS with different origins in one file";
     Setting "setting" []
         "A setting is out of range, or two do not go together."
         "give a value within the range that is named"
@@ -1584,13 +1580,13 @@ rules! {
         "draw it again in KiCad"
         "A polygon that crosses itself many times";
     Side "side" []
-        "On which side of the contour the wire runs is not known."
-        "give `--side left` or `--side right`"
-        "An open contour without `--side`";
+        "`--side` does not go with the source: two contours, or another side of G41 or G42."
+        "leave `--side` out for two contours; else take the side of the program"
+        "`--side right` for a program with G41";
     SingleBlock "single-block" []
-        "The operator stops block by block, and a block goes where that is not safe."
-        "report this with the toolpath, or leave `--single-block` out"
-        "A block that turns axes and moves at once, with `single_block` in the machine file";
+        "A thread or a probing move is not that of the source, or begins where no block says."
+        "give a rapid to its start before it; a program that `post` has just made is reported with its toolpath"
+        "`G38.3` in the program where the source probes by `G38.2`";
     Small "small" []
         "A body is so small in its block that its unit may be wrong."
         "scale it by 25.4 if its file is in inches"
@@ -1601,7 +1597,7 @@ rules! {
         "A file of a kind that is not read";
     SourcePasses "source-passes" []
         "A contour for a wire has several passes already."
-        "take one pass of it; `--passes` makes more"
+        "leave the first pass in the source: `--leave` makes the others"
         "A source that cuts the same contour twice";
     Spacing "spacing" []
         "The smallest distance of points is less than the cracks of the lens need, or no distance."
@@ -1614,7 +1610,7 @@ rules! {
     SpindleDwell "spindle-dwell" []
         "The tool cuts before the spindle has come to its speed."
         "report this with the toolpath: the program lacks the dwell"
-        "A cut right behind `M3` with `spindle_dwell` in the machine file";
+        "A cut right behind `M3` with `dwell` in [spindle] of the machine file";
     SpindleOff "spindle-off" []
         "A cut comes while the spindle stands."
         "start the spindle before the first cut"
@@ -1685,7 +1681,7 @@ rules! {
         "`_TC` of CYCLE800 with another name than `swivel_data`";
     SyncBlocks "sync-blocks" []
         "Upper and lower contour have different numbers of blocks."
-        "synchronise them by arc length or by given points"
+        "synchronise them by arc length (`--sync length`) or by given points (`--pair`)"
         "4 lines below and 5 above";
     SyncClosed "sync-closed" []
         "One of two contours is closed, the other is not."
@@ -1697,15 +1693,15 @@ rules! {
         "2 contours below and 3 above";
     SyncPoint "sync-point" []
         "A point that synchronises two contours does not lie on them."
-        "give points of the contours, in the order of travel"
-        "`--sync` with a point 1 mm off the contour";
+        "give points of the contours by `--pair`, in the order of travel"
+        "`--pair` with a point 1 mm off the contour";
     Syntax "syntax" ["nc-syntax"]
         "A block is not written as the control takes it."
         "correct the block at the mark, as the control's programming manual has it"
         "linuxcnc: `G1 *`";
     Tab "tab" []
         "A tab needs something that the machine lacks, or has no room."
-        "leave the tab out, or choose another machine"
+        "leave `--tab` out or make it shorter than the contour, or choose a machine that stops"
         "`--tab 2` on a machine without `stop`";
     TabCount "tab-count" []
         "More tabs are asked for than can be."
@@ -1745,7 +1741,7 @@ rules! {
         "The wire is cut while `Taper` is on";
     TaperAngle "taper-angle" []
         "A taper leans farther than can be."
-        "lean by 60° at most, with a height above 0"
+        "give `--taper` 60° at most, and a `--height` above 0"
         "`--taper 70`";
     TaperCorner "taper-corner" []
         "A corner cannot be cut with this taper."
@@ -1753,24 +1749,24 @@ rules! {
         "An inside corner of R 0.2 with 10° over 50 mm";
     TaperLead "taper-lead" []
         "The lead-in is too short for the taper."
-        "thread the wire farther from the contour"
+        "thread the wire farther from the contour (`--thread`, `--lead`)"
         "A lead-in of 1 mm with 10° over 50 mm";
     TaperLimit "taper-limit" []
         "The wire leans farther than the machine allows."
-        "give a smaller angle, or a machine whose wire may lean more"
+        "give a smaller `--taper`, or a machine whose wire may lean more"
         "15° on a machine with 10°";
     Template "template" []
         "A template of a machine file uses what templates may not use."
         "correct the template at the mark: words, `{{ name }}`, `{% if %}`, `{% for %}` and `{% set %}` are there"
         "`{{ f(x) }}`";
     TemplateBlock "template-block" []
-        "A template calls a block that is not there."
-        "check the name of the block"
-        "`{{ block(\"retrct\") }}`";
+        "A machine file has a block of a name that is not known."
+        "check the name of the block; `toolpost explain` lists them"
+        "`retrct = \"G53 G0 Z0\"` below [blocks]";
     TemplateComment "template-comment" []
-        "A template writes a value that may end its comment."
-        "write it by the block `comment`"
-        "`({{ tool.name }})` without the filter that the message names";
+        "A template writes a text of the source outside of a comment, where the control takes it for words."
+        "put it between the signs of a comment of this control"
+        "`{{N}} {{ tool.name }}`";
     TemplateName "template-name" []
         "A template uses a name that is not there."
         "use a name that `toolpost explain` lists"
@@ -1817,7 +1813,7 @@ rules! {
         "A board of 1 m cleared with 0.05 mm";
     TooTangled "too-tangled" []
         "A drawing has too many lines that meet or cross."
-        "divide the drawing into contours, or choose layers"
+        "divide the drawing into contours, choose layers by `--layer`, or close smaller gaps only (`--close`)"
         "100,000 lines over each other";
     Tool "tool" ["nc-tool"]
         "A tool is not called, or not the one of the source."
@@ -1832,9 +1828,9 @@ rules! {
         "switch tool centre control on with the tool called, on a machine with rotary axes"
         "klartext: `M128`";
     ToolChange "tool-change" []
-        "A motion comes before the first tool is loaded."
+        "An operation is for another tool than the one that is in the spindle."
         "add LOAD/TOOL at the start of the operation"
-        "A GOTO before `LOAD/TOOL`";
+        "`TOOL PATH/...,TOOL,DRILL` behind `LOAD/TOOL` of a mill";
     ToolChangeHeight "tool-change-height" []
         "The tool is changed where Z is not home."
         "send Z home before M6, or set `tools.retracts` of the machine"
@@ -1869,7 +1865,7 @@ rules! {
         "`T1 P1 Z`";
     ToolTooWide "tool-too-wide" []
         "A tool is too wide for every gap between conductors."
-        "use a narrower tool"
+        "use a narrower `--tool`, or cut gaps down the middle by `--narrow middle`"
         "A tool of 3 mm for a board with gaps of 0.2 mm";
     ToolTwice "tool-twice" []
         "Two tools have one number."
@@ -1888,9 +1884,13 @@ rules! {
         "end one transformation before the next begins, and give it the words that the control takes"
         "`CYCL DEF 247` in a turned frame (HEIDENHAIN)";
     Travel "travel" []
-        "A position of the program, or a whole board, is beyond the travel of the machine."
-        "move or turn the work, or choose another machine"
-        "A board of 400 mm on a machine with 300 mm";
+        "A position is beyond the travel of the machine."
+        "take a smaller block, or move the body (`--move`)"
+        "A block of 400 mm on a machine with 300 mm";
+    TravelHeight "travel-height" ["travel"]
+        "Rapid moves would be lower over the board than the height from which tools feed."
+        "give `--travel` no less than `--approach`"
+        "`--travel 0.3 --approach 0.5`";
     Truncated "truncated" []
         "The file is cut off."
         "write the file again from the CAM system: it may be cut off"
@@ -1904,9 +1904,9 @@ rules! {
         "write the program again"
         "A glass program with a repeated line";
     TwoTools "two-tools" []
-        "An operation of a FreeCAD job uses another tool than it names."
-        "change the commands of the operation"
-        "`T2 M6` within an operation with tool 1";
+        "Two tool controllers of a FreeCAD job have one number, and different tools."
+        "give one of the tool controllers another number"
+        "T1 as a drill of 5 mm and T1 as a mill of 10 mm in one job";
     Type "type" []
         "A value has the wrong type."
         "give a value of the type that is needed here"
@@ -1925,7 +1925,7 @@ rules! {
         "A drill file without METRIC or INCH";
     Units "units" ["nc-units"]
         "The unit is not known, or is switched where the control does not take it."
-        "switch the unit in a block of its own at the start of the program"
+        "write G20 or G21 in a block of its own at the start of the program, or say what lengths count by `--units mm` or `--units inch`"
         "fanuc: a program without G20 and G21";
     UnknownAxis "unknown-axis" ["nc-axis"]
         "The program moves an axis that is not known."
@@ -1943,13 +1943,9 @@ rules! {
         "An M function is not known."
         "check the number, or describe the M function in the machine file"
         "sinumerik: `M77`";
-    UnknownMachine "unknown-machine" []
-        "There is no such machine in the library."
-        "check the name (`toolpost machines list`)"
-        "`machines show fanuk`";
     UnknownPosition "unknown-position" ["nc-unknown-position"]
         "A block needs a position that no block before has given."
-        "move to a known position first, with every axis named in absolute coordinates"
+        "move to a known position first, with every axis named in absolute coordinates; `--start` gives the place where the tool stands at the start"
         "fanuc: `G28 Z50.`, `G91 G1 Z5.`";
     UnknownShift "unknown-shift" ["nc-unknown-shift"]
         "A shift of the coordinates is used whose value is not in the program."
@@ -1957,7 +1953,7 @@ rules! {
         "linuxcnc: `G92.3`";
     UnknownStart "unknown-start" []
         "Where a cut starts is not known."
-        "give a rapid move with X, Y and Z before the first cut"
+        "give a rapid move with X, Y and Z before the first cut, or `--start` with the place where the tool stands"
         "A program whose first move is `G1`";
     UnknownUnit "unknown-unit" []
         "The unit of a cutter-location file is not known."
@@ -1969,7 +1965,7 @@ rules! {
         "fanuc: `G999`";
     Unproven "unproven" []
         "The source has something that no virtual control reports yet."
-        "leave it out, or write the program without proof"
+        "leave it out of the source: what no control reports is not written"
         "A toolpath for a laser";
     UnreachableOrientation "unreachable-orientation" []
         "The rotary axes have no position for this orientation."
@@ -1997,7 +1993,7 @@ rules! {
         "linuxcnc: `G0 X1 P5`";
     UpperPlane "upper-plane" []
         "The height of the upper plane is not known, and a block gives U and V."
-        "give the height of the upper plane in the machine file or the program"
+        "give the height of the upper plane: `height` in [wire] of the machine file, or `--uv-height` for one run"
         "A point file with U and V for a machine without `height`";
     Urdf "urdf" []
         "The description of an arm (URDF) cannot be read."
@@ -2033,7 +2029,7 @@ rules! {
         "fanuc-wire: `G1 X5. U1. F5.`";
     WireHeight "wire-height" []
         "The heights of a wire machine do not fit, or are missing."
-        "give the height of the part by `--height`"
+        "give the height of the part by `--height`, and that of the plane of U and V by `height` in [wire] or `--uv-height`"
         "`--height` missing for a wire that leans";
     WireLeans "wire-leans" []
         "The wire leans, and the control has no U and V."
@@ -2046,10 +2042,10 @@ rules! {
     WireThreaded "wire-threaded" []
         "The wire is threaded already."
         "cut the wire before it is threaded again"
-        "Two `thread_wire()` of the Python builder";
+        "A list of moves of other software that threads twice";
     WiresCross "wires-cross" []
         "Two positions of the wire cross each other."
-        "lean less, or synchronise the contours by points"
+        "lean less, or synchronise the contours by points (`--pair`)"
         "A short upper contour over a long lower one with 20°";
     Word "word" []
         "A word is wrong, or not in the control's file."

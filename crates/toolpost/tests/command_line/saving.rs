@@ -63,7 +63,7 @@ fn the_input_is_never_the_output() {
         let said = folder.run(&["post", source, "-m", MACHINE, "-o", output]);
         assert_eq!(said.code, 2, "{output}: {said:?}");
         assert!(
-            said.err.contains("error[output]") && said.err.contains("is the input"),
+            said.err.contains("error[output-file]") && said.err.contains("is the input"),
             "{said:?}"
         );
         assert_eq!(folder.names(), before);
@@ -88,10 +88,10 @@ fn a_place_where_nothing_can_be_saved_is_told_before_the_work() {
     fs::create_dir(folder.path().join("folder.mpf")).unwrap();
     let calls = [
         ("missing/out.mpf", "error[output-folder]: cannot be saved: there is no folder missing"),
-        ("folder.mpf", "error[output]: cannot be saved: it is not a file"),
+        ("folder.mpf", "error[output-file]: cannot be saved: it is not a file"),
         ("part.cls/out.mpf", "error[output-folder]"),
-        ("/dev/null", "error[output]: cannot be saved: it is not a file"),
-        ("..", "error[output]: cannot be saved: it names no file"),
+        ("/dev/null", "error[output-file]: cannot be saved: it is not a file"),
+        ("..", "error[output-file]: cannot be saved: it names no file"),
     ];
     for (output, expected) in calls {
         let said = folder.run(&["post", "part.cls", "-m", MACHINE, "-o", output]);
@@ -170,7 +170,7 @@ fn a_full_disk_keeps_the_earlier_files_and_nothing_half_written() {
     folder.write("disk/out.mpf.report.json", "earlier report");
     let said = folder.run(&["post", "part.cls", "-m", MACHINE, "-o", "disk/out.mpf"]);
     assert_eq!(said.code, 2, "{said:?}");
-    assert!(said.err.contains("error[output]"), "{said:?}");
+    assert!(said.err.contains("error[output-file]"), "{said:?}");
     assert_eq!(folder.read("disk/out.mpf"), "earlier");
     assert_eq!(folder.read("disk/out.mpf.report.json"), "earlier report");
     assert_eq!(fs::read_dir(folder.path().join("disk")).unwrap().count(), 2);
@@ -308,7 +308,7 @@ fn a_program_beyond_the_largest_file_of_the_shell_is_not_begun() {
     let said = Command::new("sh").args(["-c", &call]).current_dir(folder.path()).output().unwrap();
     let err = String::from_utf8_lossy(&said.stderr).into_owned();
     assert_eq!(said.status.code(), Some(2), "{err}");
-    assert!(err.contains("error[output]") && err.contains("ulimit -f"), "{err}");
+    assert!(err.contains("error[output-file]") && err.contains("ulimit -f"), "{err}");
     assert_eq!(folder.names(), ["long.cls", "part.cls"]);
 }
 

@@ -104,6 +104,34 @@ fn of_very_many_openings_the_answer_lists_the_first_thousand_and_the_report_all(
     assert_eq!((&all[..1000], &report["proof"]), (&listed[..], &answer["proof"]));
 }
 
+/// A square of 20 mm below and one that is 2 mm larger on each side above, 40 mm up; U and V count 80 mm up.
+#[test]
+fn of_a_wire_that_leans_along_lines_the_summary_has_u_and_v_and_no_chords() {
+    let folder = Folder::new();
+    let square = |low: f64, high: f64| {
+        format!(
+            "G21 G90\nG0 X{low:.1} Y{low:.1}\nG1 X{high:.1}\nY{high:.1}\nX{low:.1}\nY{low:.1}\nM30\n"
+        )
+    };
+    folder.write("lower.nc", square(0.0, 20.0));
+    folder.write("upper.nc", square(-2.0, 22.0));
+    let call = "wire lower.nc --upper upper.nc --from fanuc-wire --height 40 --uv-height 80 -m fanuc-wire -o a.nc";
+    let said = folder.run(&call.split(' ').collect::<Vec<_>>());
+    assert_eq!(said.code, 0, "{}", said.err);
+    for line in [
+        "points         5, the ends of straight moves",
+        "U              -4 ... 4 mm (8)",
+        "V              -4 ... 4 mm (8)",
+    ] {
+        assert!(said.out.contains(line), "`{line}` is missing in\n{}", said.out);
+    }
+    assert!(!said.out.contains("chord") && !said.out.contains("area error"), "{}", said.out);
+    // An upright wire has none to print.
+    let upright =
+        folder.run(&["wire", "lower.nc", "--from", "fanuc-wire", "-m", "fanuc-wire", "-o", "b.nc"]);
+    assert!(upright.code == 0 && !upright.out.contains("\nU "), "{upright:?}");
+}
+
 #[test]
 fn steps_that_are_none_are_refused() {
     let folder = sector();
@@ -168,7 +196,7 @@ fn contours_that_cannot_be_offset_are_refused_with_their_line() {
         &["error[self-crossing]", "sector.nc:"],
     );
     bad("", "", &["--feed", "0.1,0.2"], &["error[feed]"]);
-    bad("", "", &["--thread", "1,1"], &["error[thread]"]);
+    bad("", "", &["--thread", "1,1"], &["error[no-thread]"]);
     bad("", "", &["--taper", "5"], &["error[wire-height]"]);
     bad("", "", &["--taper", "70", "--height", "10"], &["error[taper-angle]"]);
     bad("", "", &["--gap", "40"], &["error[offset-vanishes]"]);
@@ -333,7 +361,7 @@ fn the_picture_is_the_same_each_time_and_in_both_formats() {
     }
     assert!(picture("a.png").starts_with(b"\x89PNG"));
     refused(&folder, &["--picture", "a.pdf"], 2, &["error[drawing]"]);
-    refused(&folder, &["--picture", "sector.nc"], 2, &["error[output]"]);
+    refused(&folder, &["--picture", "sector.nc"], 2, &["error[output-file]"]);
 }
 
 /// The opening of a die in two passes, as everyone may read it beside its machine.

@@ -240,7 +240,7 @@ fn steps_that_no_machine_makes_and_heights_that_cross() {
     bad_call(
         &folder,
         &["--travel", "0.3"],
-        &["error[travel]", "0.3 mm", "0.5 mm", "--travel", "--approach"],
+        &["error[travel-height]", "0.3 mm", "0.5 mm", "--travel", "--approach"],
     );
 }
 
@@ -273,7 +273,7 @@ fn a_folder_that_nothing_can_be_saved_in() {
     into("missing/out", &["missing/out: error[output-folder]", "no folder missing"]);
     // Nobody can write there, whoever runs the tests.
     if cfg!(target_os = "linux") {
-        into("/proc", &["/proc", "error[output]"]);
+        into("/proc", &["/proc", "error[output-file]"]);
         into("/proc/out", &["/proc/out: error[output-folder]"]);
     }
 }

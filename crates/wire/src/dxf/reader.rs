@@ -83,7 +83,8 @@ impl<'a> Reader<'a> {
             (None, None) => {
                 let message = "the drawing names no unit: it is read in mm";
                 let warning = Diagnostic::warning(Rule::DxfUnit, message);
-                self.warnings.push(warning.help("name the unit if it is another"));
+                self.warnings
+                    .push(warning.help("set $INSUNITS in the CAD program, if it is another"));
                 1.0
             }
         };
@@ -210,7 +211,11 @@ impl<'a> Reader<'a> {
         self.count = self.count.saturating_add(count);
         if self.count > MOST {
             let message = format!("the drawing comes to more than {MOST} elements");
-            return Err(entity.refused(Rule::DxfSize, message, "choose layers, or divide it"));
+            return Err(entity.refused(
+                Rule::DxfSize,
+                message,
+                "choose layers by --layer, or divide it",
+            ));
         }
         Ok(())
     }
@@ -282,7 +287,7 @@ fn insertion_unit(header: &[Group]) -> Result<Option<f64>, Box<Diagnostic>> {
         unit => {
             let message = format!("the unit {unit} of $INSUNITS is none that parts are drawn in");
             let refused = Diagnostic::error(Rule::DxfUnit, message).line(group.line);
-            return Err(refused.help("name the unit").into());
+            return Err(refused.help("set $INSUNITS in the CAD program").into());
         }
     }))
 }

@@ -28,7 +28,7 @@ pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Ou
     let file = File::of(text, None)?;
     let Some((name, at)) = file.first else {
         let message = "the file has no program: it begins with DEF name ( )";
-        return Err(Diagnostic::error(Rule::Program, message).line(1).into());
+        return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
     };
     let mut run = Run { settings, state: State::new(&settings.tool_change), channel };
     run.data(name)?;
@@ -83,7 +83,7 @@ impl Run<'_, '_> {
                 Statement::End | Statement::Return => return Ok(number),
                 Statement::Define(_) | Statement::DefineData => {
                     let message = "a program begins within another: END is missing before it";
-                    return Err(scan.since(0, Rule::Program, message));
+                    return Err(scan.since(0, Rule::ProgramFrame, message));
                 }
                 Statement::Call(name, arguments) => {
                     if !self.state.called(&scan, name, &arguments, self.channel)? {
