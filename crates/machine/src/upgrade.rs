@@ -56,10 +56,9 @@ fn table(lines: &[String], table: &str) -> Option<usize> {
     match table {
         "" => {
             let first = lines.iter().position(|line| begins_with(line, &['[']));
-            let top = lines.iter().take(first.unwrap_or(lines.len()));
+            let end = first.unwrap_or(lines.len());
             let says = |line: &String| !line.trim().is_empty() && !begins_with(line, &['#']);
-            let behind = top.enumerate().filter(|(_, line)| says(line)).last();
-            Some(behind.map_or(first.unwrap_or(lines.len()), |(last, _)| last + 1))
+            Some(lines[..end].iter().rposition(says).map_or(end, |last| last + 1))
         }
         table => {
             let is = |line: &String| line.split('#').next().unwrap_or_default().trim() == table;

@@ -56,7 +56,7 @@ fn without(text: &str, line: usize) -> Option<String> {
         (rest != text && rest.parse::<toml::Table>().is_ok()).then_some(rest)
     };
     if begins_table(&lines[at]) {
-        let next = lines.iter().skip(at + 1).position(|line| begins_table(&line));
+        let next = lines.iter().skip(at + 1).position(begins_table);
         return blank(at, next.map_or(lines.len(), |more| at + 1 + more));
     }
     let around = (1..=LONGEST_VALUE).flat_map(|size| (0..size).map(move |up| (size, up)));
