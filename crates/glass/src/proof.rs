@@ -116,7 +116,7 @@ fn findings_of_block(run: &Run, task: &Task, findings: &mut Findings) {
         let message =
             format!("the program is for a block of {a} x {b} x {c} mm, not of {x} x {y} x {z} mm");
         findings.push(
-            Diagnostic::error(Rule::Block, message)
+            Diagnostic::error(Rule::GlassBlock, message)
                 .line(1)
                 .help("give the block of the program, or write the program anew"),
         );

@@ -228,7 +228,7 @@ fn a_program_that_is_edited_is_proven_against_the_body_again() {
     let text = String::from_utf8(numbered.text).unwrap().replacen("Z30.000", "Z31.000", 1);
     let found =
         job::prove(text.into(), vec![body()], &k9(), &machine("numbered"), &settings).unwrap();
-    assert_eq!(found.findings[0].rule, "block");
+    assert_eq!(found.findings[0].rule, "glass-block");
 }
 
 #[test]

@@ -672,7 +672,7 @@ rules! {
         "leave it out or write M40; a machine with gears lists the number in `auxiliary`"
         "sinumerik: `M41`";
     GlassBlock "glass-block" ["block"]
-        "A block of glass is higher than the lens can engrave, or its margins leave nothing of it."
+        "A block of glass is higher than the lens can engrave, its margins leave nothing of it, or the program is for another block."
         "take a lens of a longer focal length (`--lens`), or a smaller `--margin`"
         "A block of 20 mm with `--margin 10`";
     GlassProgram "glass-program" ["program"]
