@@ -90,7 +90,9 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
 /// What a board lacks that boards have, where nobody has said which programs are made: a file that was not exported, or not
 /// taken for what it is, leaves out a program without an error.
 fn missing(made: &Made, settings: &Settings) -> Vec<&'static str> {
-    let has = |part: Part| made.programs.iter().any(|made| made.name == part.name());
+    let is_left_out = |part: Part| made.left_out.iter().any(|left| left.part == part);
+    let is_made = |part: Part| made.programs.iter().any(|made| made.name == part.name());
+    let has = |part: Part| is_made(part) || is_left_out(part);
     let all = [
         (has(Part::Front) || has(Part::Back), "copper: no file has any, and nothing is isolated"),
         (has(Part::Drill), "holes: no file has any, and nothing is drilled"),

@@ -689,7 +689,7 @@ fn the_programs_of_a_board_have_a_number_each() {
     // 7999 is the last that everybody may use.
     let call = ["pcb", "board", "-o", "out", "-m", "generic-3axis-haas", "--tool", "0.4"];
     let said = folder.run(&[&call[..], &["--option", "program_number=7998"]].concat());
-    assert!(said.code == 2 && said.err.contains("8001"), "{said:?}");
+    assert!(said.code == 3 && said.err.contains("8001"), "{said:?}");
 }
 
 #[test]
