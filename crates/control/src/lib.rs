@@ -228,6 +228,8 @@ pub struct Settings {
     /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
     /// the control's own is an error.
     pub auxiliary: Vec<u32>,
+    /// The M functions that switch coolant, where they are not the usual ones of the control.
+    pub coolant: program::CoolantFunctions,
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
@@ -366,6 +368,7 @@ impl Settings {
             table_frame_at_zero: None,
             sets_work_offsets: false,
             auxiliary: Vec::new(),
+            coolant: program::CoolantFunctions::default(),
             operator_parameters: Vec::new(),
             kinematics: None,
             tool_change: String::new(),

@@ -60,6 +60,8 @@ pub struct Machine {
     pub feed_max: f64,
     /// What the tool magazine takes.
     pub tools: ToolRange,
+    /// The M functions that switch coolant, where they are not the usual ones of the control.
+    pub coolant: program::CoolantFunctions,
     /// M functions of the machine's builder that its programs use; they switch something and move no
     /// axis that the program drives (clamps, doors, air).
     pub auxiliary: Vec<u32>,

@@ -33,6 +33,7 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         WireSheet::KEYS,
         SpindleSheet::KEYS,
         ToolsSheet::KEYS,
+        CoolantSheet::KEYS,
         ArmSheet::KEYS,
         LengthsSheet::KEYS,
         DhSheet::KEYS,
@@ -85,6 +86,7 @@ sheet!(Sheet "" {
     wire: Spanned<WireSheet>, "", "Table: the wire of a machine for wire EDM; a machine without it is a mill.";
     spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";
     arm: Spanned<ArmSheet>, "", "Table: a six-axis arm. A file with it and without `reader` says how the arm moves; programs are written for no such file.";
+    coolant: Spanned<CoolantSheet>, "", "Table: the M functions that switch coolant, where they are others than M7, M8 and M9.";
     feed_max: Rate, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
     tools: ToolsSheet, "", "Table: what the magazine takes.";
     auxiliary: Vec<u32>, "", "Numbers of the M functions of the builder that programs use; none moves an axis that the program drives.";
@@ -211,6 +213,14 @@ sheet!(merged ToolsSheet "tools" {
     max_length: Length, "mm", "Longest tool.";
     retracts: bool, "", "Whether the tool change brings Z up by itself; without it Z has to be home before each.";
     turns_upright: bool, "", "Whether the tool change turns the axes of a head to 0 by itself; without it they have to stand there before each.";
+});
+
+sheet!(merged CoolantSheet "coolant" {
+    flood: u32, "", "Number of the M function that switches flood on, where it is not M8; M8 then is none.";
+    mist: u32, "", "Number of the M function that switches mist on, where it is not M7; M7 then is none.";
+    through: u32, "", "Number of the M function that switches coolant through the tool on: Haas M88, elsewhere as the builder has it. The block `coolant_through` writes it.";
+    off: u32, "", "Number of the M function that switches coolant off, where it is not M9; M9 then is none.";
+    through_off: u32, "", "Number of the M function that switches coolant through the tool off, where the one for all coolant does not: Haas M89.";
 });
 
 sheet!(merged ArmSheet "arm" {

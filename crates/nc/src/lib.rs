@@ -105,6 +105,7 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
     let clamps = clamps.flat_map(|clamp| [clamp.open, clamp.close]);
     Settings {
         auxiliary: machine.auxiliary.iter().copied().chain(clamps).collect(),
+        coolant: machine.coolant,
         modulo,
         floating_holder: machine.settings.floating_holder,
         retract_above_r: machine.settings.retract_above_r,

@@ -46,6 +46,70 @@ pub enum Coolant {
     Through,
 }
 
+/// What an M function does with the coolant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoolantSwitch {
+    /// Flood on.
+    Flood,
+    /// Mist on.
+    Mist,
+    /// Coolant through the tool on.
+    Through,
+    /// All coolant off; that through the tool where no function of its own ends it.
+    Off,
+    /// Coolant through the tool off.
+    ThroughOff,
+}
+
+/// The M functions that switch coolant on a machine whose builder has given them other numbers than the usual ones of its control.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CoolantFunctions {
+    /// Flood on, M8 on most controls.
+    pub flood: Option<u32>,
+    /// Mist on, M7 on most controls.
+    pub mist: Option<u32>,
+    /// Coolant through the tool on; no usual number but M88 of Haas.
+    pub through: Option<u32>,
+    /// Coolant off, M9 on all controls.
+    pub off: Option<u32>,
+    /// Coolant through the tool off, where `off` does not end it.
+    pub through_off: Option<u32>,
+}
+
+impl CoolantFunctions {
+    /// What the machine file says that M of this number does with the coolant.
+    pub fn switch(&self, number: u32) -> Option<CoolantSwitch> {
+        let rows = self.rows().into_iter();
+        let mut found = rows.filter(|(stated, _)| *stated == Some(number));
+        found.next().map(|(_, switch)| switch)
+    }
+
+    /// Whether the machine file gives this to another function than the usual one.
+    pub fn is_stated(&self, switch: CoolantSwitch) -> bool {
+        !self.rows().contains(&(None, switch))
+    }
+
+    /// Whether one function does two things.
+    pub fn contradicts(&self) -> bool {
+        let mut numbers: Vec<u32> =
+            self.rows().into_iter().filter_map(|(stated, _)| stated).collect();
+        let count = numbers.len();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers.len() < count
+    }
+
+    fn rows(&self) -> [(Option<u32>, CoolantSwitch); 5] {
+        [
+            (self.flood, CoolantSwitch::Flood),
+            (self.mist, CoolantSwitch::Mist),
+            (self.through, CoolantSwitch::Through),
+            (self.off, CoolantSwitch::Off),
+            (self.through_off, CoolantSwitch::ThroughOff),
+        ]
+    }
+}
+
 /// A tool as the source describes it. What the source does not say is `None`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tool {

@@ -184,6 +184,43 @@ fn coolant_through_the_spindle_of_a_haas_ends_by_m89() {
     assert_eq!(rules(&source, &machine, &wrong).len(), 1, "{wrong}");
 }
 
+/// Coolant through the tool has no number of its own on a FANUC: the builder's, which the machine file states. Flood may be another
+/// than M8, too.
+#[test]
+fn a_fanuc_has_coolant_through_the_tool_where_its_file_states_it() {
+    let source = |coolant: &str| {
+        let text = format!(
+            "UNITS/MM\nLOADTL/1\nSPINDL/900,RPM,CLW\nFEDRAT/100,MMPM\nCOOLNT/{coolant}\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-1\nRAPID\n\
+             GOTO/0,0,20\nFINI\n"
+        );
+        source::apt::read("c.cls", text.as_bytes(), &Default::default()).unwrap().program
+    };
+    let own = machine(
+        "extends = \"generic-3axis-fanuc\"\n[coolant]\nflood = 70\nthrough = 50\n[blocks]\ncoolant_flood = \"{{N}} M70\"\n\
+         coolant_through = \"{{N}} M50\"\n",
+    );
+    for (coolant, function, other) in [("THRU", "M50", "M70"), ("FLOOD", "M70", "M50")] {
+        let source = source(coolant);
+        let text = written(&source, &own);
+        assert!(text.lines().any(|line| line.ends_with(function)), "{text}");
+        for wrong in [other, "M8", "M7"] {
+            let damaged = text.replacen(function, wrong, 1);
+            assert!(!rules(&source, &own, &damaged).is_empty(), "{damaged}");
+        }
+        // Both, of which the second may end the first.
+        let both = text.replacen(function, &format!("{function}\nN1 {other}"), 1);
+        assert_eq!(rules(&source, &own, &both), ["coolant"], "{both}");
+    }
+    let plain = machine("extends = \"generic-3axis-fanuc\"\n");
+    let refused = post::write(&source("THRU"), &plain).unwrap_err();
+    assert_eq!(refused[0].rule.name(), "missing-block", "{refused:?}");
+    let twice = machine::load_text(
+        "two.toml",
+        "extends = \"fanuc-31i\"\n[coolant]\nflood = 50\nthrough = 50\n",
+    );
+    assert!(twice.unwrap_err().message.contains("two things"));
+}
+
 /// Setting 52 ("G83 Retract Above R"): chips are cleared above R, where Z has to have room for it.
 #[test]
 fn a_haas_clears_chips_above_r_as_far_as_setting_52_says() {

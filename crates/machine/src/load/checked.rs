@@ -6,7 +6,7 @@ use super::file::SheetFile;
 use crate::model::*;
 use crate::sheet::*;
 use geom::{Vec3, direction};
-use program::{Diagnostic, Rule};
+use program::{CoolantFunctions, Diagnostic, Rule};
 use std::collections::BTreeMap;
 use toml::Spanned;
 
@@ -64,6 +64,7 @@ pub(super) struct CheckedSheet {
     wire: Option<Placed<WireSheet>>,
     arm: Option<PlacedArm>,
     spindle: Option<Placed<SpindleSheet>>,
+    coolant: Option<Placed<CoolantSheet>>,
     feed_max: Option<Rate>,
     tools: ToolsSheet,
     auxiliary: Option<Vec<u32>>,
@@ -110,6 +111,7 @@ impl CheckedSheet {
             wire: sheet.wire.map(|wire| Placed::new(file, "wire", wire)),
             arm: sheet.arm.map(|sheet| PlacedArm::new(file, sheet)),
             spindle,
+            coolant: sheet.coolant.map(|coolant| Placed::new(file, "coolant", coolant)),
             feed_max: sheet.feed_max,
             tools: sheet.tools.unwrap_or_default(),
             auxiliary: sheet.auxiliary,
@@ -291,6 +293,7 @@ impl CheckedSheet {
             wire: joined(self.wire, nearer.wire, WireSheet::under),
             arm: arm::under(self.arm, nearer.arm),
             spindle: joined(self.spindle, nearer.spindle, SpindleSheet::under),
+            coolant: joined(self.coolant, nearer.coolant, CoolantSheet::under),
             feed_max: nearer.feed_max.or(self.feed_max),
             tools: self.tools.under(nearer.tools),
             auxiliary: nearer.auxiliary.or(self.auxiliary),
@@ -321,6 +324,7 @@ impl CheckedSheet {
             check_range(&place, sheet.min.map(|s| s.0), sheet.max.map(|s| s.0), "1/min")?;
             spindle = sheet;
         }
+        let coolant = self.coolant.as_ref().map(check_coolant).transpose()?.unwrap_or_default();
         let (mut rotary, mut rotary_place) = (Vec::new(), None);
         if let Some(Placed { sheet, place }) = self.rotary {
             let modes = self.orientation.as_ref().and_then(|o| o.sheet.simultaneous);
@@ -460,6 +464,7 @@ impl CheckedSheet {
                 max: spindle.max.map_or(f64::INFINITY, |speed| speed.0),
                 dwell: spindle.dwell.map_or(0.0, |seconds| seconds.0),
             },
+            coolant,
             feed_max: self.feed_max.map_or(f64::INFINITY, |feed| feed.0),
             tools: ToolRange {
                 max_number: self.tools.max_number.unwrap_or(u32::MAX),
@@ -482,6 +487,16 @@ impl CheckedSheet {
                 .collect(),
         })
     }
+}
+
+/// The M functions for coolant, each of which does one thing.
+fn check_coolant(coolant: &Placed<CoolantSheet>) -> Outcome<CoolantFunctions> {
+    let CoolantSheet { flood, mist, through, off, through_off } = coolant.sheet;
+    let functions = CoolantFunctions { flood, mist, through, off, through_off };
+    if functions.contradicts() {
+        return Err(wrong(&coolant.place, "one M function does two things with the coolant"));
+    }
+    Ok(functions)
 }
 
 /// The safe height, which Z must reach.

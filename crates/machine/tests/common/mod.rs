@@ -66,6 +66,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             retracts: false,
             turns_upright: false,
         },
+        coolant: Default::default(),
         auxiliary: Vec::new(),
         operator_parameters: Vec::new(),
         approach: Vec::new(),

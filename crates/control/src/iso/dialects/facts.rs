@@ -294,6 +294,8 @@ group! {
         ignores_optional_stop: bool = false;
         /// The end of the program switches spindle and coolant off.
         end_switches_off: bool = true;
+        /// Coolant through the tool has a function of its own to end it.
+        ends_through_apart: bool = false;
         /// `M19` takes P and Q besides R.
         orients_by_pq: bool = false;
     }

@@ -477,8 +477,11 @@ impl Step<'_, '_, '_> {
             match (self.block.m(Group::Coolant), self.state.coolant) {
                 (Some(M::CoolantOff), Coolant::Flood | Coolant::Mist)
                 | (Some(M::ThroughOff), Coolant::Through) => self.cool(Coolant::Off)?,
+                (Some(M::CoolantOff), Coolant::Through) if self.state.off_ends_through => {
+                    self.cool(Coolant::Off)?;
+                }
                 (Some(M::CoolantOff), Coolant::Through) => {
-                    let message = "M9 leaves the coolant through the tool on; write M89";
+                    let message = "this leaves the coolant through the tool on, which has a function of its own to end it (M89 of Haas)";
                     return Err(self.block.at_group(Group::Coolant, Rule::Coolant, message));
                 }
                 _ => {}

@@ -133,7 +133,8 @@ impl Run<'_, '_> {
             match kept.coolant {
                 Coolant::Mist => M::Mist,
                 Coolant::Flood | Coolant::FloodAndMist => M::Flood,
-                Coolant::Off | Coolant::Through => M::CoolantOff,
+                Coolant::Through => M::Through,
+                Coolant::Off => M::CoolantOff,
             },
         );
         self.control.execute(&mut self.block, &mut self.actions)

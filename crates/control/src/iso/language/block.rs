@@ -348,11 +348,10 @@ impl<'a> Block<'a> {
                 None => return Err(self.unknown(letter, word)),
             },
             // What does nothing on the control itself is the builder's where the machine's file says so.
-            b'M' => match facts
-                .words
-                .m(word.value)
-                .filter(|(_, meaning)| {
-                    !matches!(meaning, M::Neutral(_)) || self.auxiliary(word.value).is_none()
+            b'M' => match self
+                .stated_coolant(word.value)
+                .or_else(|| {
+                    facts.words.m(word.value).filter(|usual| self.is_usual(usual, word.value))
                 })
                 .or_else(|| self.of_the_machine(word.value))
             {
@@ -424,6 +423,22 @@ impl<'a> Block<'a> {
     /// The M function of this number, where the builder of the machine has added it.
     fn auxiliary(&self, number: f64) -> Option<u32> {
         self.settings.auxiliary.iter().copied().find(|&m| f64::from(m) == number)
+    }
+
+    /// The M function of this number by which the machine's file says that coolant is switched.
+    fn stated_coolant(&self, number: f64) -> Option<(Group, M)> {
+        let functions = self.settings.coolant;
+        let whole = (number.fract() == 0.0 && number >= 0.0).then_some(number as u32)?;
+        functions.switch(whole).map(|switch| (Group::Coolant, M::of_coolant(switch)))
+    }
+
+    /// Whether a word of the control is what it usually is: the machine's file lists its number as one of the builder's, or gives
+    /// its coolant to another number.
+    fn is_usual(&self, (_, meaning): &(Group, M), number: f64) -> bool {
+        let is_builders = matches!(meaning, M::Neutral(_)) && self.auxiliary(number).is_some();
+        let is_elsewhere =
+            meaning.coolant().is_some_and(|switch| self.settings.coolant.is_stated(switch));
+        !is_builders && !is_elsewhere
     }
 
     /// The M function of this number that is the machine's own: it switches the kinematics, threads or cuts the wire, or

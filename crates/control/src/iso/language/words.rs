@@ -1,6 +1,8 @@
 //! What G and M words mean, and which exclude each other in a block. Which of them a dialect has
 //! stands in its table ([`crate::iso::dialects`]); what is not in a table is not understood.
 
+use program::CoolantSwitch;
+
 /// The meaning of a G word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum G {
@@ -333,6 +335,31 @@ pub enum M {
     /// A program that the user has added as an M function (LinuxCNC's `M100` to `M199`); P and Q are
     /// handed to it.
     Program(u32),
+}
+
+impl M {
+    /// What it does with the coolant.
+    pub(in crate::iso) fn coolant(self) -> Option<CoolantSwitch> {
+        let all = [
+            CoolantSwitch::Flood,
+            CoolantSwitch::Mist,
+            CoolantSwitch::Through,
+            CoolantSwitch::Off,
+            CoolantSwitch::ThroughOff,
+        ];
+        all.into_iter().find(|switch| M::of_coolant(*switch) == self)
+    }
+
+    /// The function that does this with the coolant.
+    pub(in crate::iso) fn of_coolant(switch: CoolantSwitch) -> M {
+        match switch {
+            CoolantSwitch::Flood => M::Flood,
+            CoolantSwitch::Mist => M::Mist,
+            CoolantSwitch::Through => M::Through,
+            CoolantSwitch::Off => M::CoolantOff,
+            CoolantSwitch::ThroughOff => M::ThroughOff,
+        }
+    }
 }
 
 /// Words of one group exclude each other in a block.

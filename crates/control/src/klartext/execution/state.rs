@@ -15,7 +15,9 @@ use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, Readable};
 use geom::Vec3;
-use program::{Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Rule, Spindle};
+use program::{
+    Auxiliary, Axes, Compensation, Coolant, CoolantFunctions, Cycle, Feed, Rule, Spindle,
+};
 
 use std::collections::HashMap;
 
@@ -114,6 +116,10 @@ impl Readable for Control<'_, '_> {
 
     fn auxiliary(&self) -> &[u32] {
         &self.settings.auxiliary
+    }
+
+    fn coolant_functions(&self) -> CoolantFunctions {
+        self.settings.coolant
     }
 }
 
@@ -376,7 +382,14 @@ impl<'a, 's> Control<'a, 's> {
                 if coolant { self.set_coolant(Coolant::Flood) } else { Ok(()) }
             }
             Function::SpindleStop => self.set_spindle(Spindle::Off),
-            Function::Coolant => self.set_coolant(Coolant::Flood),
+            Function::Coolant(coolant) => {
+                let both = self.coolant != Coolant::Off && self.coolant != coolant;
+                if both {
+                    let message = "one coolant runs already: whether both then run is up to the machine; write M9 first";
+                    return Err(s.error_block(Rule::Coolant, message));
+                }
+                self.set_coolant(coolant)
+            }
             Function::CoolantOff => self.set_coolant(Coolant::Off),
             Function::Stop => {
                 // On every TNC it stops the spindle; the coolant on the older ones (TNC 360, 640: "M0").

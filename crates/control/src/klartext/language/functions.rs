@@ -3,7 +3,7 @@
 use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
 use crate::kernel::Outcome;
-use program::Rule;
+use program::{Coolant, CoolantSwitch, Rule};
 
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,8 +20,8 @@ pub(crate) enum Function {
     CounterClockwise { coolant: bool },
     /// Spindle stop: `M5`, and `M6`, which the tool call before it has made a tool change.
     SpindleStop,
-    /// `M8`.
-    Coolant,
+    /// `M8`, and what the machine's file has besides.
+    Coolant(Coolant),
     /// `M9`.
     CoolantOff,
     /// The block gives machine coordinates (`M91`), or coordinates that count from the datum of the builder (`M92`).
@@ -62,7 +62,7 @@ const FUNCTIONS: [(u16, Function); 26] = [
     (4, Function::CounterClockwise { coolant: false }),
     (5, Function::SpindleStop),
     (6, Function::SpindleStop),
-    (8, Function::Coolant),
+    (8, Function::Coolant(Coolant::Flood)),
     (9, Function::CoolantOff),
     (13, Function::Clockwise { coolant: true }),
     (14, Function::CounterClockwise { coolant: true }),
@@ -135,6 +135,18 @@ impl Function {
             return retract(s, control);
         }
         let is = |n: &u16| f64::from(*n) == number;
+        let stated = control.coolant_functions();
+        let whole = (number.fract() == 0.0).then_some(number as u32);
+        if let Some(switch) = whole.and_then(|number| stated.switch(number)) {
+            return Ok(Function::of_coolant(switch));
+        }
+        let moved = [(8.0, CoolantSwitch::Flood), (9.0, CoolantSwitch::Off)];
+        if moved.iter().any(|(usual, switch)| *usual == number && stated.is_stated(*switch)) {
+            let message = format!(
+                "M{number} is not what switches this coolant: [coolant] of the machine file names another M function"
+            );
+            return Err(s.error(Rule::MFunction, word.span, message));
+        }
         if let Some((_, function)) = FUNCTIONS.iter().find(|(n, _)| is(n)) {
             // The feed behind M128 is that of the compensating motion, not of the path.
             if *function == Function::KeepTip {
@@ -158,6 +170,15 @@ impl Function {
             None => format!("M{number} is not understood"),
         };
         Err(s.error(Rule::MFunction, word.span, message))
+    }
+
+    fn of_coolant(switch: CoolantSwitch) -> Function {
+        match switch {
+            CoolantSwitch::Flood => Function::Coolant(Coolant::Flood),
+            CoolantSwitch::Mist => Function::Coolant(Coolant::Mist),
+            CoolantSwitch::Through => Function::Coolant(Coolant::Through),
+            CoolantSwitch::Off | CoolantSwitch::ThroughOff => Function::CoolantOff,
+        }
     }
 
     /// When it acts (TNC manuals, table of the M functions).

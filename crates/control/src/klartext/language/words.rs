@@ -4,7 +4,7 @@ use super::functions::{Function, Functions};
 use super::registers::Registers;
 use super::scan::{Scanner, Word};
 use crate::kernel::Outcome;
-use program::{Compensation, Rule};
+use program::{Compensation, CoolantFunctions, Rule};
 
 /// Where a word's value is kept. The first six are the axes in the order of their coordinates.
 pub(crate) mod slot {
@@ -77,6 +77,9 @@ pub(crate) trait Readable {
 
     /// The M functions that the builder has added.
     fn auxiliary(&self) -> &[u32];
+
+    /// The M functions that switch coolant, where they are not M8 and M9.
+    fn coolant_functions(&self) -> CoolantFunctions;
 }
 
 /// The words of one block. Lengths are mm.

@@ -21,7 +21,9 @@ use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, ELEMENTS_IN_A_TURN};
-use program::{Auxiliary, Compensation, Coolant, Cycle, Diagnostic, Feed, Rule, Spindle, Tool};
+use program::{
+    Auxiliary, Compensation, Coolant, CoolantSwitch, Cycle, Diagnostic, Feed, Rule, Spindle, Tool,
+};
 
 /// Runs blocks.
 pub(crate) struct Interpreter<'a, 's> {
@@ -221,14 +223,20 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     fn check_m(&self, source: &Source, block: &Block) -> Outcome {
-        for group in [STOPS, SPINDLE, COOLANT] {
-            if block.m.iter().flatten().filter(|m| group.contains(m)).count() > 1 {
-                let message = "two M functions of one kind in a block contradict each other";
-                return Err(source.block_error(Rule::ModalGroup, message));
-            }
+        let ones = |is: &dyn Fn(u32) -> bool| block.m.iter().flatten().filter(|m| is(**m)).count();
+        if ones(&|m| STOPS.contains(&m)) > 1
+            || ones(&|m| SPINDLE.contains(&m)) > 1
+            || ones(&|m| self.coolant_of(m).is_some()) > 1
+        {
+            let message = "two M functions of one kind in a block contradict each other";
+            return Err(source.block_error(Rule::ModalGroup, message));
         }
         for m in block.m.iter().flatten() {
-            if !is_own(*m) && !self.settings.auxiliary.contains(m) {
+            let is_known = match COOLANT.contains(m) {
+                true => self.coolant_of(*m).is_some(),
+                false => is_own(*m) || self.coolant_of(*m).is_some(),
+            };
+            if !is_known && !self.settings.auxiliary.contains(m) {
                 let message = format!("M{m} is not an M function of the control");
                 let mut error = source.block_error(Rule::UnknownM, message);
                 error.help =
@@ -484,13 +492,34 @@ impl<'a, 's> Interpreter<'a, 's> {
         let positioned = block.rare.as_ref().is_some_and(|rare| rare.spindle_position.is_some());
         let spindle = if positioned || block.has_m(19) { Spindle::Off } else { spindle };
         self.report_spindle(source, spindle)?;
-        let coolant = match block.m.iter().flatten().find(|m| COOLANT.contains(m)) {
-            Some(7) => Coolant::Mist,
-            Some(8) => Coolant::Flood,
-            Some(_) => Coolant::Off,
-            None => self.state.coolant,
-        };
+        let coolant = block.m.iter().flatten().find_map(|m| self.coolant_of(*m));
+        let (running, coolant) = (self.state.coolant, coolant.unwrap_or(self.state.coolant));
+        let through = running == Coolant::Through || coolant == Coolant::Through;
+        if through && running != Coolant::Off && coolant != Coolant::Off && running != coolant {
+            let message = "one coolant runs already: whether both then run is up to the machine";
+            let mut error = source.block_error(Rule::Coolant, message);
+            error.help = "write M9 first".into();
+            return Err(error);
+        }
         self.report_coolant(source, coolant)
+    }
+
+    /// The coolant that an M function leaves running: as the machine's file says, or M7, M8 and M9 where it does not.
+    fn coolant_of(&self, m: u32) -> Option<Coolant> {
+        let stated = self.settings.coolant;
+        let usual = match m {
+            7 => Some(CoolantSwitch::Mist),
+            8 => Some(CoolantSwitch::Flood),
+            9 => Some(CoolantSwitch::Off),
+            _ => None,
+        };
+        let switch = stated.switch(m).or(usual.filter(|switch| !stated.is_stated(*switch)))?;
+        Some(match switch {
+            CoolantSwitch::Flood => Coolant::Flood,
+            CoolantSwitch::Mist => Coolant::Mist,
+            CoolantSwitch::Through => Coolant::Through,
+            CoolantSwitch::Off | CoolantSwitch::ThroughOff => Coolant::Off,
+        })
     }
 
     /// The speed that the program has given, 1/min.

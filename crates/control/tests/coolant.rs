@@ -1,0 +1,116 @@
+//! M functions that switch coolant by other numbers than the usual ones: what a machine file says of them, and two that cancel each
+//! other.
+
+mod common;
+
+use program::{Coolant, CoolantFunctions};
+use toolpost_control::{Action, Dialect, Settings};
+
+/// Flood by M70, coolant through the tool by M50, and what ends it, as a builder may have it.
+const BUILDERS: CoolantFunctions = CoolantFunctions {
+    flood: Some(70),
+    mist: None,
+    through: Some(50),
+    off: None,
+    through_off: None,
+};
+
+/// The coolants of a program, or the rule by which it is refused.
+fn coolants(
+    dialect: Dialect,
+    functions: CoolantFunctions,
+    blocks: &str,
+) -> Result<Vec<Coolant>, &'static str> {
+    let settings = Settings { coolant: functions, ..Settings::new(dialect, [false; 3]) };
+    let text = match dialect {
+        Dialect::Klartext => {
+            let mut text = "0 BEGIN PGM T MM\n".to_owned();
+            for (i, block) in blocks.lines().enumerate() {
+                text += &format!("{} {block}\n", i + 1);
+            }
+            text + &format!("{} END PGM T MM\n", blocks.lines().count() + 1)
+        }
+        Dialect::Sinumerik => format!("{blocks}\nM30\n"),
+        _ => format!("{blocks}\n"),
+    };
+    let actions = common::ops(&settings, "p", &text).map_err(|found| found.rule.name())?;
+    let coolant = |action: &Action| match action {
+        Action::Coolant(coolant) => Some(*coolant),
+        _ => None,
+    };
+    Ok(actions.iter().filter_map(coolant).collect())
+}
+
+const DIALECTS: [Dialect; 6] = [
+    Dialect::Fanuc,
+    Dialect::Haas,
+    Dialect::LinuxCnc,
+    Dialect::Mach3,
+    Dialect::Sinumerik,
+    Dialect::Klartext,
+];
+
+#[test]
+fn coolant_is_switched_by_the_numbers_of_the_machine_file() {
+    for dialect in DIALECTS {
+        let own = |blocks: &str| coolants(dialect, BUILDERS, blocks);
+        assert_eq!(own("M70\nM9"), Ok(vec![Coolant::Flood, Coolant::Off]), "{dialect:?}");
+        // M8 is not what switches flood on this machine.
+        assert!(own("M8").is_err(), "{dialect:?}");
+        let usual = coolants(dialect, CoolantFunctions::default(), "M8\nM9");
+        assert_eq!(usual, Ok(vec![Coolant::Flood, Coolant::Off]), "{dialect:?}");
+        assert!(
+            coolants(dialect, CoolantFunctions::default(), "M70").is_err()
+                || dialect == Dialect::LinuxCnc
+        );
+        let off = CoolantFunctions { off: Some(79), ..CoolantFunctions::default() };
+        assert_eq!(coolants(dialect, off, "M8\nM79"), Ok(vec![Coolant::Flood, Coolant::Off]));
+        assert!(coolants(dialect, off, "M8\nM9").is_err(), "{dialect:?}");
+    }
+    // A number that usually is another coolant is what the machine file says.
+    let seven = CoolantFunctions { through: Some(7), ..CoolantFunctions::default() };
+    for dialect in [Dialect::Fanuc, Dialect::LinuxCnc, Dialect::Sinumerik] {
+        assert_eq!(coolants(dialect, seven, "M7\nM9"), Ok(vec![Coolant::Through, Coolant::Off]));
+    }
+}
+
+#[test]
+fn coolant_through_the_tool_ends_by_its_own_function_where_there_is_one() {
+    let own = CoolantFunctions { through_off: Some(51), ..BUILDERS };
+    for dialect in DIALECTS {
+        assert_eq!(
+            coolants(dialect, own, "M50\nM51"),
+            Ok(vec![Coolant::Through, Coolant::Off]),
+            "{dialect:?}"
+        );
+    }
+    // M9 of a FANUC or Haas leaves it on then; without such a function it ends it.
+    for dialect in [Dialect::Fanuc, Dialect::Haas] {
+        assert_eq!(coolants(dialect, own, "M50\nM9"), Err("coolant"), "{dialect:?}");
+    }
+    assert_eq!(
+        coolants(Dialect::Fanuc, BUILDERS, "M50\nM9"),
+        Ok(vec![Coolant::Through, Coolant::Off])
+    );
+}
+
+/// Which of two coolants runs, or whether both do, the builder says: the second may end the first.
+#[test]
+fn a_second_coolant_that_may_cancel_the_first_is_refused() {
+    for dialect in DIALECTS {
+        for blocks in ["M70\nM50", "M50\nM70"] {
+            assert_eq!(coolants(dialect, BUILDERS, blocks), Err("coolant"), "{dialect:?} {blocks}");
+        }
+        let off = if dialect == Dialect::Haas { "M89" } else { "M9" };
+        assert_eq!(
+            coolants(dialect, BUILDERS, &format!("M70\nM9\nM50\n{off}")),
+            Ok(vec![Coolant::Flood, Coolant::Off, Coolant::Through, Coolant::Off]),
+            "{dialect:?}"
+        );
+    }
+    for dialect in [Dialect::Fanuc, Dialect::Haas] {
+        let through = if dialect == Dialect::Haas { "M88" } else { "M7" };
+        let blocks = format!("M8\n{through}");
+        assert_eq!(coolants(dialect, CoolantFunctions::default(), &blocks), Err("coolant"));
+    }
+}
