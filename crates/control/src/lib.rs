@@ -5,6 +5,26 @@
 //! control does not understand is an error, never skipped. A block is read, checked as a whole, and
 //! only then executed, so that a bad block changes nothing.
 //!
+//! ```
+//! use toolpost_control::{Action, Dialect, Settings, Setup, Units, read};
+//!
+//! let setup = Setup { units: Some(Units::Millimeters), ..Setup::default() };
+//! let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
+//! let mut cuts = Vec::new();
+//! read(&settings, "slot.ngc", b"G90 G54\nG0 X0 Y0 Z5\nF100\nG1 Z-1\nX10\nM2\n", &mut |event| {
+//!     if let Action::Line(to) = event.action {
+//!         cuts.push((event.line, to.point.to_array()));
+//!     }
+//!     Ok(())
+//! })
+//! .unwrap();
+//! assert_eq!(cuts, [(4, [0.0, 0.0, -1.0]), (5, [10.0, 0.0, -1.0])]);
+//! // A word that the control does not have is never skipped.
+//! assert!(read(&settings, "slot.ngc", b"G90 G13.7\n", &mut |_| Ok(())).is_err());
+//! ```
+//!
+//! Lengths are mm, feeds mm/min, times s, angles degrees. The same text gives the same events.
+//!
 //! [`Event`]s come out one by one as the program runs. Positions say what the block says: those of rotary axes
 //! as [`Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`Orientation::Axis`]. Kinematics are not this crate's business.

@@ -5,6 +5,26 @@
 //! stated tolerance and reported in the warnings; what can be neither written nor lowered is refused.
 //! Nothing here reads NC text: whether the program is right is the proof's to say.
 //!
+//! ```
+//! use program::{Builder, Feed, Spindle, Tool};
+//!
+//! let mut slot = Builder::new("slot");
+//! slot.tool(Tool { number: 1, diameter: Some(6.0), ..Tool::default() })?;
+//! slot.spindle(Spindle::Clockwise(5000.0))?;
+//! slot.rapid([0.0, 0.0, 5.0], None)?;
+//! slot.feed(Feed::PerMinute(300.0))?;
+//! slot.line([0.0, 0.0, -1.0], None)?;
+//! slot.line([10.0, 0.0, -1.0], None)?;
+//! slot.rapid([10.0, 0.0, 5.0], None)?;
+//! let machine = machine::load("generic-3axis-linuxcnc")?;
+//! let text = toolpost_post::write(&slot.build(), &machine).unwrap().text;
+//! let text = String::from_utf8(text).unwrap();
+//! assert!(text.contains("G1 Z-1 F300\nX10\n"), "{text}");
+//! # Ok::<(), Box<program::Diagnostic>>(())
+//! ```
+//!
+//! Lengths are mm, feeds mm/min. The same program and machine give the same bytes.
+//!
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what has been output to the control; `place` brings the tool into its
 //! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire stands,

@@ -8,6 +8,24 @@
 //! frame of the part (the work frame): every number of it is finite, and the axis is a unit vector. What a virtual
 //! control reports, with coordinates that nobody knows and positions of rotary axes, is no program: `control` has
 //! its own records, and `nc` makes a program of them.
+//!
+//! ```
+//! use toolpost_program::{Builder, Feed, Op, Pose, Tool};
+//!
+//! let mut builder = Builder::new("slot");
+//! builder.tool(Tool { number: 1, ..Tool::default() })?;
+//! builder.rapid([0.0, 0.0, 5.0], None)?;
+//! builder.feed(Feed::PerMinute(300.0))?;
+//! builder.line([0.0, 0.0, -1.0], None)?;
+//! let program = builder.build();
+//! let cuts = program.records.iter().filter(|record| matches!(record.op, Op::Line(_)));
+//! assert_eq!(cuts.count(), 1);
+//! // What is no number is no pose.
+//! assert!(Pose::upright([f64::NAN, 0.0, 0.0].into()).is_err());
+//! # Ok::<(), Box<toolpost_program::Diagnostic>>(())
+//! ```
+//!
+//! A program never holds the words of a control, and nothing here reads or writes files.
 
 #![deny(clippy::wildcard_enum_match_arm)]
 

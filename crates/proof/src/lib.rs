@@ -7,6 +7,33 @@
 //! control leads the centres of the source's tools along them. A coordinate that no
 //! block has set is not equal to anything.
 //!
+//! ```
+//! use program::{Builder, Feed, Spindle, Tool};
+//! use toolpost_proof::{Tolerances, prove};
+//!
+//! let mut slot = Builder::new("slot");
+//! slot.tool(Tool { number: 1, ..Tool::default() })?;
+//! slot.spindle(Spindle::Clockwise(5000.0))?;
+//! slot.rapid([0.0, 0.0, 5.0], None)?;
+//! slot.feed(Feed::PerMinute(300.0))?;
+//! slot.line([0.0, 0.0, -1.0], None)?;
+//! slot.rapid([0.0, 0.0, 5.0], None)?;
+//! let (source, machine) = (slot.build(), machine::load("generic-3axis-linuxcnc")?);
+//! let proven = |depth: &str| {
+//!     let text = format!(
+//!         "G21 G17 G40 G49 G80 G90 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0\nZ5\nG1 Z{depth} F300\nG0 Z5\nM5\n\
+//!          G53 G0 Z0\nM2\n"
+//!     );
+//!     prove(&source, &machine, "slot.ngc", text.as_bytes(), &Tolerances::default())
+//! };
+//! assert!(proven("-1").proven, "{:?}", proven("-1").mismatches);
+//! // A tenth too deep: the finding names block and source line.
+//! assert!(!proven("-1.1").proven);
+//! # Ok::<(), Box<program::Diagnostic>>(())
+//! ```
+//!
+//! Lengths are mm, angles of tolerances degrees. It never reads templates and never writes a program.
+//!
 //! # What is accepted
 //!
 //! 1. **Every motion of the source, in its order.** Each ends with the tool tip and the tool axis within

@@ -141,13 +141,18 @@ impl Expression<'_, '_, '_, '_> {
             let right = expression::Operand { value, place: [from, self.end()] };
             let next = self.operator();
             let rank = next.map(|next| next.rank);
-            let settled = own.settle(right.clone(), rank, |o, v, span| self.apply(o, v, span))?;
-            match next {
-                Some(next) => {
+            // What stands before the first comparison or logic is the same by both ranks.
+            let kept = (!read.is_empty()).then(|| right.clone());
+            let settled = own.settle(right, rank, |o, v, span| self.apply(o, v, span))?;
+            match (next, kept) {
+                (Some(next), kept) => {
+                    if next.operator.is_logic() || kept.is_some() {
+                        read.push((kept.unwrap_or_else(|| settled.clone()), next));
+                    }
                     own.push(settled, next);
-                    read.push((right, next));
                 }
-                None => break (settled.value, right),
+                (None, Some(last)) => break (settled.value, last),
+                (None, None) => return Ok(settled.value),
             }
         };
         let logical = read.iter().filter(|(_, next)| next.operator.is_logic()).count();
