@@ -162,6 +162,11 @@ samples: rust
 	@mkdir -p out/samples
 	@for sample in $(filter-out %.cls,$(wildcard machines/samples/*.*)); do \
 		name=$$(basename $${sample%.*}); axes=three-axes; \
+		if test -f machines/robots/$$name.toml; then \
+			$(TOOLPOST) --quiet post machines/samples/robot.cls -m $$name \
+				-o out/samples/$$(basename $$sample) || exit; \
+			continue; \
+		fi; \
 		if grep -Eq '^extends = "(points|wire-iso)"' machines/$$name.toml; then \
 			$(TOOLPOST) --quiet wire examples/sector.nc --from fanuc-31i -m $$name --side inside \
 				--wire 0.25 --gap 0.02 --leave 0.03 --thread 15,15 --round-corners --feed 0.1,0.2 \

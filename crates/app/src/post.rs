@@ -16,8 +16,9 @@ use serde_json::json;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [Rule; 19] = [
+const MACHINE_CANNOT: [Rule; 20] = [
     Rule::ArcOrientation,
+    Rule::ArmPath,
     Rule::AxisLimit,
     Rule::NoCycle,
     Rule::CycleTap,

@@ -6,7 +6,7 @@ use crate::summary::{self, Shape, number};
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
 use machine::Machine;
-use proof::{Report, Tolerances};
+use proof::{ArmChecked, Report, Tolerances};
 use serde_json::json;
 
 /// Proves the program `text`, which is called `file`, against `toolpath`.
@@ -67,8 +67,12 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
             rows.push((letter, summary::extent(min, max, unit)));
         }
     }
-    if machine.wire.is_none() {
-        rows.push(("travel", summary::travel(&proof.travel)));
+    match &proof.arm {
+        Some(arm) => rows.extend(joints(arm)),
+        None if machine.wire.is_none() => {
+            rows.push(("travel", summary::travel(&proof.travel)));
+        }
+        None => {}
     }
     let compared = &proof.compared;
     let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
@@ -122,6 +126,23 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
         rows.push(("excursions", format!("{}, listed in the report", compared.excursions)));
     }
     rows
+}
+
+/// The lines of a summary about the joints of a robot.
+fn joints(arm: &ArmChecked) -> Vec<(&'static str, String)> {
+    let degrees = |least: Option<f64>| match least {
+        Some(least) => format!("{}°", number(least, 1)),
+        None => String::from("-"),
+    };
+    let text = format!(
+        "{} from a limit, joint 5 {} from stretched, {:.0} % of a joint's speed in lines and arcs",
+        degrees(arm.limit_degrees),
+        degrees(arm.wrist_degrees),
+        arm.speed_percent
+    );
+    let not =
+        "the arm against itself, the part and the cell; its load; how it brakes and accelerates";
+    vec![("joints", text), ("not checked", String::from(not))]
 }
 
 /// What is reported of a program whose proof failed: the first mismatch side by side, and all of them as

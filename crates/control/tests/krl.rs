@@ -212,6 +212,19 @@ fn frames_by_number_are_those_of_the_operator_unless_the_program_sets_them() {
 }
 
 #[test]
+fn the_speed_with_which_the_tool_turns_is_known_as_far_as_the_program_says_it() {
+    let events = body("$VEL.ORI1=60\n$VEL.ORI2=30\nBAS (#INITMOV,0)").unwrap();
+    let speeds: Vec<[Option<f64>; 2]> = events
+        .iter()
+        .filter_map(|event| match event.action {
+            Action::Arm(ArmAction::TurnSpeed(speed)) => Some(speed),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(speeds, [[Some(60.0), None], [Some(60.0), Some(30.0)], [None, None]]);
+}
+
+#[test]
 fn expressions_go_by_the_ranks_of_krl() {
     let first = |value: &str| match body(&format!("$VEL.CP={value}")).unwrap()[0].action {
         Action::Feed(Feed::PerMinute(feed)) => feed / 60_000.0,

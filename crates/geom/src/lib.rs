@@ -37,7 +37,7 @@ pub use arc::{Arc, ArcError};
 pub use chain::{Chain, ChainError, Chains, chain};
 pub use crossing::Crossing;
 pub use element::{Element, Turn, turn_angle};
-pub use glam::{DAffine3 as Frame, DMat3 as Mat3, DVec2 as Vec2, DVec3 as Vec3};
+pub use glam::{DAffine3 as Frame, DMat3 as Mat3, DQuat as Quat, DVec2 as Vec2, DVec3 as Vec3};
 pub use rotation::Euler;
 pub use transform::Transform;
 

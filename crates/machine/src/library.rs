@@ -4,6 +4,7 @@ use include_dir::{Dir, include_dir};
 
 static CONTROL_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../controls");
 static MACHINE_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines");
+static ROBOT_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines/robots");
 static ARM_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines/arms");
 
 /// A folder of the library.
@@ -13,6 +14,8 @@ pub enum Kind {
     Control,
     /// Machines.
     Machine,
+    /// Robots: an arm with its control and its cell.
+    Robot,
     /// Arms, as kinematics: no programs are written for them.
     Arm,
 }
@@ -21,12 +24,16 @@ pub enum Kind {
 pub const MACHINES: &[Kind] = &[Kind::Machine];
 /// The controls alone.
 pub const CONTROLS: &[Kind] = &[Kind::Control];
+/// What has a control: machines and robots.
+pub const CONTROLLED: &[Kind] = &[Kind::Machine, Kind::Robot];
+/// The robots alone.
+pub const ROBOTS: &[Kind] = &[Kind::Robot];
 /// The arms alone.
 pub const ARMS: &[Kind] = &[Kind::Arm];
-/// Machines and arms: what is loaded by its name.
-pub const LOADABLE: &[Kind] = &[Kind::Machine, Kind::Arm];
-/// Machines, arms and controls.
-pub const EVERYTHING: &[Kind] = &[Kind::Machine, Kind::Arm, Kind::Control];
+/// Machines, robots and arms: what is loaded by its name.
+pub const LOADABLE: &[Kind] = &[Kind::Machine, Kind::Robot, Kind::Arm];
+/// Machines, robots, arms and controls.
+pub const EVERYTHING: &[Kind] = &[Kind::Machine, Kind::Robot, Kind::Arm, Kind::Control];
 
 /// Path (within the library) and text of the file of that name.
 pub fn find(name: &str, kinds: &[Kind]) -> Option<(&'static str, &'static str)> {
@@ -47,6 +54,7 @@ fn files(kinds: &[Kind]) -> impl Iterator<Item = (&'static str, &'static str)> {
     let folders = kinds.iter().map(|kind| match kind {
         Kind::Control => ("controls", &CONTROL_FILES),
         Kind::Machine => ("machines", &MACHINE_FILES),
+        Kind::Robot => ("machines/robots", &ROBOT_FILES),
         Kind::Arm => ("machines/arms", &ARM_FILES),
     });
     folders.flat_map(|(_, folder)| {

@@ -1,7 +1,7 @@
 //! What a machine is, after its files are merged.
 
 use crate::sheet::wrong_option;
-use geom::Vec3;
+use geom::{Euler, Frame, Vec3};
 use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove, Rule};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -54,6 +54,8 @@ pub struct Machine {
     pub wire: Option<Wire>,
     /// The arm, where the machine is a robot.
     pub arm: Option<arm::Arm>,
+    /// Where tool and part of the arm are; there where the machine is a robot with a control.
+    pub cell: Option<Cell>,
     /// What the spindle can do.
     pub spindle: SpindleRange,
     /// Fastest feed, mm/min; infinite where none is given.
@@ -72,6 +74,46 @@ pub struct Machine {
     pub approach: Vec<String>,
     /// Values that the templates of this machine read, by name.
     pub options: BTreeMap<String, OptionValue>,
+}
+
+/// Where the tool and the part of an arm are, and what its outputs switch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    /// Where the spindle holds its tools, in the frame of the flange; its Z points out of the tool.
+    pub spindle: Frame,
+    /// Length of a tool from there to its tip, mm, where the source states none.
+    pub tool_length: Option<f64>,
+    /// The frame of the source in the world of the controller.
+    pub part: Frame,
+    /// The joints at which programs begin and end, degrees, as the controller shows them.
+    pub home: [f64; 6],
+    /// Speed of moves of joints, percent of the fastest.
+    pub joint_speed: f64,
+    /// Speed of the tip where it goes straight and does not cut, mm/min.
+    pub rapid: f64,
+    /// Name of the operator's program that changes the tool; empty where there is none.
+    pub tool_change: String,
+    /// Number of the output that switches the spindle on.
+    pub spindle_output: Option<u32>,
+    /// Number of the analog output that sets its speed, and the speed at its full value, 1/min.
+    pub spindle_analog: Option<(u32, f64)>,
+    /// Number of the output that switches the coolant on.
+    pub coolant_output: Option<u32>,
+}
+
+impl Cell {
+    /// The frame of a tool's tip in that of the flange. `length` is what the source states, mm; `None` where neither it nor the
+    /// file does.
+    pub fn tool(&self, length: Option<f64>) -> Option<Frame> {
+        let length = length.or(self.tool_length)?;
+        Some(self.spindle * Frame::from_translation(Vec3::new(0.0, 0.0, length)))
+    }
+
+    /// The frame of six numbers: X, Y, Z in mm, and A, B, C in degrees, which turn about Z, the new Y and the new X.
+    pub fn frame([x, y, z, a, b, c]: [f64; 6]) -> Frame {
+        let turns = [c, b, a].map(f64::to_radians);
+        Frame::from_mat3_translation(Euler::FixedXyz.matrix(turns), Vec3::new(x, y, z))
+    }
 }
 
 /// What a machine was loaded from: its file, and those that it extends.

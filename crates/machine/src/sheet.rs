@@ -35,6 +35,7 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         ToolsSheet::KEYS,
         CoolantSheet::KEYS,
         ArmSheet::KEYS,
+        CellSheet::KEYS,
         LengthsSheet::KEYS,
         DhSheet::KEYS,
         JointSheet::KEYS,
@@ -87,6 +88,7 @@ sheet!(Sheet "" {
     spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";
     arm: Spanned<ArmSheet>, "", "Table: a six-axis arm. A file with it and without `reader` says how the arm moves; programs are written for no such file.";
     coolant: Spanned<CoolantSheet>, "", "Table: the M functions that switch coolant, where they are others than M7, M8 and M9.";
+    cell: Spanned<CellSheet>, "", "Table: where the tool and the part of an arm are, and what its outputs switch.";
     feed_max: Rate, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
     tools: ToolsSheet, "", "Table: what the magazine takes.";
     auxiliary: Vec<u32>, "", "Numbers of the M functions of the builder that programs use; none moves an axis that the program drives.";
@@ -224,6 +226,7 @@ sheet!(merged CoolantSheet "coolant" {
 });
 
 sheet!(merged ArmSheet "arm" {
+    model: Spanned<String>, "", "An arm of the library (`toolpost machines list` names them) whose figures hold where this table states none.";
     lengths: Spanned<LengthsSheet>, "", "Table: an arm whose last three axes meet in one point, by its seven lengths.";
     dh: Spanned<DhSheet>, "", "Table: an arm of Universal Robots, by its Denavit-Hartenberg parameters.";
     offsets: SixAngles, "degrees", "What is taken from each joint: joint i has the angle sign * position - offset, and with all those angles 0 the arm stands straight up. With `lengths` alone.";
@@ -235,6 +238,20 @@ sheet!(merged ArmSheet "arm" {
     reach: Length, "mm", "What the data sheet states from axis 1 to the wrist centre. Lengths that reach more than 2 % farther or less far are refused.";
     joints: Spanned<Vec<JointSheet>>, "", "Tables: the six joints from the foot upwards, each { min, max, speed, acceleration }.";
     calibration: Spanned<Vec<[f64; 6]>>, "mm, degrees", "What the factory has measured of an arm of Universal Robots: of each joint x, y, z and the turns about the fixed X, Y and Z axes in the frame of the one before it.";
+});
+
+sheet!(merged CellSheet "cell" {
+    spindle: SixNumbers, "mm, degrees", "Where the spindle holds its tools, in the frame of the flange: X, Y, Z, and A, B, C, which turn about Z, the new Y and the new X. Its Z points out of the tool.";
+    tool_length: Length, "mm", "Length of a tool from there to its tip, where the source states none.";
+    part: SixNumbers, "mm, degrees", "The frame of the source in the world of the controller, as six numbers like those of `spindle`.";
+    home: SixAngles, "degrees", "The joints at which programs begin and end, as the controller shows them.";
+    joint_speed: Percent, "%", "Speed of moves of joints, of the fastest.";
+    rapid: Rate, "mm/min", "Speed of the tip where it goes straight and does not cut.";
+    tool_change: String, "", "Name of the operator's program that changes the tool, called with its number. Without it the one tool of a program is in the spindle.";
+    spindle_output: u32, "", "Number of the digital output that switches the spindle on.";
+    spindle_analog: u32, "", "Number of the analog output that sets its speed.";
+    spindle_full: Speed, "1/min", "Speed of the spindle at the full value of that output.";
+    coolant_output: u32, "", "Number of the digital output that switches the coolant on.";
 });
 
 sheet!(LengthsSheet "arm.lengths" {
@@ -326,6 +343,8 @@ value! {
     Angle(f64, "f64") |degrees| degrees.abs() <= 1e6, "a number from -1000000 to 1000000 degrees";
     Lean(f64, "f64") |degrees| above_0(*degrees, 90.0), "a number above 0, at most 90 degrees,";
     SixAngles([f64; 6], "[f64; 6]") |six| six.iter().all(|degrees| degrees.abs() <= 360.0), "six numbers from -360 to 360 degrees";
+    SixNumbers([f64; 6], "[f64; 6]") |six| six.iter().all(|number| number.abs() <= 1e5), "six numbers from -100000 to 100000";
+    Percent(f64, "f64") |percent| above_0(*percent, 100.0), "a number above 0, at most 100 %,";
     JointRate(f64, "f64") |rate| above_0(*rate, 1e5), "a number above 0, at most 100000 degrees/s,";
     JointAcceleration(f64, "f64") |rate| above_0(*rate, 1e6), "a number above 0, at most 1000000 degrees/s²,";
     TurnRate(f64, "f64") |rate| above_0(*rate, 1e7), "a number above 0, at most 10000000 degrees/min,";

@@ -117,6 +117,7 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
         table_frame_at_zero: machine.settings.table_frame_at_zero,
         sets_work_offsets: machine.settings.sets_work_offsets,
         operator_parameters: machine.operator_parameters.clone(),
+        tool_change: machine.cell.as_ref().map(|cell| cell.tool_change.clone()).unwrap_or_default(),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,
             thread: wire.thread,

@@ -35,6 +35,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod arcs;
+mod arm;
 mod around;
 mod away;
 mod catalogue;
@@ -92,7 +93,10 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     if !errors.is_empty() {
         return Err(errors);
     }
-    let mut output = write_moves(program, machine)?;
+    let mut output = match robot(machine) {
+        Some(robot) => arm::write(program, machine, robot)?,
+        None => write_moves(program, machine)?,
+    };
     let warnings: Vec<Diagnostic> = warnings;
     output.warnings.extend(warnings);
     Ok(output)
@@ -119,5 +123,13 @@ fn write_moves(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagn
 /// # Errors
 /// The mistakes in the machine's files, with their place there.
 pub fn check(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
-    walk::Walk::new(&Program::default(), machine).map(drop)
+    match robot(machine) {
+        Some(robot) => arm::check(machine, robot),
+        None => walk::Walk::new(&Program::default(), machine).map(drop),
+    }
+}
+
+/// The arm and its cell, where the machine is a robot.
+fn robot(machine: &Machine) -> Option<(&::arm::Arm, &machine::Cell)> {
+    machine.arm.as_ref().zip(machine.cell.as_ref())
 }

@@ -134,6 +134,62 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
+/// The same for the control of an arm: it has the blocks and words without which no program of it can be written.
+///
+/// # Errors
+/// Each promise that is not kept.
+pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), Vec<Diagnostic>> {
+    use BlockName as B;
+    use WordName as W;
+    let mut errors = Findings::default();
+    for (name, word) in machine.words.iter().filter(|(name, _)| WordName::named(name).is_none()) {
+        let near = nearest(name, WordName::TABLE.iter().map(|row| row.name));
+        let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
+        let found = Diagnostic::error(Rule::Word, format!("no word is called `{name}`")).help(help);
+        errors.push(found.file(word.place.file.clone()).line(word.place.line));
+    }
+    for (word, block) in templates.words() {
+        let name = word.name();
+        let known = machine.words.get(name);
+        let lacks = known.is_none_or(|known| {
+            word.codes().any(|code| !known.codes.contains_key(code) && word == W::CornerMode)
+        });
+        if lacks {
+            let message = format!(
+                "the block places `{name}`, and [words.{name}] is missing, or lacks a code"
+            );
+            errors.push(
+                Diagnostic::error(Rule::Word, message).file(block.file.clone()).line(block.line),
+            );
+        }
+    }
+    let pose = [W::X, W::Y, W::Z, W::A, W::B, W::C];
+    let middle = [W::MX, W::MY, W::MZ, W::MA, W::MB, W::MC];
+    let joints = [W::J1, W::J2, W::J3, W::J4, W::J5, W::J6];
+    for (block, words) in [
+        (B::Frames, [pose, middle].concat()),
+        (B::Joints, joints.to_vec()),
+        (B::Linear, [&pose[..], &[W::CornerMode]].concat()),
+        (B::ArcThrough, [&pose[..], &middle, &[W::CornerMode]].concat()),
+        (B::Feed, vec![W::F]),
+        (B::CornerDistance, vec![W::Corner]),
+        (B::Dwell, vec![W::P]),
+    ] {
+        if !templates.has(block) {
+            let message = format!("the block `{}` is missing: a robot needs it", block.name());
+            errors.push(Diagnostic::error(Rule::MissingBlock, message).file(machine.file.clone()));
+        }
+        for word in
+            words.into_iter().filter(|word| templates.has(block) && !templates.places(block, *word))
+        {
+            let message = format!("the block `{}` lacks `{}`", block.name(), word.name());
+            errors.push(Diagnostic::error(Rule::MissingWord, message).file(machine.file.clone()));
+        }
+    }
+    let errors = errors.finish();
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
 /// What the blocks lack to write the tool's orientation as the machine's file says.
 fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
     use BlockName as B;

@@ -68,6 +68,7 @@
 
 mod accepted;
 mod arc;
+mod arm;
 mod compensation;
 mod expected;
 mod gauge;
@@ -88,7 +89,8 @@ mod travel;
 pub use accepted::{ACCEPTABLE, Accepted};
 pub use prover::Prover;
 pub use report::{
-    Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary, TravelChecked, Worst,
+    ArmChecked, Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary,
+    TravelChecked, Worst,
 };
 pub use tolerance::{Applied, Tolerances};
 
@@ -121,6 +123,10 @@ pub fn prove_while(
     tolerances: &Tolerances,
     go_on: &dyn Fn() -> bool,
 ) -> Report {
+    if let (Some(arm), Some(cell)) = (&machine.arm, &machine.cell) {
+        let robot = (machine, arm, cell);
+        return arm::prove(source, robot, (file_name, text), tolerances, go_on);
+    }
     if let Some(found) = compensation::unsettled(source, machine) {
         return refused(source, machine, tolerances, found);
     }

@@ -38,8 +38,34 @@ pub struct Report {
     pub excursions: Vec<Excursion>,
     /// What of the travel of the axes was checked.
     pub travel: TravelChecked,
+    /// What was checked of the joints, where the machine is a robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arm: Option<ArmChecked>,
     /// What the program does, as the control runs it.
     pub program: Summary,
+}
+
+/// What was checked of the joints of an arm, on the whole path of the program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ArmChecked {
+    /// The least distance of a joint from its limits, degrees.
+    pub limit_degrees: Option<f64>,
+    /// The least distance of joint 5 from stretched along a line or an arc, degrees.
+    pub wrist_degrees: Option<f64>,
+    /// The largest part of a joint's speed along a line or an arc, percent.
+    pub speed_percent: f64,
+}
+
+impl ArmChecked {
+    pub(crate) fn note_limit(&mut self, radians: f64) {
+        let degrees = radians.to_degrees();
+        self.limit_degrees = Some(self.limit_degrees.map_or(degrees, |least| least.min(degrees)));
+    }
+
+    pub(crate) fn note_wrist(&mut self, radians: f64) {
+        let degrees = radians.to_degrees();
+        self.wrist_degrees = Some(self.wrist_degrees.map_or(degrees, |least| least.min(degrees)));
+    }
 }
 
 /// What of the travel of the axes was checked, in machine space. Limits of rotary axes always are.

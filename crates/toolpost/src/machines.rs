@@ -30,22 +30,29 @@ fn list() -> Result<Answer, Stop> {
         library::names(library::MACHINES).map(toolpath::machine).collect();
     let controls: Result<Vec<Machine>, Stop> =
         library::names(library::CONTROLS).map(|name| Ok(machine::load_control(name)?)).collect();
+    let robots: Result<Vec<Machine>, Stop> =
+        library::names(library::ROBOTS).map(toolpath::machine).collect();
     let arms: Result<Vec<Machine>, Stop> =
         library::names(library::ARMS).map(toolpath::machine_or_arm).collect();
-    let (machines, arms, controls) = (machines?, arms?, controls?);
+    let (machines, robots, arms, controls) = (machines?, robots?, arms?, controls?);
     let rows = |all: &[Machine], text: &dyn Fn(&Machine) -> String| {
         let lines: Vec<_> = all.iter().map(|m| (m.name.as_str(), text(m))).collect();
         summary::rows(&lines)
     };
     let text = format!(
-        "{}\narms, as kinematics alone:\n{}\ncontrols, for machines of your own to extend:\n{}",
+        "{}\nrobots:\n{}\narms, as kinematics alone:\n{}\ncontrols, for machines of your own to extend:\n{}",
         rows(&machines, &|machine| format!("{}: {}", machine.title, abilities(machine))),
+        rows(&robots, &|machine| format!("{}: {}", machine.title, arms::abilities(machine))),
         rows(&arms, &|machine| format!("{}: {}", machine.title, arms::abilities(machine))),
         rows(&controls, &|machine| machine.title.clone())
     );
     let data = |all: &[Machine]| all.iter().map(describe).collect::<Vec<Value>>();
-    let data =
-        json!({ "machines": data(&machines), "arms": data(&arms), "controls": data(&controls) });
+    let data = json!({
+        "machines": data(&machines),
+        "robots": data(&robots),
+        "arms": data(&arms),
+        "controls": data(&controls),
+    });
     Ok(Answer::product(text, data))
 }
 
@@ -287,7 +294,9 @@ fn unchecked(machine: &Machine) -> Vec<&'static str> {
     let endless = |axis: &machine::LinearAxis| axis.min.is_infinite() || axis.max.is_infinite();
     let has_no_end = machine.linear.iter().any(endless);
     let mut open = Vec::new();
-    if has_no_end {
+    if machine.arm.is_some() {
+        open.push("the arm against itself, the part and the cell; its load");
+    } else if has_no_end {
         open.push("the travel of programs: an axis has no min or no max in [axes]");
     } else if machine.work_zero.is_none() {
         open.push("where programs stand in the travel: work_zero is missing, their size alone is compared with it");

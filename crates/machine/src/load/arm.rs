@@ -2,7 +2,11 @@
 
 use super::Outcome;
 use super::file::SheetFile;
-use crate::sheet::{Angle, ArmSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet, Position};
+use crate::library;
+use crate::model::Cell;
+use crate::sheet::{
+    Angle, ArmSheet, CellSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet, Position,
+};
 use arm::{Arm, Calibration, Coupling, CouplingLimit, Dh, Joint, Spherical, Structure};
 use program::Diagnostic;
 use toml::Spanned;
@@ -14,8 +18,23 @@ pub(super) struct PlacedArm {
 }
 
 impl PlacedArm {
-    pub(super) fn new(file: &SheetFile, sheet: Spanned<ArmSheet>) -> PlacedArm {
-        PlacedArm { place: file.at("arm", &sheet, ""), sheet: sheet.into_inner() }
+    /// The table of a file, over that of the arm of the library that its `model` names.
+    ///
+    /// # Errors
+    /// The library has no such arm.
+    pub(super) fn new(file: &SheetFile, sheet: Spanned<ArmSheet>) -> Outcome<PlacedArm> {
+        let place = file.at("arm", &sheet, "");
+        let nearer = PlacedArm { place, sheet: sheet.into_inner() };
+        let Some(model) = &nearer.sheet.model else { return Ok(nearer) };
+        let found = SheetFile::of_library(model.get_ref(), library::ARMS)
+            .map_err(|found| Box::new(file.at("model", model, &found.message).help(found.help)))?;
+        let Some(of_library) = found.parse()?.arm else { return Ok(nearer) };
+        Ok(PlacedArm { sheet: of_library.into_inner().under(nearer.sheet), place: nearer.place })
+    }
+
+    /// The arm of the library that it is, where one is named.
+    pub(super) fn model(&self) -> Option<&str> {
+        self.sheet.model.as_ref().map(|model| model.get_ref().as_str())
     }
 
     /// The arm.
@@ -40,6 +59,39 @@ pub(super) fn under(farther: Option<PlacedArm>, nearer: Option<PlacedArm>) -> Op
         }
         (farther, nearer) => nearer.or(farther),
     }
+}
+
+/// The cell of a table, all of whose needed keys are there.
+///
+/// # Errors
+/// Which is missing.
+pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
+    let spindle_analog = match (sheet.spindle_analog, sheet.spindle_full) {
+        (Some(output), Some(full)) if full.0 > 0.0 => Some((output, full.0)),
+        (None, None) => None,
+        _ => {
+            return Err(String::from(
+                "`spindle_analog` and `spindle_full` are given both or not at all",
+            ));
+        }
+    };
+    let tool_change = sheet.tool_change.unwrap_or_default();
+    let named = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if tool_change.len() > 24 || !tool_change.chars().all(named) {
+        return Err(String::from("`tool_change` is a name of letters, digits and _, at most 24"));
+    }
+    Ok(Cell {
+        spindle: Cell::frame(needed("spindle", sheet.spindle)?.0),
+        tool_length: sheet.tool_length.map(|mm| mm.0),
+        part: Cell::frame(needed("part", sheet.part)?.0),
+        home: needed("home", sheet.home)?.0,
+        joint_speed: needed("joint_speed", sheet.joint_speed)?.0,
+        rapid: needed("rapid", sheet.rapid)?.0,
+        tool_change,
+        spindle_output: sheet.spindle_output,
+        spindle_analog,
+        coolant_output: sheet.coolant_output,
+    })
 }
 
 type Said<T> = std::result::Result<T, String>;

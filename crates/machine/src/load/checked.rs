@@ -63,6 +63,7 @@ pub(super) struct CheckedSheet {
     orientation: Option<Placed<OrientationSheet>>,
     wire: Option<Placed<WireSheet>>,
     arm: Option<PlacedArm>,
+    cell: Option<Placed<CellSheet>>,
     spindle: Option<Placed<SpindleSheet>>,
     coolant: Option<Placed<CoolantSheet>>,
     feed_max: Option<Rate>,
@@ -109,7 +110,8 @@ impl CheckedSheet {
             safe_height: sheet.safe_height.map(|z| Placed::new(file, "safe_height", z)),
             orientation: sheet.orientation.map(|o| Placed::new(file, "orientation", o)),
             wire: sheet.wire.map(|wire| Placed::new(file, "wire", wire)),
-            arm: sheet.arm.map(|sheet| PlacedArm::new(file, sheet)),
+            arm: sheet.arm.map(|sheet| PlacedArm::new(file, sheet)).transpose()?,
+            cell: sheet.cell.map(|cell| Placed::new(file, "cell", cell)),
             spindle,
             coolant: sheet.coolant.map(|coolant| Placed::new(file, "coolant", coolant)),
             feed_max: sheet.feed_max,
@@ -270,6 +272,11 @@ fn overlay<K: Ord, V>(
 }
 
 impl CheckedSheet {
+    /// The arm of the library that it is.
+    pub(super) fn arm_model(&self) -> Option<&str> {
+        self.arm.as_ref().and_then(PlacedArm::model)
+    }
+
     pub(super) fn under(self, nearer: CheckedSheet) -> CheckedSheet {
         CheckedSheet {
             extends: self.extends,
@@ -292,6 +299,7 @@ impl CheckedSheet {
             orientation: joined(self.orientation, nearer.orientation, OrientationSheet::under),
             wire: joined(self.wire, nearer.wire, WireSheet::under),
             arm: arm::under(self.arm, nearer.arm),
+            cell: joined(self.cell, nearer.cell, CellSheet::under),
             spindle: joined(self.spindle, nearer.spindle, SpindleSheet::under),
             coolant: joined(self.coolant, nearer.coolant, CoolantSheet::under),
             feed_max: nearer.feed_max.or(self.feed_max),
@@ -356,6 +364,15 @@ impl CheckedSheet {
             ));
         }
         let arm = self.arm.map(PlacedArm::finish).transpose()?;
+        let cell = self
+            .cell
+            .map(|Placed { sheet, place }| arm::cell(sheet).map_err(|why| wrong(&place, &why)));
+        let cell = cell.transpose()?;
+        if arm.is_some() != cell.is_some() && self.reader.is_some() {
+            return Err(missing(
+                "`[arm]` or `[cell]` of a robot with a control: it needs both, and the missing one",
+            ));
+        }
         if arm.is_some() && (!rotary.is_empty() || self.wire.is_some()) {
             return Err(missing("a machine that is only one of arm, mill and wire machine"));
         }
@@ -459,6 +476,7 @@ impl CheckedSheet {
             },
             wire: self.wire.map(|wire| finish_wire(&wire.sheet)),
             arm,
+            cell,
             spindle: SpindleRange {
                 min: spindle.min.map_or(0.0, |speed| speed.0),
                 max: spindle.max.map_or(f64::INFINITY, |speed| speed.0),

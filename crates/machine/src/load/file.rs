@@ -194,7 +194,7 @@ fn builders(control: &str) -> impl Iterator<Item = &'static str> {
         let file = SheetFile::of_library(name, library::EVERYTHING).ok()?;
         file.parse().ok()?.extends.map(Spanned::into_inner)
     };
-    library::names(library::MACHINES).filter(move |name| {
+    library::names(library::CONTROLLED).filter(move |name| {
         let mut chain = std::iter::successors(parent(name), |name| parent(name));
         chain.any(|ancestor| ancestor == control)
     })

@@ -144,7 +144,8 @@ fn build(file: SheetFile, reach: &Reach) -> Outcome<Machine> {
         }
         let next = here.parent(&parent, reach)?;
         // Of a machine that extends another one, the control is what that one extends.
-        if control.as_deref().is_none_or(|name| library::find(name, library::MACHINES).is_some()) {
+        if control.as_deref().is_none_or(|name| library::find(name, library::CONTROLLED).is_some())
+        {
             control = Some(parent.get_ref().clone());
         }
         merged = CheckedSheet::new(next.parse()?, &next)?.under(merged);
@@ -155,6 +156,9 @@ fn build(file: SheetFile, reach: &Reach) -> Outcome<Machine> {
         let message = format!("{what} is missing, here and in everything that this file extends");
         Box::new(Diagnostic::error(Rule::MachineIncomplete, message).file(shown.clone()))
     };
+    if let Some((_, text)) = merged.arm_model().and_then(|arm| library::find(arm, library::ARMS)) {
+        texts.add(text.as_bytes());
+    }
     let control = control.unwrap_or_else(|| name.clone());
     let machine = merged.finish(name.clone(), shown.clone(), control, &missing)?;
     Ok(Machine { loaded_from: LoadedFrom { files, digest: texts.finish() }, ..machine })

@@ -52,6 +52,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         safe_height: None,
         wire: None,
         arm: None,
+        cell: None,
         orientation: OrientationSettings {
             simultaneous: OrientationMode::MachineAngles,
             positioned: OrientationMode::MachineAngles,

@@ -94,7 +94,11 @@ rules! {
     ArmKinematics "arm-kinematics" []
         "Of this arm the kinematics are known, but no program can be written or read for it yet."
         "name a machine that has a control"
-        "`post` with `kuka-kr6-r900`";
+        "`post` with `kuka-kr6-r900-sixx`, whose file states no control";
+    ArmPath "arm-path" []
+        "An arm cannot follow the toolpath: a point is out of reach, or no turn about the tool and no posture passes a cut within the limits and the speeds of the joints."
+        "move the part, tilt the spindle on the flange, or take a lower feed"
+        "A line to a point 10 m away from the robot";
     ArmReach "arm-reach" []
         "The reach of an arm is missing, is not that of its kinematics, or is given where it is not needed."
         "give the reach of the data sheet by `--reach`"

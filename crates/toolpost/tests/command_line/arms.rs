@@ -27,7 +27,7 @@ fn what_the_file_of_an_arm_leaves_open_is_said() {
     let said = folder.run(&["machines", "check", "kuka-kr6-r900-sixx"]).out;
     assert!(!said.contains("coupling") && !said.contains("estimates"), "{said}");
     assert!(said.contains("-190 to 45 degrees, 300 degrees/s"), "{said}");
-    let said = folder.run(&["machines", "check", "kuka-kr6-r900"]);
+    let said = folder.run(&["machines", "check", "kuka-kr6-r900-six"]);
     assert!(said.code == 2 && said.err.contains("did you mean `kuka-kr6-r900-sixx`"), "{said:?}");
 }
 

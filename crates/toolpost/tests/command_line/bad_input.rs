@@ -315,6 +315,7 @@ const READERS: &[(&str, &str, &str)] = &[
     ("sinumerik/style.mpf", "in.mpf", "show in.mpf --from sinumerik-840d"),
     ("sinumerik/style.mpf", "in.mpf", "show in.mpf --from sinumerik-828d"),
     ("klartext/milling.h", "in.h", "show in.h --from heidenhain-tnc640"),
+    ("krl/job.src", "in.src", "prove in.src -m kuka-kr6-r900 --against part.cls"),
     (
         "../../examples/flange.tbl",
         "in.tbl",
@@ -522,6 +523,7 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
             "wire-iso" => &["fanuc-wire"],
             "linuxcnc-switchkins" => &["linuxcnc"],
             "grbl" => &["grbl-3018"],
+            "krl" => &["kuka-kr6-r900"],
             _ => &[],
         };
         let named =

@@ -38,6 +38,8 @@ pub(in crate::krl) struct State {
     pub(super) turning: Option<Turning>,
     /// Whether `$CIRC_TYPE` is `#PATH`.
     pub(super) along_path: Option<bool>,
+    /// `$VEL.ORI1` and `$VEL.ORI2`, degrees/s.
+    pub(super) turn_speed: [Option<f64>; 2],
     /// The name of the operator's program that changes tools.
     tool_change: String,
 }
@@ -62,6 +64,7 @@ impl State {
             distance: None,
             turning: None,
             along_path: None,
+            turn_speed: [None; 2],
             tool_change: tool_change.to_ascii_uppercase(),
         }
     }
@@ -138,6 +141,8 @@ impl State {
     /// Frames and modes are as the machine is configured, or as another program has left them.
     pub(super) fn forget(&mut self, line: u32, channel: &mut Channel) -> Outcome {
         (self.distance, self.turning, self.along_path) = (None, None, None);
+        self.turn_speed = [None; 2];
+        channel.report(line, Action::Arm(ArmAction::TurnSpeed(self.turn_speed)))?;
         self.frame(line, ArmAction::Base(None), channel)?;
         self.frame(line, ArmAction::Tool(None), channel)
     }

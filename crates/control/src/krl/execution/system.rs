@@ -35,6 +35,11 @@ pub(super) fn assign(
             let speed = positive(scan, name, &value)?;
             channel.report(line, Action::Feed(Feed::PerMinute(speed * PER_MINUTE)))
         }
+        ("$VEL", Some(which @ ("ORI1" | "ORI2"))) => {
+            let speed = positive(scan, name, &value)?;
+            state.turn_speed[usize::from(which == "ORI2")] = Some(speed);
+            channel.report(line, Action::Arm(ArmAction::TurnSpeed(state.turn_speed)))
+        }
         ("$LOAD", None) => match value {
             Value::Fields(_) => channel.report(line, Action::Arm(ArmAction::Load)),
             other => Err(unfit(scan, name, &other, "an aggregate")),
@@ -63,7 +68,6 @@ fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: 
         }
         // They make the arm slower or its corners wider: how wide, no motion is told that is passed by them (`Unbounded`).
         ("$APO", Some("CVEL" | "CORI" | "CPTP"))
-        | ("$VEL", Some("ORI1" | "ORI2"))
         | ("$ACC", Some("CP" | "ORI1" | "ORI2"))
         | ("$VEL_AXIS" | "$ACC_AXIS", None) => drop(positive(scan, name, value)?),
         ("$ADVANCE", None) => {

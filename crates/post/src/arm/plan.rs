@@ -1,0 +1,401 @@
+//! From records to the motions of an arm: where they end, and with which joints.
+
+use ::arm::{Arm, Joints};
+use armpath::{Cell as Frames, Choice, Point, Settings, choose};
+use geom::{Arc, Frame, Mat3, Vec3};
+use machine::{Cell, Machine};
+use program::lowering::{HoleMove, feed_per_minute, hole};
+use program::{
+    Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Outcome, Output, PathMode, Pose, Program,
+    Record, Rule, Spindle, Tool,
+};
+use std::f64::consts::PI;
+
+/// How far the radii at the ends of an arc of the source may differ, as a part of them.
+const RADII: f64 = 0.01;
+
+/// Points along an arc, at which joints are looked for, are so far apart at the most, radians.
+const ALONG_ARC: f64 = 0.1;
+
+/// What an arm does, in order.
+pub(super) enum Step<'a> {
+    /// A motion.
+    Move(Motion),
+    /// What happens between motions, and its line.
+    Act(Act<'a>, u32),
+}
+
+/// What happens between motions.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Act<'a> {
+    Tool(&'a Tool),
+    Home,
+    Spindle(Spindle),
+    Coolant(Coolant),
+    /// Seconds.
+    Dwell(f64),
+    Stop,
+    Output(Output),
+    Operation(&'a str),
+    Text(&'a str),
+}
+
+/// A motion to a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    /// Line of the source.
+    pub(super) line: u32,
+    pub(super) kind: Kind,
+    /// mm/min; of a rapid that of the cell.
+    pub(super) feed: f64,
+    /// Where it ends.
+    pub(super) end: Position,
+    /// How far its end may be left, mm, where it cuts.
+    pub(super) corner: f64,
+}
+
+/// How a motion goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Rapid,
+    Line,
+    /// Through this point, in the frame of the part.
+    Arc(Vec3),
+}
+
+/// Where the arm is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Position {
+    /// The tool in the frame of the part.
+    pub(super) tool: Frame,
+    pub(super) joints: Joints,
+}
+
+/// What the source says up to a tool change, and what of it are points of a path.
+struct Stretch<'a> {
+    length: Option<f64>,
+    points: Vec<Point>,
+    lines: Vec<u32>,
+    steps: Vec<Planned<'a>>,
+}
+
+enum Planned<'a> {
+    /// A motion, and the number of the point at which it ends.
+    Move {
+        line: u32,
+        kind: Kind,
+        feed: f64,
+        corner: f64,
+        point: usize,
+    },
+    Act(Act<'a>, u32),
+}
+
+/// The motions of a program, with joints.
+///
+/// # Errors
+/// What an arm cannot do, or this one cannot reach, with the line of the source and the margin.
+pub(super) fn plan<'a>(
+    source: &'a Program,
+    machine: &Machine,
+    (arm, cell): (&Arm, &Cell),
+) -> Outcome<Vec<Step<'a>>> {
+    let mut walk = Walk {
+        machine,
+        cell,
+        stretches: vec![Stretch::new(None)],
+        here: None,
+        feed: None,
+        cycle: None,
+        spindle: Spindle::Off,
+        corner: machine.path_tolerance(),
+    };
+    for record in &source.records {
+        walk.record(record).map_err(|found| Box::new(found.line(record.line)))?;
+    }
+    let mut steps = Vec::new();
+    for stretch in walk.stretches {
+        stretch.chosen((arm, cell), &mut steps)?;
+    }
+    Ok(steps)
+}
+
+impl<'a> Stretch<'a> {
+    fn new(length: Option<f64>) -> Stretch<'a> {
+        Stretch { length, points: Vec::new(), lines: Vec::new(), steps: Vec::new() }
+    }
+
+    fn point(&mut self, line: u32, pose: &Pose, cut: Option<f64>) -> usize {
+        self.points.push(Point {
+            tip: pose.point(),
+            axis: pose.axis(),
+            side: None,
+            cut: cut.is_some(),
+            feed: cut.unwrap_or(0.0),
+        });
+        self.lines.push(line);
+        self.points.len() - 1
+    }
+
+    /// The steps, with the joints that are chosen for them.
+    fn chosen(self, (arm, cell): (&Arm, &Cell), steps: &mut Vec<Step<'a>>) -> Outcome {
+        let positions = match self.points.is_empty() {
+            true => Vec::new(),
+            false => self.positions(arm, cell)?,
+        };
+        for step in self.steps {
+            steps.push(match step {
+                Planned::Act(act, line) => Step::Act(act, line),
+                Planned::Move { line, kind, feed, corner, point } => {
+                    Step::Move(Motion { line, kind, feed, corner, end: positions[point] })
+                }
+            });
+        }
+        Ok(())
+    }
+
+    fn positions(&self, arm: &Arm, cell: &Cell) -> Outcome<Vec<Position>> {
+        let Some(tool) = cell.tool(self.length) else {
+            let message =
+                "neither the source nor `tool_length` of the cell states the length of the tool";
+            let help = "LENGTH in the source's tool call, or `tool_length` below [cell] of the machine file";
+            return Err(Box::new(
+                Diagnostic::error(Rule::ToolLength, message).help(help).line(self.lines[0]),
+            ));
+        };
+        let frames = Frames { tool, part: cell.part };
+        let choice: Choice = choose(arm, &frames, &self.points, &Settings::default()).map_err(|blocked| {
+            let message = format!("the arm cannot go here: {blocked}");
+            let help = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
+            let line = self.lines[blocked.point.min(self.lines.len() - 1)];
+            Diagnostic::error(Rule::ArmPath, message).help(help).line(line)
+        })?;
+        let mut positions = Vec::with_capacity(self.points.len());
+        for section in &choice.sections {
+            if section.reentry {
+                let message = "no turn about the tool and no posture passes the whole cut: the arm would have to draw back here, turn and \
+                               enter again, which is not written yet";
+                let help = "move the part (`part` below [cell]), or cut it in two operations";
+                return Err(Box::new(
+                    Diagnostic::error(Rule::ArmPath, message)
+                        .help(help)
+                        .line(self.lines[section.first]),
+                ));
+            }
+            for (point, position) in self.points[section.first..].iter().zip(&section.positions) {
+                let z = -point.axis;
+                let axes = Mat3::from_cols(position.side, z.cross(position.side), z);
+                positions.push(Position {
+                    tool: Frame::from_mat3_translation(axes, point.tip),
+                    joints: position.joints,
+                });
+            }
+        }
+        Ok(positions)
+    }
+}
+
+struct Walk<'a, 'm> {
+    machine: &'m Machine,
+    cell: &'m Cell,
+    stretches: Vec<Stretch<'a>>,
+    here: Option<Pose>,
+    feed: Option<Feed>,
+    cycle: Option<&'a Cycle>,
+    spindle: Spindle,
+    corner: f64,
+}
+
+impl<'a> Walk<'a, '_> {
+    fn stretch(&mut self) -> &mut Stretch<'a> {
+        if self.stretches.is_empty() {
+            self.stretches.push(Stretch::new(None));
+        }
+        let last = self.stretches.len() - 1;
+        &mut self.stretches[last]
+    }
+
+    fn record(&mut self, record: &'a Record) -> Outcome {
+        match &record.op {
+            Op::Rapid(to) => {
+                let feed = self.cell.rapid;
+                self.go(record.line, to, Kind::Rapid, (feed, 0.0));
+            }
+            Op::Line(to) => {
+                let from = self.start()?;
+                let feed = self.feed(from.point().distance(to.point()))?;
+                self.go(record.line, to, Kind::Line, (feed, self.corner));
+            }
+            Op::Arc(to) => {
+                let from = self.start()?;
+                let radius = from.point().distance(to.circle.center());
+                let arc = to.circle.arc(from.point(), to.end.point(), radius * RADII);
+                let arc = arc.map_err(|_| {
+                    Diagnostic::error(Rule::Arc, "the ends of the arc are not on its circle")
+                })?;
+                self.arc(record.line, &arc, &to.end)?;
+            }
+            Op::Tool(tool) => {
+                self.stretches.push(Stretch::new(tool.length));
+                self.act(record, Act::Tool(tool));
+                self.here = None;
+            }
+            Op::Home => {
+                self.act(record, Act::Home);
+                self.here = None;
+            }
+            Op::Feed(feed) => self.feed = Some(*feed),
+            Op::Spindle(spindle) => {
+                self.spindle = *spindle;
+                self.act(record, Act::Spindle(*spindle));
+            }
+            Op::PathMode(mode) => {
+                let own = self.machine.path_tolerance();
+                self.corner = match mode {
+                    PathMode::ExactStop | PathMode::ExactPath => 0.0,
+                    PathMode::Blend(mm) => mm.min(own),
+                    PathMode::AsSetUp => own,
+                };
+            }
+            Op::Coolant(coolant) => self.act(record, Act::Coolant(*coolant)),
+            Op::Output(output) => self.act(record, Act::Output(*output)),
+            Op::Dwell(seconds) => self.act(record, Act::Dwell(*seconds)),
+            Op::Stop => self.act(record, Act::Stop),
+            Op::Operation(name) => self.act(record, Act::Operation(name)),
+            Op::Comment(text) | Op::Message(text) => self.act(record, Act::Text(text)),
+            Op::Compensation(Compensation::Off)
+            | Op::SurfaceSpeed(None)
+            | Op::Frame(_)
+            | Op::Preselect(_)
+            | Op::EndOfOperation
+            | Op::End => {}
+            Op::OptionalStop if self.machine.leaves_out("optional_stop") => {}
+            Op::Cycle(cycle) => self.cycle = Some(cycle),
+            Op::CycleOff => self.cycle = None,
+            Op::Hole(pose) => self.hole(record.line, pose)?,
+            Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
+                let message = "a robot has no cutter compensation";
+                let help = "have the CAM system write the path of the tool's centre";
+                return Err(Diagnostic::error(Rule::CompensationUnsupported, message)
+                    .help(help)
+                    .into());
+            }
+            Op::Thread(_)
+            | Op::Probe(_)
+            | Op::Oriented(_)
+            | Op::Joints(_)
+            | Op::MachineMove(_)
+            | Op::SurfaceSpeed(Some(_))
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::WorkOffset(_)
+            | Op::WorkOffsetData(_)
+            | Op::Surface(_)
+            | Op::Clamp(_)
+            | Op::Input(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Taper(_)
+            | Op::OptionalStop => {
+                let message = format!("`{}` is not written for robots", record.op.kind().name());
+                return Err(Diagnostic::error(Rule::Unsupported, message).into());
+            }
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, record: &Record, act: Act<'a>) {
+        self.stretch().steps.push(Planned::Act(act, record.line));
+    }
+
+    /// Where a cut begins.
+    fn start(&self) -> Outcome<Pose> {
+        self.here.ok_or_else(|| {
+            let message = "the cut begins where nobody knows";
+            Diagnostic::error(Rule::UnknownStart, message).help("begin with a rapid").into()
+        })
+    }
+
+    /// The feed of a cut of this length, mm/min.
+    fn feed(&self, length: f64) -> Outcome<f64> {
+        let Some(feed) = self.feed else {
+            return Err(Diagnostic::error(Rule::NoFeed, "the source cuts and has no feed").into());
+        };
+        let speed = match self.spindle {
+            Spindle::Off => 0.0,
+            Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
+        };
+        Ok(feed_per_minute(feed, length, speed))
+    }
+
+    fn go(&mut self, line: u32, to: &Pose, kind: Kind, (feed, corner): (f64, f64)) {
+        let cut = (kind != Kind::Rapid).then_some(feed);
+        let stretch = self.stretch();
+        let point = stretch.point(line, to, cut);
+        stretch.steps.push(Planned::Move { line, kind, feed, corner, point });
+        self.here = Some(*to);
+    }
+
+    /// A hole by moves: over it at the height at which the tool is, down to the R plane, and as [`hole`] makes it.
+    fn hole(&mut self, line: u32, at: &Pose) -> Outcome {
+        let moves = self.cycle.and_then(|cycle| Some((cycle, hole(cycle, at, self.spindle)?)));
+        let Some((cycle, moves)) = moves else {
+            let message = "a robot has no such hole cycle, and moves cannot do it";
+            let help = "have the CAM system write the holes as moves";
+            return Err(Diagnostic::error(Rule::NoCycle, message).help(help).into());
+        };
+        let rapid = (self.cell.rapid, 0.0);
+        let height =
+            self.here.map_or(cycle.clearance, |here| (here.point() - at.point()).dot(at.axis()));
+        if height > cycle.clearance {
+            self.go(line, &at.lifted(height)?, Kind::Rapid, rapid);
+        }
+        self.go(line, &at.lifted(cycle.clearance)?, Kind::Rapid, rapid);
+        let own = self.feed;
+        self.feed = cycle.feed.or(own);
+        let feed = self.feed(cycle.clearance + cycle.depth)?;
+        self.feed = own;
+        for part in moves {
+            match part {
+                HoleMove::Rapid(to) => self.go(line, &to, Kind::Rapid, rapid),
+                HoleMove::Line(to) => self.go(line, &to, Kind::Line, (feed, 0.0)),
+                HoleMove::Dwell(seconds) => {
+                    self.stretch().steps.push(Planned::Act(Act::Dwell(seconds), line))
+                }
+                HoleMove::Spindle(_) => {
+                    let message = "a boring cycle, which stops the spindle in the hole, is not written for robots";
+                    return Err(Diagnostic::error(Rule::NoCycle, message).into());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// An arc in parts of half a circle at the most; one that rises in chords.
+    fn arc(&mut self, line: u32, arc: &Arc, end: &Pose) -> Outcome {
+        let feed = self.feed(arc.length())?;
+        let corner = self.corner;
+        let pose = |part: f64| end.at(arc.at(part));
+        let count = arc.chords(self.machine.capabilities.lowering_tolerance);
+        // An arc that its chord does not leave has no third point off the line.
+        if count == 1 || arc.rise().abs() > self.machine.resolution() {
+            for i in 1..=count {
+                self.go(line, &pose(i as f64 / count as f64)?, Kind::Line, (feed, corner));
+            }
+            return Ok(());
+        }
+        let parts = (arc.sweep / PI - 1e-9).ceil().max(1.0) as usize;
+        let steps = 2 * (arc.sweep / parts as f64 / ALONG_ARC / 2.0).ceil().max(1.0) as usize;
+        for i in 0..parts {
+            let at = |step: usize| (i as f64 + step as f64 / steps as f64) / parts as f64;
+            for step in 1..steps {
+                let pose = pose(at(step))?;
+                self.stretch().point(line, &pose, Some(feed));
+            }
+            let via = arc.at(at(steps / 2));
+            self.go(line, &pose(at(steps))?, Kind::Arc(via), (feed, corner));
+        }
+        Ok(())
+    }
+}

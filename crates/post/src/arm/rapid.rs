@@ -1,0 +1,167 @@
+//! How a rapid of an arm goes: by its joints where the tool is then beyond all cuts, else straight.
+
+use super::plan::Position;
+use ::arm::{Arm, Joints, Posture};
+use geom::{Frame, Mat3, Quat, Vec3, nearest_on_segment, wrap};
+use machine::{Capabilities, Cell};
+use program::CutBox;
+
+/// Joints are looked at so near to each other that the tip moves by no more than this, mm.
+const STRIDE: f64 = 0.5;
+
+/// Points of a straight path are at most so far apart, mm, and the tool turns by at most so much between them, radians.
+const SPACING: f64 = 2.0;
+const TURN: f64 = 0.02;
+
+/// A joint that turns by more than this between two of them leaps, radians.
+const LEAP: f64 = 0.2;
+
+/// The part of a joint's speed that a straight rapid uses at the most.
+const SPEED: f64 = 0.8;
+
+/// How fast the tool turns where it turns on the spot, degrees/s: `$VEL.ORI1` and `$VEL.ORI2` of the control's file together.
+const TURN_RATE: f64 = 120.0;
+
+/// What is needed to look for ways.
+pub(super) struct Ways<'a> {
+    pub(super) arm: &'a Arm,
+    pub(super) cell: &'a Cell,
+    pub(super) can: &'a Capabilities,
+    pub(super) cuts: CutBox,
+}
+
+/// How a rapid goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Way {
+    /// By the joints.
+    Joints,
+    /// Straight, at so many mm/min.
+    Straight(f64),
+}
+
+/// A part of a rapid.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leg {
+    pub(super) way: Way,
+    pub(super) end: Position,
+}
+
+/// How far beyond all cuts the tool is lifted, on top of the clearance, mm: the first that gives a way is taken.
+const LIFTS: [f64; 5] = [2.0, 10.0, 30.0, 80.0, 200.0];
+
+impl Ways<'_> {
+    /// How the arm goes from one position to another, where it can: by its joints, or straight, or up along the tool, by its joints, and
+    /// down along the tool. `free` is for a way that no line of the source leads.
+    pub(super) fn route(
+        &self,
+        tool: &Frame,
+        from: &Position,
+        to: &Position,
+        free: bool,
+    ) -> Option<Vec<Leg>> {
+        let line = [from.tool.translation, to.tool.translation];
+        if self.is_clear(tool, [&from.joints, &to.joints], (!free).then_some(line)) {
+            return Some(vec![Leg { way: Way::Joints, end: *to }]);
+        }
+        if !free && let Some(feed) = self.straight(tool, from, to) {
+            return Some(vec![Leg { way: Way::Straight(feed), end: *to }]);
+        }
+        LIFTS.into_iter().find_map(|lift| {
+            let (start, up) = self.lifted(tool, from, lift)?;
+            let (end, down) = self.lifted(tool, to, lift)?;
+            if !self.is_clear(tool, [&start.joints, &end.joints], None) {
+                return None;
+            }
+            let up = up.map(|feed| Leg { way: Way::Straight(feed), end: start });
+            let down = down.map(|feed| Leg { way: Way::Straight(feed), end: *to });
+            let across = Leg { way: Way::Joints, end };
+            Some(up.into_iter().chain([across]).chain(down).collect())
+        })
+    }
+
+    /// The position beyond all cuts along the tool's own axis, and the feed to go between it and `at`; none where it is that.
+    fn lifted(&self, tool: &Frame, at: &Position, lift: f64) -> Option<(Position, Option<f64>)> {
+        let axis = -at.tool.matrix3.z_axis;
+        let beyond = self.cuts.reach(axis) + self.can.rapid_clearance + lift;
+        let height = beyond - at.tool.translation.dot(axis);
+        if height <= 0.0 || height.is_nan() {
+            return Some((*at, None));
+        }
+        let tip = at.tool.translation + axis * height;
+        let raised = Frame::from_mat3_translation(at.tool.matrix3, tip);
+        let flange = self.cell.part * raised * tool.inverse();
+        let found = self.arm.inverse(&flange, at.joints[3]);
+        let joints = found.get(self.arm.posture(&at.joints))?;
+        let joints = std::array::from_fn(|i| at.joints[i] + wrap(joints[i] - at.joints[i]));
+        let raised = Position { tool: raised, joints };
+        self.straight(tool, at, &raised).map(|feed| (raised, Some(feed)))
+    }
+
+    /// Whether the tool is beyond all cuts along its own axis while the joints go, or near the line.
+    pub(super) fn is_clear(
+        &self,
+        tool: &Frame,
+        [from, to]: [&Joints; 2],
+        line: Option<[Vec3; 2]>,
+    ) -> bool {
+        let turns: f64 = from.iter().zip(to).map(|(a, b)| (b - a).abs()).sum();
+        let lever = 1.5 * self.arm.reach() + tool.translation.length();
+        let count = (turns * lever / STRIDE).ceil().clamp(1.0, 1e6);
+        let world = self.cell.part.inverse();
+        (0..=count as usize).all(|step| {
+            let part = step as f64 / count;
+            let joints = std::array::from_fn(|i| from[i] + part * (to[i] - from[i]));
+            let at = world * self.arm.flange(&joints) * *tool;
+            let (tip, axis) = (at.translation, -at.matrix3.z_axis);
+            let near = line.is_some_and(|[from, to]| {
+                nearest_on_segment(from, to, tip).1 <= self.can.rapid_corridor / 2.0
+            });
+            near || tip.dot(axis) - self.cuts.reach(axis) >= self.can.rapid_clearance
+        })
+    }
+
+    /// The feed at which the arm goes straight, mm/min, in one posture and to these very joints.
+    fn straight(&self, tool: &Frame, from: &Position, to: &Position) -> Option<f64> {
+        let posture = self.arm.posture(&from.joints);
+        if self.arm.posture(&to.joints) != posture {
+            return None;
+        }
+        let length = from.tool.translation.distance(to.tool.translation);
+        let [a, b] = [&from.tool.matrix3, &to.tool.matrix3].map(Quat::from_mat3);
+        let turn = a.angle_between(b);
+        let count = (length / SPACING).max(turn / TURN).ceil().clamp(1.0, 1e5);
+        let off = tool.inverse();
+        let (mut joints, mut slowest) = (from.joints, 0.0_f64);
+        for step in 1..=count as usize {
+            let part = step as f64 / count;
+            let turned = Mat3::from_quat(a.slerp(b, part));
+            let tip = from.tool.translation.lerp(to.tool.translation, part);
+            let flange = self.cell.part * Frame::from_mat3_translation(turned, tip) * off;
+            let next = self.next(&flange, posture, &joints)?;
+            for (i, joint) in self.arm.joints().iter().enumerate() {
+                slowest = slowest.max((next[i] - joints[i]).abs() / (SPEED * joint.speed));
+            }
+            joints = next;
+        }
+        let arrived = joints.iter().zip(&to.joints).all(|(a, b)| (a - b).abs() < 1e-6);
+        if !arrived {
+            return None;
+        }
+        let time = slowest * count;
+        let rapid = self.cell.rapid;
+        match length > 1e-6 {
+            true if time > 0.0 => Some(rapid.min(60.0 * length / time)),
+            true => Some(rapid),
+            false => (time <= turn.to_degrees() / TURN_RATE).then_some(rapid),
+        }
+    }
+
+    /// The joints that put the flange there, near where they stand.
+    fn next(&self, flange: &Frame, posture: Posture, before: &Joints) -> Option<Joints> {
+        let solutions = self.arm.inverse(flange, before[3]);
+        let found = solutions.get(posture)?;
+        let joints: Joints = std::array::from_fn(|i| before[i] + wrap(found[i] - before[i]));
+        let leaps = joints.iter().zip(before).any(|(a, b)| (a - b).abs() > LEAP);
+        (!leaps && self.arm.allows(&joints)).then_some(joints)
+    }
+}

@@ -1,0 +1,282 @@
+//! What the source wants, step by step.
+
+use geom::Arc;
+use machine::Machine;
+use program::lowering::feed_per_minute;
+use program::{
+    Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Outcome, Output,
+    PathMode, Pose, Program, Rule, Spindle, Tool,
+};
+
+/// How far the radii at the ends of a source's arc may differ, as a part of them.
+const RADII: f64 = 0.01;
+
+/// How far above the last depth of a hole a rapid may end, mm: as in `docs/proof.md`, "Hole by moves".
+pub(super) const REENTRY: f64 = 2.0;
+
+/// The most pecks of a hole.
+const MOST_PECKS: usize = 10_000;
+
+/// A step of the source.
+#[derive(Clone, Debug)]
+pub(super) struct Expected {
+    /// Line of the source.
+    pub(super) line: u32,
+    pub(super) step: Step,
+    /// What is on while it moves.
+    pub(super) state: State,
+}
+
+/// What happens.
+#[derive(Clone, Debug)]
+pub(super) enum Step {
+    Rapid(Option<Pose>, Pose),
+    /// From where, and to where.
+    Line(Pose, Pose),
+    Arc(Box<Arc>, Pose),
+    /// By rapid to a place on the axis of the hole whose last depth is this pose: above it, by no more than [`REENTRY`].
+    Above(Pose),
+    Home,
+    Tool(Box<Tool>),
+    Dwell(f64),
+    Stop,
+    Output(Output),
+    Input(Input),
+}
+
+/// What the source has switched on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    /// mm/min of this step, where it cuts.
+    pub(super) feed: f64,
+    pub(super) spindle: Spindle,
+    pub(super) coolant: Coolant,
+    /// How far corners may be left, mm, where the source says it.
+    pub(super) corner: Option<f64>,
+    /// Length of the tool, mm, where the source states it.
+    pub(super) tool_length: Option<f64>,
+}
+
+impl Expected {
+    /// The steps of a program.
+    ///
+    /// # Errors
+    /// What no program of an arm is proven against, with its line.
+    pub(super) fn of(source: &Program, machine: &Machine) -> Outcome<Vec<Expected>> {
+        let mut walk = Walk {
+            machine,
+            steps: Vec::with_capacity(source.records.len()),
+            here: None,
+            feed: None,
+            cycle: None,
+            state: State {
+                feed: 0.0,
+                spindle: Spindle::Off,
+                coolant: Coolant::Off,
+                corner: None,
+                tool_length: None,
+            },
+        };
+        for record in &source.records {
+            walk.record(record.line, &record.op)
+                .map_err(|found| Box::new(found.line(record.line)))?;
+        }
+        Ok(walk.steps)
+    }
+}
+
+struct Walk<'a> {
+    machine: &'a Machine,
+    steps: Vec<Expected>,
+    here: Option<Pose>,
+    feed: Option<Feed>,
+    cycle: Option<Cycle>,
+    state: State,
+}
+
+impl Walk<'_> {
+    fn push(&mut self, line: u32, step: Step) {
+        self.steps.push(Expected { line, step, state: self.state });
+    }
+
+    fn record(&mut self, line: u32, op: &Op) -> Outcome {
+        match op {
+            Op::Rapid(to) => self.rapid(line, *to),
+            Op::Line(to) => {
+                let from = self.start()?;
+                self.cut(from.point().distance(to.point()))?;
+                self.push(line, Step::Line(from, *to));
+                self.here = Some(*to);
+            }
+            Op::Arc(to) => {
+                let from = self.start()?;
+                let radius = from.point().distance(to.circle.center());
+                let arc = to.circle.arc(from.point(), to.end.point(), radius * RADII);
+                let arc = arc.map_err(|_| {
+                    Diagnostic::error(Rule::Arc, "the ends of the arc are not on its circle")
+                })?;
+                self.cut(arc.length())?;
+                self.push(line, Step::Arc(Box::new(arc), to.end));
+                self.here = Some(to.end);
+            }
+            Op::Home => {
+                self.push(line, Step::Home);
+                self.here = None;
+            }
+            Op::Tool(tool) => {
+                // The way to the change is still one with the tool before.
+                self.push(line, Step::Tool(tool.clone()));
+                self.state.tool_length = tool.length;
+                (self.state.spindle, self.state.coolant) = (Spindle::Off, Coolant::Off);
+                self.here = None;
+            }
+            Op::Dwell(seconds) => self.push(line, Step::Dwell(*seconds)),
+            Op::Stop => self.push(line, Step::Stop),
+            Op::Output(output) => self.push(line, Step::Output(*output)),
+            Op::Input(input) => self.push(line, Step::Input(**input)),
+            Op::Feed(feed) => self.feed = Some(*feed),
+            Op::Spindle(spindle) => self.state.spindle = *spindle,
+            Op::Coolant(coolant) => self.state.coolant = *coolant,
+            Op::PathMode(mode) => {
+                self.state.corner = match mode {
+                    PathMode::ExactStop | PathMode::ExactPath => Some(0.0),
+                    PathMode::Blend(mm) => Some(*mm),
+                    PathMode::AsSetUp => None,
+                };
+            }
+            Op::Cycle(cycle) => self.cycle = Some(**cycle),
+            Op::CycleOff => self.cycle = None,
+            Op::Hole(pose) => self.hole(line, pose)?,
+            Op::OptionalStop if self.machine.leaves_out("optional_stop") => {}
+            Op::Compensation(Compensation::Off)
+            | Op::SurfaceSpeed(None)
+            | Op::End
+            | Op::Frame(_)
+            | Op::Preselect(_)
+            | Op::Operation(_)
+            | Op::EndOfOperation
+            | Op::Comment(_)
+            | Op::Message(_) => {}
+            Op::Thread(_)
+            | Op::Probe(_)
+            | Op::Oriented(_)
+            | Op::Joints(_)
+            | Op::MachineMove(_)
+            | Op::SurfaceSpeed(Some(_))
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::Compensation(Compensation::Left(_) | Compensation::Right(_))
+            | Op::WorkOffset(_)
+            | Op::WorkOffsetData(_)
+            | Op::Surface(_)
+            | Op::Clamp(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Taper(_)
+            | Op::OptionalStop => {
+                let message = format!(
+                    "the source has `{}`, which no program of an arm is proven against",
+                    op.kind().name()
+                );
+                return Err(Diagnostic::error(Rule::Unproven, message).into());
+            }
+        }
+        Ok(())
+    }
+
+    /// A rapid from where the tool is.
+    fn rapid(&mut self, line: u32, to: Pose) {
+        self.push(line, Step::Rapid(self.here, to));
+        self.here = Some(to);
+    }
+
+    /// A hole by moves: over it at the height at which the tool is, down to the R plane, by pecks to the bottom, out.
+    fn hole(&mut self, line: u32, hole: &Pose) -> Outcome {
+        let Some(cycle) = self.cycle else {
+            return Err(Diagnostic::error(Rule::Cycle, "a hole without a cycle").into());
+        };
+        let at = |height: f64| -> Outcome<Pose> { Ok(hole.lifted(height)?) };
+        let height = self
+            .here
+            .map_or(cycle.clearance, |here| (here.point() - hole.point()).dot(hole.axis()));
+        if height > cycle.clearance {
+            self.rapid(line, at(height)?);
+        }
+        self.rapid(line, at(cycle.clearance)?);
+        let depths = depths(&cycle)?;
+        for (i, depth) in depths.iter().enumerate() {
+            if i > 0 {
+                let last = at(-depths[i - 1])?;
+                if cycle.kind == CycleKind::Deep {
+                    self.rapid(line, at(cycle.clearance)?);
+                }
+                self.push(line, Step::Above(last));
+            }
+            let own = self.feed;
+            self.feed = cycle.feed.or(own);
+            self.cut(cycle.clearance + depth)?;
+            self.feed = own;
+            self.push(line, Step::Line(at(cycle.clearance)?, at(-depth)?));
+            self.here = Some(at(-depth)?);
+        }
+        if cycle.dwell > 0.0 {
+            self.push(line, Step::Dwell(cycle.dwell));
+        }
+        if cycle.kind == CycleKind::Ream {
+            self.push(line, Step::Line(at(-cycle.depth)?, at(cycle.clearance)?));
+            self.here = Some(at(cycle.clearance)?);
+        }
+        self.rapid(line, at(cycle.retract)?);
+        Ok(())
+    }
+
+    /// Where a cut begins.
+    fn start(&self) -> Outcome<Pose> {
+        self.here.ok_or_else(|| {
+            let message = "the source cuts from a place that it does not say";
+            Diagnostic::error(Rule::UnknownStart, message).help("begin with a rapid").into()
+        })
+    }
+
+    /// A cut of this length, mm.
+    fn cut(&mut self, length: f64) -> Outcome {
+        let speed = match self.state.spindle {
+            Spindle::Off => 0.0,
+            Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
+        };
+        let Some(feed) = self.feed else {
+            return Err(Diagnostic::error(Rule::NoFeed, "the source cuts and has no feed").into());
+        };
+        self.state.feed = feed_per_minute(feed, length, speed);
+        Ok(())
+    }
+}
+
+/// The depths to which a cycle feeds, mm below the point of the hole.
+fn depths(cycle: &Cycle) -> Outcome<Vec<f64>> {
+    let refused = |what: &str| Err(Diagnostic::error(Rule::Cycle, what).into());
+    match cycle.kind {
+        CycleKind::Drill | CycleKind::Ream => return Ok(vec![cycle.depth]),
+        CycleKind::Deep | CycleKind::BreakChip => {}
+        CycleKind::Tap { .. }
+        | CycleKind::Bore
+        | CycleKind::FineBore(_)
+        | CycleKind::BackBore { .. } => {
+            return refused("no program of an arm is proven against a thread or a boring cycle");
+        }
+    }
+    let Some(further) = cycle.peck.or(cycle.first_peck).filter(|peck| *peck > 0.0) else {
+        return refused("the cycle pecks, and does not say how deep");
+    };
+    let mut depths = vec![cycle.first_peck.unwrap_or(further)];
+    while depths[depths.len() - 1] < cycle.depth - 1e-3 {
+        if depths.len() > MOST_PECKS {
+            return refused("more pecks than a hole has");
+        }
+        depths.push(depths[depths.len() - 1] + further);
+    }
+    let last = depths.len() - 1;
+    depths[last] = cycle.depth;
+    Ok(depths)
+}

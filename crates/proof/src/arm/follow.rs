@@ -1,0 +1,214 @@
+//! The joints along a path of the tool: from where they stand, step by step, by the forward kinematics alone.
+
+use ::arm::{Arm, Joints, Posture};
+use geom::{Frame, Mat3, Quat, Vec3};
+
+/// Points of a path are at most so far apart, mm.
+const SPACING: f64 = 5.0;
+
+/// The tool turns by at most so much between two of them, radians.
+const TURN: f64 = 0.035;
+
+/// Most points of one motion.
+const MOST: f64 = 100_000.0;
+
+/// A joint that turns by more than this between two points leaps, radians.
+const LEAP: f64 = 0.35;
+
+/// What is a millimetre to a radian, in the equations.
+const SCALE: f64 = 1e-3;
+
+/// A path of the tool in the base.
+pub(super) struct Path<'a> {
+    /// The frame of the tool at a part of it, 0 to 1.
+    pub(super) at: &'a dyn Fn(f64) -> Frame,
+    /// Its length, mm, and by how much the tool turns on it, radians.
+    pub(super) length: f64,
+    pub(super) turn: f64,
+    /// How long the motion takes, s; `None` where only its way is looked at.
+    pub(super) time: Option<f64>,
+}
+
+/// What is found along a path.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Followed {
+    pub(super) joints: Joints,
+    /// The least distance of a joint from its limits, radians.
+    pub(super) limit: f64,
+    /// The least distance of joint 5 from stretched, radians.
+    pub(super) wrist: f64,
+    /// The largest part of a joint's speed.
+    pub(super) speed: f64,
+}
+
+/// Why a path cannot be followed, from a part of it on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Lost {
+    /// No joints put the tool there near where they stand: out of reach, or singular.
+    Reach,
+    /// The posture would change.
+    Posture,
+    /// A joint (number from 1) would be beyond its limit, by so many radians.
+    Limit(usize, f64),
+    /// A joint would need this part of its speed.
+    Speed(usize, f64),
+}
+
+impl std::fmt::Display for Lost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Lost::Reach => {
+                f.write_str("the arm cannot follow it: out of reach, or through a singular pose")
+            }
+            Lost::Posture => f.write_str("the arm would have to change its posture on the way"),
+            Lost::Limit(joint, by) => {
+                write!(f, "joint {joint} would be {:.3}° beyond its limit", by.to_degrees())
+            }
+            Lost::Speed(joint, part) => {
+                write!(f, "joint {joint} would need {:.0} % of its speed", 100.0 * part)
+            }
+        }
+    }
+}
+
+/// How far joints are from the limits, radians.
+///
+/// # Errors
+/// One is beyond its own.
+pub(super) fn limit(arm: &Arm, joints: &Joints) -> Result<f64, Lost> {
+    let mut least = f64::INFINITY;
+    for (number, (joint, at)) in (1..).zip(arm.joints().iter().zip(joints)) {
+        let room = (at - joint.min).min(joint.max - at);
+        if !joint.holds(*at) {
+            return Err(Lost::Limit(number, -room));
+        }
+        least = least.min(room);
+    }
+    if arm.allows(joints) { Ok(least) } else { Err(Lost::Limit(3, 0.0)) }
+}
+
+/// Follows a path from `joints`, at which the tool is at its start. `base` is in the world, `tool` in the flange.
+pub(super) fn follow(
+    arm: &Arm,
+    [base, tool]: [&Frame; 2],
+    joints: Joints,
+    path: &Path,
+) -> Result<Followed, Lost> {
+    let count = (path.length / SPACING).max(path.turn / TURN).ceil().clamp(1.0, MOST);
+    let posture = arm.posture(&joints);
+    let off = tool.inverse();
+    let mut found =
+        Followed { joints, limit: limit(arm, &joints)?, wrist: f64::INFINITY, speed: 0.0 };
+    for step in 1..=count as usize {
+        let flange = *base * (path.at)(step as f64 / count) * off;
+        let next = solve(arm, &flange, &found.joints).ok_or(Lost::Reach)?;
+        passed(arm, &mut found, next, posture, path.time.map(|time| time / count))?;
+    }
+    Ok(found)
+}
+
+fn passed(
+    arm: &Arm,
+    found: &mut Followed,
+    next: Joints,
+    posture: Posture,
+    time: Option<f64>,
+) -> Result<(), Lost> {
+    if arm.posture(&next) != posture {
+        return Err(Lost::Posture);
+    }
+    found.limit = found.limit.min(limit(arm, &next)?);
+    found.wrist = found.wrist.min(arm.margins(&next).wrist);
+    for (number, (i, joint)) in (1..).zip(arm.joints().iter().enumerate()) {
+        let change = (next[i] - found.joints[i]).abs();
+        if change > LEAP {
+            return Err(Lost::Reach);
+        }
+        if let Some(time) = time
+            && change > 1e-9
+        {
+            let part = change / (joint.speed * time);
+            if part.is_nan() || part > 1.0 {
+                return Err(Lost::Speed(number, part));
+            }
+            found.speed = found.speed.max(part);
+        }
+    }
+    found.joints = next;
+    Ok(())
+}
+
+/// The joints near `guess` that put the flange there.
+fn solve(arm: &Arm, flange: &Frame, guess: &Joints) -> Option<Joints> {
+    let mut joints = *guess;
+    for _ in 0..16 {
+        let here = arm.flange(&joints);
+        let error = difference(&here, flange);
+        if error.iter().all(|part| part.abs() < 1e-11) {
+            return Some(joints);
+        }
+        let mut columns = [[0.0; 6]; 6];
+        for (i, column) in columns.iter_mut().enumerate() {
+            const STEP: f64 = 1e-6;
+            let mut moved = joints;
+            moved[i] += STEP;
+            *column = difference(&here, &arm.flange(&moved)).map(|part| part / STEP);
+        }
+        let change = solved(columns, error)?;
+        if change.iter().any(|part| part.abs() > LEAP) {
+            return None;
+        }
+        joints = std::array::from_fn(|i| joints[i] + change[i]);
+    }
+    None
+}
+
+/// By how much `to` is moved and turned against `from`: scaled mm, and radians about X, Y and Z; for small turns.
+fn difference(from: &Frame, to: &Frame) -> [f64; 6] {
+    let moved = (to.translation - from.translation) * SCALE;
+    let turned: Mat3 = to.matrix3 * from.matrix3.transpose();
+    let (x, y, z) = (turned.x_axis, turned.y_axis, turned.z_axis);
+    let about = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) / 2.0;
+    [moved.x, moved.y, moved.z, about.x, about.y, about.z]
+}
+
+/// The combination of columns that makes `right`; `None` where they are no base.
+fn solved(columns: [[f64; 6]; 6], right: [f64; 6]) -> Option<[f64; 6]> {
+    let mut rows: [[f64; 7]; 6] = std::array::from_fn(|row| {
+        std::array::from_fn(|column| if column < 6 { columns[column][row] } else { right[row] })
+    });
+    for pivot in 0..6 {
+        let best =
+            (pivot..6).max_by(|a, b| rows[*a][pivot].abs().total_cmp(&rows[*b][pivot].abs()))?;
+        rows.swap(pivot, best);
+        if rows[pivot][pivot].abs() < 1e-9 {
+            return None;
+        }
+        let head = rows[pivot];
+        for row in rows.iter_mut().skip(pivot + 1) {
+            let part = row[pivot] / head[pivot];
+            for (value, above) in row.iter_mut().zip(head) {
+                *value -= part * above;
+            }
+        }
+    }
+    let mut found = [0.0; 6];
+    for row in (0..6).rev() {
+        let known: f64 = (row + 1..6).map(|column| rows[row][column] * found[column]).sum();
+        found[row] = (rows[row][6] - known) / rows[row][row];
+    }
+    Some(found)
+}
+
+/// The orientation between two, evenly about one axis.
+pub(super) fn turned(from: &Mat3, to: &Mat3, part: f64) -> Mat3 {
+    let [from, to] = [from, to].map(Quat::from_mat3);
+    Mat3::from_quat(from.slerp(to, part))
+}
+
+/// The angle between two orientations, radians.
+pub(super) fn angle(from: &Mat3, to: &Mat3) -> f64 {
+    let [from, to] = [from, to].map(Quat::from_mat3);
+    let between = from.inverse() * to;
+    2.0 * Vec3::new(between.x, between.y, between.z).length().atan2(between.w.abs())
+}

@@ -1,0 +1,66 @@
+//! The proof of programs for arms: what the control does, through the forward kinematics, compared with the source.
+//!
+//! Joints of a `PTP` say where the tool is; along lines and arcs the joints are followed from there step by step, by Newton's method on the
+//! forward kinematics alone ([`follow`]): the closed form by which the writer finds joints is not used here.
+//!
+//! # What is accepted
+//!
+//! 1. Each motion of the source in its order, with tip and axis within the tolerances: a line by lines on it, an arc by arcs through points
+//!    of it or by chords, a rapid by a straight line or by the joints.
+//! 2. Along each line and arc: one posture, every joint within its limits and within its speed at the feed.
+//! 3. A motion of the joints only where the tool is beyond all cuts along its own axis on the whole path, or within `rapid_corridor` of the
+//!    straight line of the source.
+//! 4. Corners that are passed within a cut, by no more than `path_tolerance`.
+//! 5. In every cut feed, spindle, coolant; base and tool as the cell states them.
+//! 6. Home by joints at the beginning, at tool changes, and at the end, with spindle and coolant off.
+//!
+//! It knows nothing of the arm itself, the cell and the load: the summary says so.
+
+mod expected;
+mod follow;
+mod judge;
+
+use crate::report::Report;
+use crate::tolerance::{Applied, Tolerances};
+use ::arm::Arm;
+use control::Setup;
+use expected::Expected;
+use judge::Judge;
+use machine::{Cell, Machine};
+use program::{Diagnostic, Program, Rule};
+
+/// Runs `text` on the virtual control of the robot and compares it with `source`, while `go_on` says so.
+pub(crate) fn prove(
+    source: &Program,
+    (machine, arm, cell): (&Machine, &Arm, &Cell),
+    (file_name, text): (&str, &[u8]),
+    tolerances: &Tolerances,
+    go_on: &dyn Fn() -> bool,
+) -> Report {
+    let applied = Applied::new(machine, tolerances);
+    let mut report = Report { tolerances: applied, ..Report::default() };
+    let expected = match Expected::of(source, machine) {
+        Ok(expected) => expected,
+        Err(found) => {
+            report.mismatch(found.line, Diagnostic { line: 0, ..*found });
+            return report;
+        }
+    };
+    let mut judge = Judge::new(source, (machine, arm, cell), expected, report);
+    let mut events = 0_u32;
+    let run = nc::settings(machine, Setup::default()).and_then(|settings| {
+        control::read(&settings, file_name, text, &mut |event| {
+            events = events.wrapping_add(1);
+            if events.is_multiple_of(crate::EVENTS_AT_ONCE) && !go_on() {
+                let message = "the proof was ended before its end";
+                return Err(Diagnostic::error(Rule::Cancelled, message)
+                    .help("prove it again")
+                    .into());
+            }
+            judge.event(&event)
+        })
+    });
+    let mut report = judge.finish(run);
+    report.quote(file_name, text);
+    report
+}

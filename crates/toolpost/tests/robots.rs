@@ -1,0 +1,382 @@
+//! Robots: a toolpath posted on a KUKA, proven, and what the proof finds of damages to the program.
+
+mod dice;
+mod files;
+
+use control::{Action, ArmAction, ArmPath, Dialect, Event, Settings};
+use dice::Dice;
+use files::root;
+use geom::{Frame, Vec3};
+use machine::Machine;
+use program::{Feed, OutputValue, Program};
+use proof::Report;
+
+/// The job of the specification of robots, as cutter-location data.
+const JOB: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-2\n\
+FEDRAT/MMPM,1200\nGOTO/60,0,-2\nCIRCLE/60,20,-2,0,0,1,20\nGOTO/80,20,-2\nRAPID\nGOTO/80,20,50\nFINI\n";
+
+fn source(text: &str) -> Program {
+    source::apt::read("job.cls", text.as_bytes(), &Default::default()).unwrap().program
+}
+
+fn kuka() -> Machine {
+    machine::load("kuka-kr6-r900").unwrap()
+}
+
+fn written(source: &Program, machine: &Machine) -> Result<String, String> {
+    let output = post::write(source, machine).map_err(|found| found[0].to_string())?;
+    Ok(String::from_utf8(output.text).unwrap())
+}
+
+fn proof_of(source: &Program, machine: &Machine, text: &str) -> Report {
+    proof::prove(source, machine, "job.src", text.as_bytes(), &Default::default())
+}
+
+#[track_caller]
+fn proven(source: &Program, machine: &Machine) -> String {
+    let text = written(source, machine).unwrap();
+    let report = proof_of(source, machine, &text);
+    assert!(report.proven, "{text}\n{:#?}", report.mismatches);
+    text
+}
+
+/// A machine of the library with lines of its file changed.
+fn kuka_with(changes: &[(&str, &str)]) -> Machine {
+    let path = root().join("machines/robots/kuka-kr6-r900.toml");
+    let mut text = std::fs::read_to_string(path).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    machine::load_text("mine.toml", &text).unwrap()
+}
+
+fn events(text: &str) -> Vec<Event> {
+    let mut events = Vec::new();
+    let settings = Settings::new(Dialect::Krl, [false; 3]);
+    control::read(&settings, "job.src", text.as_bytes(), &mut |event| {
+        events.push(event);
+        Ok(())
+    })
+    .unwrap();
+    events
+}
+
+fn paths(text: &str) -> Vec<ArmPath> {
+    let of = |event: Event| match event.action {
+        Action::Arm(ArmAction::Move(motion)) => Some(motion.path),
+        _ => None,
+    };
+    events(text).into_iter().filter_map(of).collect()
+}
+
+#[test]
+fn the_job_of_the_specification_is_posted_with_its_joints_and_proven() {
+    let text = proven(&source(JOB), &kuka());
+    let paths = paths(&text);
+    // The joints that the specification has calculated for the tool at (0, 0, 50); how it is turned about its axis is free.
+    let ArmPath::Joints(start) = paths[1] else { panic!("{text}") };
+    for (at, expected) in start.iter().zip([0.0, -61.080, 126.744, 0.0, 24.336]) {
+        assert!((at - expected).abs() < 1e-3, "{start:?}");
+    }
+    let lines: Vec<Vec3> = paths
+        .iter()
+        .filter_map(|path| match path {
+            ArmPath::Line(end) => Some(end.translation),
+            _ => None,
+        })
+        .collect();
+    assert!(
+        lines.contains(&Vec3::new(0.0, 0.0, -2.0)) && lines.contains(&Vec3::new(60.0, 0.0, -2.0))
+    );
+    let through = paths.iter().find_map(|path| match path {
+        ArmPath::Arc { via, end } => Some((via.translation, end.translation)),
+        _ => None,
+    });
+    assert_eq!(through, Some((Vec3::new(74.142, 5.858, -2.0), Vec3::new(80.0, 20.0, -2.0))));
+    // It begins and ends with the joints at home, and leaves nothing on.
+    let home = ArmPath::Joints([0.0, -90.0, 90.0, 0.0, 45.0, 0.0]);
+    assert_eq!((paths[0], paths[paths.len() - 1]), (home, home));
+    assert!(text.contains("$VEL.CP=0.005000\r\n") && text.contains("$VEL.CP=0.020000\r\n"));
+    assert!(text.ends_with("$OUT[1]=FALSE\r\nEND\r\n"), "{text}");
+}
+
+#[test]
+fn the_sample_program_of_each_robot_is_as_it_was_read() {
+    let samples = root().join("machines/samples");
+    let text = std::fs::read_to_string(samples.join("robot.cls")).unwrap();
+    for name in machine::library::names(machine::library::ROBOTS) {
+        let machine = machine::load(name).unwrap();
+        let text = proven(&source(&text), &machine);
+        let sample = samples.join(format!("{name}.{}", machine.extension));
+        assert_eq!(
+            text,
+            std::fs::read_to_string(&sample).unwrap_or_default(),
+            "{}",
+            sample.display()
+        );
+    }
+}
+
+/// A line of the proven job, what it becomes, and the rule by which the proof refuses that.
+const DAMAGES: &[(&str, &str, &str)] = &[
+    ("$BASE={X 450.000", "$BASE={X 451.000", "frame"),
+    (
+        "$BASE={X 450.000,Y 0.000,Z 150.000,A 0.0000",
+        "$BASE={X 450.000,Y 0.000,Z 150.000,A 1.0000",
+        "frame",
+    ),
+    ("$TOOL={X 0.000,Y 0.000,Z 150.000", "$TOOL={X 0.000,Y 0.000,Z 149.000", "frame"),
+    ("$TOOL={X 0.000,Y 0.000,Z 150.000,A 0.0000,B 0.0000", "$TOOL=TOOL_DATA[1];", "frame"),
+    ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "frame"),
+    ("$ORI_TYPE=#VAR", "$ORI_TYPE=#JOINT", "orientation-way"),
+    ("$ORI_TYPE=#VAR", ";", "orientation-way"),
+    ("$CIRC_TYPE=#BASE", "$CIRC_TYPE=#PATH", "orientation-way"),
+    ("LIN {X 60.000", "LIN {X 61.000", "path"),
+    ("LIN {X 0.000,Y 0.000,Z -2.000", "LIN {X 0.000,Y 0.000,Z -2.002", "end-point"),
+    ("LIN {X 60.000,Y 0.000,Z -2.000,A 0.0000", "LIN {X 60.000,Y 0.010,Z -2.000,A 0.0000", "path"),
+    ("C 180.0000}\r\nPTP", "C 179.0000}\r\nPTP", "end-point"),
+    ("CIRC {X 74.142", "CIRC {X 74.242", "arc"),
+    ("CIRC {X 74.142,Y 5.858", "CIRC {X 45.858,Y 5.858", "arc"),
+    ("$VEL.CP=0.005000", "$VEL.CP=0.050000", "feed"),
+    ("$VEL.CP=0.020000", ";", "feed"),
+    ("$OUT[1]=TRUE", "$OUT[1]=FALSE", "dwell"),
+    ("$OUT[1]=TRUE", "$OUT[3]=TRUE", "output"),
+    ("$ANOUT[1]=0.50000", "$ANOUT[1]=0.60000", "spindle"),
+    ("$ANOUT[1]=0.50000", "$ANOUT[2]=0.50000", "output"),
+    ("WAIT SEC 3.00", "WAIT SEC 1.00", "dwell"),
+    ("WAIT SEC 3.00\r\n", "", "spindle-dwell"),
+    ("$OUT[1]=FALSE\r\nEND", "END", "left-on"),
+    ("$APO.CDIS=0.100", "$APO.CDIS=0.500", "path-tolerance"),
+    ("C_DIS", "C_VEL", "path-tolerance"),
+    ("END", "HALT\r\nEND", "stop"),
+    ("END", "$OUT[2]=TRUE\r\nEND", "left-on"),
+    ("DEF JOB ( )", "DEF JOB ( )\r\nDEF OTHER ( )", "program"),
+    (
+        "PTP {A1 0.0000,A2 -90.0000,A3 90.0000,A4 0.0000,A5 45.0000,A6 0.0000}\r\n$OUT[1]=FALSE",
+        "$OUT[1]=FALSE",
+        "home",
+    ),
+];
+
+#[test]
+fn each_damage_to_the_job_is_refused_by_its_rule() {
+    let (source, machine) = (source(JOB), kuka());
+    let text = proven(&source, &machine);
+    for (from, to, rule) in DAMAGES {
+        let damaged = text.replacen(from, to, 1);
+        assert_ne!(damaged, text, "{from}");
+        let report = proof_of(&source, &machine, &damaged);
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(found, [*rule], "{from} -> {to}: {:#?}", report.mismatches);
+    }
+}
+
+/// A line left out, doubled, or two of them in the other order: the program differs, or does the same.
+#[test]
+fn each_line_of_the_job_is_needed_or_changes_nothing() {
+    let (source, machine) = (source(JOB), kuka());
+    let text = proven(&source, &machine);
+    let lines: Vec<&str> = text.split_inclusive("\r\n").collect();
+    // Comments, the head of the file, speeds of joints, and what is the same by itself.
+    let harmless = ["&", ";", "BAS (#VEL_PTP", "$VEL.ORI", "BAS (#INITMOV"];
+    for left_out in 0..lines.len() {
+        let line = lines[left_out];
+        if harmless.iter().any(|start| line.starts_with(start)) {
+            continue;
+        }
+        let rest: String = lines
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != left_out)
+            .map(|(_, line)| *line)
+            .collect();
+        let report = proof_of(&source, &machine, &rest);
+        assert!(!report.proven, "without {line}");
+    }
+}
+
+/// Whether the tips of two frames, and the axes, are the same: how the tool is turned about its axis the source leaves free.
+fn near(a: &Frame, b: &Frame) -> bool {
+    a.translation.distance(b.translation) < 2e-2
+        && a.matrix3.z_axis.distance(b.matrix3.z_axis) < 3e-5
+}
+
+/// Whether two programs make the same motion, but for what their tolerances leave open.
+fn alike(machine: &Machine, a: &str, b: &str) -> bool {
+    let kept = |text: &str| -> Vec<Action> {
+        let events = events(text).into_iter().map(|event| event.action);
+        let speed = |action: &ArmAction| {
+            matches!(action, ArmAction::JointSpeed(_) | ArmAction::TurnSpeed(_))
+        };
+        let matters = |action: &Action| match action {
+            Action::Comment(_) => false,
+            Action::Arm(action) => !speed(action),
+            _ => true,
+        };
+        events.filter(matters).collect()
+    };
+    let (a, b) = (kept(a), kept(b));
+    a.len() == b.len() && a.iter().zip(&b).all(|pair| same(machine, pair))
+}
+
+fn same(machine: &Machine, pair: (&Action, &Action)) -> bool {
+    let arm = machine.arm.as_ref().unwrap();
+    let tool = machine.cell.as_ref().unwrap().tool(None).unwrap();
+    match pair {
+        // A corner that is left by less is a better one.
+        (Action::Arm(ArmAction::Move(a)), Action::Arm(ArmAction::Move(b))) => {
+            a.turning == b.turning
+                && match (a.path, b.path) {
+                    (ArmPath::Joints(a), ArmPath::Joints(b)) => {
+                        let [a, b] =
+                            [a, b].map(|joints| arm.flange(&joints.map(f64::to_radians)) * tool);
+                        near(&a, &b)
+                    }
+                    (ArmPath::Line(a), ArmPath::Line(b)) => near(&a, &b),
+                    // Of the point on the way its orientation does not count.
+                    (ArmPath::Arc { via: a, end: c }, ArmPath::Arc { via: b, end: d }) => {
+                        a.translation.distance(b.translation) < 2e-2 && near(&c, &d)
+                    }
+                    _ => false,
+                }
+        }
+        (Action::Arm(ArmAction::Base(Some(a))), Action::Arm(ArmAction::Base(Some(b))))
+        | (Action::Arm(ArmAction::Tool(Some(a))), Action::Arm(ArmAction::Tool(Some(b)))) => {
+            near(a, b)
+        }
+        (Action::Feed(Feed::PerMinute(a)), Action::Feed(Feed::PerMinute(b))) => {
+            // That of a straight rapid is free.
+            (a - b).abs() < 0.1 || *a == 6000.0
+        }
+        (Action::Dwell(a), Action::Dwell(b)) => b >= a,
+        (Action::Output(a), Action::Output(b)) => match (a.value, b.value) {
+            (OutputValue::Analog(x), OutputValue::Analog(y)) => {
+                a.number == b.number && (x - y).abs() < 2e-5
+            }
+            _ => a == b,
+        },
+        (a, b) => a == b,
+    }
+}
+
+/// One sign of the program changed at a time: a digit, a sign, an address, a name.
+#[test]
+fn of_200_single_damages_each_is_refused_or_changes_nothing() {
+    let sample = std::fs::read_to_string(root().join("machines/samples/robot.cls")).unwrap();
+    let (source, machine) = (source(&sample), kuka());
+    let text = proven(&source, &machine);
+    let begin = text.find("BAS (#VEL_PTP").unwrap();
+    let mut random = Dice(17);
+    let (mut refused, mut harmless) = (0, 0);
+    while refused + harmless < 200 {
+        let at = begin + random.index(text.len() - begin);
+        let old = text.as_bytes()[at];
+        let signs: &[u8] = match old {
+            b'0'..=b'9' => b"0123456789",
+            b'-' | b' ' => b" -",
+            b'A'..=b'Z' => b"ABCXYZSTEL",
+            _ => b".,{}#=",
+        };
+        let new = signs[random.index(signs.len())];
+        if new == old || matches!(old, b'\r' | b'\n') {
+            continue;
+        }
+        let mut damaged = text.clone().into_bytes();
+        damaged[at] = new;
+        let damaged = String::from_utf8(damaged).unwrap();
+        let report = proof_of(&source, &machine, &damaged);
+        if report.proven {
+            let line = text[..at].matches('\n').count();
+            let shown = damaged.lines().nth(line).unwrap();
+            assert!(
+                alike(&machine, &text, &damaged),
+                "{shown} for {}",
+                text.lines().nth(line).unwrap()
+            );
+            harmless += 1;
+        } else {
+            refused += 1;
+        }
+    }
+    eprintln!("refused {refused}, harmless {harmless}");
+    assert!(refused > 120, "{refused}");
+}
+
+/// A plunge and a line.
+const LINE: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
+GOTO/0,0,-2\nFEDRAT/MMPM,1200\nGOTO/60,0,-2\nRAPID\nGOTO/60,0,50\nFINI\n";
+
+#[track_caller]
+fn refused(from: &str, to: &str, machine: &Machine, line: u32, what: &str) {
+    assert!(LINE.contains(from), "{from}");
+    let source = source(&LINE.replacen(from, to, 1));
+    let found = post::write(&source, machine).expect_err(to);
+    let found = &found[0];
+    assert!(found.message.contains(what) || found.help.contains(what), "{found}");
+    assert_eq!(found.line, line, "{found}");
+}
+
+#[test]
+fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
+    let machine = kuka();
+    refused("GOTO/60,0,-2", "GOTO/2000,0,-2", &machine, 10, "mm out of reach");
+    // Through the axis on which the arm stands.
+    refused("GOTO/60,0,-2", "GOTO/-800,0,-2", &machine, 10, "the arm");
+    refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,13000", &machine, 10, "13000 mm/min");
+    refused("RPM,12000,CLW", "RPM,30000,CLW", &machine, 4, "30000");
+    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "spindle_ccw");
+    refused("RAPID\nGOTO/60,0,50", "LOADTL/2\nRAPID\nGOTO/60,0,50", &machine, 11, "tool_change");
+    refused("LOADTL/1", "LOADTL/1\nCUTCOM/LEFT", &machine, 4, "no cutter compensation");
+    refused("RAPID\nGOTO/0,0,50\n", "", &machine, 6, "begins where nobody knows");
+    let fast = kuka_with(&[("feed_max = 12000", "feed_max = 200000")]);
+    refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,190000", &fast, 10, "of its speed at this feed");
+    let without = kuka_with(&[("spindle_analog = 1\nspindle_full = 24000\n", "")]);
+    refused("LOADTL/1", "LOADTL/1", &without, 8, "spindle_analog");
+    let without = kuka_with(&[("tool_length = 50\n", "")]);
+    refused("LOADTL/1", "LOADTL/1", &without, 6, "the length of the tool");
+}
+
+#[test]
+fn a_tool_change_is_a_call_of_the_operators_program_at_home() {
+    // The block is not one of the library's: each shop has a program of its own.
+    let machine = kuka_with(&[
+        ("joint_speed = 20", "joint_speed = 20\ntool_change = \"TOOL_CHANGE\""),
+        ("dwell = 3\n", "dwell = 3\n[blocks]\ntool_change = \"TOOL_CHANGE ({{T}})\"\n"),
+    ]);
+    let two = JOB.replace("FINI", "LOADTL/2,LENGTH,60\nSPINDL/RPM,6000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI");
+    let text = proven(&source(&two), &machine);
+    assert!(text.contains("TOOL_CHANGE (1)") && text.contains("TOOL_CHANGE (2)"), "{text}");
+    // The second tool is 10 mm longer.
+    assert!(text.contains("$TOOL={X 0.000,Y 0.000,Z 160.000"), "{text}");
+    let swapped = text.replace("TOOL_CHANGE (2)", "TOOL_CHANGE (3)");
+    assert!(!proof_of(&source(&two), &machine, &swapped).proven);
+}
+
+/// Other files of cutter-location data: each is proven, or refused before anything is written.
+#[test]
+fn no_file_of_cutter_location_data_fails_its_own_proof_on_the_robot() {
+    let machine = kuka();
+    let mut made = 0;
+    for file in files::sources() {
+        let text = std::fs::read(&file).unwrap();
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        let Ok(read) = source::apt::read(&name, &text, &Default::default()) else { continue };
+        match post::write(&read.program, &machine) {
+            Err(found) => eprintln!("{name}: refused ({})", found[0].rule),
+            Ok(output) => {
+                let report = proof::prove(
+                    &read.program,
+                    &machine,
+                    "x.src",
+                    &output.text,
+                    &Default::default(),
+                );
+                assert!(report.proven, "{name}: {:#?}", report.mismatches);
+                eprintln!("{name}: proven, {} blocks", output.blocks);
+                made += 1;
+            }
+        }
+    }
+    assert!(made > 0);
+}
