@@ -14,21 +14,34 @@ pub struct CutBox {
     high: Vec3,
 }
 
+/// Which ends of a cut along the tool axis count.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ends {
+    Lower,
+    Both,
+}
+
 impl CutBox {
     /// The box of `program`, whose poses are in the work frame. A cut along the tool axis cuts at its lower end:
     /// the tool comes to it through the air, or leaves it through what it has cut.
     pub fn of(program: &Program) -> CutBox {
-        CutBox::around(program, |_| 0.0)
+        CutBox::around(program, |_| 0.0, Ends::Lower)
+    }
+
+    /// The box of all that `program` reaches by feed, with the heights from which it comes down to a cut and to which it leaves it;
+    /// of holes with their R planes. Beyond it along the tool axis no tool is between the walls of a cut.
+    pub fn fed(program: &Program) -> CutBox {
+        CutBox::around(program, |_| 0.0, Ends::Both)
     }
 
     /// The box of what the edges of the tools reach, each as far around the tip as the source says its radius; of a tool whose radius
     /// it does not say, the tip.
     pub fn swept(program: &Program) -> CutBox {
-        CutBox::around(program, |tool| tool.diameter.unwrap_or(0.0) / 2.0)
+        CutBox::around(program, |tool| tool.diameter.unwrap_or(0.0) / 2.0, Ends::Lower)
     }
 
     /// The box of discs across the tool axis, as large as `radius` says of the tool, mm.
-    fn around(program: &Program, radius: impl Fn(&Tool) -> f64) -> CutBox {
+    fn around(program: &Program, radius: impl Fn(&Tool) -> f64, ends: Ends) -> CutBox {
         let (mut edge, mut margin) = (0.0, Vec3::ZERO);
         let mut all = CutBox { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
         let mut here: Option<Pose> = None;
@@ -41,9 +54,9 @@ impl CutBox {
                     .max(from.map_or(margin, |from| disc(edge, from.axis())));
             }
             match &record.op {
-                Op::Line(to) => all.line(from, to, margin),
-                Op::Thread(thread) => all.line(from, &thread.end, margin),
-                Op::Probe(probe) => all.line(from, &probe.end, margin),
+                Op::Line(to) => all.line(from, to, margin, ends),
+                Op::Thread(thread) => all.line(from, &thread.end, margin, ends),
+                Op::Probe(probe) => all.line(from, &probe.end, margin, ends),
                 Op::Arc(to) => {
                     let start = from.map_or(to.end.point(), |from| from.point());
                     all.add(start, margin);
@@ -58,6 +71,9 @@ impl CutBox {
                     let depth = cycle.map_or(0.0, |cycle| cycle.depth);
                     all.add(pose.point(), margin);
                     all.add(pose.point() - pose.axis() * depth, margin);
+                    if let (Ends::Both, Some(cycle)) = (ends, cycle) {
+                        all.add(pose.point() + pose.axis() * cycle.clearance, margin);
+                    }
                     let retract = cycle.map_or(0.0, |cycle| cycle.retract);
                     here = pose.at(pose.point() + pose.axis() * retract).ok();
                 }
@@ -66,7 +82,7 @@ impl CutBox {
                 Op::CycleOff => cycle = None,
                 Op::Oriented(to) => {
                     let end = to.end.pose();
-                    all.line(from, end, margin);
+                    all.line(from, end, margin, ends);
                     here = Some(*end);
                 }
                 // Where the tool then stands is not known.
@@ -122,12 +138,14 @@ impl CutBox {
         self.high = self.high.max(point + margin);
     }
 
-    fn line(&mut self, from: Option<Pose>, to: &Pose, margin: Vec3) {
+    fn line(&mut self, from: Option<Pose>, to: &Pose, margin: Vec3, ends: Ends) {
         let Some(from) = from else { return self.add(to.point(), margin) };
         let way = to.point() - from.point();
         let rise = way.dot(to.axis());
         // Along the axis, but for the rounding of its numbers.
-        let along = from.axis() == to.axis() && rise.abs() >= way.length() * (1.0 - 1e-9);
+        let along = ends == Ends::Lower
+            && from.axis() == to.axis()
+            && rise.abs() >= way.length() * (1.0 - 1e-9);
         if !along || rise >= 0.0 {
             self.add(from.point(), margin);
         }
@@ -171,6 +189,17 @@ mod tests {
             (cut.reach(Vec3::Z), cut.reach(Vec3::X), cut.reach(Vec3::NEG_Z)),
             (-1.0, 10.0, 2.0)
         );
+    }
+
+    #[test]
+    fn what_is_fed_begins_where_the_feed_begins() {
+        let mut program = Program::new("t");
+        let ops = [Op::Rapid(at(0.0, 0.0, 50.0)), Op::Rapid(at(0.0, 0.0, 2.0))];
+        for op in ops.into_iter().chain([Op::Line(at(0.0, 0.0, -3.0))]) {
+            program.push(1, op);
+        }
+        let (cut, fed) = (CutBox::of(&program), CutBox::fed(&program));
+        assert_eq!((cut.reach(Vec3::Z), fed.reach(Vec3::Z)), (-3.0, 2.0));
     }
 
     /// By hand: upright 5 mm in X and Y and none in Z; at 45 degrees in the plane XZ 5 mm in Y and 5/sqrt(2) in X and Z.

@@ -93,6 +93,8 @@ pub(crate) struct Cursor<'a> {
     tool_change: bool,
     reset: bool,
     homed: bool,
+    /// How the source has switched the spindle since its last motion.
+    switched: Vec<Spindle>,
     /// Whether the program has to compensate where the source does.
     compensates: bool,
 }
@@ -123,6 +125,7 @@ impl<'a> Cursor<'a> {
             tool_change: false,
             reset: false,
             homed: false,
+            switched: Vec::new(),
         };
         cursor.advance();
         cursor
@@ -135,6 +138,7 @@ impl<'a> Cursor<'a> {
             self.tool_change = false;
             self.reset = false;
             self.homed = false;
+            self.switched.clear();
         }
         while let Some(record) = self.records.get(self.next) {
             self.next += 1;
@@ -221,6 +225,11 @@ impl<'a> Cursor<'a> {
         self.at_tool_change() || self.homed
     }
 
+    /// How the source has switched the spindle since its last motion.
+    pub fn switched(&self) -> &[Spindle] {
+        &self.switched
+    }
+
     /// The next motion, whatever dwells and stops come before it.
     fn motion(&self, kind: Kind, pose: &Pose) -> Step {
         Step::Move(ExpectedMotion {
@@ -249,7 +258,10 @@ impl<'a> Cursor<'a> {
         let wanted = &mut self.wanted;
         match op {
             Op::Feed(feed) => wanted.feed = Some(*feed),
-            Op::Spindle(spindle) => wanted.spindle = *spindle,
+            Op::Spindle(spindle) => {
+                wanted.spindle = *spindle;
+                self.switched.push(*spindle);
+            }
             Op::SurfaceSpeed(speed) => wanted.surface_speed = *speed,
             Op::Coolant(coolant) => wanted.coolant = *coolant,
             Op::Compensation(_) if !self.compensates => {}

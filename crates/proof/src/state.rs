@@ -205,8 +205,7 @@ pub(crate) fn spindle_and_coolant(
     running: &Running,
 ) -> Option<Difference> {
     if !same_spindle(allowed, wanted.spindle, running.spindle) {
-        let (is, should) = (spindle(running.spindle), spindle(wanted.spindle));
-        return Some((Rule::Spindle, format!("the spindle is {is}, but should be {should}")));
+        return Some(wrong_spindle(wanted.spindle, running.spindle));
     }
     if running.runs_up > 0.0 {
         let seconds = Number(running.runs_up);
@@ -228,6 +227,12 @@ pub(crate) fn spindle_and_coolant(
         let (is, should) = (coolant(running.coolant), coolant(wanted.coolant));
         (Rule::Coolant, format!("coolant is {is}, but should be {should}"))
     })
+}
+
+/// A spindle that is as it should not be.
+pub(crate) fn wrong_spindle(wanted: Spindle, is: Spindle) -> Difference {
+    let (is, should) = (spindle(is), spindle(wanted));
+    (Rule::Spindle, format!("the spindle is {is}, but should be {should}"))
 }
 
 /// By how much the control may leave the path at corners of cuts.

@@ -247,3 +247,98 @@ fn a_cut_before_the_spindle_has_its_speed_is_refused() {
     assert!(!text.contains("G4 "));
     assert_eq!(rules(&source, &machine, &text), [""; 0]);
 }
+
+/// A slot that ends at its bottom: out by rapid, across, and back by rapid into what has been cut.
+fn deep_slot() -> Program {
+    program(vec![
+        Op::Line(at(10.0, -8.0)),
+        Op::Line(at(30.0, -8.0)),
+        Op::Rapid(at(30.0, 20.0)),
+        Op::Rapid(at(12.0, 20.0)),
+        Op::Rapid(at(12.0, -7.0)),
+        Op::Line(at(20.0, -9.0)),
+        Op::Rapid(at(20.0, 20.0)),
+    ])
+}
+
+/// The lines of the rapids of a program from which the tool goes out of the slot, and into it, and of the cut behind them.
+fn lines_of_the_slot(machine: &Machine, text: &str) -> [usize; 3] {
+    let (mut cut, mut lines) = (false, Vec::new());
+    let settings = nc::settings(machine, Setup::default()).unwrap();
+    control::read(&settings, "p", text.as_bytes(), &mut |event| {
+        let low = |position: &control::Position| position.point.z < 0.0;
+        match &event.action {
+            Action::Line(_) if lines.len() == 2 => lines.push(event.line as usize - 1),
+            Action::Line(_) => cut = true,
+            Action::Rapid(_) if cut && lines.is_empty() => lines.push(event.line as usize - 1),
+            Action::Rapid(to) if lines.len() == 1 && low(to) => {
+                lines.push(event.line as usize - 1);
+            }
+            _ => {}
+        }
+        Ok(())
+    })
+    .unwrap();
+    lines.try_into().unwrap()
+}
+
+/// The text with blocks put in before these lines, from 0; Klartext is numbered anew.
+fn with(machine: &Machine, text: &str, blocks: &[(usize, &str)]) -> String {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for (line, block) in blocks.iter().rev() {
+        lines.insert(*line, block.to_string());
+    }
+    if machine.reader != "klartext" {
+        return lines.join("\n") + "\n";
+    }
+    let plain = |line: &String| match line.split_once(' ') {
+        Some((number, rest)) if number.parse::<u32>().is_ok() => rest.to_owned(),
+        _ => line.clone(),
+    };
+    let numbered = |(n, line): (usize, &String)| format!("{n} {}\n", plain(line));
+    lines.iter().enumerate().map(numbered).collect()
+}
+
+/// The tester's damage: the tool is drawn out of a slot, or goes back into it, with a spindle that stands, turns the other way round
+/// or is slow, and is started anew before the next cut. At height the program may stop and start it.
+#[test]
+fn near_the_part_the_spindle_turns_as_the_source_says_by_rapid_too() {
+    for (name, words, on) in [
+        ("generic-3axis-fanuc", &["M5", "M4", "M19", "S50"][..], "S600 M3"),
+        ("generic-3axis-haas", &["M5", "M4", "M19", "S50"], "S600 M3"),
+        ("generic-3axis-sinumerik", &["M5", "M4", "M19", "SPOS=0", "S50"], "S600 M3"),
+        ("generic-3axis-linuxcnc", &["M5", "M4", "M19 R0", "S50"], "S600 M3"),
+        ("generic-3axis-mach3", &["M5", "M4", "S50"], "S600 M3"),
+        ("generic-3axis-grbl", &["M5", "M4", "S50"], "S600 M3"),
+        ("generic-3axis-heidenhain", &["M5", "M4"], "M3"),
+    ] {
+        let machine = machine::load(name).unwrap();
+        let source = deep_slot();
+        let text = written(&machine, &source).unwrap();
+        let [out, back, cut] = lines_of_the_slot(&machine, &text);
+        for word in words {
+            for damage in [[(out, *word), (cut, on)], [(back, word), (cut, on)]] {
+                let wrong = with(&machine, &text, &damage);
+                let found = rules(&source, &machine, &wrong);
+                assert!(found.contains(&"spindle"), "{name} {damage:?}: {found:?}\n{wrong}");
+            }
+            let own = with(&machine, &text, &[(back, word), (back, on)]);
+            assert_eq!(rules(&source, &machine, &own), [""; 0], "{name} {word}\n{own}");
+        }
+    }
+}
+
+/// What the source itself switches at the bottom is right there, and no other.
+#[test]
+fn a_source_that_stops_the_spindle_before_it_draws_the_tool_out_is_followed() {
+    let machine = machine::load("generic-3axis-fanuc").unwrap();
+    let source = program(vec![
+        Op::Line(at(10.0, -8.0)),
+        Op::Spindle(Spindle::Off),
+        Op::Rapid(at(10.0, 20.0)),
+    ]);
+    let text = written(&machine, &source).unwrap();
+    let wrong = text.replacen("M5\n", "", 1);
+    assert_ne!(wrong, text);
+    assert!(rules(&source, &machine, &wrong).contains(&"spindle"), "{wrong}");
+}

@@ -101,6 +101,7 @@ impl Prover<'_> {
         for station in stations {
             self.hold_travel(station, None);
         }
+        self.contact.drilled(cycle.kind);
         self.standing.arrive(&pose.orientation);
         self.here = drilled.retracted;
         self.stands_at(&drilled.retracted);

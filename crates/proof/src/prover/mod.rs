@@ -1,6 +1,7 @@
 //! The walk of the program along the source.
 
 mod approach;
+mod contact;
 mod cut;
 mod drilling;
 mod ending;
@@ -52,6 +53,8 @@ pub struct Prover<'a> {
     gauge: Gauge<'a>,
     cursor: Cursor<'a>,
     running: Running,
+    /// How the spindle has turned near the part.
+    contact: contact::Contact,
     /// Compensation of the source as far as moves have switched it.
     compensation: Compensation,
     /// The stretches in which the program compensates, where they are wanted.
@@ -137,6 +140,7 @@ impl<'a> Prover<'a> {
             gauge,
             cursor,
             running: Running::at_reset(machine),
+            contact: contact::Contact::new(),
             compensation: Compensation::Off,
             trail: None,
             leg: MotionProgress::default(),
@@ -189,6 +193,9 @@ impl<'a> Prover<'a> {
         }
         self.follow(event);
         let outcome = self.take(event);
+        if event.action.position().is_some() {
+            self.contact.moved(self.running.spindle);
+        }
         if let Err(found) = &outcome {
             self.lost = true;
             self.report.mismatch(self.cursor.line, (**found).clone());
@@ -412,6 +419,9 @@ impl<'a> Prover<'a> {
                 alike && gauge.at(&to, &goal.to)
             });
         }
+        if gait == MotionKind::Rapid || self.leg.left.is_some() || !self.is_cutting() {
+            self.check_contact(line, Some(&to));
+        }
         if gait == MotionKind::Rapid && self.goes_nowhere_yet(&to) {
             return Ok(());
         }
@@ -485,6 +495,11 @@ impl<'a> Prover<'a> {
         self.here = *to;
         self.raised &= to.position.point.z.is_nan();
         true
+    }
+
+    /// Whether the source has something next whose feed moves are compared as cuts.
+    fn is_cutting(&self) -> bool {
+        matches!(&self.cursor.step, Step::Move(goal) if goal.kind != Kind::Rapid)
     }
 
     /// Whether the source has a stop next.

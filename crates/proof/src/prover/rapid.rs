@@ -200,6 +200,7 @@ impl Prover<'_> {
     /// Axes sent to a fixed position.
     pub(super) fn home(&mut self, line: u32, axes: Axes) -> Outcome {
         self.turns(line, [0, 1, 2].map(|i| axes.contains(Axes::rotary(i))));
+        self.check_contact(line, None);
         let axis_degrees = self.gauge.allowed.axis_degrees;
         self.pass_left_out(|goal| goal.free(axis_degrees));
         let (first, free, holding) = match &self.cursor.step {

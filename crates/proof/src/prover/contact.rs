@@ -1,0 +1,85 @@
+//! The spindle in motions that are no cuts: near the part a tool may touch it by rapid as well.
+
+use super::*;
+use program::CycleKind;
+
+/// What the spindle has done in the last motion, and where the tool is free of the part.
+pub(super) struct Contact {
+    /// All that the source reaches by feed; counted where it is asked for.
+    fed: Option<CutBox>,
+    /// How the spindle turned at the end of the last motion.
+    turned: Spindle,
+    /// Whether the control has left the spindle standing behind a tap or a bore, and nothing has started it since.
+    left_standing: bool,
+}
+
+impl Contact {
+    /// Before the first motion.
+    pub fn new() -> Contact {
+        Contact { fed: None, turned: Spindle::Off, left_standing: false }
+    }
+
+    /// A motion has ended with the spindle so.
+    pub fn moved(&mut self, spindle: Spindle) {
+        self.turned = spindle;
+    }
+
+    /// The program has made a hole of this kind by its cycle.
+    pub fn drilled(&mut self, kind: CycleKind) {
+        self.left_standing = matches!(kind, CycleKind::Tap { .. } | CycleKind::Bore);
+    }
+}
+
+impl Prover<'_> {
+    /// Compares the spindle in a motion to `to`, or, where that is `None`, to home, that is no cut. The program may stop and start it
+    /// where the tool is free of the part: home, or beyond all that the source reaches by feed. On its way out of a cut it turns as the
+    /// source has it in this motion, or as it has turned in the cut.
+    pub(super) fn check_contact(&mut self, line: u32, to: Option<&ResolvedPose>) {
+        let (wanted, is) = (self.cursor.wanted.spindle, self.running.spindle);
+        let allowed = self.gauge.allowed;
+        if self.gauge.machine.wire.is_some() || state::same_spindle(&allowed, wanted, is) {
+            self.contact.left_standing &= is == Spindle::Off;
+            return;
+        }
+        let here = self.here;
+        let leaves = !self.raised && self.is_near(&here);
+        let moves = matches!(self.cursor.step, Step::Move(_));
+        let comes = moves && to.is_some_and(|to| self.is_near(to));
+        if !leaves && !comes || leaves && self.may_leave_so(wanted, is, to) {
+            return;
+        }
+        self.differs(line, state::wrong_spindle(wanted, is));
+    }
+
+    /// Whether the spindle may be as it `is` on the way out, where the source wants it otherwise.
+    fn may_leave_so(&self, wanted: Spindle, is: Spindle, to: Option<&ResolvedPose>) -> bool {
+        let (is_own, kind) = match &self.cursor.step {
+            Step::Move(goal) => (goal.tool_change || goal.homed, Some(&goal.kind)),
+            _ => (true, None),
+        };
+        let stops_in_hole = matches!(kind, Some(Kind::Hole(cycle)) if cycle.kind == CycleKind::Bore);
+        if is == Spindle::Off && stops_in_hole && self.leg.hole.over {
+            // Whether it stands where it has to, the comparison of the hole says.
+            return true;
+        }
+        if is == Spindle::Off && self.contact.left_standing {
+            return to.is_none_or(|to| !stops::lifted(&self.gauge, to, &self.here));
+        }
+        let alike = |spindle: &Spindle| state::same_spindle(&self.gauge.allowed, *spindle, is);
+        if is_own {
+            return alike(&self.contact.turned) || self.cursor.switched().iter().any(alike);
+        }
+        // Where the source stops the spindle before it draws the tool out, it has a reason.
+        alike(&self.contact.turned) && wanted != Spindle::Off && is != Spindle::Off
+    }
+
+    /// Whether the tool stands where the source may have something around it.
+    fn is_near(&mut self, at: &ResolvedPose) -> bool {
+        if !at.place.known() {
+            return false;
+        }
+        let fed = self.contact.fed.get_or_insert_with(|| CutBox::fed(self.source));
+        let PartialPose { tip, axis } = at.place;
+        tip.dot(axis) < fed.reach(axis) - self.gauge.slack(at)
+    }
+}
