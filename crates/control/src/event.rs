@@ -535,6 +535,14 @@ impl Risk {
         refused: true,
     };
 
+    /// `CFTCP`, `CFIN` of SINUMERIK with a compensated contour (Fundamentals, "Feed optimization on curved path sections").
+    pub(crate) const FEED_OF_CENTRE: Risk = Risk {
+        rule: Rule::Feed,
+        what: "has F count at the centre of the compensated tool (CFTCP, CFIN): on arcs its edge goes at another feed",
+        help: "write CFC before G41 or G42",
+        refused: true,
+    };
+
     /// `G25`, `G26` of SINUMERIK (PM, "Working area limitation", "Programmable spindle speed limitation"): SD43420, SD43430,
     /// SD43210, SD43220 keep them.
     pub(crate) const LIMITS_WRITTEN: Risk = Risk {

@@ -20,6 +20,7 @@ fn left_on(settings: &Settings, text: &str) -> Vec<&'static str> {
 fn machine(dialect: Dialect) -> Settings {
     Settings {
         kinematics: (dialect == Dialect::LinuxCnc).then_some(Kinematics { tip: 428, axes: 429 }),
+        path_tolerance: 0.05,
         ..Settings::new(dialect, [false, true, true])
     }
 }
@@ -126,6 +127,64 @@ fn a_sinumerik_keeps_over_its_end_what_machine_data_say() {
         ("MCALL CYCLE81(5,0,2,-5)", "MCALL"),
     ] {
         is_kept(Dialect::Sinumerik, on, off);
+    }
+}
+
+/// NC programming 12/2019, 4.3 and Fundamentals 10.2004, 12.3: of each modal G group the command that the maker delivers as active
+/// (MD20150), which stands behind the others. `G60` and `G64` are both free: neither leaves the path.
+#[test]
+fn of_each_g_group_a_sinumerik_keeps_what_its_maker_has_not_delivered() {
+    for (delivered, others) in [
+        ("G60", &["G641", "G642", "G643", "G644", "G645"][..]),
+        ("G64", &["G641"]),
+        ("G601", &["G602", "G603"]),
+        ("CFC", &["CFTCP", "CFIN"]),
+        ("NORM", &["KONT", "KONTC", "KONTT"]),
+        ("G450", &["G451"]),
+        ("BRISK", &["SOFT", "DRIVE"]),
+        ("CUT2D", &["CUT2DF"]),
+        ("CDOF", &["CDON", "CDOF2"]),
+        ("FFWOF", &["FFWON"]),
+        ("WALIMON", &["WALIMOF"]),
+        ("COMPOF", &["COMPON", "COMPCURV", "COMPCAD", "COMPSURF"]),
+        ("OSOF", &["OSC", "OSS", "OSSE", "OSD", "OST"]),
+        ("LFOF", &["LFON"]),
+        ("SPATH", &["UPATH"]),
+        ("LFTXT", &["LFWP", "LFPOS"]),
+        ("G460", &["G461", "G462"]),
+        ("ORIEULER", &["ORIRPY", "ORIRPY2"]),
+        ("RTLION", &["RTLIOF"]),
+        ("DYNNORM", &["DYNPOS", "DYNROUGH", "DYNSEMIFIN", "DYNFINISH", "DYNPREC"]),
+        ("ORISOF", &["ORISON"]),
+        // No G groups, and kept as well.
+        ("CYCLE832(0,_OFF,1)", &["CYCLE832(0.01,_FINISH,1)"]),
+        ("CTOL=-1", &["CTOL=0.01"]),
+        ("OTOL=-1", &["OTOL=0.01"]),
+        ("ADIS=0", &["ADIS=0.01"]),
+        ("ADISPOS=0", &["ADISPOS=0.01"]),
+        ("DISC=0", &["DISC=50"]),
+    ] {
+        for other in others {
+            is_kept(Dialect::Sinumerik, other, delivered);
+        }
+    }
+}
+
+/// Fundamentals, "Feed optimization on curved path sections": with CFTCP and CFIN the edge of the tool goes at another feed than F.
+#[test]
+fn f_of_a_sinumerik_counts_on_the_contour() {
+    let found = |blocks: &str| {
+        let text = format!("G17 G40 G54 G90 G94 G710\nT1\nM6\nS900 M3\nF200\nG0 X0 Y0 Z9\n{blocks}\nM30\n");
+        let actions = common::ops(&machine(Dialect::Sinumerik), "p.nc", &text).unwrap();
+        let feeds = |action: &Action| matches!(action, Action::Risk(risk) if risk.rule.name() == "feed" && risk.refused);
+        actions.iter().filter(|action| feeds(action)).count()
+    };
+    let contour = "G1 G41 X10 Y0\nX20\nG40 X30";
+    assert_eq!(found(contour), 0);
+    for word in ["CFTCP", "CFIN"] {
+        assert_eq!(found(&format!("{word}\n{contour}")), 1);
+        assert_eq!(found(&format!("{word}\nCFC\n{contour}")), 0);
+        assert_eq!(found(&format!("G1 G41 X10 Y0\n{word}\nX20\nG40 X30")), 1);
     }
 }
 

@@ -4,7 +4,7 @@
 use super::modal::Modal;
 use super::state::State;
 use crate::event::Risk;
-use crate::sinumerik::language::commands::{Diameter, FeedType};
+use crate::sinumerik::language::commands::{DELIVERED, Delivered, Diameter, FeedType};
 use geom::Frame;
 use program::Compensation;
 
@@ -41,6 +41,12 @@ const FEED_REFERENCE: Risk = Risk::left_on(
 const ROUNDING: Risk = Risk::left_on("ends with RNDM", "write RNDM=0 before the end");
 const CORNER_FEED: Risk =
     Risk::left_on("ends with a feed of corners (FRCM)", "write FRCM=0 before the end");
+const TOLERANCE: Risk = Risk::left_on(
+    "ends with a tolerance or a distance by which the control leaves the path (CYCLE832, CTOL, OTOL, ADIS, ADISPOS)",
+    "write CYCLE832(0,_OFF,1), CTOL=-1, OTOL=-1, ADIS=0 or ADISPOS=0 before the end",
+);
+const PEAK: Risk =
+    Risk::left_on("ends with DISC above 0", "write DISC=0 before the end");
 const PREPARED: Risk = Risk::left_on(
     "goes back to its caller with a tool that is chosen and not changed, which the next M6 takes",
     "leave T out, or change the tool",
@@ -70,9 +76,13 @@ impl State {
             (self.mm_per_degree != [1.0; 3], FEED_REFERENCE),
             (self.modal_round > 0.0, ROUNDING),
             (self.corner_feed.is_some_and(|feed| feed > 0.0), CORNER_FEED),
+            (self.smoothed.is_programmed(), TOLERANCE),
+            (self.peak, PEAK),
             (returns && chosen, PREPARED),
             (returns && !self.position.z.is_nan(), TOOL_DOWN),
         ];
-        found.into_iter().filter_map(|(is_on, risk)| is_on.then_some(risk))
+        let found = found.into_iter().filter_map(|(is_on, risk)| is_on.then_some(risk));
+        let said = |group: &&Delivered| !group.allows(self.said[usize::from(group.group)]);
+        found.chain(DELIVERED.iter().filter(said).map(|group| group.risk))
     }
 }

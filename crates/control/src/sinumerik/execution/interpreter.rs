@@ -17,7 +17,7 @@ use crate::kernel::compensation::Terms;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
-use crate::sinumerik::language::commands::{Code, FeedType, Motion};
+use crate::sinumerik::language::commands::{self, Code, FeedType, Motion};
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, ELEMENTS_IN_A_TURN};
@@ -49,6 +49,8 @@ const PRECISIONS: [&str; 5] = ["_OFF", "_FINISH", "_SEMIFIN", "_ROUGH", "_PRECIS
 
 /// M functions of which a block has at most one, and those that stand for no motion at all.
 const STOPS: &[u32] = &[0, 1, 2, 17, 30];
+/// The G group of what F counts on a compensated contour.
+const CONTOUR_FEED: usize = 16;
 /// Back to the program that has called.
 const RETURN: u32 = 17;
 const SPINDLE: &[u32] = &[3, 4, 5];
@@ -165,6 +167,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         self.modes(source, block)?;
         if let Some(degrees) = block.orientation_tolerance {
+            self.state.smoothed.turn(degrees);
             self.hold_orientation(source, degrees)?;
         }
         if let Some(rare) = &block.rare {
@@ -279,6 +282,9 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// The modal G commands.
     fn modes(&mut self, source: &Source, block: &Block) -> Outcome {
+        for (said, now) in self.state.said.iter_mut().zip(block.groups) {
+            *said = if now == 0 { *said } else { now };
+        }
         self.state.smoothed.switch(block);
         let turns_loosely =
             [34, 61].iter().any(|&group| block.code(group) == Some(Code::TurnsLoosely(true)));
@@ -346,10 +352,22 @@ impl<'a, 's> Interpreter<'a, 's> {
         if let Some(Code::Compensation(compensation)) = block.code(7) {
             self.select_compensation(source, compensation)?;
         }
+        self.hold_contour_feed(source, block)?;
         match block.code(8) {
             Some(Code::WorkOffset(number)) => self.work_offset(source, number),
             _ => Ok(()),
         }
+    }
+
+    /// Reports where F counts at the centre of a tool that is compensated, in place of its edge: `CFTCP` with all arcs, `CFIN` with
+    /// those outside (Fundamentals, "Feed with cutter radius compensation").
+    fn hold_contour_feed(&mut self, source: &Source, block: &Block) -> Outcome {
+        let switched = block.groups[CONTOUR_FEED] != 0 || block.groups[7] != 0;
+        let contour = commands::is_constant_on_contour(self.state.said[CONTOUR_FEED]);
+        if !switched || contour || self.state.compensation == Compensation::Off {
+            return Ok(());
+        }
+        self.emit(source, Action::Risk(Risk::FEED_OF_CENTRE.into()))
     }
 
     /// Says how rapids go where that is news. `RTLIOF` does nothing with a transformation (PM19 p. 181; nor with G64, a

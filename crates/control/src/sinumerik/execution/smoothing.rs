@@ -18,6 +18,10 @@ pub(crate) struct Smoothed {
     compressor: Smoothing,
     /// Whether the program says the tolerance (`CTOL`, `CYCLE832`).
     is_bounded: bool,
+    /// Whether `ADIS` and `ADISPOS` are above 0.
+    is_rounded: [bool; 2],
+    /// Whether `OTOL` says by how much the control may turn the tool.
+    is_turned: bool,
     /// Whether it has been reported that the machine data say it.
     is_reported: bool,
 }
@@ -31,6 +35,16 @@ impl Smoothed {
             Smoothing::MachineData => true,
         };
         !self.is_reported && (loose(self.rounding) || loose(self.compressor))
+    }
+
+    /// Whether a tolerance of the program holds (`CYCLE832`, `CTOL`, `OTOL`), or a distance (`ADIS`, `ADISPOS`).
+    pub fn is_programmed(&self) -> bool {
+        self.is_bounded || self.is_turned || self.is_rounded.contains(&true)
+    }
+
+    /// `OTOL=`, degrees; below 0 it takes back what was programmed.
+    pub fn turn(&mut self, degrees: f64) {
+        self.is_turned = degrees >= 0.0;
     }
 
     /// The program says a tolerance, or takes it back.
@@ -52,7 +66,7 @@ impl Smoothed {
 
     /// The modes of `other`, with the tolerance as it is now.
     pub fn with_modes_of(self, other: Smoothed) -> Smoothed {
-        Smoothed { is_bounded: self.is_bounded, is_reported: false, ..other }
+        Smoothed { rounding: other.rounding, compressor: other.compressor, is_reported: false, ..self }
     }
 }
 
@@ -77,8 +91,11 @@ impl Interpreter<'_, '_> {
             if value < 0.0 && !takes_back {
                 return Err(source.block_error(Rule::Number, format!("{name}= has no sign")));
             }
-            if name == TOLERANCES[CONTOUR] {
-                self.state.smoothed.bound(!takes_back);
+            let smoothed = &mut self.state.smoothed;
+            match name {
+                _ if name == TOLERANCES[CONTOUR] => smoothed.bound(!takes_back),
+                _ if name == TOLERANCES[CONTOUR + 1] => smoothed.is_rounded[0] = value > 0.0,
+                _ => smoothed.is_rounded[1] = value > 0.0,
             }
             self.path_tolerance(source, name, value)?;
         }

@@ -6,7 +6,7 @@ use super::offsets::WorkOffsets;
 use super::smoothing::Smoothed;
 use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
-use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
+use crate::sinumerik::language::commands::{Diameter, FeedType, GROUPS, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, Locals, Parameters, Readable};
 use crate::{Dialect, Settings};
@@ -56,6 +56,9 @@ impl Turning {
     }
 }
 
+/// The command of each G group that the program has said last, as a block keeps it.
+pub(crate) type Said = [u8; GROUPS];
+
 /// The state between two blocks. The words are in units of the machine: mm, degrees, 1/min.
 pub(crate) struct State {
     /// G group 1.
@@ -76,6 +79,8 @@ pub(crate) struct State {
     pub vectors_in_work_frame: bool,
     /// What the program has said of how the tool turns within a block.
     pub turning: Turning,
+    /// What the program has said of each G group.
+    pub said: Said,
     /// G groups 10 and 30.
     pub smoothed: Smoothed,
     /// G group 55: whether the axes of a rapid go together, where the program says it.
@@ -165,6 +170,7 @@ pub(crate) struct State {
 
 /// Modal commands and frame, as a program with `SAVE` finds them (Function Manual K2, 2.4.10).
 pub(crate) struct Modes {
+    pub said: Said,
     pub motion: Motion,
     pub plane_normal: usize,
     pub units: (f64, f64),
@@ -256,6 +262,7 @@ impl State {
             diameter: Diameter::Off,
             vectors_in_work_frame: true,
             turning: Turning::default(),
+            said: [0; GROUPS],
             smoothed: Smoothed::default(),
             rapids_together: None,
             reported_rapids: None,
@@ -348,6 +355,7 @@ impl State {
     /// What a program with `SAVE` gives back.
     pub fn modes(&self) -> Modes {
         Modes {
+            said: self.said,
             motion: self.motion,
             plane_normal: self.plane_normal,
             units: (self.unit, self.feed_unit),

@@ -3,6 +3,7 @@
 //! A block has at most one command of a group (Programming Manual 06/2019, 4.3.1); one of each
 //! modal group holds. The table is the only place that knows a command: what it does is a [`Code`].
 
+use crate::event::Risk;
 use crate::kernel::compensation::Outer;
 use geom::INCH;
 use program::Compensation;
@@ -161,7 +162,7 @@ pub(super) struct Command {
 }
 
 /// Number of the last group.
-pub(super) const GROUPS: usize = 64;
+pub(crate) const GROUPS: usize = 64;
 
 /// The command with that index.
 #[inline]
@@ -396,6 +397,84 @@ pub(super) static COMMANDS: &[Command] = &[
     g("ORISON", 61, Code::TurnsLoosely(true)),
 ];
 
+/// What a program leaves of a modal group that no other part of the state follows.
+pub(crate) struct Delivered {
+    /// Number of the group.
+    pub group: u8,
+    /// The commands that the next program may find: the one that is active as the maker delivers the control (MD20150), and those
+    /// that change nothing for it.
+    free: &'static [&'static str],
+    /// What any other command of the group is reported as.
+    pub risk: Risk,
+}
+
+const fn left(
+    group: u8,
+    free: &'static [&'static str],
+    what: &'static str,
+    help: &'static str,
+) -> Delivered {
+    Delivered { group, free, risk: Risk::left_on(what, help) }
+}
+
+/// What each program finds of the groups that it need not say: NC programming 12/2019, 4.3 (columns "STD" and "MD20150"), and
+/// Fundamentals 10.2004, 12.3 (column "SAG").
+pub(crate) static DELIVERED: &[Delivered] = &[
+    left(
+        10,
+        &["G60", "G64"],
+        "ends with a smoothed path (G641 to G645)",
+        "write G64 before the end",
+    ),
+    left(12, &["G601"], "ends with G602 or G603", "write G601 before the end"),
+    left(
+        16,
+        &["CFC"],
+        "ends with CFTCP or CFIN, by which F of the next one would count at the tool's centre",
+        "write CFC before the end",
+    ),
+    left(17, &["NORM"], "ends with KONT, KONTC or KONTT", "write NORM before the end"),
+    left(18, &["G450"], "ends with G451", "write G450 before the end"),
+    left(21, &["BRISK"], "ends with SOFT or DRIVE", "write BRISK before the end"),
+    left(22, &["CUT2D"], "ends with CUT2DF", "write CUT2D before the end"),
+    left(23, &["CDOF"], "ends with CDON or CDOF2", "write CDOF before the end"),
+    left(24, &["FFWOF"], "ends with FFWON", "write FFWOF before the end"),
+    left(28, &["WALIMON"], "ends with WALIMOF", "write WALIMON before the end"),
+    left(30, &["COMPOF"], "ends with a compressor", "write COMPOF before the end"),
+    left(
+        34,
+        &["OSOF"],
+        "ends with a smoothed orientation (OSC to OST)",
+        "write OSOF before the end",
+    ),
+    left(37, &["FNORM"], "ends with another feed profile than FNORM", "write FNORM before the end"),
+    left(41, &["LFOF"], "ends with LFON", "write LFOF before the end"),
+    left(45, &["SPATH"], "ends with UPATH", "write SPATH before the end"),
+    left(46, &["LFTXT"], "ends with LFWP or LFPOS", "write LFTXT before the end"),
+    left(47, &["G290"], "ends in another language than G290", "write G290 before the end"),
+    left(48, &["G460"], "ends with G461 or G462", "write G460 before the end"),
+    left(49, &["CP"], "ends with another motion than CP", "write CP before the end"),
+    left(50, &["ORIEULER"], "ends with ORIRPY or ORIRPY2", "write ORIEULER before the end"),
+    left(52, &["PAROTOF"], "ends with PAROT", "write PAROTOF before the end"),
+    left(53, &["TOROTOF"], "ends with a frame of the tool", "write TOROTOF before the end"),
+    left(55, &["RTLION"], "ends with RTLIOF", "write RTLION before the end"),
+    left(57, &["FENDNORM"], "ends with another corner than FENDNORM", "write FENDNORM before the end"),
+    left(59, &["DYNNORM"], "ends with dynamics other than DYNNORM", "write DYNNORM before the end"),
+    left(61, &["ORISOF"], "ends with ORISON", "write ORISOF before the end"),
+];
+
+impl Delivered {
+    /// Whether the next program may find the command of that index plus one, 0 where the program has said none.
+    pub fn allows(&self, said: u8) -> bool {
+        said.checked_sub(1).is_none_or(|index| self.free.contains(&at(index).name))
+    }
+}
+
+/// Whether F holds on the contour for the command of G group 16 with that index plus one: `CFC`, and 0 for none said.
+pub(crate) fn is_constant_on_contour(said: u8) -> bool {
+    said.checked_sub(1).is_none_or(|index| at(index).name == "CFC")
+}
+
 /// Largest `G` number with an entry, plus one.
 const NUMBERS: usize = 1000;
 
@@ -443,5 +522,29 @@ mod tests {
         }
         assert_eq!(at(numbered(642).unwrap()).name, "G642");
         assert!(numbered(43).is_none() && numbered(5000).is_none());
+    }
+
+    /// A group of which nobody says what its end leaves would be left on unseen.
+    #[test]
+    fn of_each_group_it_is_known_what_a_program_leaves() {
+        // For one block only.
+        let passing = [2, 3, 9, 11];
+        // Followed by fields of the state, which say at the end what is on: plane, compensation, units, G91, feed, diameters.
+        let followed = [6, 7, 13, 14, 15, 29];
+        // Each program says its own before it matters: how it moves, its work offset (`work-offset`), how the tool turns
+        // (`orientation-way`).
+        let said_anew = [1, 8, 25, 51];
+        for command in COMMANDS {
+            let ways = usize::from(passing.contains(&command.group))
+                + usize::from(followed.contains(&command.group))
+                + usize::from(said_anew.contains(&command.group))
+                + DELIVERED.iter().filter(|group| group.group == command.group).count();
+            assert_eq!(ways, 1, "{}", command.name);
+        }
+        for group in DELIVERED {
+            for name in group.free {
+                assert_eq!(at(named(name).unwrap()).group, group.group, "{name}");
+            }
+        }
     }
 }
