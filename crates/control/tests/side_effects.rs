@@ -654,6 +654,27 @@ fn a_stored_position_is_no_reference_position() {
     }
 }
 
+/// NC programming, "Fixed point approach (G75)": FP=2 to 4 are MD30600[1] to [3], anywhere.
+#[test]
+fn a_further_fixed_point_of_a_sinumerik_is_a_stored_position() {
+    let settings = Settings::new(Dialect::Sinumerik, [false; 3]);
+    let read = |block: &str| {
+        common::ops(&settings, "p.nc", &format!("G17 G54\nG0 X0 Y0 Z50\n{block}\nM30\n"))
+    };
+    for (block, reported) in [
+        ("G75 Z0", false),
+        ("G75 FP=1 Z0", false),
+        ("G75 FP=2 Z0", true),
+        ("G75 FP=4 Z1=0", true),
+        ("G75 FP=3 X0", false),
+        ("G74 Z1=0", false),
+    ] {
+        let expected: &[&str] = if reported { &["stored-position"] } else { &[] };
+        assert_eq!(rules(&read(block).unwrap()), expected, "{block}");
+    }
+    assert_eq!(read("G75 FP=5 Z0").unwrap_err().rule.name(), "home");
+}
+
 /// GRBL and LinuxCNC: `G43.1` puts a length in; Marlin: `G28` goes to the switches; SINUMERIK *Fundamentals*, "Smoothing", and
 /// "Compressor": MD33100 and MD33120 say how far, CTOL where it is written (Basic Functions 09/2011 p. 204: not for G644; below 0 it
 /// takes back what was programmed).

@@ -518,7 +518,21 @@ impl Interpreter<'_, '_> {
             return Err(source.block_error(Rule::Home, message));
         }
         self.check_free(source, name)?;
+        self.hold_fixed_point(source, block.fixed_point, named[2])?;
         self.leave_for(source, named, Action::Home(Axes::of(named)))
+    }
+
+    /// `FP=` of `G75`: the first fixed point is the one that the machine's file sends Z to; the others lie wherever MD30600[1] to [3]
+    /// say.
+    fn hold_fixed_point(&mut self, source: &Source, number: Option<f64>, z: bool) -> Outcome {
+        match number {
+            None | Some(1.0) => Ok(()),
+            Some(2.0 | 3.0 | 4.0) if z => {
+                self.emit(source, Action::Risk(Risk::STORED_POSITION.into()))
+            }
+            Some(2.0 | 3.0 | 4.0) => Ok(()),
+            Some(_) => Err(source.block_error(Rule::Home, "FP= of G75 takes 1 to 4")),
+        }
     }
 
     /// Moves in machine coordinates are made neither with compensation nor between modal holes, nor
