@@ -535,6 +535,14 @@ impl Risk {
         refused: true,
     };
 
+    /// `MOVE` of `PLANE` (TNC 620 10/2017 p. 556: "tilts the tool (or table) relative to the tool tip").
+    pub(crate) const PLANE_MOVE: Risk = Risk {
+        rule: Rule::TurnHeight,
+        what: "turns rotary axes by PLANE ... MOVE, by which X, Y and Z go along with the tool tip: Z is home no longer",
+        help: "write TURN, with Z home before it, or STAY",
+        refused: true,
+    };
+
     /// `CFTCP`, `CFIN` of SINUMERIK with a compensated contour (Fundamentals, "Feed optimization on curved path sections").
     pub(crate) const FEED_OF_CENTRE: Risk = Risk {
         rule: Rule::Feed,

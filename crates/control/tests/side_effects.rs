@@ -654,6 +654,26 @@ fn a_stored_position_is_no_reference_position() {
     }
 }
 
+/// TNC 620 10/2017 p. 556: MOVE tilts the tool relative to its tip, and so X, Y and Z go along.
+#[test]
+fn plane_move_takes_z_away_from_home() {
+    let settings = Settings::new(Dialect::Klartext, [false, true, true]);
+    for (block, reported) in [
+        ("PLANE SPATIAL SPA+30 SPB+0 SPC+0 MOVE FMAX", true),
+        ("PLANE SPATIAL SPA+30 SPB+0 SPC+0 MOVE DIST50 F1000", true),
+        ("PLANE RESET MOVE FMAX", true),
+        ("PLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX", false),
+        ("PLANE RESET STAY", false),
+    ] {
+        let blocks = ["TOOL CALL 1 Z S900", "L Z+0 R0 FMAX M91", block, "PLANE RESET STAY", "M30"];
+        let blocks = blocks.into_iter().chain(["END PGM P MM"]).enumerate();
+        let text: String = blocks.map(|(i, block)| format!("{} {block}\n", i + 1)).collect();
+        let found = common::ops(&settings, "p.h", &format!("0 BEGIN PGM P MM\n{text}")).unwrap();
+        let expected: &[&str] = if reported { &["turn-height"] } else { &[] };
+        assert_eq!(rules(&found), expected, "{block}");
+    }
+}
+
 /// NC programming, "Fixed point approach (G75)": FP=2 to 4 are MD30600[1] to [3], anywhere.
 #[test]
 fn a_further_fixed_point_of_a_sinumerik_is_a_stored_position() {

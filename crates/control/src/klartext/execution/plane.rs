@@ -2,7 +2,7 @@
 
 use super::state::{Control, Tip};
 use super::transform::Transforms;
-use crate::event::{Action, TiltChoice};
+use crate::event::{Action, Risk, TiltChoice};
 use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
@@ -25,7 +25,8 @@ const SQUARE: f64 = 1e-4;
 
 /// What the rotary axes do when a plane is declared.
 enum Positioning {
-    Turn { rapid: bool, retract: bool, choice: TiltChoice },
+    /// By `MOVE` X, Y and Z go along, so that the tip stays where it is on the part.
+    Turn { rapid: bool, retract: bool, moves: bool, choice: TiltChoice },
     Stay,
 }
 
@@ -170,9 +171,12 @@ impl Control<'_, '_> {
         self.pole = None;
         let inside = Transforms::default();
         self.tilt = turn.map(|turn| Tilt { turn, inside, turned });
-        if let Positioning::Turn { rapid, retract, choice } = positioning {
+        if let Positioning::Turn { rapid, retract, moves, choice } = positioning {
             if retract {
                 self.emit(Action::Home(Axes::Z))?;
+            }
+            if moves {
+                self.emit(Action::Risk(Risk::PLANE_MOVE.into()))?;
             }
             if self.tilt.is_none() {
                 self.degrees = [0.0; 3];
@@ -191,7 +195,7 @@ impl Control<'_, '_> {
             let (token, span) = s.token();
             let known = match token {
                 b"TURN" | b"MOVE" if positioning.is_none() => {
-                    positioning = Some(self.turning(s)?);
+                    positioning = Some(self.turning(s, token == b"MOVE")?);
                     true
                 }
                 b"STAY" if positioning.is_none() => {
@@ -228,7 +232,7 @@ impl Control<'_, '_> {
     }
 
     /// Behind TURN or MOVE: `MB MAX` and the feed, in any order.
-    fn turning(&self, s: &mut Scanner) -> Outcome<Positioning> {
+    fn turning(&self, s: &mut Scanner, moves: bool) -> Outcome<Positioning> {
         let (mut rapid, mut retract) = (None, false);
         loop {
             if s.peek().starts_with(b"F") && rapid.is_none() {
@@ -251,7 +255,7 @@ impl Control<'_, '_> {
         let rapid = rapid.ok_or_else(|| {
             s.error_block(Rule::Feed, "the turning of the rotary axes needs F or FMAX")
         })?;
-        Ok(Positioning::Turn { rapid, retract, choice: TiltChoice::ShorterWithin })
+        Ok(Positioning::Turn { rapid, retract, moves, choice: TiltChoice::ShorterWithin })
     }
 
     /// A `FUNCTION` block, from behind the keyword.
