@@ -562,7 +562,7 @@ fn nothing_happens_after_the_end() {
 
 #[test]
 fn a_stop_and_a_tool_change_stop_spindle_and_coolant() {
-    let mut ops = run(&format!("{START}M8\nSTOP\nM13\nTOOL CALL 6 Z S10"));
+    let mut ops = run(&format!("{START}M8\nM0\nM13\nTOOL CALL 6 Z S10"));
     ops.retain(|action| !matches!(action, Action::Risk(_)));
     let off = [Action::Spindle(Spindle::Off), Action::Coolant(Coolant::Off)];
     assert_eq!(ops[5], Action::Stop);

@@ -174,7 +174,9 @@ fn of_each_g_group_a_sinumerik_keeps_what_its_maker_has_not_delivered() {
 #[test]
 fn f_of_a_sinumerik_counts_on_the_contour() {
     let found = |blocks: &str| {
-        let text = format!("G17 G40 G54 G90 G94 G710\nT1\nM6\nS900 M3\nF200\nG0 X0 Y0 Z9\n{blocks}\nM30\n");
+        let text = format!(
+            "G17 G40 G54 G90 G94 G710\nT1\nM6\nS900 M3\nF200\nG0 X0 Y0 Z9\n{blocks}\nM30\n"
+        );
         let actions = common::ops(&machine(Dialect::Sinumerik), "p.nc", &text).unwrap();
         let feeds = |action: &Action| matches!(action, Action::Risk(risk) if risk.rule.name() == "feed" && risk.refused);
         actions.iter().filter(|action| feeds(action)).count()

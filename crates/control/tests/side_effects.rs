@@ -372,8 +372,8 @@ fn a_stop_with_spindle_or_coolant_running_is_told_where_the_control_need_not_sto
         (D::Grbl, ["M1", "M1"], [false; 3]),
         (D::Marlin, ["M0", "M0"], [true; 3]),
         (D::Sinumerik, ["M0", "M1"], [true; 3]),
-        (D::Klartext, ["M0", "STOP"], [true, false, true]),
-        (D::Klartext, ["M1", "M1"], [true; 3]),
+        (D::Klartext, ["M0", "M0"], [true, false, true]),
+        (D::Klartext, ["M1", "STOP"], [true; 3]),
     ] {
         for stop in stops {
             let on = [("M3", "M8"), ("M3", "M9"), ("M5", "M8")];
@@ -671,6 +671,93 @@ fn plane_move_takes_z_away_from_home() {
         let found = common::ops(&settings, "p.h", &format!("0 BEGIN PGM P MM\n{text}")).unwrap();
         let expected: &[&str] = if reported { &["turn-height"] } else { &[] };
         assert_eq!(rules(&found), expected, "{block}");
+    }
+}
+
+/// TNC 640, "Programmed interruption": `STOP` interrupts the program; spindle and coolant are switched by `M0`.
+#[test]
+fn stop_of_a_heidenhain_leaves_the_spindle_turning() {
+    let settings = Settings::new(Dialect::Klartext, [false; 3]);
+    let read = |off: &str, stop: &str| {
+        let blocks =
+            ["TOOL CALL 1 Z S900", "L X+0 Y+0 Z+9 R0 FMAX M3", off, stop, "M8", "M5", "M9", "M30"];
+        let actions = common::ops(&settings, "p.h", &numbered(&blocks.join("\n"))).unwrap();
+        let stops = actions.iter().position(|action| *action == Action::Stop).unwrap();
+        let off_by_stop =
+            matches!(actions.get(stops + 1), Some(Action::Spindle(program::Spindle::Off)));
+        (rules(&actions).contains(&"stop-running"), off_by_stop)
+    };
+    assert_eq!(read("M9", "STOP"), (true, false));
+    assert_eq!(read("M9", "M0"), (false, true));
+    assert_eq!(read("M5", "STOP"), (false, false));
+}
+
+/// TNC 640, cycle 32: TA is how far the rotary axes may be off with M128; where the program says none, a parameter does.
+#[test]
+fn cycle_32_says_under_m128_by_how_much_the_tool_turns() {
+    let settings = Settings {
+        path_tolerance: 0.05,
+        orientation_tolerance: 0.1,
+        ..Settings::new(Dialect::Klartext, [false, true, true])
+    };
+    let read = |tolerance: &[&str]| {
+        let start = ["TOOL CALL 1 Z S900", "L B+0 C+0 R0 FMAX", "M128", "CYCL DEF 32.0 TOLERANCE"];
+        let cut = ["L X+0 Y+0 Z+9 R0 FMAX M3", "L X+5 B+3 F100", "M129", "M5", "M30"];
+        let blocks: Vec<&str> = start.iter().chain(tolerance).chain(&cut).copied().collect();
+        let found = rules(&common::ops(&settings, "p.h", &numbered(&blocks.join("\n"))).unwrap());
+        found.contains(&"orientation-tolerance")
+    };
+    assert!(read(&["CYCL DEF 32.1 T0.02"]));
+    assert!(!read(&["CYCL DEF 32.1 T0.02", "CYCL DEF 32.2 HSC-MODE:0 TA0.05"]));
+    assert!(!read(&["CYCL DEF 32.1"]));
+}
+
+/// `M6` belongs to a tool call: with none it stops the program, or changes to a tool that nobody has called.
+#[test]
+fn m6_of_a_heidenhain_belongs_to_a_tool_call() {
+    let settings = Settings::new(Dialect::Klartext, [false; 3]);
+    let read = |end: &str| {
+        let blocks = ["TOOL CALL 1 Z S900", "M6", "L X+0 Y+0 Z+9 R0 FMAX M3", "L Z+0 F100", end];
+        common::ops(&settings, "p.h", &numbered(&blocks.join("\n"))).map(|_| ())
+    };
+    assert!(read("M30").is_ok());
+    assert_eq!(read("M6").unwrap_err().rule.name(), "m-function");
+}
+
+/// M7 and M8 switch a coolant each, M9 both (the builder's PLC may have it otherwise). RET with arguments goes on elsewhere.
+#[test]
+fn a_sinumerik_adds_one_coolant_to_the_other_and_goes_back_behind_its_call() {
+    let settings = Settings::new(Dialect::Sinumerik, [false; 3]);
+    let read = |blocks: &str| {
+        let text = format!("G17 G54\nG0 X0 Y0 Z50\n{blocks}\n");
+        common::ops(&settings, "p.nc", &text).map_err(|error| error.rule.name())
+    };
+    let both = Action::Coolant(program::Coolant::FloodAndMist);
+    assert!(read("M7\nM8\nM9\nM30").unwrap().contains(&both));
+    assert!(read("M8\nM7\nM9\nM30").unwrap().contains(&both));
+    assert!(!read("M7\nM9\nM8\nM9\nM30").unwrap().contains(&both));
+    assert!(read("RET").is_ok());
+    for end in ["RET(5)", "RET(\"X\")", "RET(\"\",\"\",2)"] {
+        assert_eq!(read(end).unwrap_err(), "call", "{end}");
+    }
+}
+
+/// B-64484EN-2, "Rigid tapping": the spindle is an axis meanwhile; Haas `G84` turns it as well.
+#[test]
+fn no_spindle_is_switched_between_two_holes_of_a_rigid_tap() {
+    for (dialect, rigid) in [(Dialect::Fanuc, "M29 S500\n"), (Dialect::Haas, "S500\n")] {
+        let settings = Settings::new(dialect, [false; 3]);
+        let read = |between: &str| {
+            let text = format!(
+                "G21\nG90 G94 G98 G17 G54\nG0 X0. Y0. Z9.\n{rigid}G98 G84 X5. Z-9. R2. F500.\n{between}\nX9.\nG80\nM30\n"
+            );
+            common::ops(&settings, "p.nc", &text).map_err(|error| error.rule.name())
+        };
+        assert!(read("").is_ok(), "{dialect:?}");
+        for word in ["M3", "M4", "M5", "M19"] {
+            assert_eq!(read(word).unwrap_err(), "cycle", "{dialect:?} {word}");
+        }
+        assert!(read("G80 M5").is_ok() || read("G80\nM5").is_ok(), "{dialect:?}");
     }
 }
 

@@ -97,7 +97,7 @@ fn header_labels_skip_marks_and_comments_are_read() {
 fn words_that_do_not_move_leave_no_trace() {
     let text = "G60 G601 SOFT FFWON COMPCAD G642 ADIS=0.1 DYNFINISH\nCYCLE832(0.01,_FINISH,1)\n\
                 FGROUP(X,Y,Z)\nM40\nM26 M28\nSTOPRE\nCYCLE832()\nORIWKS ORIAXES\nFNORM\nSETMS\n\
-                SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)";
+                SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)\nADIS=0\nG64\nCOMPOF\nBRISK\nFFWOF\nDYNNORM";
     let text = text.replace("ORIWKS ORIAXES", "ORIWKS\nORIAXES");
     let text = text.replace("G60 G601", "G601");
     let functions = [26, 28].map(|number| Action::Auxiliary(program::Auxiliary::of(number)));
@@ -154,7 +154,7 @@ fn spindle_and_coolant_are_reported_where_they_change() {
         Action::Spindle(Spindle::Clockwise(1200.0)),
         Action::Spindle(Spindle::CounterClockwise(1200.0)),
         Action::Coolant(Coolant::Flood),
-        Action::Coolant(Coolant::Mist),
+        Action::Coolant(Coolant::FloodAndMist),
         Action::Spindle(Spindle::Off),
         Action::Coolant(Coolant::Off),
         Action::End,
@@ -395,7 +395,7 @@ fn how_fast_axes_may_be_changes_no_path() {
 #[test]
 fn where_axes_go_when_the_program_stops_moves_nothing_and_is_reported() {
     let plain = poses(&blocks("G0 X1 Y2 Z3\nG1 X5 F100"));
-    let quiet = blocks("LFOF LFTXT\nLFWP\nLFPOS\nG0 X1 Y2 Z3");
+    let quiet = blocks("LFOF LFTXT\nLFWP\nLFPOS\nG0 X1 Y2 Z3\nLFTXT");
     assert!(!quiet.iter().any(|op| matches!(op, Action::Risk(_))), "{quiet:?}");
     let words = [
         "POLF[Z]=100",
@@ -410,7 +410,7 @@ fn where_axes_go_when_the_program_stops_moves_nothing_and_is_reported() {
         "POLFA(Z,2,50)",
     ];
     for text in words {
-        let ops = blocks(&format!("R1=7\n{text}\nG0 X1 Y2 Z3\nG1 X5 F100"));
+        let ops = blocks(&format!("R1=7\n{text}\nG0 X1 Y2 Z3\nG1 X5 F100\nLFOF LFTXT"));
         assert_eq!(poses(&ops), plain, "{text}");
         let risks: Vec<_> = ops
             .iter()

@@ -126,6 +126,13 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
+    /// Whether rigid tapping goes on behind this block, by which the spindle is an axis (B-64484EN-2, "Rigid tapping").
+    pub(super) fn taps_on(&self) -> bool {
+        let another = |group| self.block.g(group).is_some_and(|code| !matches!(code, G::Cycle(_)));
+        let ends = [Group::Motion, Group::Cycle].into_iter().any(another);
+        self.state.cycle.is_some_and(|held| held.rigid) && !ends
+    }
+
     /// No cycle is active any more.
     pub(super) fn end_cycle(&mut self) {
         let Some(held) = self.state.cycle.take() else { return };

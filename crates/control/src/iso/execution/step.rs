@@ -224,6 +224,13 @@ impl Step<'_, '_, '_> {
                 Fault::from(fault.help("write S beside M3 or M4, or before"))
             })
         };
+        let is_own = self.block.m(Group::Spindle).is_some_and(|m| m != M::RigidTap);
+        if is_own && self.taps_on() {
+            let message =
+                "the spindle is switched between two holes of a rigid tap, which turns it itself";
+            let fault = self.block.at_group(Group::Spindle, Rule::Cycle, message);
+            return Err(fault.help("write G80 before it").into());
+        }
         match self.block.m(Group::Spindle) {
             Some(M::Clockwise) => {
                 let spindle = Spindle::Clockwise(speed()?);

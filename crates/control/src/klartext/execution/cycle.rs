@@ -389,6 +389,7 @@ impl Control<'_, '_> {
     fn tolerance(&mut self, s: &mut Scanner) -> Outcome {
         let first = s.is_done();
         let mut mode = first.then_some(PathMode::AsSetUp);
+        self.turns_unsaid &= !first;
         while !s.is_done() {
             if s.take(b"HSC-MODE:0") || s.take(b"HSC-MODE:1") {
                 continue;
@@ -396,8 +397,10 @@ impl Control<'_, '_> {
             match s.word(&self.registers)? {
                 Some(Word { address: b"T", number: Some(number), .. }) if number >= 0.0 => {
                     mode = Some(PathMode::Blend(number * self.unit));
+                    self.turns_unsaid = number > 0.0;
                 }
                 Some(Word { address: b"TA", number: Some(degrees), .. }) if degrees >= 0.0 => {
+                    self.turns_unsaid = false;
                     self.hold_orientation(degrees)?;
                 }
                 _ => {

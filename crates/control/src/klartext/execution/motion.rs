@@ -220,6 +220,12 @@ impl Control<'_, '_> {
                 false => Action::Rapid(self.pose(self.here)),
             });
         }
+        self.tool_is_due = false;
+        if self.turns_unsaid && self.tip != Tip::Free {
+            // A parameter of the machine says by how much (TNC 640, cycle 32: TA acts with M128).
+            self.turns_unsaid = false;
+            self.emit(Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))?;
+        }
         self.contour_element(s, element, corner)
     }
 

@@ -26,7 +26,12 @@ const SQUARE: f64 = 1e-4;
 /// What the rotary axes do when a plane is declared.
 enum Positioning {
     /// By `MOVE` X, Y and Z go along, so that the tip stays where it is on the part.
-    Turn { rapid: bool, retract: bool, moves: bool, choice: TiltChoice },
+    Turn {
+        rapid: bool,
+        retract: bool,
+        moves: bool,
+        choice: TiltChoice,
+    },
     Stay,
 }
 

@@ -68,6 +68,10 @@ pub(crate) struct Control<'a, 's> {
     pub(super) tool_number: Option<u32>,
     /// Whether a tool has been called, and with it the tool axis.
     pub(super) has_tool: bool,
+    /// Whether a tool has been called and nothing has been cut since.
+    pub(super) tool_is_due: bool,
+    /// Whether cycle 32 lets the path be left (`T`) and does not say by how much the tool may be turned (`TA`).
+    pub(super) turns_unsaid: bool,
     /// Radius of the tool in the tool table, mm.
     pub(super) tool_radius: Option<f64>,
     pub(super) per_turn: bool,
@@ -142,6 +146,8 @@ impl<'a, 's> Control<'a, 's> {
             defined_tools: HashMap::new(),
             tool_number: None,
             has_tool: false,
+            tool_is_due: false,
+            turns_unsaid: false,
             tool_radius: None,
             per_turn: false,
             shorter_way: false,
@@ -382,6 +388,12 @@ impl<'a, 's> Control<'a, 's> {
                 if coolant { self.set_coolant(Coolant::Flood) } else { Ok(()) }
             }
             Function::SpindleStop => self.set_spindle(Spindle::Off),
+            Function::ToolChange if !self.tool_is_due => {
+                let message = "M6 without a TOOL CALL since the last cut: it stops the program or changes to a tool that nobody has called";
+                let help = "call the tool before it, or leave M6 out";
+                Err(s.error_block(Rule::MFunction, message).help(help).into())
+            }
+            Function::ToolChange => self.set_spindle(Spindle::Off),
             Function::Coolant(coolant) => {
                 let both = self.coolant != Coolant::Off && self.coolant != coolant;
                 if both {
@@ -396,6 +408,10 @@ impl<'a, 's> Control<'a, 's> {
                 self.stops_while(self.coolant != Coolant::Off)?;
                 self.emit(Action::Stop)?;
                 self.stop_all()
+            }
+            Function::ProgramStop => {
+                self.stops_while(self.spindle != Spindle::Off || self.coolant != Coolant::Off)?;
+                self.emit(Action::Stop)
             }
             Function::OptionalStop => {
                 self.stops_while(self.spindle != Spindle::Off || self.coolant != Coolant::Off)?;

@@ -159,6 +159,7 @@ impl Control<'_, '_> {
         let number = if tool.name.is_empty() { Some(tool.number) } else { data.map(|d| d.number) };
         self.tool_number = number;
         self.has_tool = true;
+        self.tool_is_due = true;
         // In which unit an inch program finds them the manuals do not say.
         let metric = if self.unit == 1.0 { data } else { None };
         self.registers.preassign(108, metric.map_or(f64::NAN, |data| data.radius));

@@ -182,7 +182,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                 let words = Words::read(s, 0, control)?;
                 control.functions(s, words.functions, When::Start)?;
                 control.functions(s, words.functions, When::End)?;
-                control.functions(s, Functions::of(Function::Stop), When::End)
+                control.functions(s, Functions::of(Function::ProgramStop), When::End)
             }
             b"LBL" => self.label(s),
             b"CALL" => self.call(s, place),

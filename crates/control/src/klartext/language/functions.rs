@@ -8,8 +8,10 @@ use program::{Coolant, CoolantSwitch, Rule};
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Function {
-    /// Stop of the program, the spindle and the coolant: `M0`, `STOP`.
+    /// Stop of the program, the spindle and the coolant: `M0`.
     Stop,
+    /// Stop of the program alone: `STOP`, which no number stands for.
+    ProgramStop,
     /// The same where the operator has asked for it: `M1`.
     OptionalStop,
     /// End of the program: `M2`, `M30`.
@@ -18,8 +20,10 @@ pub(crate) enum Function {
     Clockwise { coolant: bool },
     /// Spindle counter-clockwise, and coolant where `M14` says so.
     CounterClockwise { coolant: bool },
-    /// Spindle stop: `M5`, and `M6`, which the tool call before it has made a tool change.
+    /// Spindle stop: `M5`.
     SpindleStop,
+    /// `M6`: the tool call before it has made the tool change, and the spindle stands.
+    ToolChange,
     /// `M8`, and what the machine's file has besides.
     Coolant(Coolant),
     /// `M9`.
@@ -61,7 +65,7 @@ const FUNCTIONS: [(u16, Function); 26] = [
     (3, Function::Clockwise { coolant: false }),
     (4, Function::CounterClockwise { coolant: false }),
     (5, Function::SpindleStop),
-    (6, Function::SpindleStop),
+    (6, Function::ToolChange),
     (8, Function::Coolant(Coolant::Flood)),
     (9, Function::CoolantOff),
     (13, Function::Clockwise { coolant: true }),
@@ -185,9 +189,11 @@ impl Function {
     pub(super) fn when(self) -> When {
         match self {
             Function::Stop
+            | Function::ProgramStop
             | Function::OptionalStop
             | Function::End
             | Function::SpindleStop
+            | Function::ToolChange
             | Function::CoolantOff
             | Function::CallCyclesModally
             | Function::CallCycle

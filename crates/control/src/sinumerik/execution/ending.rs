@@ -45,8 +45,7 @@ const TOLERANCE: Risk = Risk::left_on(
     "ends with a tolerance or a distance by which the control leaves the path (CYCLE832, CTOL, OTOL, ADIS, ADISPOS)",
     "write CYCLE832(0,_OFF,1), CTOL=-1, OTOL=-1, ADIS=0 or ADISPOS=0 before the end",
 );
-const PEAK: Risk =
-    Risk::left_on("ends with DISC above 0", "write DISC=0 before the end");
+const PEAK: Risk = Risk::left_on("ends with DISC above 0", "write DISC=0 before the end");
 const PREPARED: Risk = Risk::left_on(
     "goes back to its caller with a tool that is chosen and not changed, which the next M6 takes",
     "leave T out, or change the tool",

@@ -519,7 +519,13 @@ impl<'a, 's> Interpreter<'a, 's> {
             error.help = "write M9 first".into();
             return Err(error);
         }
-        self.report_coolant(source, coolant)
+        // Each of M7 and M8 switches its own, M9 both.
+        let both = match (running, coolant) {
+            (Coolant::Flood | Coolant::FloodAndMist, Coolant::Mist)
+            | (Coolant::Mist | Coolant::FloodAndMist, Coolant::Flood) => Coolant::FloodAndMist,
+            (_, coolant) => coolant,
+        };
+        self.report_coolant(source, both)
     }
 
     /// The coolant that an M function leaves running: as the machine's file says, or M7, M8 and M9 where it does not.
@@ -671,6 +677,12 @@ impl<'a, 's> Interpreter<'a, 's> {
             Procedure::Traori => self.traori(source, call),
             Procedure::Trafoof => self.trafoof(source),
             Procedure::Swivel => self.swivel(source, call),
+            Procedure::Return if !call.arguments.is_empty() => {
+                let message =
+                    "RET with a place or a number of levels goes on elsewhere than behind the call";
+                let error = source.block_error(Rule::Call, message);
+                Err(error.help("write RET alone").into())
+            }
             Procedure::Return => self.end(source, true),
             Procedure::EndOfModalCall => {
                 self.may_change_modal(source)?;

@@ -66,7 +66,12 @@ impl Smoothed {
 
     /// The modes of `other`, with the tolerance as it is now.
     pub fn with_modes_of(self, other: Smoothed) -> Smoothed {
-        Smoothed { rounding: other.rounding, compressor: other.compressor, is_reported: false, ..self }
+        Smoothed {
+            rounding: other.rounding,
+            compressor: other.compressor,
+            is_reported: false,
+            ..self
+        }
     }
 }
 

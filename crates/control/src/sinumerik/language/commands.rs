@@ -458,7 +458,12 @@ pub(crate) static DELIVERED: &[Delivered] = &[
     left(52, &["PAROTOF"], "ends with PAROT", "write PAROTOF before the end"),
     left(53, &["TOROTOF"], "ends with a frame of the tool", "write TOROTOF before the end"),
     left(55, &["RTLION"], "ends with RTLIOF", "write RTLION before the end"),
-    left(57, &["FENDNORM"], "ends with another corner than FENDNORM", "write FENDNORM before the end"),
+    left(
+        57,
+        &["FENDNORM"],
+        "ends with another corner than FENDNORM",
+        "write FENDNORM before the end",
+    ),
     left(59, &["DYNNORM"], "ends with dynamics other than DYNNORM", "write DYNNORM before the end"),
     left(61, &["ORISOF"], "ends with ORISON", "write ORISOF before the end"),
 ];
