@@ -71,7 +71,12 @@ impl Walk<'_> {
         self.end_cycle()?;
         self.wire_for(false, "a rapid")?;
         self.same_taper("a rapid")?;
-        self.expect_spindle()?;
+        // Where the tool may touch, it turns, whether something is cut there or not.
+        if self.is_near_cuts(pose) {
+            self.sync_spindle()?
+        } else {
+            self.expect_spindle()?
+        }
         self.settle(pose, stop, false)?;
         let Some(from) = self.position.known() else {
             return self.approach(pose, stop);
@@ -89,6 +94,11 @@ impl Walk<'_> {
             RapidMoves::Feed => self.by_feed(pose, stop),
             RapidMoves::Home => self.by_home(pose, stop),
         }
+    }
+
+    /// Whether a pose is not beyond all that the source reaches by feed, along the tool axis there.
+    fn is_near_cuts(&mut self, pose: &Pose) -> bool {
+        pose.point().dot(pose.axis()) < self.fed_reach(pose.axis())
     }
 
     /// A rapid to a hole or in it: what the cycle of a control would do, axes that turn apart.

@@ -68,7 +68,9 @@ impl fmt::Display for PartialPose {
             let letters: Vec<&str> = unknown.into_iter().map(|(letter, _)| letter).collect();
             write!(f, " ({} not known)", letters.join(" and "))?;
         }
-        if !self.axis.abs_diff_eq(Vec3::Z, 1e-9) {
+        if self.axis.is_nan() {
+            write!(f, " (tool axis not known)")?;
+        } else if !self.axis.abs_diff_eq(Vec3::Z, 1e-9) {
             let [i, j, k] = self.axis.to_array();
             write!(f, " (tool axis {i:.6}, {j:.6}, {k:.6})")?;
         }

@@ -85,6 +85,8 @@ pub(crate) struct Walk<'a> {
     statistics: Option<Statistics>,
     /// What it cuts; counted where it is asked for.
     cuts: Option<CutBox>,
+    /// What it reaches by feed, with the heights from which it comes down; counted where it is asked for.
+    fed: Option<CutBox>,
     /// The feed for the air, else the fastest that the machine is known to take, mm/min; looked for where it is asked for.
     known_feed: OnceCell<Option<f64>>,
     /// Rapids that are written by feed.
@@ -153,6 +155,7 @@ impl<'a> Walk<'a> {
             source: program,
             statistics: None,
             cuts: None,
+            fed: None,
             known_feed: OnceCell::new(),
             by_feed: ByFeed::default(),
             radii: OnceCell::new(),
@@ -456,6 +459,11 @@ impl<'a> Walk<'a> {
     /// How far the source reaches along the unit vector `direction`, mm.
     pub(crate) fn reach(&mut self, direction: Vec3) -> f64 {
         self.statistics.get_or_insert_with(|| Statistics::of(self.source)).reach(direction)
+    }
+
+    /// How far the source reaches by feed along the unit vector `direction`, with the heights from which it comes down, mm.
+    pub(crate) fn fed_reach(&mut self, direction: Vec3) -> f64 {
+        self.fed.get_or_insert_with(|| CutBox::fed(self.source)).reach(direction)
     }
 
     /// How far the cuts of the source reach along the unit vector `direction`, mm.

@@ -57,7 +57,8 @@ impl Prover<'_> {
             Step::Move(goal) => (goal.tool_change || goal.homed, Some(&goal.kind)),
             _ => (true, None),
         };
-        let stops_in_hole = matches!(kind, Some(Kind::Hole(cycle)) if cycle.kind == CycleKind::Bore);
+        let stops_in_hole =
+            matches!(kind, Some(Kind::Hole(cycle)) if cycle.kind == CycleKind::Bore);
         if is == Spindle::Off && stops_in_hole && self.leg.hole.over {
             // Whether it stands where it has to, the comparison of the hole says.
             return true;
