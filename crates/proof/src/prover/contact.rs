@@ -53,12 +53,11 @@ impl Prover<'_> {
 
     /// Whether the spindle may be as it `is` on the way out, where the source wants it otherwise.
     fn may_leave_so(&self, wanted: Spindle, is: Spindle, to: Option<&ResolvedPose>) -> bool {
-        let (is_own, kind) = match &self.cursor.step {
-            Step::Move(goal) => (goal.tool_change || goal.homed, Some(&goal.kind)),
-            _ => (true, None),
-        };
-        let stops_in_hole =
-            matches!(kind, Some(Kind::Hole(cycle)) if cycle.kind == CycleKind::Bore);
+        let goal = if let Step::Move(goal) = &self.cursor.step { Some(goal) } else { None };
+        let is_own = goal.is_none_or(|goal| goal.tool_change || goal.homed);
+        let stops_in_hole = goal.is_some_and(
+            |goal| matches!(goal.kind, Kind::Hole(cycle) if cycle.kind == CycleKind::Bore),
+        );
         if is == Spindle::Off && stops_in_hole && self.leg.hole.over {
             // Whether it stands where it has to, the comparison of the hole says.
             return true;
