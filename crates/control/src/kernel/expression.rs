@@ -129,6 +129,7 @@ pub struct Stack<V, O> {
 }
 
 impl<V, O> Default for Stack<V, O> {
+    #[inline]
     fn default() -> Stack<V, O> {
         Stack { near: [const { None }; NEAR], far: Vec::new(), length: 0 }
     }
@@ -139,6 +140,7 @@ impl<V, O: Copy> Stack<V, O> {
     ///
     /// # Errors
     /// Two values have no result.
+    #[inline]
     pub fn settle<E>(
         &mut self,
         mut last: Operand<V>,
@@ -156,6 +158,7 @@ impl<V, O: Copy> Stack<V, O> {
     }
 
     /// A value waits for the right operand of `operator`.
+    #[inline]
     pub fn push(&mut self, left: Operand<V>, operator: Next<O>) {
         match self.near.get_mut(self.length) {
             Some(free) => *free = Some((left, operator)),
@@ -164,6 +167,7 @@ impl<V, O: Copy> Stack<V, O> {
         self.length += 1;
     }
 
+    #[inline]
     fn pop_if(&mut self, goes: impl Fn(&Next<O>) -> bool) -> Option<(Operand<V>, Next<O>)> {
         let index = self.length.checked_sub(1)?;
         let popped = match self.near.get_mut(index) {

@@ -366,6 +366,8 @@ impl Reader {
 
 #[cfg(test)]
 mod tests {
+    use super::super::table::WORDS;
+    use super::super::{Options, read};
     use super::*;
 
     #[test]
@@ -389,6 +391,54 @@ mod tests {
             "GOTO/1 2,3,4",
         ] {
             assert_eq!(plain_goto(text.as_bytes()), None, "{text}");
+        }
+    }
+
+    /// What may stand behind a word; what it does not take there is refused on both paths.
+    const BODIES: [&str; 18] = [
+        "",
+        "/ON",
+        "/OFF",
+        "/1",
+        "/2,MMPM",
+        "/0,0,1",
+        "/1,2,3",
+        "/TOOL,2",
+        "/LEFT",
+        "/AAXIS,90",
+        "/DRILL,DEPTH,5,MMPM,100,CLEAR,1",
+        "/DRILL,5,MMPM,100,1",
+        "/3,0,0,0,0,1,2",
+        "/10,0.5",
+        "/1,0,0,0,0,1,0,0,0,0,1,0",
+        "/MILL",
+        // Arcs to the next point; on the second lies the point behind that, too.
+        "/1.5,0,0,0,0,1,0.5",
+        "/1.5,1.5,0,0,0,1,1.5811388",
+    ];
+
+    /// A blank before a comma leads past the short path.
+    #[test]
+    fn a_plain_goto_does_the_same_on_the_short_path_behind_every_word() {
+        let start = "PARTNO/A\nUNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0\nGOTO/1,0,0\n";
+        let end = "GOTO/2,0,0\nGOTO/2,3,0,0,0,1\nRAPID\nGOTO/2,3,5\nGOTO/4,0,0\nFINI\n";
+        let result = |text: &str| match read("a.cls", text.as_bytes(), &Options::default()) {
+            Ok(read) => {
+                let warnings = read.warnings.iter().map(|found| (found.rule, found.line));
+                format!("{:?} {:?}", read.program.records, warnings.collect::<Vec<_>>())
+            }
+            Err(found) => {
+                let found = found.iter().map(|found| (found.rule, found.line));
+                format!("{:?}", found.collect::<Vec<_>>())
+            }
+        };
+        for (word, _) in WORDS {
+            for body in BODIES {
+                let text = format!("{start}{word}{body}\n{end}");
+                let past = text.replace("GOTO/0,", "GOTO/0 ,").replace("GOTO/1,", "GOTO/1 ,");
+                let past = past.replace("GOTO/2,", "GOTO/2 ,").replace("GOTO/4,", "GOTO/4 ,");
+                assert_eq!(result(&text), result(&past), "{text}");
+            }
         }
     }
 }

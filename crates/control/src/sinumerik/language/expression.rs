@@ -133,7 +133,8 @@ struct Expression<'e, 'a, 's, 't> {
 impl Expression<'_, '_, '_, '_> {
     /// An expression. It is read by the ranks of the control, and where it compares also by the usual ones.
     fn whole(&mut self) -> Outcome<Operand> {
-        let (mut own, mut read) = (Stack::default(), Vec::new());
+        let mut own = Stack::default();
+        let mut read = Vec::new();
         let start = self.start();
         let (found, last) = loop {
             let from = self.start();
