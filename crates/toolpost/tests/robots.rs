@@ -151,7 +151,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("C_DIS", "C_VEL", "path-tolerance"),
     ("END", "HALT\r\nEND", "stop"),
     ("END", "$OUT[2]=TRUE\r\nEND", "left-on"),
-    ("DEF JOB ( )", "DEF JOB ( )\r\nDEF OTHER ( )", "program"),
+    ("DEF JOB ( )", "DEF JOB ( )\r\nDEF OTHER ( )", "program-frame"),
     (
         "PTP {A1 0.0000,A2 -90.0000,A3 90.0000,A4 0.0000,A5 45.0000,A6 0.0000}\r\n$OUT[1]=FALSE",
         "$OUT[1]=FALSE",
