@@ -1,6 +1,7 @@
 //! A job: bodies and points placed in a block, made into a cloud, ordered, written, read back and proven.
 
 use crate::cloud::{self, Distances, Point};
+use crate::fill::{self, Fill, Filling, Left};
 use crate::machine::{Lens, Machine};
 use crate::material::Material;
 use crate::mesh::{self, Health, Mesh, Shape};
@@ -8,7 +9,7 @@ use crate::optics::{self, Beam, Cut, Ray};
 use crate::order::{self, Effort, Shadow};
 use crate::picture::{Picture, Sheet};
 use crate::proof::{self, Proof};
-use crate::sample::{self, Apart};
+use crate::sample::Apart;
 use crate::{control, post, weld};
 use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
@@ -53,6 +54,8 @@ pub struct Settings {
     pub focal: f64,
     /// Smallest distance of points, mm; without, that of the lens.
     pub spacing: Option<f64>,
+    /// How bodies become points.
+    pub filling: Filling,
     /// By which ray the focus is found.
     pub ray: Ray,
     /// The order.
@@ -70,8 +73,10 @@ pub struct Settings {
 pub struct Report {
     /// Points of the cloud.
     pub points: u64,
-    /// Points of lists and pictures that were too close to others and left out.
+    /// Points that were too close to others and left out.
     pub welded: u64,
+    /// What of the bodies became no points.
+    pub left: Left,
     /// Where the cloud lies, mm.
     pub from: [f64; 3],
     /// To where.
@@ -157,6 +162,7 @@ pub fn prove(
 struct Job<'m> {
     cloud: Vec<Point>,
     welded: u64,
+    left: Left,
     scale: f64,
     spacing: f64,
     micrometres: u32,
@@ -186,12 +192,13 @@ impl<'m> Job<'m> {
         let Placing { block, margin, .. } = settings.placing;
         let room = DVec3::from_array(block) - 2.0 * margin;
         let mut parts = Parts::new(shapes, room, apart)?;
-        let findings = parts.health.iter().filter_map(unhealthy).collect();
+        let mut findings: Vec<Diagnostic> = parts.health.iter().filter_map(unhealthy).collect();
         let scale = place(
             [&mut parts.mesh.vertices, &mut parts.points, &mut parts.corners],
             &settings.placing,
         )?;
-        let (cloud, welded) = discretise(&parts, apart, settings.seed)?;
+        let (cloud, welded, left) = discretise(&parts, &settings.filling, apart, settings.seed)?;
+        findings.extend(left_out(&left, &settings.filling));
         let health = parts.health;
         if cloud.len() as u64 > machine.program.points {
             let message = format!(
@@ -206,6 +213,7 @@ impl<'m> Job<'m> {
         Ok(Job {
             cloud,
             welded,
+            left,
             scale,
             spacing,
             micrometres,
@@ -286,6 +294,7 @@ impl<'m> Job<'m> {
         let report = Report {
             points: cloud.len() as u64,
             welded: self.welded,
+            left: self.left,
             from: low.map(|value| f64::from(value) / 1e3),
             to: high.map(|value| f64::from(value) / 1e3),
             scale: self.scale,
@@ -430,6 +439,29 @@ impl Parts {
     }
 }
 
+/// What is said of parts of bodies that became no points.
+fn left_out(left: &Left, filling: &Filling) -> Option<Diagnostic> {
+    let (message, help) = match (left, filling.fill) {
+        (Left { triangles: 1.., .. }, Fill::Triangles(false)) => (
+            format!("{} triangles are smaller than the grid and get no point", left.triangles),
+            "add --full for a point in each of them, or take --fill surface",
+        ),
+        (Left { along: 1.., .. }, _) => (
+            format!("{} triangles lie along the planes or rays and get no points", left.along),
+            "take another --axis or a --tilt, or --fill surface",
+        ),
+        (Left { columns: 1.., first_column: Some([x, y, z]), .. }, _) => (
+            format!(
+                "{} columns enter the body more often than they leave it, the first one at {x:.3} {y:.3} {z:.3} mm: they are left empty",
+                left.columns
+            ),
+            "close the body in the program that made it",
+        ),
+        _ => return None,
+    };
+    Some(Diagnostic::warning(Rule::Mesh, message).help(help))
+}
+
 fn unhealthy(health: &Health) -> Option<Diagnostic> {
     let Health { open, first_open, flat, crowded, turned, volume } = *health;
     let mut parts = Vec::new();
@@ -536,19 +568,21 @@ fn place(mut groups: [&mut Vec<DVec3>; 3], placing: &Placing) -> Result<f64, Vec
 /// The cloud of bodies, pictures and points, and how many points of them were too close to others.
 fn discretise(
     parts: &Parts,
+    filling: &Filling,
     apart: Apart,
     seed: u64,
-) -> Result<(Vec<Point>, u64), Vec<Diagnostic>> {
+) -> Result<(Vec<Point>, u64, Left), Vec<Diagnostic>> {
     let Parts { mesh, points, .. } = parts;
     // A saturated packing has 0.6966 points in a square of the spacing; some more where it is curved.
-    let area = mesh.area() + parts.sheets().map(|(_, sheet)| sheet.area()).sum::<f64>();
-    let expected = area * 1e6 / f64::from(apart.spacing).powi(2);
+    let sheets = parts.sheets().map(|(_, sheet)| sheet.area()).sum::<f64>();
+    let sheets = sheets * 1e6 / f64::from(apart.spacing).powi(2);
+    let expected = sheets + filling.expected(mesh, apart.spacing);
     if expected > MOST_POINTS {
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
         return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
-    let mut cloud = sample::surface(mesh, apart, seed);
+    let (mut cloud, left) = fill::points(mesh, filling, apart, seed);
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
     let Some(mut given) = given else {
         return Err(error(
@@ -561,7 +595,7 @@ fn discretise(
         given.extend(picture.points(&sheet, apart, seed.wrapping_add(number as u64)));
     }
     let asked = cloud.len() + given.len();
-    if !given.is_empty() {
+    if !given.is_empty() || filling.fill != Fill::Surface {
         cloud.extend(given);
         cloud = weld::welded(&cloud, apart.spacing);
     }
@@ -573,7 +607,7 @@ fn discretise(
         ));
     }
     let left_out = (asked - cloud.len()) as u64;
-    Ok((cloud, left_out))
+    Ok((cloud, left_out, left))
 }
 
 /// Squares of the spacing on a surface beyond which no cloud is begun: 200 million points.

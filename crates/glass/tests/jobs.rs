@@ -5,6 +5,7 @@ mod bodies;
 use bodies::sphere;
 use toolpost_glass::cloud::{Point, distances};
 use toolpost_glass::control::read;
+use toolpost_glass::fill::{Fill, Filling};
 use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
 use toolpost_glass::material::{Material, TABLE, find};
@@ -43,6 +44,7 @@ fn settings() -> Settings {
         placing,
         focal: 70.0,
         spacing: None,
+        filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },
         ray,
         order,
         effort,

@@ -1,8 +1,11 @@
 //! `toolpost glass`: engraving inside glass.
 
 use crate::answer::{Answer, not_saved};
-use crate::args::glass::{Drawn, Engrave, Glass, GlassCommand, Job, Ordering, Sorting};
+use crate::args::glass::{
+    self as args, Drawn, Engrave, Filled, Glass, GlassCommand, Job, Ordering, Sorting,
+};
 use crate::progress::Progress;
+use ::glass::fill::{self, Fill, Filling, Sections};
 use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
 use ::glass::machine::{LIBRARY, Machine};
@@ -161,12 +164,30 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
         placing,
         focal: args.lens,
         spacing: args.spacing,
+        filling: filling(&args.filling),
         ray,
         order,
         effort,
         seed: args.seed,
         accept_shadowed: !args.accept.is_empty(),
     }
+}
+
+/// How bodies become points.
+fn filling(args: &args::Filling) -> Filling {
+    let fill = match args.fill {
+        Filled::Surface => Fill::Surface,
+        Filled::Solid => Fill::Solid,
+        Filled::Triangles => Fill::Triangles(args.full),
+        Filled::Rays => Fill::Rays,
+        Filled::Sections => Fill::Sections(Sections {
+            layer: args.layer_distance,
+            first: args.first_distance,
+            twist: args.twist.unwrap_or_default(),
+            ends: !args.no_ends,
+        }),
+    };
+    Filling { fill, step: args.step, direction: fill::direction(args.axis, args.tilt) }
 }
 
 /// The order that is asked for, and how much is tried for it.

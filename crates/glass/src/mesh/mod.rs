@@ -214,17 +214,20 @@ impl Mesh {
             .extend(other.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     }
 
+    /// Of each corner the first one at the same place.
+    pub fn same_places(&self) -> Vec<u32> {
+        let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.vertices.len());
+        let first = |(i, place): (usize, &DVec3)| {
+            // + 0 makes one of both zeros.
+            let bits = (*place + DVec3::ZERO).to_array().map(f64::to_bits);
+            *places.entry(bits).or_insert(i as u32)
+        };
+        self.vertices.iter().enumerate().map(first).collect()
+    }
+
     /// What is unusual about it. Corners at the same place are one corner.
     pub fn health(&self) -> Health {
-        let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.vertices.len());
-        let same: Vec<u32> = (0..self.vertices.len() as u32)
-            .map(|i| {
-                // + 0 makes one of both zeros.
-                let bits = (self.vertices[i as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
-                *places.entry(bits).or_insert(i)
-            })
-            .collect();
-        drop(places);
+        let same = self.same_places();
         // Of each edge how many triangles have it, and how many more of them go along it upwards than downwards.
         let mut edges: HashMap<(u32, u32), (u32, i32)> = HashMap::new();
         let (mut flat, mut volume) = (0, 0.0);

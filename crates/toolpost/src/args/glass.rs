@@ -119,6 +119,8 @@ pub struct Job {
     #[arg(long, value_name = "N,N,N", value_parser = columns, default_value = "1,2,3")]
     pub columns: Columns,
     #[command(flatten)]
+    pub filling: Filling,
+    #[command(flatten)]
     pub image: Image,
     #[command(flatten)]
     pub placing: Placing,
@@ -132,6 +134,62 @@ pub struct Job {
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
 }
+
+/// How bodies become points.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Points of bodies")]
+pub struct Filling {
+    /// Where a body gets points.
+    #[arg(long, value_name = "HOW", default_value = "surface", value_parser = choice(&FILLS))]
+    pub fill: Filled,
+    /// Distance of points along contours, in triangles and columns, and of rays [default: the spacing and what rounding takes].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub step: Option<f64>,
+    /// Distance of the planes of sections [default: --step].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub layer_distance: Option<f64>,
+    /// Distance of the first and the last plane from the ends of the body.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.1")]
+    pub first_distance: f64,
+    /// By which part of the distance each contour begins later than that of the layer before.
+    #[arg(long, value_name = "PART", value_parser = part)]
+    pub twist: Option<f64>,
+    /// Leave the end of an open contour without a point.
+    #[arg(long)]
+    pub no_ends: bool,
+    /// Put a point into triangles that are smaller than the grid, of `triangles`.
+    #[arg(long)]
+    pub full: bool,
+    /// Across the planes of sections, or along the rays.
+    #[arg(long, value_name = "AXIS", default_value = "z", value_parser = choice(&AXES))]
+    pub axis: usize,
+    /// Turn that axis about X, then Y, then Z, degrees.
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, default_value = "0,0,0")]
+    pub tilt: [f64; 3],
+}
+
+/// Where a body gets points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filled {
+    /// On its surface.
+    Surface,
+    /// Within as well.
+    Solid,
+    /// Along sections.
+    Sections,
+    /// In each triangle.
+    Triangles,
+    /// Where rays meet it.
+    Rays,
+}
+
+const FILLS: [Choice<Filled>; 5] = [
+    ("surface", "All over the surface, evenly and without order", Filled::Surface),
+    ("solid", "All over the surface, and within", Filled::Solid),
+    ("sections", "Along the contours of parallel sections", Filled::Sections),
+    ("triangles", "In a grid in each triangle", Filled::Triangles),
+    ("rays", "Where parallel rays meet the surface", Filled::Rays),
+];
 
 /// What becomes of pictures.
 #[derive(Debug, Args)]

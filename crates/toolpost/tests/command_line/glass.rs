@@ -124,6 +124,25 @@ fn an_edited_program_is_proven_against_its_body() {
 }
 
 #[test]
+fn a_body_is_filled_cut_and_met_by_rays() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    for (more, warned) in [
+        (&["--fill", "solid", "--step", "0.4"][..], ""),
+        (&["--fill", "sections", "--layer-distance", "0.5", "--twist", "0.5"], "warning[mesh]"),
+        (&["--fill", "triangles", "--full"], ""),
+        (&["--fill", "rays", "--axis", "x", "--tilt", "0,15,15"], ""),
+        // As the source does it: closer than the spacing, and welded.
+        (&["--fill", "triangles", "--step", "0.05"], ""),
+    ] {
+        let said = engrave(&folder, more);
+        assert!(said.code == 0 && said.out.contains("passed: "), "{more:?}: {said:?}");
+        assert_eq!(said.err.is_empty(), warned.is_empty(), "{more:?}: {said:?}");
+        assert!(said.err.contains(warned), "{more:?}: {said:?}");
+    }
+}
+
+#[test]
 fn the_pulses_are_drawn_where_a_picture_is_asked_for() {
     let folder = Folder::empty();
     folder.write("roof.stl", body());
