@@ -8,7 +8,7 @@ use program::{Diagnostic, Rule};
 /// A pulse of the laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pulse {
-    /// The line of the program, from 1.
+    /// The line of the program, from 1; of a binary program the number of the pulse.
     pub line: u32,
     /// Where the axes stand, mm.
     pub at: [f64; 3],
@@ -44,13 +44,15 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
     let read = match machine.program.format {
         Format::Numbered => numbered(text),
         Format::Points => points(text),
+        Format::Binary => binary(text).map_err(|message| (0, message)),
         Format::Gcode => gcode(text, machine.program.fire.as_deref().unwrap_or_default()),
     };
     let run = read.map_err(|(line, message)| {
-        let number = u32::try_from(line).unwrap_or(u32::MAX);
-        let shown =
-            text.split(|byte| *byte == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
-        let found = Diagnostic::error(Rule::GlassProgram, message).on(number, shown);
+        let mut found = Diagnostic::error(Rule::GlassProgram, message);
+        if let Some(before) = line.checked_sub(1) {
+            let shown = text.split(|byte| *byte == b'\n').nth(before).unwrap_or_default();
+            found = found.on(u32::try_from(line).unwrap_or(u32::MAX), shown);
+        }
         vec![found.help("write the program anew; docs/sources/glass.md says what a program is")]
     })?;
     if run.pulses.len() as u64 > machine.program.points {
@@ -64,7 +66,37 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
     Ok(run)
 }
 
-/// A line, from 1, and what is wrong with it.
+/// The bytes of the mark, three sides and the count, and of the sum.
+const HEAD: usize = 8 + 12 + 8;
+const SUM: usize = 4;
+
+fn binary(bytes: &[u8]) -> Result<Run, String> {
+    let whole = |at: usize| -> Option<i32> {
+        Some(i32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?))
+    };
+    if !bytes.starts_with(b"TPGLASS1") || bytes.len() < HEAD + SUM {
+        return Err(String::from("the program does not begin with TPGLASS1, or is cut off"));
+    }
+    let (own, sum) = bytes.split_at(bytes.len() - SUM);
+    let stated =
+        bytes[HEAD - 8..HEAD].iter().rev().fold(0u64, |sum, byte| sum << 8 | u64::from(*byte));
+    let held = own.len() - HEAD;
+    if !held.is_multiple_of(12) || stated != (held / 12) as u64 {
+        return Err(format!("{} bytes of pulses where {stated} pulses are stated", held));
+    }
+    if crc32fast::hash(own).to_le_bytes() != *sum {
+        return Err(String::from("the sum of the bytes is not the one that is stated"));
+    }
+    let place = |at: usize| -> Option<[f64; 3]> {
+        let mm = |at: usize| whole(at).map(|value| f64::from(value) / 1e3);
+        Some([mm(at)?, mm(at + 4)?, mm(at + 8)?])
+    };
+    let pulse = |(number, at): (u32, usize)| Some(Pulse { line: number, at: place(at)? });
+    let pulses = (1..=u32::MAX).zip((HEAD..own.len()).step_by(12)).filter_map(pulse).collect();
+    Ok(Run { block: place(8), pulses, stops: Vec::new() })
+}
+
+/// A line, from 1 (0 of a binary program), and what is wrong with it.
 type Wrong = (usize, String);
 
 /// The lines of a program with their numbers, as words. Every line ends with a line feed.

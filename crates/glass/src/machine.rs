@@ -8,10 +8,11 @@ use program::{Diagnostic, Rule};
 use serde::Deserialize;
 
 /// The machines that come with Toolpost: name and text.
-pub const LIBRARY: [(&str, &str); 3] = [
+pub const LIBRARY: [(&str, &str); 4] = [
     ("glass-xyz-50hz", include_str!("../machines/glass-xyz-50hz.toml")),
     ("glass-xyz-100hz", include_str!("../machines/glass-xyz-100hz.toml")),
     ("glass-xyz-200hz", include_str!("../machines/glass-xyz-200hz.toml")),
+    ("glass-planar-200hz", include_str!("../machines/glass-planar-200hz.toml")),
 ];
 
 /// A machine that engraves inside glass.
@@ -153,6 +154,8 @@ pub enum Format {
     Points,
     /// G-code: a rapid and the word that fires.
     Gcode,
+    /// Whole µm in binary, 12 bytes a pulse.
+    Binary,
 }
 
 /// Whether words may be those that fire the laser: nothing that moves, ends, stops or calls, or changes how numbers count.
@@ -212,13 +215,14 @@ impl Machine {
             (None, Format::Gcode) => {
                 Err(String::from("program.fire is missing: the word that fires the laser once"))
             }
-            (Some(_), Format::Numbered | Format::Points) => {
+            (Some(_), Format::Numbered | Format::Points | Format::Binary) => {
                 Err(String::from("program.fire is for G-code only"))
             }
             (Some(word), Format::Gcode) if !fires(word) => Err(format!(
                 "program.fire = \"{word}\" does more than fire: it is an M word other than M0 to M2, M6, M30, M98 and M99, with P, Q, R or S"
             )),
-            (Some(_), Format::Gcode) | (None, Format::Numbered | Format::Points) => Ok(()),
+            (Some(_), Format::Gcode)
+            | (None, Format::Numbered | Format::Points | Format::Binary) => Ok(()),
         }
     }
 

@@ -8,6 +8,7 @@ pub fn write(axes: &[Point], machine: &Machine, block: [f64; 3]) -> Vec<u8> {
     let mut text = Text(Vec::with_capacity(axes.len() * 40 + 200));
     let sides = block.map(|side| (side * 1e3).round() as i32);
     match (machine.program.format, &machine.program.fire) {
+        (Format::Binary, _) => return binary(axes, sides),
         (Format::Points, _) => {
             text.line(
                 "# Toolpost: X Y Z of each pulse in mm, from the block's corner and its top face",
@@ -45,6 +46,21 @@ pub fn write(axes: &[Point], machine: &Machine, block: [f64; 3]) -> Vec<u8> {
         }
     }
     text.0
+}
+
+/// The binary program: its mark, the block's sides, the count, the pulses, and the sum of all that (CRC-32); numbers are whole µm, the
+/// lowest byte first.
+fn binary(axes: &[Point], sides: Point) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(axes.len() * 12 + 32);
+    bytes.extend_from_slice(b"TPGLASS1");
+    sides.iter().for_each(|side| bytes.extend_from_slice(&side.to_le_bytes()));
+    bytes.extend_from_slice(&(axes.len() as u64).to_le_bytes());
+    for value in axes.iter().flatten() {
+        bytes.extend_from_slice(&value.to_le_bytes());
+    }
+    let sum = crc32fast::hash(&bytes);
+    bytes.extend_from_slice(&sum.to_le_bytes());
+    bytes
 }
 
 /// Text being written.

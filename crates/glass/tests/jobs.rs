@@ -69,7 +69,7 @@ fn refusals(shape: Shape, settings: &Settings) -> Vec<&'static str> {
 
 #[test]
 fn a_body_becomes_a_proven_program_in_every_form() {
-    for format in ["numbered", "points", "gcode"] {
+    for format in ["numbered", "points", "gcode", "binary"] {
         for ray in [Ray::Marginal, Ray::Paraxial] {
             let settings = Settings { ray, ..settings() };
             let made = made(body(), format, &settings);
@@ -285,6 +285,32 @@ fn programs_that_a_controller_would_not_take_are_refused() {
         refused(text, "points");
     }
     assert_eq!(judged(&[b'1', 0xff, b'\n'], &cloud, "points"), ["glass-program"]);
+}
+
+#[test]
+fn a_binary_program_has_twelve_bytes_a_pulse_and_a_sum() {
+    // The same point as in the text: 10, 10 and -9.868 mm in a block of 20 x 20 x 30 mm.
+    let made = made(Shape::Points(vec![glam::DVec3::ZERO]), "binary", &settings());
+    let mut expected = b"TPGLASS1".to_vec();
+    for value in [20_000, 20_000, 30_000, 1, 0, 10_000, 10_000, -9_868i32] {
+        expected.extend_from_slice(&value.to_le_bytes());
+    }
+    assert_eq!(made.text[..expected.len()], expected);
+    assert_eq!(made.text.len(), expected.len() + 4);
+    // The sum, bit by bit (ISO 3309).
+    let bit = |sum: u32, _| if sum & 1 == 1 { 0xedb8_8320 ^ (sum >> 1) } else { sum >> 1 };
+    let sum = !expected.iter().fold(!0u32, |sum, b| (0..8).fold(sum ^ u32::from(*b), bit));
+    assert_eq!(made.text[expected.len()..], sum.to_le_bytes());
+    let cloud = [[10_000, 10_000, 15_000]];
+    assert!(judged(&made.text, &cloud, "binary").is_empty());
+    for length in 0..made.text.len() {
+        assert_eq!(judged(&made.text[..length], &cloud, "binary"), ["glass-program"], "{length}");
+    }
+    for at in 0..made.text.len() {
+        let mut wrong = made.text.clone();
+        wrong[at] ^= 0x10;
+        assert_eq!(judged(&wrong, &cloud, "binary"), ["glass-program"], "{at}");
+    }
 }
 
 #[test]
