@@ -120,7 +120,7 @@ fn an_edited_program_is_proven_against_its_body() {
     assert!(said.err.contains("error[lost]"), "{said:?}");
     folder.write("roof.prg", text.replace("N12 PULSE", "N12 PULZE"));
     let said = prove("20x20x30");
-    assert!(said.code == 2 && said.err.contains("roof.prg:12: error[program]"), "{said:?}");
+    assert!(said.code == 2 && said.err.contains("roof.prg:12: error[glass-program]"), "{said:?}");
 }
 
 #[test]
