@@ -231,3 +231,20 @@ def test_which_path_cutcom_means_is_an_option_of_reading():
     with pytest.raises(toolpost.Error) as error:
         toolpost.read(plate, cutcom="contour")
     assert (error.value.rule, error.value.line) == ("compensated-path", 47)
+
+
+def test_two_tools_of_one_number_are_refused_when_the_program_is_posted():
+    def job(second: float) -> Program:
+        built = Program.builder("twice")
+        for diameter in (10, second):
+            built.tool(1, "MILL", diameter=diameter).spindle(2000).feed(300)
+            built.rapid((0, 0, 50)).rapid((0, 0, 5)).line((0, 0, -1)).line((10, 0, -1))
+            built.rapid((10, 0, 50))
+        return built.build()
+
+    machine = toolpost.machine("generic-3axis-fanuc")
+    assert toolpost.post(job(10), machine).report.proven
+    with pytest.raises(toolpost.Error) as caught:
+        toolpost.post(job(6), machine)
+    # The second tool is the ninth record.
+    assert (caught.value.rule, caught.value.line) == ("tool-twice", 9)
