@@ -81,7 +81,7 @@ freecad: python
 tests: rust
 	cargo test --locked --workspace --no-run
 
-## Speed and memory, each beside a floor in the same run.
+## Speed and memory, each with a floor from the same run.
 bench: rust
 	cargo run --quiet --locked --release --package toolpost-bench -- \
 		--machine sinumerik-840d-table-ac --machine sinumerik-840d-traori \
@@ -157,7 +157,7 @@ images: rust
 	$(TOOLPOST) --quiet show examples/lean-one-block.mpf --from sinumerik-840d-table-ac --frame machine \
 		--output docs/images/rapid-one-block-machine.png
 
-## The sample programs beside the machines, written anew: to be read before they are committed.
+## The sample programs next to the machines, written anew: to be read before they are committed.
 samples: rust
 	@mkdir -p out/samples
 	@for sample in $(filter-out %.cls,$(wildcard machines/samples/*.*)); do \

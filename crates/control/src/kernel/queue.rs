@@ -6,8 +6,8 @@ use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
 /// Batches that wait at most: who fills them faster than they are taken waits, and memory stays bounded.
 const WAITING: usize = 4;
 
-/// A belt: the end where batches are laid on, and that where they are taken.
-pub(crate) fn belt<T>() -> (QueueSender<T>, QueueReceiver<T>) {
+/// The two ends of a queue: where batches are put in, and where they are taken out.
+pub(crate) fn bounded<T>() -> (QueueSender<T>, QueueReceiver<T>) {
     let (full, taken) = mpsc::sync_channel(WAITING);
     let (back, empty) = mpsc::channel();
     (QueueSender { full, empty }, QueueReceiver { full: taken, back })

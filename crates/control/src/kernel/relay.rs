@@ -2,7 +2,7 @@
 
 use crate::Sink;
 use crate::event::Event;
-use crate::kernel::queue::belt;
+use crate::kernel::queue::bounded;
 use program::{Diagnostic, Rule};
 use std::{mem, panic, thread};
 
@@ -18,7 +18,7 @@ pub fn relayed(
     run: impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send,
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
-    let (feed, taken) = belt::<Vec<Event>>();
+    let (feed, taken) = bounded::<Vec<Event>>();
     thread::scope(|scope| {
         let control = scope.spawn(move || {
             let mut batch = Vec::with_capacity(BATCH);

@@ -4,7 +4,7 @@ use super::source::SourceLocation;
 use crate::iso::language::block::Word;
 use crate::iso::language::plain;
 use crate::kernel::LONG;
-use crate::kernel::queue::{QueueReceiver, QueueSender, belt};
+use crate::kernel::queue::{QueueReceiver, QueueSender, bounded};
 use std::ops::Range;
 use std::{mem, thread};
 
@@ -44,7 +44,7 @@ impl Ahead {
         if text.len() < LONG {
             return run(Ahead::default());
         }
-        let (feed, batches) = belt();
+        let (feed, batches) = bounded();
         thread::scope(|scope| {
             scope.spawn(move || read(text, &feed));
             run(Ahead { batches: Some(batches), ..Ahead::default() })
