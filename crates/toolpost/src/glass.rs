@@ -297,8 +297,9 @@ fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
     inputs.push(program);
     let drawing = Drawing::new(job, &inputs)?;
     progress.step("reading");
-    let text = files::read(program)?;
     let Read { machine, material, shapes } = Read::new(job)?;
+    let is_binary = machine.program.format == ::glass::machine::Format::Binary;
+    let text = if is_binary { files::read(program)? } else { files::text(program)? };
     progress.step("proving");
     let settings = settings(job, Ray::Marginal, Order::Fastest, Effort::default());
     let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {

@@ -53,7 +53,7 @@ pub enum Command {
     /// Write the program that engraves bodies and points inside a block of glass, prove it, and save both program
     /// and report.
     Glass(Box<glass::Glass>),
-    /// Hold any program, also one edited by hand, against the toolpath it should make.
+    /// Prove any program, also one edited by hand, against the toolpath that it should make.
     Prove(Prove),
     /// The library of machines, and machines of your own.
     #[command(subcommand)]

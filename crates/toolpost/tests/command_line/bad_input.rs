@@ -383,6 +383,21 @@ const READERS: &[(&str, &str, &str)] = &[
         "in.toml",
         "glass cloud.xyz --block 9x9x9 --material k9 --materials in.toml --lens 70 -m glass-xyz-50hz -o out.prg",
     ),
+    (
+        "PULSES",
+        "in.prg",
+        "glass prove in.prg cloud.xyz --block 9x9x9 --material k9 --lens 70 -m glass-xyz-100hz",
+    ),
+    (
+        "../../crates/glass/machines/glass-xyz-100hz.toml",
+        "in.toml",
+        "glass prove out.prg cloud.xyz --block 9x9x9 --material k9 --lens 70 -m in.toml",
+    ),
+    (
+        "../../crates/glass/data/materials.toml",
+        "in.toml",
+        "glass prove out.prg cloud.xyz --block 9x9x9 --material k9 --materials in.toml --lens 70 -m glass-xyz-50hz",
+    ),
     ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
     ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
     ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),
@@ -413,6 +428,7 @@ fn text_of(seed: &str) -> Vec<u8> {
         "CALLED" => b"%\nO0100\nG1 X40. F200.\nM99\n%\n".to_vec(),
         "CLOUD" => b"0 0 0\n1 0 0\n".to_vec(),
         "MACHINE" => b"extends = \"generic-3axis-fanuc\"\n".to_vec(),
+        "PULSES" => b"N1 BEGIN BLOCK X9.000 Y9.000 Z9.000 POINTS 1\nN2 PULSE X3.000 Y3.000 Z-3.947\nN3 END\n".to_vec(),
         "WIRE" => b"extends = \"fanuc-wire\"\n".to_vec(),
         file => std::fs::read(seeds().join(file)).unwrap_or_else(|e| panic!("{file}: {e}")),
     }
@@ -435,6 +451,7 @@ fn reads(name: &str, bytes: &[u8], command: &str) -> Said {
     folder.write("extends.toml", "extends = \"in.toml\"\n");
     folder.write("part.cls", SOURCE);
     folder.write("cloud.xyz", text_of("CLOUD"));
+    folder.write("out.prg", text_of("PULSES"));
     std::fs::create_dir(folder.path().join("plots")).unwrap();
     folder.write(name, bytes);
     folder.run(&command.split(' ').collect::<Vec<_>>())
