@@ -93,10 +93,10 @@ def test_a_board_that_was_built_needs_no_file():
 
 def test_what_cannot_be_made_of_a_board_is_left_out_and_the_rest_is_made():
     made = lamp(tool=9)
-    assert made.left_out == ("front", "back")
-    assert list(made.programs) == ["drill", "outline"]
+    assert made.left_out == ("front",)
+    assert list(made.programs) == ["drill", "back", "outline"]
     assert {str(found.rule) for found in made.report.findings} >= {"tool-too-wide"}
-    assert [left["name"] for left in made.report.data()["left_out"]] == ["front", "back"]
+    assert [left["name"] for left in made.report.data()["left_out"]] == ["front"]
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_what_cannot_be_made_of_a_board_is_left_out_and_the_rest_is_made():
         ({"passes": 1000}, "setting"),
         ({"only": ["lid"]}, "argument"),
         ({"tool": None}, "no-tool"),
-        ({"travel": 0.1}, "travel"),
+        ({"travel": 0.1}, "travel-height"),
         ({"tool": 9, "strict": True}, "tool-too-wide"),
     ],
 )

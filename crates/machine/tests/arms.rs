@@ -158,9 +158,9 @@ fn what_does_not_make_an_arm_is_refused_at_its_place() {
     );
     refused("world_height = 0\n", "world_height = 0\ncalibration = []\n", "an arm with `dh`");
     refused("[arm]\n", "[arm]\ndh = { d1 = 1 }\n", "one of `lengths` and `dh`");
-    // A mill with an arm is neither.
+    // A mill with an arm is neither: what has a control and an arm is a robot, with its cell.
     let both = format!("reader = \"grbl\"\n[wire]\nheight = 100\n{ARM}");
-    assert!(refusal(&both).contains("only one of arm"), "{}", refusal(&both));
+    assert!(refusal(&both).contains("it needs both"), "{}", refusal(&both));
 }
 
 #[test]

@@ -56,6 +56,7 @@ impl Walk<'_> {
         let (Some(back), Some(stop)) = (back, stop) else { return Ok(()) };
         let held = self.place.degrees().map(|degrees| Step { degrees, rewind: None });
         let held = Stop { step: held.or(stop.step), ..*stop };
+        self.spindle_before(&back)?;
         self.settle(&back, &held, false)?;
         self.approach(&back, &held)
     }

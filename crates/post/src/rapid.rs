@@ -13,7 +13,7 @@ use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::RotaryPose;
 use machine::plan::Step;
 use machine::{Mount, Unsaid};
-use program::{Diagnostic, Feed, Pose, Rule};
+use program::{Diagnostic, Feed, Pose, Rule, Spindle};
 
 /// Part of the corridor that is used, and of the angle by which the tool axis may be off its way: the rest is for the
 /// rounding of words.
@@ -71,12 +71,7 @@ impl Walk<'_> {
         self.end_cycle()?;
         self.wire_for(false, "a rapid")?;
         self.same_taper("a rapid")?;
-        // Where the tool may touch, it turns, whether something is cut there or not.
-        if self.is_near_cuts(pose) {
-            self.sync_spindle()?
-        } else {
-            self.expect_spindle()?
-        }
+        self.spindle_before(pose)?;
         self.settle(pose, stop, false)?;
         let Some(from) = self.position.known() else {
             return self.approach(pose, stop);
@@ -94,6 +89,15 @@ impl Walk<'_> {
             RapidMoves::Feed => self.by_feed(pose, stop),
             RapidMoves::Home => self.by_home(pose, stop),
         }
+    }
+
+    /// The spindle before a rapid to a pose: where the tool may touch, it turns, whether something is cut there or not; behind a
+    /// bore that has stopped it, from above the hole on.
+    pub(crate) fn spindle_before(&mut self, pose: &Pose) -> Outcome {
+        let stands = self.sent.has_spindle(Spindle::Off);
+        let from = self.position.known().filter(|_| stands);
+        let touches = self.is_near_cuts(pose) || from.is_some_and(|from| self.is_near_cuts(&from));
+        if touches { self.sync_spindle() } else { self.expect_spindle() }
     }
 
     /// Whether a pose is not beyond all that the source reaches by feed, along the tool axis there.

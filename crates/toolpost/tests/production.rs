@@ -85,7 +85,7 @@ fn a_fanuc_cuts_contours_under_look_ahead_and_nothing_else() {
     let text = written(&source, &machine3);
     assert!(text.contains("Z2.\nG5.1 Q1\nG1 Z-2. F200.\n"), "{text}");
     // Off before the tool change, and not on again for holes.
-    assert!(text.contains("G0 Z20.\n(HOLES)\nG5.1 Q0\nG91 G28 Z0\nG90\nM5\n"), "{text}");
+    assert!(text.contains("G0 Z20.\n(HOLES)\nG5.1 Q0\nG91 G28 Z0\nG90\nG49\nM5\n"), "{text}");
     assert_eq!(text.matches("G5.1").count(), 2, "{text}");
     // Under the tool centre point it comes after G43.4 and goes before G49.
     let text = "extends = \"fanuc-table-bc\"\n[options]\nhigh_precision = true\n";

@@ -71,7 +71,7 @@ fn at_a_stop_the_tool_is_home_and_spindle_and_coolant_are_off() {
                     let source = groove(&machine, &ops);
                     let text = written(&source, &machine);
                     let blocks: Vec<&str> = text.lines().collect();
-                    let stop = blocks.iter().position(|block| says(block, code)).unwrap();
+                    let stop = blocks.iter().rposition(|block| says(block, code)).unwrap();
                     let before = blocks[..stop].iter().rev().take(3).copied().collect::<String>();
                     let name = &machine.name;
                     assert!(before.contains("M5"), "{name}\n{text}");
@@ -129,7 +129,7 @@ fn the_spindle_turns_until_the_tool_is_out_of_the_cut() {
             .unwrap_or_else(|why| panic!("{}: {why:?}\n{text}", machine.name));
         let blocks: Vec<&str> = text.lines().collect();
         for (i, _) in blocks.iter().enumerate().filter(|(_, block)| says(block, "M5")) {
-            let up = ["G28 Z0", "G53", "SUPA", "M91", "G75", "G90"];
+            let up = ["G28 Z0", "G53", "SUPA", "M91", "G75", "G90", "G49"];
             let is_out = i == 0 || up.iter().any(|word| blocks[i - 1].contains(word));
             let tool_is_unknown = !blocks[..i].iter().any(|block| block.contains("M3"));
             let turret = machine.name.ends_with("emco-post");

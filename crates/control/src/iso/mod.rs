@@ -1,10 +1,10 @@
 //! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; and of wire-EDM machines. What a CAM
 //! system keeps in ISO code and no machine reads is described by the crate that reads it ([`Facts::source`]).
 //!
-//! They share the words and the order of execution and differ in tables ([`dialects`]) and in
+//! They share the words and the order of execution and differ in tables (`dialects`) and in
 //! the rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
-//! The [`flow`] of a program takes one line after the other, or leads elsewhere. In its [`language`] the
-//! line becomes a block, and the [`execution`] carries that out with its records held back: a block with
+//! The `flow` of a program takes one line after the other, or leads elsewhere. In its `language` the
+//! line becomes a block, and the `execution` carries that out with its records held back: a block with
 //! a mistake leaves none.
 
 pub(crate) mod dialects;

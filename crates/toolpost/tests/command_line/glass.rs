@@ -109,7 +109,7 @@ fn an_edited_program_is_proven_against_its_body() {
     assert!(said.code == 0 && said.out.contains("passed: 810 pulses"), "{said:?}");
     // For another block.
     let said = prove("20x20x31");
-    assert!(said.code == 1 && said.err.contains("roof.prg:1: error[block]"), "{said:?}");
+    assert!(said.code == 1 && said.err.contains("roof.prg:1: error[glass-block]"), "{said:?}");
     // The tenth pulse is that of the eleventh.
     let text = folder.read("roof.prg");
     let lines: Vec<&str> = text.lines().collect();

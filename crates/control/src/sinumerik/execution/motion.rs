@@ -522,7 +522,7 @@ impl Interpreter<'_, '_> {
         self.leave_for(source, named, Action::Home(Axes::of(named)))
     }
 
-    /// `FP=` of `G75`: the first fixed point is the one that the machine's file sends Z to; the others lie wherever MD30600[1] to [3]
+    /// `FP=` of `G75`: the first fixed point is the one that the machine's file sends Z to; the others lie wherever `MD30600[1]` to `[3]`
     /// say.
     fn hold_fixed_point(&mut self, source: &Source, number: Option<f64>, z: bool) -> Outcome {
         match number {
