@@ -668,7 +668,7 @@ fn plane_move_takes_z_away_from_home() {
         let blocks = ["TOOL CALL 1 Z S900", "L Z+0 R0 FMAX M91", block, "PLANE RESET STAY", "M30"];
         let blocks = blocks.into_iter().chain(["END PGM P MM"]).enumerate();
         let text: String = blocks.map(|(i, block)| format!("{} {block}\n", i + 1)).collect();
-        let found = common::ops(&settings, "p.h", &format!("0 BEGIN PGM P MM\n{text}")).unwrap();
+        let found = common::ops(&settings, "p.h", format!("0 BEGIN PGM P MM\n{text}")).unwrap();
         let expected: &[&str] = if reported { &["turn-height"] } else { &[] };
         assert_eq!(rules(&found), expected, "{block}");
     }
@@ -681,7 +681,7 @@ fn stop_of_a_heidenhain_leaves_the_spindle_turning() {
     let read = |off: &str, stop: &str| {
         let blocks =
             ["TOOL CALL 1 Z S900", "L X+0 Y+0 Z+9 R0 FMAX M3", off, stop, "M8", "M5", "M9", "M30"];
-        let actions = common::ops(&settings, "p.h", &numbered(&blocks.join("\n"))).unwrap();
+        let actions = common::ops(&settings, "p.h", numbered(&blocks.join("\n"))).unwrap();
         let stops = actions.iter().position(|action| *action == Action::Stop).unwrap();
         let off_by_stop =
             matches!(actions.get(stops + 1), Some(Action::Spindle(program::Spindle::Off)));
@@ -704,7 +704,7 @@ fn cycle_32_says_under_m128_by_how_much_the_tool_turns() {
         let start = ["TOOL CALL 1 Z S900", "L B+0 C+0 R0 FMAX", "M128", "CYCL DEF 32.0 TOLERANCE"];
         let cut = ["L X+0 Y+0 Z+9 R0 FMAX M3", "L X+5 B+3 F100", "M129", "M5", "M30"];
         let blocks: Vec<&str> = start.iter().chain(tolerance).chain(&cut).copied().collect();
-        let found = rules(&common::ops(&settings, "p.h", &numbered(&blocks.join("\n"))).unwrap());
+        let found = rules(&common::ops(&settings, "p.h", numbered(&blocks.join("\n"))).unwrap());
         found.contains(&"orientation-tolerance")
     };
     assert!(read(&["CYCL DEF 32.1 T0.02"]));
@@ -718,7 +718,7 @@ fn m6_of_a_heidenhain_belongs_to_a_tool_call() {
     let settings = Settings::new(Dialect::Klartext, [false; 3]);
     let read = |end: &str| {
         let blocks = ["TOOL CALL 1 Z S900", "M6", "L X+0 Y+0 Z+9 R0 FMAX M3", "L Z+0 F100", end];
-        common::ops(&settings, "p.h", &numbered(&blocks.join("\n"))).map(|_| ())
+        common::ops(&settings, "p.h", numbered(&blocks.join("\n"))).map(|_| ())
     };
     assert!(read("M30").is_ok());
     assert_eq!(read("M6").unwrap_err().rule.name(), "m-function");
@@ -766,7 +766,7 @@ fn no_spindle_is_switched_between_two_holes_of_a_rigid_tap() {
 fn a_further_fixed_point_of_a_sinumerik_is_a_stored_position() {
     let settings = Settings::new(Dialect::Sinumerik, [false; 3]);
     let read = |block: &str| {
-        common::ops(&settings, "p.nc", &format!("G17 G54\nG0 X0 Y0 Z50\n{block}\nM30\n"))
+        common::ops(&settings, "p.nc", format!("G17 G54\nG0 X0 Y0 Z50\n{block}\nM30\n"))
     };
     for (block, reported) in [
         ("G75 Z0", false),

@@ -343,7 +343,7 @@ fn a_source_that_stops_the_spindle_before_it_draws_the_tool_out_is_followed() {
         Op::Rapid(at(10.0, 20.0)),
     ]);
     let text = written(&machine, &source).unwrap();
-    let last = text.lines().filter(|line| line.ends_with("M5")).next_back().unwrap();
+    let last = text.lines().rfind(|line| line.ends_with("M5")).unwrap();
     let wrong = text.replacen(&format!("{last}\n"), "", 1);
     assert!(rules(&source, &machine, &wrong).contains(&"spindle"), "{wrong}");
 }
