@@ -66,6 +66,7 @@ mod wire;
 mod writer;
 
 pub use catalogue::{Kind, Parameter, catalogue};
+pub use template::number_of;
 
 use machine::Machine;
 use program::{Diagnostic, Program, Rule, Severity};

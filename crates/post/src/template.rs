@@ -433,11 +433,13 @@ pub(crate) fn program_number(
         Some(OptionValue::Text(text)) if !text.trim().is_empty() => text.trim().to_owned(),
         Some(OptionValue::Number(number)) => number.to_string(),
         Some(OptionValue::Text(_) | OptionValue::Flag(_)) | None => {
-            return Ok(number_of(name).filter(|_| name.len() <= 5));
+            return Ok(number_of(name)
+                .filter(|_| name.len() <= 5)
+                .map(|number| number.to_string()));
         }
     };
     if let Some(number) = number_of(&said) {
-        return Ok(Some(number));
+        return Ok(Some(number.to_string()));
     }
     let message = format!(
         "`program_number` is {said}: numbers of programs that everybody may use are 1 to 7999"
@@ -447,12 +449,12 @@ pub(crate) fn program_number(
     Err(Box::new(found.file(machine.file.clone())))
 }
 
-/// The number that `name` says, with or without an O.
-fn number_of(name: &str) -> Option<String> {
+/// The number of a program that `name` says, with or without an O: 1 to 7999, which everybody may use.
+pub fn number_of(name: &str) -> Option<u32> {
     let digits = name.strip_prefix(['O', 'o']).unwrap_or(name);
     let plain = (1..=8).contains(&digits.len()) && digits.bytes().all(|c| c.is_ascii_digit());
     let number: u32 = digits.parse().ok().filter(|_| plain)?;
-    (1..8000).contains(&number).then(|| number.to_string())
+    (1..8000).contains(&number).then_some(number)
 }
 
 /// All blocks of a machine.

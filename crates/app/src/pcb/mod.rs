@@ -490,16 +490,14 @@ impl Shop<'_> {
 /// to the writer, which refuses it.
 fn numbered(machine: &Machine, place: usize) -> Cow<'_, Machine> {
     let first = match machine.options.get(PROGRAM_NUMBER) {
-        Some(OptionValue::Number(number)) => Some(*number),
-        Some(OptionValue::Text(text)) => match text.trim() {
-            "" => Some(1.0),
-            said => said.trim_start_matches(['O', 'o']).parse().ok(),
-        },
+        Some(OptionValue::Number(number)) => ::post::number_of(&number.to_string()),
+        Some(OptionValue::Text(text)) if text.trim().is_empty() => Some(1),
+        Some(OptionValue::Text(text)) => ::post::number_of(text.trim()),
         Some(OptionValue::Flag(_)) | None => None,
     };
     let Some(first) = first else { return Cow::Borrowed(machine) };
     let mut machine = machine.clone();
-    let number = OptionValue::Text((first + place as f64).to_string());
+    let number = OptionValue::Text((first as usize + place).to_string());
     machine.options.insert(PROGRAM_NUMBER.into(), number);
     Cow::Owned(machine)
 }

@@ -66,7 +66,7 @@ fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: 
             }
             state.distance = Some(distance);
         }
-        // They make the arm slower or its corners wider: how wide, no motion is told that is passed by them (`Unbounded`).
+        // They make the arm slower or its corners wider: a motion that is passed by them has no bound (`Unbounded`).
         ("$APO", Some("CVEL" | "CORI" | "CPTP"))
         | ("$ACC", Some("CP" | "ORI1" | "ORI2"))
         | ("$VEL_AXIS" | "$ACC_AXIS", None) => drop(positive(scan, name, value)?),
