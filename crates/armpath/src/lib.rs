@@ -3,7 +3,7 @@
 //! falls into a cut.
 //!
 //! **Units and frames.** Lengths are mm, angles radians, times s, feeds mm/min. The axis points from the tip to the spindle, as
-//! everywhere; the Z of the tool frame points the opposite direction, out of the tool.
+//! everywhere; the Z of the tool frame points the opposite direction, from the flange towards the tip and beyond.
 //!
 //! **How.** A cut is a *section*: points that follow each other by straight lines. In it the posture stays, and the turn changes by
 //! at most [`Settings::turn_rate`]. The turns are divided into [`Settings::turns`] steps, and time into intervals long enough for one
@@ -11,7 +11,7 @@
 //! from each step to itself or to a neighbour (dynamic programming); then that sequence is followed exactly, with the turn changing
 //! evenly within an interval, and every figure is checked at each point and between points ([`SPACING`]). Between sections the arm
 //! is free to take another posture. Where no sequence passes a whole section it is divided: the arm draws back, turns and enters
-//! again ([`Section::reentry`]). Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
+//! again ([`Section::reentry`]); `post` refuses a divided section, since it does not write re-entries yet. Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
 //! number of threads.
 //!
 //! ```

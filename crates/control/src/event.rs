@@ -119,7 +119,7 @@ pub enum Action {
     Stop,
     /// Stop when the operator has asked for it.
     OptionalStop,
-    /// What the block does hangs on something that the program does not say, or stays when the program has ended.
+    /// What the block does depends on something that the program does not say, or stays when the program has ended.
     Risk(Box<Risk>),
     /// What an arm does beyond what every machine does.
     Arm(ArmAction),
@@ -219,8 +219,8 @@ impl FeedPath {
     }
 }
 
-/// What may do harm although the motion is known: a state that hangs on a setting of the control or on its operator, or
-/// data that the program rewrites. A source with it is told of, a program that is to be proven is refused.
+/// What may do harm although the motion is known: a state that depends on a setting of the control or on its operator, or
+/// data that the program rewrites. In a source it is a warning; a program that is to be proven is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Risk {
     /// Its name, by which it may be accepted.
@@ -229,7 +229,7 @@ pub struct Risk {
     pub what: &'static str,
     /// The way out.
     pub help: &'static str,
-    /// Whether a program that is to be proven is refused for it; it is told of where not.
+    /// Whether a program that is to be proven is refused for it; otherwise it is a warning.
     pub refused: bool,
 }
 
@@ -438,7 +438,7 @@ impl Risk {
     /// Turns over the part whose way the program does not say ([`modulo`](crate::kernel::modulo)).
     pub(crate) const ROTARY_WAY: Risk = Risk {
         rule: Rule::RotaryWay,
-        what: "turns a rotary axis, and by which way hangs on whether the control counts it modulo 360°",
+        what: "turns a rotary axis, and which way depends on whether the control counts it modulo 360°",
         help: "say `modulo` of the axis in the machine file, or write M126 (HEIDENHAIN), DC() (SINUMERIK)",
         refused: true,
     };

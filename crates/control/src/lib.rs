@@ -208,7 +208,7 @@ pub enum Ending {
 pub enum Corners {
     /// It keeps to the path, but for what its drives lag behind.
     Followed,
-    /// It cuts them by an amount that hangs on the feed, or on parameters of its builder.
+    /// It cuts them by an amount that depends on the feed, or on parameters of its builder.
     Unbounded,
     /// Its operator has set by how much it cuts them.
     AsSetUp,

@@ -5,7 +5,7 @@
 //! A control (a dialect) and a machine (axes, limits, kinematics) are TOML files. A machine extends a
 //! control, a control may extend another; loading merges the chain into one [`Machine`], with every
 //! mistake reported by file, line and column. The kinematic chain, forward and inverse, is here and nowhere
-//! else: writers use the inverse, the proof uses the forward, and neither shares more than that.
+//! else: the writer uses the inverse, the proof the forward chain, and the inverse only to list which rotary positions a control may take.
 //!
 //! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
 //! (`degrees` in the name) and radians elsewhere. The same files give the same machine, and kinematics the same bits.

@@ -26,8 +26,8 @@
 //! Lengths are mm, feeds mm/min. The same program and machine give the same bytes.
 //!
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
-//! goes through `walk`, which knows what has been output to the control; `place` brings the tool into its
-//! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire stands,
+//! goes through `walk`, which knows what has been output to the control; `coordinate_mode` brings the tool into its
+//! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire is inclined,
 //! `contour` finds out whether a tool can follow a contour that the control offsets,
 //! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
 //! its way.

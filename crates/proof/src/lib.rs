@@ -2,9 +2,9 @@
 //!
 //! The text is run on the virtual control of its dialect; every pose goes through the machine's forward
 //! kinematics into the work frame and is compared there with the source: tool tip, tool axis, arcs,
-//! order, rapid or feed, feed, spindle, coolant, tool, compensation, dwell. The control's records are
-//! compared as they come and not kept, but for the contours of a program with compensation, which are compared a second time as the
-//! control leads the centres of the source's tools along them. A coordinate that no
+//! order, rapid or feed, feed, spindle, coolant, tool, compensation, dwell. The control's events are
+//! compared as they come and not kept, but for the contours of a program with compensation: a second run calculates them with the
+//! tools of the source. A coordinate that no
 //! block has set is not equal to anything.
 //!
 //! ```
@@ -39,11 +39,11 @@
 //! 1. **Every motion of the source, in its order.** Each ends with the tool tip and the tool axis within
 //!    the tolerances of the report ([`Applied`]). Only a motion that is shorter than a step of the
 //!    machine may be missing.
-//! 2. **A rapid for a rapid.** It may stop on its way where each coordinate of the block is as before
+//! 2. **A rapid for a rapid.** It may stop where each coordinate of the block is as before
 //!    or as after (axis by axis), or on the tool axis above either end. As the control really goes it stays on
-//!    the straight way of the source, or beyond all that the source cuts.
-//! 3. **Feed for a line**: one block or several, each on the line, none back. While rotary axes turn,
-//!    the way between the ends is sampled through the kinematics.
+//!    the straight line of the source, or beyond all that the source cuts.
+//! 3. **A line**: one block or several at feed, all on the line, no block backwards. While rotary axes turn,
+//!    the path between the ends is sampled through the kinematics.
 //! 4. **Arcs for an arc**, in its plane and direction, points between the ends compared; or chords
 //!    within the machine's lowering tolerance.
 //! 5. **Excursions**: from any point of a cut away along the tool axis by rapid (or Z home), axis by
@@ -57,7 +57,7 @@
 //!    straight move there, and never on an arc. A tool change stops spindle and coolant.
 //! 8. **Dwells and stops** between the same motions; where the source has stopped the spindle, it
 //!    stands at the stop.
-//! 9. **An end**, and before it, after the last motion, only ways away from the part.
+//! 9. **An end**, and before it, after the last motion, only moves away from the part.
 //!
 //! A program that finds the surface itself is run on three surfaces, and compared with the source raised
 //! to each.

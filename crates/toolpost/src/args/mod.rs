@@ -256,7 +256,7 @@ pub struct Closeness {
     /// resolution].
     #[arg(long, value_name = "MM", value_parser = closeness)]
     pub tolerance: Option<f64>,
-    /// Let a rule pass in this run that hangs on how the machine is set up; may be given several times. The head of the
+    /// Let a rule pass in this run that depends on how the machine is set up; may be given several times. The head of the
     /// program and the report name it.
     #[arg(long, value_name = "RULE", value_parser = accepted)]
     pub accept: Vec<Rule>,
