@@ -3,8 +3,8 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop};
 use crate::surface::LEVEL_FIRST;
-use crate::template::bit;
 use crate::walk::{Cut, Outcome, PLANE_XY, Walk, motion, refuse};
+use crate::words::bit;
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
 use machine::Plane;
 use program::{ArcTo, Diagnostic, Rule};

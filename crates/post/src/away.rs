@@ -2,8 +2,9 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop, rotary_word};
-use crate::template::{LENGTH_OFFSET, bit};
+use crate::template::LENGTH_OFFSET;
 use crate::walk::{Outcome, Walk, motion, refuse};
+use crate::words::{Words, bit};
 use geom::Vec3;
 use machine::plan::Step;
 use machine::{Mount, RotaryAxis};
@@ -157,14 +158,14 @@ impl Walk<'_> {
 
     /// Says the rotary axes that the block `name` places, not turned. Whether one of them has to turn.
     pub(crate) fn say_unturned(&mut self, name: BlockName) -> bool {
-        let mut words = 0;
+        let mut words = Words::NONE;
         for axis in &self.machine.rotary {
             let word = rotary_word(axis.index());
             if let Some(degrees) = self.unturned(axis)
                 && self.templates.places(name, word)
             {
                 self.writer.set(word, degrees);
-                words |= bit(word);
+                words.add(word);
             }
         }
         self.writer.forget(bit(WordName::Motion));

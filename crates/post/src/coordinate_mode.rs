@@ -2,9 +2,10 @@
 //! tool center point control by angles or vectors, or the positions of the machine's own axes.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, Words, bit, place_value};
+use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, place_value};
 use crate::tilt::Solution;
 use crate::walk::{Outcome, Walk, motion, refuse};
+use crate::words::{Words, bit};
 use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};
@@ -392,7 +393,7 @@ impl Walk<'_> {
         let Some(degrees) = degrees else { return Ok(()) };
         self.say_degrees(degrees);
         let turns = self.writer.changes(ORIENTATION);
-        self.writer.unset(Words::MAX);
+        self.writer.unset(Words::ALL);
         if turns || turning {
             self.unclamp()?;
         }
@@ -401,7 +402,7 @@ impl Walk<'_> {
         self.writer.code(WordName::Motion, motion::RAPID);
         match turns {
             true => self.required(BlockName::Rotate)?,
-            false => self.writer.unset(Words::MAX),
+            false => self.writer.unset(Words::ALL),
         }
         if turning { Ok(()) } else { self.clamp() }
     }
@@ -466,7 +467,7 @@ impl Walk<'_> {
             self.writer.set(word, origin[i]);
         }
         if written == self.place.origin {
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
             return Ok(());
         }
         self.place.origin = written;

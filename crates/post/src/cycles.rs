@@ -3,8 +3,8 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop, same};
 use crate::rapid::corner;
-use crate::template::bit;
 use crate::walk::{Cut, Outcome, Walk, motion, refuse};
+use crate::words::bit;
 use geom::Vec3;
 use machine::CycleName;
 use program::lowering::{self, HoleMove};

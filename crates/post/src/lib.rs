@@ -63,6 +63,7 @@ mod vectors;
 mod walk;
 mod wanted;
 mod wire;
+mod words;
 mod writer;
 
 pub use catalogue::{Kind, Parameter, catalogue};

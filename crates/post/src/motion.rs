@@ -2,9 +2,10 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop, same};
-use crate::template::{ORIENTATION, POSITION, Words};
+use crate::template::{ORIENTATION, POSITION};
 use crate::vectors::{self, Followed};
 use crate::walk::{AxisPositions, Cut, Outcome, Walk, motion, refuse};
+use crate::words::Words;
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
 use machine::linearise::RotaryPose;
@@ -117,7 +118,7 @@ impl Walk<'_> {
             self.block(BlockName::Linear)?;
             self.follow(false)?;
         } else {
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
         }
         self.goes_on = true;
         Ok(())
@@ -241,7 +242,7 @@ impl Walk<'_> {
     #[inline]
     fn cut(&mut self, length: f64, pieces: usize, cut: Cut) -> Outcome {
         if !self.writer.changes(POSITION | ORIENTATION) {
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
             return Ok(());
         }
         let goes_on = pieces == 1 && cut == Cut::Straight && self.can_go_on();

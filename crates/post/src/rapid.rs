@@ -7,8 +7,9 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop, same};
-use crate::template::{ORIENTATION, POSITION, Words, bit};
+use crate::template::{ORIENTATION, POSITION};
 use crate::walk::{ByFeed, Outcome, Walk, motion, refuse};
+use crate::words::{Words, bit};
 use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::RotaryPose;
 use machine::plan::Step;
@@ -206,9 +207,9 @@ impl Walk<'_> {
         for group in groups {
             self.aim(pose, stop);
             let words = group.chars().filter_map(|c| WordName::named(c.encode_utf8(&mut [0; 4])));
-            let group = words.fold(0, |all, word| all | bit(word));
+            let group: Words = words.collect();
             let length = bit(WordName::H) | bit(WordName::Length);
-            let held = if group & bit(WordName::Z) == 0 { length } else { 0 };
+            let held = if group.has(WordName::Z) { Words::NONE } else { length };
             self.writer.unset((POSITION & !group) | held);
             if self.writer.changes(POSITION | ORIENTATION) {
                 self.writer.code(WordName::Motion, motion::RAPID);
@@ -219,7 +220,7 @@ impl Walk<'_> {
                 }
                 self.block(if begins { BlockName::ToolCenterOn } else { BlockName::Rapid })?;
             }
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
         }
         self.position.locate();
         self.position.go_to(*pose);
@@ -392,7 +393,7 @@ impl Walk<'_> {
     /// Writes the rapid that has been aimed.
     fn rapid_block(&mut self) -> Outcome {
         if !self.writer.changes(POSITION | ORIENTATION) {
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
             return Ok(());
         }
         self.check_limits()?;

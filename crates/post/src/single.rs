@@ -2,8 +2,9 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop, same};
-use crate::template::{POSITION, Words, bit};
+use crate::template::POSITION;
 use crate::walk::{Cut, Outcome, Walk, refuse};
+use crate::words::{Words, bit};
 use program::{Feed, Probe, Rule, Thread};
 
 impl Walk<'_> {
@@ -21,7 +22,7 @@ impl Walk<'_> {
         self.aim(&thread.end, stop);
         self.position.go_to(thread.end);
         if !self.writer.changes(POSITION) {
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
             return Ok(());
         }
         for word in [WordName::X, WordName::Y, WordName::Z] {
@@ -68,9 +69,9 @@ impl Walk<'_> {
             return Err(refuse(Rule::Probe, "the tool axis turns in a probing move"));
         }
         self.aim_at(probe.end.point(), axis, None);
-        let words = [WordName::X, WordName::Y, WordName::Z].map(bit);
-        let moved: Words = words.into_iter().filter(|word| self.writer.changes(*word)).sum();
-        if moved == 0 {
+        let words = [WordName::X, WordName::Y, WordName::Z].into_iter();
+        let moved: Words = words.filter(|word| self.writer.changes(bit(*word))).collect();
+        if moved.is_empty() {
             return Err(refuse(Rule::Probe, "a probing move that goes nowhere"));
         }
         self.check_limits()?;

@@ -8,6 +8,7 @@
 use crate::catalogue::{BlockName, VARIABLES, WordName};
 use crate::guard::{self, Fault};
 use crate::text::{clean, printed};
+use crate::words::{Words, bit};
 use deunicode::deunicode;
 use machine::{Block, Format, Machine, OptionValue, OrientationMode};
 use minijinja::value::{Object, Value};
@@ -27,36 +28,21 @@ const MOST_BYTES: usize = 1 << 20;
 /// A word in text stands as one character of the private use area, from here on.
 const FIRST_WORD: u32 = 0xE000;
 
-/// A set of words, one bit each.
-pub(crate) type Words = u128;
-
-/// The bit of a word.
-pub(crate) const fn bit(word: WordName) -> Words {
-    1 << word as u32
-}
-
-/// Whether `word` is one of `words`: faster than by its bit where it is not known beforehand.
-#[inline]
-pub(crate) const fn holds(words: Words, word: WordName) -> bool {
-    let half = if (word as u32) < 64 { words as u64 } else { (words >> 64) as u64 };
-    half >> (word as u32 % 64) & 1 != 0
-}
-
 /// The words that say where the tool is.
-pub(crate) const POSITION: Words = bit(WordName::X) | bit(WordName::Y) | bit(WordName::Z);
+pub(crate) const POSITION: Words = Words::of(&[WordName::X, WordName::Y, WordName::Z]);
 /// The words that call the tool length offset.
-pub(crate) const LENGTH_OFFSET: Words = bit(WordName::H) | bit(WordName::Length);
-/// The word that says the safe height of the machine.
-const SAFE_HEIGHT: Words = bit(WordName::SafeHeight);
+pub(crate) const LENGTH_OFFSET: Words = Words::of(&[WordName::H, WordName::Length]);
 /// The words that say where it points.
-pub(crate) const ORIENTATION: Words = bit(WordName::A)
-    | bit(WordName::B)
-    | bit(WordName::C)
-    | bit(WordName::U)
-    | bit(WordName::V)
-    | bit(WordName::VX)
-    | bit(WordName::VY)
-    | bit(WordName::VZ);
+pub(crate) const ORIENTATION: Words = Words::of(&[
+    WordName::A,
+    WordName::B,
+    WordName::C,
+    WordName::U,
+    WordName::V,
+    WordName::VX,
+    WordName::VY,
+    WordName::VZ,
+]);
 
 /// One step of a block; with a gap before it, what separates two words, if something stands on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,7 +91,7 @@ impl Lines {
     /// Cuts `text` into steps, for a control that has only `words`. A blank next to a word, outside of comments
     /// and quotes, is a separator.
     fn of(text: String, format: &Format, words: Words) -> Lines {
-        let (mut steps, mut placed) = (Vec::new(), 0);
+        let (mut steps, mut placed) = (Vec::new(), Words::NONE);
         for line in text.split('\n') {
             let origin = line.as_ptr() as usize - text.as_ptr() as usize;
             let (mut from, mut gap) = (0, false);
@@ -121,9 +107,9 @@ impl Lines {
                 literal(&mut steps, &mut gap, origin + from..origin + at);
                 from = at + c.len_utf8();
                 gap |= blank;
-                if let Some(word) = word.filter(|word| words & bit(*word) != 0) {
+                if let Some(word) = word.filter(|word| words.has(*word)) {
                     steps.push(Step::Word { gap: std::mem::take(&mut gap), word });
-                    placed |= bit(word);
+                    placed.add(word);
                 }
             }
             literal(&mut steps, &mut gap, origin + from..origin + line.len());
@@ -151,14 +137,14 @@ pub(crate) fn words_of(machine: &Machine) -> Words {
         // Blocks whose numbers do not grow have none.
         word.is_some_and(|word| **name != WordName::N || word.step != 0)
     };
-    WordName::ALL.iter().filter(has).fold(0, |all, word| all | bit(*word))
+    WordName::ALL.iter().filter(has).copied().collect()
 }
 
 /// `text` with each `{{ word }}` as one character, and these words, where it consists of nothing but text and
 /// words.
 fn plain(text: &str) -> Option<(String, Words)> {
     let mut plain = String::with_capacity(text.len());
-    let mut words = 0;
+    let mut words = Words::NONE;
     let mut rest = text;
     while let Some(at) = rest.find('{') {
         plain.push_str(&rest[..at]);
@@ -167,7 +153,7 @@ fn plain(text: &str) -> Option<(String, Words)> {
             let (name, behind) = inner.split_once("}}")?;
             let word = WordName::named(name.trim())?;
             plain.push(placeholder(word));
-            words |= bit(word);
+            words.add(word);
             rest = behind;
         } else if rest.starts_with("{%") || rest.starts_with("{#") {
             return None;
@@ -224,7 +210,7 @@ impl Object for Scope {
             "text" => &self.text,
             name => {
                 let word = WordName::named(name)?;
-                let text = if self.set & bit(word) == 0 { None } else { Some(placeholder(word)) };
+                let text = self.set.has(word).then(|| placeholder(word));
                 return Some(Value::from(text.map(String::from).unwrap_or_default()));
             }
         };
@@ -269,7 +255,7 @@ impl Scope {
         program.push(1, Op::Tool(Box::new(tool.clone())));
         let blank = [("blank", true), ("stock", first)];
         Scope {
-            set: if first { Words::MAX } else { 0 },
+            set: if first { Words::ALL } else { Words::NONE },
             program: program_value(
                 machine,
                 "SAMPLE".into(),
@@ -307,7 +293,7 @@ impl Scope {
         ];
         let modes = modes.map(|(key, value)| (key, Value::from(value)));
         Scope {
-            set: 0,
+            set: Words::NONE,
             program: Value::UNDEFINED,
             machine: map(names.into_iter().chain(modes)),
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
@@ -495,7 +481,9 @@ impl<'a> Templates<'a> {
             for &name in BlockName::ALL {
                 match templates.attempt(name) {
                     // A machine whose options leave the safe height out need not have one.
-                    Ok(placed) if placed & SAFE_HEIGHT == 0 => templates.unplace(name, SAFE_HEIGHT),
+                    Ok(placed) if !placed.has(WordName::SafeHeight) => {
+                        templates.unplace(name, bit(WordName::SafeHeight));
+                    }
                     Ok(_) => {}
                     Err(error) => errors.push(*error),
                 }
@@ -515,9 +503,9 @@ impl<'a> Templates<'a> {
     /// it has placed.
     fn attempt(&self, name: BlockName) -> Result<Words, Box<Diagnostic>> {
         let (Some(template), None) = (&self.blocks[name as usize], self.lines(name)) else {
-            return Ok(Words::MAX);
+            return Ok(Words::ALL);
         };
-        let mut placed = 0;
+        let mut placed = Words::NONE;
         for first in [true, false] {
             let rendered = self.render(name, Scope::sample(self.machine, first))?;
             placed |= rendered.words;
@@ -559,12 +547,12 @@ impl<'a> Templates<'a> {
             }
         })?;
         let compiled = self.engine.template_from_str(&block.text).map_err(|e| fault(block, &e))?;
-        let mut uses = 0;
+        let mut uses = Words::NONE;
         let mut names: Vec<String> = compiled.undeclared_variables(true).into_iter().collect();
         names.sort();
         for name in &names {
             match WordName::named(name) {
-                Some(word) => uses |= bit(word),
+                Some(word) => uses.add(word),
                 None => self.check_variable(block, name)?,
             }
         }
@@ -614,13 +602,13 @@ impl<'a> Templates<'a> {
 
     /// Whether the machine has the block, and the block places the word.
     pub(crate) fn places(&self, name: BlockName, word: WordName) -> bool {
-        self.blocks[name as usize].as_ref().is_some_and(|block| block.uses & bit(word) != 0)
+        self.blocks[name as usize].as_ref().is_some_and(|block| block.uses.has(word))
     }
 
     /// Each word that some block places, and a block that does.
     pub(crate) fn words(&self) -> impl Iterator<Item = (WordName, &'a Block)> {
         WordName::ALL.iter().filter_map(|&word| {
-            let places = self.blocks.iter().flatten().find(|block| block.uses & bit(word) != 0);
+            let places = self.blocks.iter().flatten().find(|block| block.uses.has(word));
             places.map(|template| (word, template.block))
         })
     }

@@ -3,7 +3,8 @@
 use crate::catalogue::WordName;
 use crate::number::Number;
 use crate::surface::{DECIMALS, Part};
-use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit, holds, words_of};
+use crate::template::{Lines, ORIENTATION, POSITION, Step, words_of};
+use crate::words::{Words, bit};
 use machine::Machine;
 use program::{Diagnostic, Rule};
 
@@ -53,8 +54,7 @@ pub(crate) struct Writer {
 impl Writer {
     pub(crate) fn new(machine: &Machine) -> Writer {
         let words = words_of(machine);
-        let word =
-            |name: WordName| machine.words.get(name.name()).filter(|_| words & bit(name) != 0);
+        let word = |name: WordName| machine.words.get(name.name()).filter(|_| words.has(name));
         let form = |&name: &WordName| match word(name) {
             None => Form::Absent,
             Some(word) if name.codes().next().is_some() => {
@@ -62,10 +62,7 @@ impl Writer {
             }
             Some(word) => Form::Number(Number::new(&machine.format.separator, word)),
         };
-        let modal = |all, &name: &WordName| match word(name) {
-            Some(word) if word.modal => all | bit(name),
-            _ => all,
-        };
+        let modal = |name: &WordName| word(*name).is_some_and(|word| word.modal);
         let number = machine.words.get(WordName::N.name());
         let first = number.map_or(1, |word| word.first);
         let mut writer = Writer {
@@ -75,13 +72,13 @@ impl Writer {
             line_length: machine.capabilities.line_length,
             first,
             step: number.map_or(1, |word| word.step),
-            constant: 0,
-            set: 0,
+            constant: Words::NONE,
+            set: Words::NONE,
             values: [0; WordName::COUNT],
-            kept: 0,
-            known: 0,
+            kept: Words::NONE,
+            known: Words::NONE,
             active: [0; WordName::COUNT],
-            modal: WordName::ALL.iter().fold(0, modal),
+            modal: WordName::ALL.iter().copied().filter(modal).collect(),
             feed_form: WordName::F,
             raised: None,
             refused: None,
@@ -136,7 +133,7 @@ impl Writer {
     #[inline]
     fn say(&mut self, word: WordName, value: Key) {
         self.values[word as usize] = value;
-        self.set |= bit(word);
+        self.set.add(word);
     }
 
     /// Whether the control has one of `words`.
@@ -159,7 +156,7 @@ impl Writer {
     #[inline]
     pub(crate) fn active(&self, word: WordName) -> Option<f64> {
         match &self.forms[self.form(word) as usize] {
-            Form::Number(number) if self.known & bit(word) != 0 => {
+            Form::Number(number) if self.known.has(word) => {
                 Some(number.value(number.steps(self.active[word as usize])))
             }
             Form::Number(_) | Form::Code(_) | Form::Absent => None,
@@ -170,24 +167,14 @@ impl Writer {
     #[inline]
     pub(crate) fn changes(&self, words: Words) -> bool {
         let set = self.set & words;
-        let mut rest = set & self.known & !self.raised();
-        if rest != set {
-            return true;
-        }
-        while rest != 0 {
-            let word = rest.trailing_zeros() as usize;
-            if self.values[word] != self.active[word] {
-                return true;
-            }
-            rest &= rest - 1;
-        }
-        false
+        let known = set & self.known & !self.raised();
+        known != set || known.any(|word| self.values[word] != self.active[word])
     }
 
     /// The words that are raised: what they come to, only the control knows.
     #[inline]
     fn raised(&self) -> Words {
-        if self.raised.is_some() { bit(WordName::Z) } else { 0 }
+        if self.raised.is_some() { bit(WordName::Z) } else { Words::NONE }
     }
 
     /// The words that are left out where they say what is active.
@@ -212,7 +199,7 @@ impl Writer {
     #[inline]
     pub(crate) fn unset(&mut self, words: Words) {
         self.set &= !words;
-        if words & bit(WordName::Z) != 0 {
+        if words.has(WordName::Z) {
             self.raised = None;
         }
     }
@@ -225,7 +212,7 @@ impl Writer {
     /// The control is at this entry of a code without a word.
     pub(crate) fn assume(&mut self, word: WordName, index: usize) {
         self.active[word as usize] = index as Key;
-        self.known |= bit(word);
+        self.known.add(word);
     }
 
     /// The control has this value of a number without a word.
@@ -233,7 +220,7 @@ impl Writer {
         let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
         if let Some(key) = number.key(value) {
             self.active[word as usize] = key;
-            self.known |= bit(word);
+            self.known.add(word);
         }
     }
 
@@ -252,7 +239,7 @@ impl Writer {
             if let Form::Number(number) = &self.forms[word as usize]
                 && number.modal
             {
-                self.modal |= bit(WordName::F);
+                self.modal.add(WordName::F);
             }
         }
     }
@@ -293,10 +280,10 @@ impl Writer {
                 Step::Word { gap: before, word } => {
                     gap |= before;
                     let index = word as usize;
-                    let repeats = holds(left_out, word) && self.values[index] == self.active[index];
-                    if holds(set, word) && !repeats {
+                    let repeats = left_out.has(word) && self.values[index] == self.active[index];
+                    if set.has(word) && !repeats {
                         full |= self.word(word, &mut gap, start);
-                        if !holds(left_out, word) {
+                        if !left_out.has(word) {
                             left_out = self.left_out();
                         }
                     }
@@ -315,7 +302,7 @@ impl Writer {
         }
         // A position that the block leads to by other words (a helix by its angle) is not known by its own.
         self.known &= !(self.set & !block.words & (POSITION | ORIENTATION));
-        self.set = 0;
+        self.set = Words::NONE;
         self.raised = None;
         Ok(())
     }
@@ -348,9 +335,7 @@ impl Writer {
         {
             return false;
         }
-        if !holds(self.known, word) {
-            self.known |= bit(word);
-        }
+        self.known.add(word);
         self.active[index] = value;
         let separated = self.separated(gap, start);
         match self.raised {

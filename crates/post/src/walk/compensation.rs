@@ -4,7 +4,7 @@
 use super::{Outcome, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::contour::Contour;
-use crate::template::bit;
+use crate::words::bit;
 use geom::{Turn, Vec2, Vec3};
 use machine::ToolRadius;
 use program::{CompensatedPath, Compensation, Diagnostic, Op, Record, Rule};

@@ -13,13 +13,14 @@ use crate::findings::Findings;
 use crate::position::ToolPosition;
 use crate::sent::Sent;
 use crate::template::{
-    ORIENTATION, POSITION, Scope, Templates, Words, bit, coolant_value, file_name, map,
-    program_number, program_value, spindle_value,
+    ORIENTATION, POSITION, Scope, Templates, coolant_value, file_name, map, program_number,
+    program_value, spindle_value,
 };
 use crate::text::printed;
 use crate::vectors::Followed;
 use crate::wanted::Wanted;
 use crate::wire::Wire;
+use crate::words::{Words, bit};
 use crate::writer::Writer;
 use compensation::compensation_code;
 use geom::Vec3;
@@ -46,7 +47,7 @@ pub(crate) mod motion {
 }
 
 /// The words that say how the tool goes.
-const MOTION: Words = bit(WordName::F) | bit(WordName::Motion);
+const MOTION: Words = Words::of(&[WordName::F, WordName::Motion]);
 
 /// The entry of the code word `plane` for the plane XY.
 pub(crate) const PLANE_XY: usize = 0;
@@ -570,7 +571,7 @@ impl<'a> Walk<'a> {
         self.plane_origin(Vec3::ZERO)?;
         self.place.turned = self.say_unturned(BlockName::ProgramEnd);
         if self.place.turned && self.machine.has_clamps() {
-            self.writer.unset(Words::MAX);
+            self.writer.unset(Words::ALL);
             self.leave_part()?;
             self.unclamp()?;
             self.say_unturned(BlockName::ProgramEnd);

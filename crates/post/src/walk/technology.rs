@@ -2,7 +2,8 @@
 
 use super::{MOTION, Outcome, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
-use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, tool_value};
+use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, tool_value};
+use crate::words::bit;
 use geom::Vec3;
 use machine::{LengthOffset, Machine, OptionValue};
 use program::{Compensation, Coolant, Diagnostic, Feed, PathMode, Rule, Spindle, Tool, lowering};
