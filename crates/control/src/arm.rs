@@ -4,7 +4,7 @@
 //! Lengths are mm, joints degrees as the controller shows them. A [`Frame`] of a move is the frame of the tool, its tip with the Z out
 //! of the tool, in the frame of the base; the base stands in the world of the controller.
 
-use geom::Frame;
+use geom::{Frame, Vec3};
 
 /// What a control of an arm does. Frames and speeds hold from their event on.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,8 +21,8 @@ pub enum ArmAction {
     TurnSpeed([Option<f64>; 2]),
     /// A motion.
     Move(Box<ArmMove>),
-    /// The load on the flange is stated.
-    Load,
+    /// What hangs on the flange: its mass, kg, and its centre of gravity in the frame of the flange, mm.
+    Load(f64, Vec3),
 }
 
 /// A motion of an arm.
@@ -41,16 +41,8 @@ pub struct ArmMove {
 pub enum ArmPath {
     /// All joints together to these positions, degrees.
     Joints([f64; 6]),
-    /// All joints together to those that put the tool there, in a posture that `status` and `turn` say, as the maker counts them;
-    /// `None` leaves it to where the arm stands.
-    Point {
-        /// The tool.
-        end: Frame,
-        /// The posture (KUKA's S).
-        status: Option<u8>,
-        /// The signs of the joints (KUKA's T).
-        turn: Option<u8>,
-    },
+    /// All joints together to those that put the tool there.
+    Point(Frame, ArmPosture),
     /// The tip straight to a frame at the active feed.
     Line(Frame),
     /// The tip on a circle through the origin of `via` to `end` at the active feed.
@@ -62,15 +54,41 @@ pub enum ArmPath {
     },
 }
 
+/// What a program says of the posture in which a frame is reached; nothing of what is `None`, which the controller chooses by where the
+/// arm stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ArmPosture {
+    /// Whether the wrist centre is behind axis 1.
+    pub rear: Option<bool>,
+    /// Whether the elbow is below the line from shoulder to wrist.
+    pub below: Option<bool>,
+    /// Whether joint 5 of the model is negative.
+    pub flip: Option<bool>,
+    /// From where to below where each joint is, degrees.
+    pub joints: [Option<[f64; 2]>; 6],
+}
+
 /// How the end of a motion is passed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Corner {
     /// The arm stops there.
     Exact,
-    /// It leaves the path no farther from the end than this, mm along it, and comes back as near behind it.
-    Within(f64),
+    /// It leaves the path no farther from the end than a distance, and comes back as near behind it.
+    Within(Rounding),
     /// It leaves the path by an amount that speeds, or joints, decide.
     Unbounded,
+}
+
+/// How a corner is rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding {
+    /// How far from the end of the motion, mm along it.
+    pub distance: f64,
+    /// Whether the controller shortens that to half of the shorter motion; where it does not, it skips points whose roundings overlap.
+    pub shortened: bool,
+    /// Whether the arm stops at the end after all where something else than a motion follows; where it does not, that happens before the
+    /// end is reached.
+    pub stops: bool,
 }
 
 /// How the tool turns on the way.

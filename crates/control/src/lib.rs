@@ -39,7 +39,7 @@ mod points;
 mod sinumerik;
 pub mod tools;
 
-pub use arm::{ArmAction, ArmMove, ArmPath, Corner, Turning};
+pub use arm::{ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
 use geom::Vec3;
 use iso::Facts;

@@ -3,7 +3,7 @@
 use geom::{Euler, Frame, Vec3};
 use program::{Feed, Output, OutputValue, Until};
 use toolpost_control::{
-    Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Settings, Turning, read,
+    Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding, Settings, Turning, read,
 };
 
 fn settings() -> Settings {
@@ -41,6 +41,11 @@ fn refused(lines: &str, line: u32, what: &str) {
     );
 }
 
+/// Half of the shorter motion at the most, and an output ends the look-ahead.
+fn within(distance: f64) -> Rounding {
+    Rounding { distance, shortened: true, stops: true }
+}
+
 const START: &str = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}\n";
 
 /// The job of the specification, whose joints put the tool at (0, 0, 50) of the part.
@@ -66,7 +71,7 @@ fn the_job_of_the_specification_makes_its_motion() {
     assert!((end.matrix3 * Vec3::Z).distance(Vec3::NEG_Z) < 1e-12);
     assert!((end.matrix3 * Vec3::X).distance(Vec3::NEG_X) < 1e-12);
     assert_eq!((moves[1].1.corner, moves[1].1.turning), (Corner::Exact, Some(Turning::Even)));
-    assert_eq!(moves[2].1.corner, Corner::Within(1.0));
+    assert_eq!(moves[2].1.corner, Corner::Within(within(1.0)));
     let ArmPath::Arc { via, end } = moves[3].1.path else { panic!("{:?}", moves[3]) };
     assert_eq!(via.translation, Vec3::new(74.142, 5.858, -2.0));
     assert_eq!(end.translation, Vec3::new(80.0, 20.0, -2.0));
@@ -155,8 +160,15 @@ fn the_first_motion_is_a_ptp() {
 #[test]
 fn status_and_turn_are_read_and_checked() {
     let events = body("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 'B010',T 'B110010',E1 0.0}").unwrap();
-    let ArmPath::Point { status, turn, .. } = moves(&events)[0].1.path else { panic!() };
-    assert_eq!((status, turn), (Some(2), Some(50)));
+    let ArmPath::Point(_, posture) = moves(&events)[0].1.path else { panic!() };
+    assert_eq!(
+        (posture.rear, posture.below, posture.flip),
+        (Some(false), Some(false), Some(false))
+    );
+    // A2, A5 and A6 are below 0.
+    let below = posture.joints.map(|range| range == Some([f64::NEG_INFINITY, 0.0]));
+    assert_eq!(below, [false, true, false, false, true, true]);
+    assert_eq!(posture.joints[0], Some([0.0, f64::INFINITY]));
     refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 32,T 0}", 2, "S is a whole number from 0 to 31");
     refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 2,T 64}", 2, "T is a whole number from 0 to 63");
     refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 2.5}", 2, "S is a whole number");
@@ -168,7 +180,7 @@ fn corners_are_bounded_by_c_dis_alone() {
     let to = "LIN {X 1,Y 2,Z 3,A 0,B 90,C 0}";
     refused(&format!("{START}{to} C_DIS"), 3, "$APO.CDIS");
     let corner = |lines: &str| moves(&body(&format!("{START}{lines}")).unwrap())[1].1.corner;
-    assert_eq!(corner(&format!("$APO.CDIS=0.4\n{to} C_DIS")), Corner::Within(0.4));
+    assert_eq!(corner(&format!("$APO.CDIS=0.4\n{to} C_DIS")), Corner::Within(within(0.4)));
     assert_eq!(corner(&format!("$APO.CVEL=50\n{to} C_VEL")), Corner::Unbounded);
     assert_eq!(corner(&format!("$APO.CDIS=1\n{to} C_DIS C_ORI")), Corner::Unbounded);
     assert_eq!(corner("PTP {A1 1} C_PTP"), Corner::Unbounded);
@@ -334,7 +346,7 @@ fn a_data_list_in_a_folder_gives_positions_their_values() {
     let mut settings = settings();
     settings.setup.folders = vec![folder.path().to_path_buf()].into();
     let events = run_with(&settings, "DEF job()\nPTP XP1\nEND\n").unwrap();
-    let ArmPath::Point { end, .. } = moves(&events)[0].1.path else { panic!() };
+    let ArmPath::Point(end, _) = moves(&events)[0].1.path else { panic!() };
     assert_eq!(end.translation, Vec3::new(5.0, 6.0, 7.0));
 }
 

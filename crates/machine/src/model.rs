@@ -99,6 +99,17 @@ pub struct Cell {
     pub spindle_analog: Option<(u32, f64)>,
     /// Number of the output that switches the coolant on.
     pub coolant_output: Option<u32>,
+    /// What hangs on the flange with a tool in the spindle, where it is stated.
+    pub load: Option<Load>,
+}
+
+/// What hangs on the flange of an arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// kg.
+    pub mass: f64,
+    /// Its centre of gravity in the frame of the flange, mm.
+    pub center: Vec3,
 }
 
 impl Cell {
@@ -330,6 +341,8 @@ pub struct Capabilities {
     pub rapid_corridor: f64,
     /// How far beyond all cuts, along its own axis, the tool may go by rapid on any path, mm.
     pub rapid_clearance: f64,
+    /// Whether corners that reach beyond half of a motion have to be written shorter, since the control does not shorten them (robots).
+    pub fits_corners: bool,
 }
 
 /// Where the move ends that switches cutter compensation on.
@@ -718,6 +731,12 @@ impl Machine {
         self.reader != "fanuc" || self.settings.dwell_p_milliseconds.is_some()
     }
 
+    /// How fast the tool may turn, degrees/s, its axis and about it each: `turn_speed` of the options, which the templates of an
+    /// arm write; `None` where they do not.
+    pub fn turn_speed(&self) -> Option<f64> {
+        Some(self.number_of("turn_speed")).filter(|speed| *speed > 0.0)
+    }
+
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,
     /// which the templates write. The proof does not see that deviation.
     pub fn path_tolerance(&self) -> f64 {
@@ -748,13 +767,20 @@ impl Machine {
 
     /// Smallest step of a linear axis in its programs, mm.
     pub fn resolution(&self) -> f64 {
-        self.words.get("X").map_or(1e-3, |word| 10f64.powi(-i32::from(word.decimals)))
+        self.words.get("X").map_or(1e-3, Word::resolution)
     }
 
     /// Smallest step of a rotary axis in its programs, degrees.
     pub fn rotary_resolution(&self) -> f64 {
         let decimals = self.rotary.iter().filter_map(|r| self.words.get(&r.letter.to_string()));
         decimals.map(|word| 10f64.powi(-i32::from(word.decimals))).fold(0.0, f64::max)
+    }
+}
+
+impl Word {
+    /// The step from one value that it can write to the next, in the unit of the value.
+    pub fn resolution(&self) -> f64 {
+        10f64.powi(-i32::from(self.decimals)) / self.scale
     }
 }
 

@@ -114,6 +114,7 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     lowering_tolerance: Tolerance, "mm", "How far arcs and curves that are split into lines may leave the path.";
     rapid_corridor: Tolerance, "mm", "How far a rapid may be from the straight line of the source where it is not beyond all cuts; 0.1 where it is missing.";
     rapid_clearance: Clearance, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid on any path; 1 where it is missing.";
+    fits_corners: bool, "", "Whether a robot's corners that reach beyond half of a motion have to be written shorter, since its control does not shorten them.";
 });
 
 sheet!(merged SettingsSheet "settings" {
@@ -252,6 +253,8 @@ sheet!(merged CellSheet "cell" {
     spindle_analog: u32, "", "Number of the analog output that sets its speed.";
     spindle_full: Speed, "1/min", "Speed of the spindle at the full value of that output.";
     coolant_output: u32, "", "Number of the digital output that switches the coolant on.";
+    load_mass: Mass, "kg", "What hangs on the flange: the spindle with a tool in it.";
+    load_center: LoadCenter, "mm", "Its centre of gravity in the frame of the flange.";
 });
 
 sheet!(LengthsSheet "arm.lengths" {
@@ -344,6 +347,8 @@ value! {
     Lean(f64, "f64") |degrees| above_0(*degrees, 90.0), "a number above 0, at most 90 degrees,";
     SixAngles([f64; 6], "[f64; 6]") |six| six.iter().all(|degrees| degrees.abs() <= 360.0), "six numbers from -360 to 360 degrees";
     SixNumbers([f64; 6], "[f64; 6]") |six| six.iter().all(|number| number.abs() <= 1e5), "six numbers from -100000 to 100000";
+    Mass(f64, "f64") |kg| above_0(*kg, 5000.0), "a number above 0, at most 5000 kg,";
+    LoadCenter([f64; 3], "[f64; 3]") |point| point.iter().all(|mm| mm.abs() <= 1e4), "three numbers from -10000 to 10000 mm";
     Percent(f64, "f64") |percent| above_0(*percent, 100.0), "a number above 0, at most 100 %,";
     JointRate(f64, "f64") |rate| above_0(*rate, 1e5), "a number above 0, at most 100000 degrees/s,";
     JointAcceleration(f64, "f64") |rate| above_0(*rate, 1e6), "a number above 0, at most 1000000 degrees/s²,";

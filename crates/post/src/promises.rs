@@ -1,6 +1,7 @@
 //! What a machine's files must hold so that nothing is missing when it is needed: checked before
 //! anything is written.
 
+use crate::arm::{MIDDLE, POSE, PoseWords};
 use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
 use machine::{COMMA, CycleName, FileLocation, HARMLESS_SIGNS, Machine, OrientationMode};
@@ -163,18 +164,36 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
             );
         }
     }
-    let pose = [W::X, W::Y, W::Z, W::A, W::B, W::C];
-    let middle = [W::MX, W::MY, W::MZ, W::MA, W::MB, W::MC];
     let joints = [W::J1, W::J2, W::J3, W::J4, W::J5, W::J6];
-    for (block, words) in [
-        (B::Frames, [pose, middle].concat()),
+    // What a control does not say in blocks of its own stands in each motion.
+    let mut along = match templates.has(B::CornerDistance) {
+        true => vec![W::CornerMode],
+        false => vec![W::Corner],
+    };
+    if !templates.has(B::Feed) {
+        along.push(W::F);
+    }
+    let mut needed = vec![
+        (
+            B::Frames,
+            [pose_words(templates, B::Frames, &POSE), pose_words(templates, B::Frames, &MIDDLE)]
+                .concat(),
+        ),
         (B::Joints, joints.to_vec()),
-        (B::Linear, [&pose[..], &[W::CornerMode]].concat()),
-        (B::ArcThrough, [&pose[..], &middle, &[W::CornerMode]].concat()),
-        (B::Feed, vec![W::F]),
-        (B::CornerDistance, vec![W::Corner]),
+        (B::Linear, [pose_words(templates, B::Linear, &POSE), along.clone()].concat()),
+        (
+            B::ArcThrough,
+            // Of the point half way many controls take the position alone.
+            [pose_words(templates, B::ArcThrough, &POSE), MIDDLE.tip.to_vec(), along].concat(),
+        ),
         (B::Dwell, vec![W::P]),
-    ] {
+    ];
+    for (block, word) in [(B::Feed, W::F), (B::CornerDistance, W::Corner)] {
+        if templates.has(block) {
+            needed.push((block, vec![word]));
+        }
+    }
+    for (block, words) in needed {
         if !templates.has(block) {
             let message = format!("the block `{}` is missing: a robot needs it", block.name());
             errors.push(Diagnostic::error(Rule::MissingBlock, message).file(machine.file.clone()));
@@ -188,6 +207,13 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
     }
     let errors = errors.finish();
     if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// The words that a block needs for a pose: with those of the form of the orientation of which it places any.
+fn pose_words(templates: &Templates, block: BlockName, words: &PoseWords) -> Vec<WordName> {
+    let forms = [&words.turns[..], &words.vector, &words.quaternion];
+    let placed = forms.iter().find(|form| form.iter().any(|word| templates.places(block, *word)));
+    [&words.tip[..], placed.unwrap_or(&forms[0])].concat()
 }
 
 /// What the blocks lack to write the tool's orientation as the machine's file says.

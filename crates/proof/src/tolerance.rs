@@ -64,8 +64,8 @@ impl Applied {
     /// The tolerances of `machine`, or those given.
     pub fn new(machine: &Machine, given: &Tolerances) -> Applied {
         let step = |name: &str, otherwise: i32| {
-            let decimals = machine.words.get(name).map_or(otherwise, |w| i32::from(w.decimals));
-            10f64.powi(-decimals)
+            let word = machine.words.get(name);
+            word.map_or(10f64.powi(-otherwise), machine::Word::resolution)
         };
         let half = |name: &str| step(name, 3) / 2.0 * (1.0 + 1e-9);
         // Where F has no form of its own for a unit, it is written as in mm/min.

@@ -3,7 +3,7 @@
 use super::Outcome;
 use super::file::SheetFile;
 use crate::library;
-use crate::model::Cell;
+use crate::model::{Cell, Load};
 use crate::sheet::{
     Angle, ArmSheet, CellSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet, Position,
 };
@@ -75,6 +75,13 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
             ));
         }
     };
+    let load = match (sheet.load_mass, sheet.load_center) {
+        (Some(mass), Some(center)) => Some(Load { mass: mass.0, center: center.0.into() }),
+        (None, None) => None,
+        _ => {
+            return Err(String::from("`load_mass` and `load_center` are given both or not at all"));
+        }
+    };
     let tool_change = sheet.tool_change.unwrap_or_default();
     let named = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if tool_change.len() > 24 || !tool_change.chars().all(named) {
@@ -91,6 +98,7 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
         spindle_output: sheet.spindle_output,
         spindle_analog,
         coolant_output: sheet.coolant_output,
+        load,
     })
 }
 

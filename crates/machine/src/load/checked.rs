@@ -433,6 +433,7 @@ impl CheckedSheet {
                 lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),
                 rapid_corridor: capabilities.rapid_corridor.map_or(0.1, |mm| mm.0),
                 rapid_clearance: capabilities.rapid_clearance.map_or(1.0, |mm| mm.0),
+                fits_corners: capabilities.fits_corners.unwrap_or(false),
             },
             settings: ControlSettings {
                 floating_holder: self.settings.floating_holder.unwrap_or(false),

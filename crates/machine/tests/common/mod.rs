@@ -33,6 +33,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             lowering_tolerance: 0.01,
             rapid_corridor: 0.1,
             rapid_clearance: 1.0,
+            fits_corners: false,
         },
         settings: ControlSettings::default(),
         format: Format {

@@ -15,7 +15,7 @@ use crate::{Output, promises};
 use ::arm::{Arm, Joints};
 use geom::{Euler, Frame, Mat3, Quat};
 use machine::limits::Limits;
-use machine::{Cell, Machine};
+use machine::{Cell, Machine, Word};
 use minijinja::value::Value;
 use plan::{Act, Kind, Motion, Position, Step, plan};
 use program::{Coolant, CutBox, Diagnostic, Outcome, OutputValue, Program, Rule, Spindle, Tool};
@@ -27,11 +27,40 @@ mod corner {
     pub(super) const BLEND: usize = 1;
 }
 
-/// The words of a pose, and of the point half way along an arc.
-const POSE: [WordName; 6] =
-    [WordName::X, WordName::Y, WordName::Z, WordName::A, WordName::B, WordName::C];
-const MIDDLE: [WordName; 6] =
-    [WordName::MX, WordName::MY, WordName::MZ, WordName::MA, WordName::MB, WordName::MC];
+/// The words of a pose: where the tip is, and the orientation in each form that a control may place.
+pub(crate) struct PoseWords {
+    pub(crate) tip: [WordName; 3],
+    /// Turns about Z, the new Y and the new X.
+    pub(crate) turns: [WordName; 3],
+    pub(crate) vector: [WordName; 3],
+    pub(crate) quaternion: [WordName; 4],
+}
+
+pub(crate) const POSE: PoseWords = PoseWords {
+    tip: [WordName::X, WordName::Y, WordName::Z],
+    turns: [WordName::A, WordName::B, WordName::C],
+    vector: [WordName::VectorX, WordName::VectorY, WordName::VectorZ],
+    quaternion: [
+        WordName::Quaternion1,
+        WordName::Quaternion2,
+        WordName::Quaternion3,
+        WordName::Quaternion4,
+    ],
+};
+
+/// Those of the point half way along an arc.
+pub(crate) const MIDDLE: PoseWords = PoseWords {
+    tip: [WordName::MX, WordName::MY, WordName::MZ],
+    turns: [WordName::MA, WordName::MB, WordName::MC],
+    vector: [WordName::MiddleVectorX, WordName::MiddleVectorY, WordName::MiddleVectorZ],
+    quaternion: [
+        WordName::MiddleQuaternion1,
+        WordName::MiddleQuaternion2,
+        WordName::MiddleQuaternion3,
+        WordName::MiddleQuaternion4,
+    ],
+};
+
 const JOINTS: [WordName; 6] =
     [WordName::J1, WordName::J2, WordName::J3, WordName::J4, WordName::J5, WordName::J6];
 
@@ -115,6 +144,13 @@ impl<'a> Walk<'a> {
             program_value(machine, name, &[], None, [("blank", false), ("stock", false)]);
         let mut writer = Writer::new(machine);
         writer.set(WordName::JointSpeed, cell.joint_speed);
+        if templates.places(BlockName::Frames, WordName::LoadMass) && cell.load.is_none() {
+            let message =
+                "the control asks for the load on the flange, and the cell does not state it";
+            let help =
+                "weigh the spindle with a tool in it: `load_mass` and `load_center` below [cell]";
+            return Err(one(Diagnostic::error(Rule::Payload, message).help(help)));
+        }
         Ok(Walk {
             machine,
             arm,
@@ -124,7 +160,13 @@ impl<'a> Walk<'a> {
             scope,
             findings: Findings::default(),
             limits: Limits::new(machine),
-            ways: Ways { arm, cell, can: &machine.capabilities, cuts: CutBox::of(program) },
+            ways: Ways {
+                arm,
+                cell,
+                can: &machine.capabilities,
+                turn_rate: machine.turn_speed().map(|speed| 2.0 * speed),
+                cuts: CutBox::of(program),
+            },
             sent: Sent { feed: None, corner: None, spindle: Spindle::Off, coolant: Coolant::Off },
             spindle: Spindle::Off,
             coolant: Coolant::Off,
@@ -217,8 +259,16 @@ impl<'a> Walk<'a> {
         self.tool = Some(frame);
         (self.sent.feed, self.sent.corner) = (None, None);
         let part = self.cell.part;
-        self.set(POSE, &part);
-        self.set(MIDDLE, &frame);
+        self.set(&POSE, &part);
+        self.set(&MIDDLE, &frame);
+        if let Some(speed) = self.machine.turn_speed() {
+            self.writer.set(WordName::TurnSpeed, speed);
+        }
+        if let Some(load) = self.cell.load {
+            let words = [WordName::LoadX, WordName::LoadY, WordName::LoadZ];
+            self.writer.set(WordName::LoadMass, load.mass);
+            self.set_each(words, load.center.to_array());
+        }
         self.required(BlockName::Frames)?;
         self.joints(&self.home_joints())
     }
@@ -277,7 +327,7 @@ impl<'a> Walk<'a> {
                 Way::Joints => self.joints(&leg.end.joints)?,
                 Way::Straight(feed) => {
                     self.feed(feed)?;
-                    self.straight(&leg.end, corner::EXACT)?;
+                    self.straight(&leg.end, 0.0)?;
                 }
             }
         }
@@ -289,9 +339,8 @@ impl<'a> Walk<'a> {
             let message = "how the controller counts joint 3 is not stated";
             return Err(Diagnostic::error(Rule::ArmCoupling, message).into());
         };
-        for (word, joint) in JOINTS.into_iter().zip(shown) {
-            self.writer.set(word, joint.to_degrees());
-        }
+        self.set_each(JOINTS, shown.map(f64::to_degrees));
+        self.say_joint_speed();
         self.required(BlockName::Joints)?;
         let tool = self.tool.unwrap_or(Frame::IDENTITY);
         self.here = self.at_joints(&tool, joints);
@@ -329,33 +378,65 @@ impl<'a> Walk<'a> {
         self.feed(feed)?;
         // Only within a cut is a corner passed.
         let goes_on = next.is_some_and(|next| next.kind != Kind::Rapid);
-        let distance = 2.0 * motion.corner;
-        let passes = goes_on && distance > 0.0;
-        if passes && self.sent.corner != Some(distance) {
-            self.writer.set(WordName::Corner, distance);
-            self.required(BlockName::CornerDistance)?;
-            self.sent.corner = Some(distance);
-        }
-        let code = if passes { corner::BLEND } else { corner::EXACT };
+        let distance = match next {
+            Some(next) if goes_on => self.corner(motion, next)?,
+            _ => 0.0,
+        };
         match kind {
             Kind::Arc(via) => {
                 let [a, b] =
                     [&self.here.tool, &motion.end.tool].map(|tool| Quat::from_mat3(&tool.matrix3));
                 let half = Mat3::from_quat(a.slerp(b, 0.5));
-                self.set(MIDDLE, &Frame::from_mat3_translation(half, via));
-                self.set(POSE, &motion.end.tool);
-                self.writer.code(WordName::CornerMode, code);
+                self.set(&MIDDLE, &Frame::from_mat3_translation(half, via));
+                self.along(&motion.end, distance);
                 self.required(BlockName::ArcThrough)?;
                 self.here = motion.end;
                 Ok(())
             }
-            Kind::Line | Kind::Rapid => self.straight(&motion.end, code),
+            Kind::Line | Kind::Rapid => self.straight(&motion.end, distance),
         }
     }
 
-    fn straight(&mut self, end: &Position, code: usize) -> Outcome {
-        self.set(POSE, &end.tool);
+    /// How far before its end a cut may leave its path, mm; 0 where it stops there.
+    ///
+    /// # Errors
+    /// The control has no block for that.
+    fn corner(&mut self, motion: &Motion, next: &Motion) -> Outcome<f64> {
+        let mut distance = 2.0 * motion.corner;
+        if self.machine.capabilities.fits_corners {
+            // The ends of two corners on one motion must not overlap: a step of the word is room for rounding.
+            let step =
+                self.machine.words.get(WordName::Corner.name()).map_or(0.0, Word::resolution);
+            let shorter = motion.length(&self.here).min(next.length(&motion.end));
+            distance = distance.min(shorter / 2.0 - 2.0 * step);
+            if distance < step {
+                return Ok(0.0);
+            }
+        }
+        if distance > 0.0
+            && self.sent.corner != Some(distance)
+            && self.templates.has(BlockName::CornerDistance)
+        {
+            self.writer.set(WordName::Corner, distance);
+            self.required(BlockName::CornerDistance)?;
+        }
+        self.sent.corner = Some(distance);
+        Ok(distance)
+    }
+
+    /// The words that lines and arcs have in common: their end, how it is passed, and the feed.
+    fn along(&mut self, end: &Position, corner: f64) {
+        self.set(&POSE, &end.tool);
+        let code = if corner > 0.0 { corner::BLEND } else { corner::EXACT };
         self.writer.code(WordName::CornerMode, code);
+        self.writer.set(WordName::Corner, corner);
+        if let Some(feed) = self.sent.feed {
+            self.writer.set(WordName::F, feed);
+        }
+    }
+
+    fn straight(&mut self, end: &Position, corner: f64) -> Outcome {
+        self.along(end, corner);
         self.required(BlockName::Linear)?;
         self.here = *end;
         Ok(())
@@ -366,19 +447,37 @@ impl<'a> Walk<'a> {
         if self.sent.feed == Some(feed) {
             return Ok(());
         }
-        self.writer.set(WordName::F, feed);
-        self.required(BlockName::Feed)?;
         self.sent.feed = Some(feed);
+        if self.templates.has(BlockName::Feed) {
+            self.writer.set(WordName::F, feed);
+            self.required(BlockName::Feed)?;
+        }
         Ok(())
     }
 
-    /// The six numbers of a frame: X, Y, Z, and the turns about Z, the new Y and the new X.
-    fn set(&mut self, words: [WordName; 6], frame: &Frame) {
+    /// A frame, with its orientation in each form.
+    fn set(&mut self, words: &PoseWords, frame: &Frame) {
+        self.set_each(words.tip, frame.translation.to_array());
         let [c, b, a] = Euler::FixedXyz.angles(&frame.matrix3).map(f64::to_degrees);
-        let tip = frame.translation;
-        for (word, value) in words.into_iter().zip([tip.x, tip.y, tip.z, a, b, c]) {
+        self.set_each(words.turns, [a, b, c]);
+        let turn = Quat::from_mat3(&frame.matrix3);
+        let turn = if turn.w < 0.0 { -turn } else { turn };
+        self.set_each(words.vector, turn.to_scaled_axis().to_array().map(f64::to_degrees));
+        self.set_each(words.quaternion, [turn.w, turn.x, turn.y, turn.z]);
+    }
+
+    fn set_each<const N: usize>(&mut self, words: [WordName; N], values: [f64; N]) {
+        for (word, value) in words.into_iter().zip(values) {
             self.writer.set(word, value);
         }
+    }
+
+    /// How fast joints turn: as a part of the fastest, and what that leaves to the slowest of them.
+    fn say_joint_speed(&mut self) {
+        let slowest =
+            self.arm.joints().iter().map(|joint| joint.speed).fold(f64::INFINITY, f64::min);
+        self.writer.set(WordName::JointSpeed, self.cell.joint_speed);
+        self.writer.set(WordName::JointRate, slowest.to_degrees() * self.cell.joint_speed / 100.0);
     }
 
     fn start_spindle(&mut self) -> Outcome {

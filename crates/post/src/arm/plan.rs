@@ -54,6 +54,18 @@ pub(super) struct Motion {
     pub(super) corner: f64,
 }
 
+impl Motion {
+    /// How long its path is from there, mm.
+    pub(super) fn length(&self, from: &Position) -> f64 {
+        let [a, b] = [from, &self.end].map(|position| position.tool.translation);
+        match self.kind {
+            Kind::Rapid | Kind::Line => a.distance(b),
+            // Not longer than the arc itself.
+            Kind::Arc(via) => a.distance(via) + via.distance(b),
+        }
+    }
+}
+
 /// How a motion goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {

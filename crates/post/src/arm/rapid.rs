@@ -19,14 +19,13 @@ const LEAP: f64 = 0.2;
 /// The part of a joint's speed that a straight rapid uses at the most.
 const SPEED: f64 = 0.8;
 
-/// How fast the tool turns where it turns on the spot, degrees/s: `$VEL.ORI1` and `$VEL.ORI2` of the control's file together.
-const TURN_RATE: f64 = 120.0;
-
 /// What is needed to look for ways.
 pub(super) struct Ways<'a> {
     pub(super) arm: &'a Arm,
     pub(super) cell: &'a Cell,
     pub(super) can: &'a Capabilities,
+    /// How fast the tool turns where it turns on the spot, its axis and about it together, degrees/s; `None` where it cannot be said.
+    pub(super) turn_rate: Option<f64>,
     pub(super) cuts: CutBox,
 }
 
@@ -152,7 +151,9 @@ impl Ways<'_> {
         match length > 1e-6 {
             true if time > 0.0 => Some(rapid.min(60.0 * length / time)),
             true => Some(rapid),
-            false => (time <= turn.to_degrees() / TURN_RATE).then_some(rapid),
+            false => {
+                self.turn_rate.is_some_and(|rate| time <= turn.to_degrees() / rate).then_some(rapid)
+            }
         }
     }
 

@@ -1399,6 +1399,10 @@ rules! {
         "A pattern of holes or a pocket lacks words, or has too many points."
         "give the points or the lengths that the pattern needs"
         "linuxcnc: a pocket (`G12`) whose position is not known";
+    Payload "payload" []
+        "What hangs on the flange of a robot is not stated, or is another load than that of the machine file."
+        "weigh the spindle with a tool in it: `load_mass` and `load_center` below [cell] of the machine file"
+        "`set_payload(2.0, [0, 0, 0.05])` where the machine file states 1.5 kg";
     Peck "peck" []
         "Pecks are smaller than those of the source, or go back to the last depth itself."
         "nothing to do, if more pecks suit the hole"

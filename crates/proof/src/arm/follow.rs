@@ -15,6 +15,11 @@ const MOST: f64 = 100_000.0;
 /// A joint that turns by more than this between two points leaps, radians.
 const LEAP: f64 = 0.35;
 
+/// Wrist and elbow are at least so far from stretched or folded along a path, radians (1°), and the wrist so far from axis 1, mm:
+/// nearer to that controllers slow down or stop.
+const NEAREST: f64 = 0.017_453_292_519_943_295;
+const NEAREST_AXIS: f64 = 5.0;
+
 /// What is a millimetre to a radian, in the equations.
 const SCALE: f64 = 1e-3;
 
@@ -48,6 +53,8 @@ pub(super) enum Lost {
     Reach,
     /// The posture would change.
     Posture,
+    /// The arm comes nearer to a singular pose than [`NEAREST`] or [`NEAREST_AXIS`].
+    Singular(&'static str),
     /// A joint (number from 1) would be beyond its limit, by so many radians.
     Limit(usize, f64),
     /// A joint would need this part of its speed.
@@ -61,6 +68,7 @@ impl std::fmt::Display for Lost {
                 f.write_str("the arm cannot follow it: out of reach, or through a singular pose")
             }
             Lost::Posture => f.write_str("the arm would have to change its posture on the way"),
+            Lost::Singular(what) => write!(f, "the arm comes too near to where {what}"),
             Lost::Limit(joint, by) => {
                 write!(f, "joint {joint} would be {:.3}° beyond its limit", by.to_degrees())
             }
@@ -118,7 +126,17 @@ fn passed(
         return Err(Lost::Posture);
     }
     found.limit = found.limit.min(limit(arm, &next)?);
-    found.wrist = found.wrist.min(arm.margins(&next).wrist);
+    let margins = arm.margins(&next);
+    found.wrist = found.wrist.min(margins.wrist);
+    for (is_near, what) in [
+        (margins.wrist < NEAREST, "joint 5 is stretched or folded"),
+        (margins.elbow < NEAREST, "the elbow is stretched or folded"),
+        (margins.shoulder < NEAREST_AXIS, "the wrist is above axis 1"),
+    ] {
+        if is_near {
+            return Err(Lost::Singular(what));
+        }
+    }
     for (number, (i, joint)) in (1..).zip(arm.joints().iter().enumerate()) {
         let change = (next[i] - found.joints[i]).abs();
         if change > LEAP {

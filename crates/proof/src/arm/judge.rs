@@ -5,7 +5,7 @@ use super::follow::{Followed, Path, angle, follow, limit, turned};
 use crate::report::{ArmChecked, Report};
 use ::arm::{Arm, Joints};
 use control::kernel::arc::through;
-use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Event, Turning};
+use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Event, Rounding, Turning};
 use geom::{Arc, Frame, Vec3, angle_between, between, nearest_on_segment};
 use machine::{Cell, Machine};
 use program::{
@@ -55,7 +55,8 @@ pub(super) struct Judge<'a> {
     standing: Option<Standing>,
     is_home: bool,
     /// The corner that the motion before has left open: the next one has to be a cut.
-    open: bool,
+    open: Option<Rounding>,
+    loaded: bool,
     ended: bool,
     failed: bool,
     report: Report,
@@ -73,7 +74,7 @@ impl<'a> Judge<'a> {
     ) -> Judge<'a> {
         let half = |word: &str, otherwise: f64| {
             let word = machine.words.get(word);
-            word.map_or(otherwise, |word| 0.5 * 10f64.powi(-i32::from(word.decimals)) / word.scale)
+            word.map_or(otherwise, |word| 0.5 * word.resolution())
         };
         Judge {
             machine,
@@ -96,7 +97,8 @@ impl<'a> Judge<'a> {
             },
             standing: None,
             is_home: false,
-            open: false,
+            open: None,
+            loaded: false,
             ended: false,
             failed: false,
             report: Report { arm: Some(ArmChecked::default()), ..report },
@@ -153,7 +155,7 @@ impl<'a> Judge<'a> {
             }
             Action::Output(output) => self.output(output),
             Action::Input(input) => {
-                self.exact();
+                self.exact()?;
                 let input = **input;
                 self.happens(
                     Rule::Input,
@@ -163,7 +165,7 @@ impl<'a> Judge<'a> {
             }
             Action::Dwell(seconds) => self.dwell(*seconds),
             Action::Stop => {
-                self.exact();
+                self.exact()?;
                 if self.running.is_on || self.running.coolant {
                     return refused(
                         Rule::StopRunning,
@@ -214,9 +216,18 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// What ends the look-ahead: the arm stops where it is.
-    fn exact(&mut self) {
-        self.open = false;
+    /// What is no motion: the arm stops where it is.
+    ///
+    /// # Errors
+    /// It does not: the corner before is passed all the same.
+    fn exact(&mut self) -> Outcome {
+        match self.open.take() {
+            Some(Rounding { stops: false, .. }) => refused(
+                Rule::PathTolerance,
+                "something happens between two motions whose corner is passed: before the first one is at its end",
+            ),
+            Some(_) | None => Ok(()),
+        }
     }
 
     fn of_arm(&mut self, line: u32, action: &ArmAction) -> Outcome {
@@ -230,16 +241,37 @@ impl<'a> Judge<'a> {
                 }
             }
             ArmAction::PartOnFlange(on_flange) => self.running.on_flange = Some(*on_flange),
-            ArmAction::JointSpeed(_) | ArmAction::Load => {}
+            ArmAction::JointSpeed(_) => {}
+            ArmAction::Load(mass, center) => return self.load(*mass, *center),
             ArmAction::TurnSpeed(speed) => self.running.turn_speed = *speed,
             ArmAction::Move(motion) => return self.motion(line, motion),
         }
         Ok(())
     }
 
+    /// What hangs on the flange.
+    ///
+    /// # Errors
+    /// The machine's file states another load.
+    fn load(&mut self, mass: f64, center: Vec3) -> Outcome {
+        self.loaded = true;
+        let Some(load) = self.cell.load else { return Ok(()) };
+        let off = center.distance(load.center);
+        match (mass - load.mass).abs() <= 5e-3 && off <= 0.1 {
+            true => Ok(()),
+            false => refused(
+                Rule::Payload,
+                format!(
+                    "the load of the program is {mass} kg, its centre {off:.1} mm off; the machine's file states {} kg",
+                    load.mass
+                ),
+            ),
+        }
+    }
+
     /// An output: the spindle's, the coolant's, or one of the source's own.
     fn output(&mut self, output: &Output) -> Outcome {
-        self.exact();
+        self.exact()?;
         let running = &mut self.running;
         match output.value {
             OutputValue::Digital(on) if self.cell.spindle_output == Some(output.number) => {
@@ -274,7 +306,7 @@ impl<'a> Judge<'a> {
     }
 
     fn dwell(&mut self, seconds: f64) -> Outcome {
-        self.exact();
+        self.exact()?;
         let allowed = self.report.tolerances.dwell_s;
         if self.running.runs_up > 0.0 && seconds >= self.running.runs_up - allowed {
             self.running.runs_up = 0.0;
@@ -304,7 +336,7 @@ impl<'a> Judge<'a> {
 
     /// A tool change by the operator's program.
     fn tool(&mut self, number: u32) -> Outcome {
-        self.exact();
+        self.exact()?;
         let running = &mut self.running;
         if running.is_on || running.coolant || !self.is_home {
             let message = "the tool is changed where the arm is not home, or with the spindle or the coolant on";
@@ -330,7 +362,7 @@ impl<'a> Judge<'a> {
     }
 
     fn ends(&mut self) -> Outcome {
-        self.exact();
+        self.exact()?;
         self.ended = true;
         let running = &self.running;
         if running.is_on || running.coolant {
@@ -427,8 +459,15 @@ impl<'a> Judge<'a> {
                 "neither the source nor `tool_length` of the cell states the length of the tool";
             return refused(Rule::ToolLength, message);
         };
+        // Poses in the world itself are compared there.
+        let in_world = self.running.base == Some(Frame::IDENTITY);
+        let base = if in_world { Frame::IDENTITY } else { self.cell.part };
+        if !self.loaded && self.machine.words.contains_key("LOAD_MASS") {
+            let message = "the program moves and has not stated the load on the flange";
+            return refused(Rule::Payload, message);
+        }
         for (name, stated, wanted) in
-            [("base", self.running.base, self.cell.part), ("tool", self.running.tool, tool)]
+            [("base", self.running.base, base), ("tool", self.running.tool, tool)]
         {
             let Some(stated) = stated else {
                 return refused(
@@ -455,11 +494,11 @@ impl<'a> Judge<'a> {
     }
 
     fn motion(&mut self, line: u32, motion: &ArmMove) -> Outcome {
-        let from_corner = std::mem::take(&mut self.open);
+        let from_corner = self.open.take();
         self.leave_out();
         match motion.path {
             ArmPath::Joints(shown) => {
-                if from_corner || motion.corner != Corner::Exact {
+                if from_corner.is_some() || motion.corner != Corner::Exact {
                     return refused(
                         Rule::PathTolerance,
                         "a corner is passed between a cut and a motion of joints",
@@ -467,7 +506,7 @@ impl<'a> Judge<'a> {
                 }
                 self.joints(shown)
             }
-            ArmPath::Point { .. } => {
+            ArmPath::Point(..) => {
                 let message = "the joints go to a pose: in which posture, letters say that depend on rounding";
                 Err(Diagnostic::error(Rule::Unproven, message).help("write the joints").into())
             }
@@ -590,7 +629,13 @@ impl<'a> Judge<'a> {
     }
 
     /// A straight line of the tip.
-    fn line(&mut self, line: u32, motion: &ArmMove, end: &Frame, from_corner: bool) -> Outcome {
+    fn line(
+        &mut self,
+        line: u32,
+        motion: &ArmMove,
+        end: &Frame,
+        from_corner: Option<Rounding>,
+    ) -> Outcome {
         let start = self.start(motion)?;
         let (a, b) = (start.tool, *end);
         let at = |part: f64| {
@@ -639,7 +684,7 @@ impl<'a> Judge<'a> {
         if cuts {
             self.in_cut(&expected)?;
         }
-        self.corner(motion, from_corner, cuts, &expected)?;
+        self.corner(motion, (from_corner, length), cuts, &expected)?;
         self.pass(start, path, cuts)?;
         self.complete(end, &expected);
         Ok(())
@@ -654,7 +699,7 @@ impl<'a> Judge<'a> {
         motion: &ArmMove,
         start: Standing,
         path: Path,
-        from_corner: bool,
+        from_corner: Option<Rounding>,
     ) -> Outcome {
         let (from, to) = (self.in_part(&start.tool), self.in_part(&(path.at)(1.0)));
         let way = to.translation - from.translation;
@@ -664,7 +709,7 @@ impl<'a> Judge<'a> {
             && way.dot(axis) > 0.0
             && aside <= self.tip(true) + 1e-4 * path.length
             && path.turn < 1e-4;
-        if !is_lift || from_corner || motion.corner != Corner::Exact {
+        if !is_lift || from_corner.is_some() || motion.corner != Corner::Exact {
             return refused(Rule::ExtraMotion, "the tool moves where the source does not");
         }
         self.report.compared.excursions += 1;
@@ -704,7 +749,7 @@ impl<'a> Judge<'a> {
         line: u32,
         motion: &ArmMove,
         [via, end]: [&Frame; 2],
-        from_corner: bool,
+        from_corner: Option<Rounding>,
     ) -> Outcome {
         let start = self.start(motion)?;
         let Some(expected) = self.expected.get(self.next).cloned() else {
@@ -728,7 +773,7 @@ impl<'a> Judge<'a> {
         let at = |part: f64| Frame::from_mat3_translation(turned(&a, &b, part), arc.at(part));
         self.on_arc(&at, wanted, &arc, to, line)?;
         self.in_cut(&expected)?;
-        self.corner(motion, from_corner, true, &expected)?;
+        self.corner(motion, (from_corner, arc.length()), true, &expected)?;
         let path = Path { at: &at, length: arc.length(), turn: angle(&a, &b), time: None };
         self.pass(start, path, true)?;
         self.complete(end, &expected);
@@ -741,7 +786,7 @@ impl<'a> Judge<'a> {
         if motion.turning != Some(Turning::Even) {
             let message = "how the tool turns on the way is not stated, or not evenly";
             return Err(Diagnostic::error(Rule::OrientationWay, message)
-                .help("$ORI_TYPE=#VAR and $CIRC_TYPE=#BASE")
+                .help("it turns evenly from the start to the end: $ORI_TYPE=#VAR and $CIRC_TYPE=#BASE in KRL, mode=0 in URScript")
                 .into());
         }
         match self.standing {
@@ -973,11 +1018,7 @@ impl<'a> Judge<'a> {
             return refused(Rule::Feed, message);
         }
         let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
-        let step = self
-            .machine
-            .words
-            .get("VALUE")
-            .map_or(1e-3, |word| 10f64.powi(-i32::from(word.decimals)));
+        let step = self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution);
         let is_right = match state.spindle {
             Spindle::Off => !self.running.is_on,
             Spindle::Clockwise(speed) => {
@@ -1015,20 +1056,37 @@ impl<'a> Judge<'a> {
     }
 
     /// # Errors
-    /// A corner is left by more than is allowed, or passed from a cut to what is none.
+    /// A corner is left by more than is allowed, overlaps with the one before on a motion of this length, or is passed from a cut to what
+    /// is none.
     fn corner(
         &mut self,
         motion: &ArmMove,
-        from_corner: bool,
+        (before, length): (Option<Rounding>, f64),
         cuts: bool,
         expected: &Expected,
     ) -> Outcome {
-        if from_corner && !cuts {
+        if before.is_some() && !cuts {
             return refused(Rule::PathTolerance, "the corner between a cut and a rapid is passed");
         }
-        let distance = match motion.corner {
+        let own = match motion.corner {
+            Corner::Within(rounding) => Some(rounding),
+            Corner::Exact | Corner::Unbounded => None,
+        };
+        let rounded: f64 = [before, own]
+            .into_iter()
+            .flatten()
+            .filter(|rounding| !rounding.shortened)
+            .map(|rounding| rounding.distance)
+            .sum();
+        if rounded > length {
+            let message = format!(
+                "the corners at both ends of a motion of {length:.4} mm reach {rounded:.4} mm into it: the controller would skip a point"
+            );
+            return refused(Rule::PathTolerance, message);
+        }
+        let rounding = match motion.corner {
             Corner::Exact => return Ok(()),
-            Corner::Within(distance) => distance,
+            Corner::Within(rounding) => rounding,
             Corner::Unbounded => {
                 return refused(
                     Rule::PathTolerance,
@@ -1039,12 +1097,13 @@ impl<'a> Judge<'a> {
         // Both legs of the corner are left within the distance: no point between is farther from them than half of it.
         let own = self.machine.path_tolerance();
         let allowed = expected.state.corner.map_or(own, |wanted| wanted.min(own));
+        let distance = rounding.distance;
         if !cuts || distance / 2.0 > allowed + 1e-9 {
             let message =
                 format!("a corner may be left by {} mm, {allowed} mm are allowed", distance / 2.0);
             return refused(Rule::PathTolerance, message);
         }
-        self.open = true;
+        self.open = Some(rounding);
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ use super::state::{Standing, State};
 use crate::event::Action;
 use crate::kernel::Channel;
 use crate::krl::language::{AXES, Approximation, COORDINATES, Motion, OUTER, Scan, Value, frame};
-use crate::{ArmAction, ArmMove, ArmPath, Corner, Turning};
+use crate::{ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
 use program::{Outcome, Rule};
 
 /// Fields of a position that say the posture.
@@ -57,7 +57,7 @@ impl State {
     /// How the tool turns on the way.
     fn turning_of(&self, path: &ArmPath) -> Option<Turning> {
         match (path, self.along_path) {
-            (ArmPath::Joints(_) | ArmPath::Point { .. }, _) => Some(Turning::ByJoints),
+            (ArmPath::Joints(_) | ArmPath::Point(..), _) => Some(Turning::ByJoints),
             (ArmPath::Line(_), _) | (ArmPath::Arc { .. }, Some(false)) => self.turning,
             (ArmPath::Arc { .. }, Some(true)) => self.turning.map(|_| Turning::AlongPath),
             (ArmPath::Arc { .. }, None) => None,
@@ -89,8 +89,8 @@ impl State {
             return Ok((ArmPath::Joints(joints), Standing::Joints(joints)));
         }
         let end = self.pose(scan, to)?;
-        let (status, turn) = (whole(scan, to, "S", 31)?, whole(scan, to, "T", 63)?);
-        Ok((ArmPath::Point { end: frame(end), status, turn }, Standing::Pose(end)))
+        let posture = posture(whole(scan, to, "S", 31)?, whole(scan, to, "T", 63)?);
+        Ok((ArmPath::Point(frame(end), posture), Standing::Pose(end)))
     }
 
     /// The six numbers of a position; those that it does not have stay as they are.
@@ -130,7 +130,8 @@ impl State {
                     let message = "C_DIS needs a distance, and no block has set $APO.CDIS";
                     scan.since(0, Rule::Variable, message)
                 })?;
-                Ok(Corner::Within(distance))
+                // An output or a wait ends the look-ahead.
+                Ok(Corner::Within(Rounding { distance, shortened: true, stops: true }))
             }
             (Approximation::Distance | Approximation::Other, _) => Ok(Corner::Unbounded),
         }
@@ -164,6 +165,24 @@ fn numbers(
         *number = value;
     }
     Ok(all)
+}
+
+/// The posture that S and T state: bit 0 of S the wrist is behind axis 1, bit 1 the elbow is not below, bit 2 A5 is below 0; bit i of
+/// T is set where A(i+1) is below 0.
+fn posture(status: Option<u8>, turn: Option<u8>) -> ArmPosture {
+    let status = |bit: u8| status.map(|status| status >> bit & 1 != 0);
+    let joint = |i: usize| {
+        turn.map(|turn| match turn >> i & 1 {
+            0 => [0.0, f64::INFINITY],
+            _ => [f64::NEG_INFINITY, 0.0],
+        })
+    };
+    ArmPosture {
+        rear: status(0),
+        below: status(1).map(|above| !above),
+        flip: status(2),
+        joints: std::array::from_fn(joint),
+    }
 }
 
 /// S or T, where it is there.

@@ -5,7 +5,7 @@ use crate::event::Action;
 use crate::kernel::Channel;
 use crate::krl::language::{Name, Scan, Target, Value, frame, whole_frame};
 use crate::{ArmAction, Turning};
-use geom::Frame;
+use geom::{Frame, Vec3};
 use program::{Feed, Outcome, Output, OutputValue, Rule};
 
 /// mm/min in a m/s.
@@ -40,9 +40,11 @@ pub(super) fn assign(
             state.turn_speed[usize::from(which == "ORI2")] = Some(speed);
             channel.report(line, Action::Arm(ArmAction::TurnSpeed(state.turn_speed)))
         }
-        ("$LOAD", None) => match value {
-            Value::Fields(_) => channel.report(line, Action::Arm(ArmAction::Load)),
-            other => Err(unfit(scan, name, &other, "an aggregate")),
+        ("$LOAD", None) => match load(&value) {
+            Some((mass, center)) => {
+                channel.report(line, Action::Arm(ArmAction::Load(mass, center)))
+            }
+            None => Err(unfit(scan, name, &value, "{M .., CM {X ..,Y ..,Z ..,..}}")),
         },
         ("$LOOP_MSG", None) => match value {
             Value::Text(text) => channel.report(line, Action::Message(text)),
@@ -177,6 +179,14 @@ fn frame_of(scan: &Scan, name: Name, value: &Value) -> Outcome<Option<Frame>> {
         },
         other => Err(unfit(scan, name, other, "a frame")),
     }
+}
+
+/// Mass, kg, and centre of gravity, mm, of `{M 1.5,CM {X 0,Y 0,Z 75,..},..}`.
+fn load(value: &Value) -> Option<(f64, Vec3)> {
+    let Value::Fields(fields) = value else { return None };
+    let (_, center) = fields.iter().find(|(name, _)| name.as_str() == "CM")?;
+    let center = [center.field("X")?, center.field("Y")?, center.field("Z")?];
+    Some((value.field("M")?, center.into()))
 }
 
 fn number(scan: &Scan, name: Name, value: &Value) -> Outcome<f64> {
