@@ -196,6 +196,18 @@ impl Arm {
         self.world_height
     }
 
+    /// How far the flange may be from where joints put it by these lengths, mm, while its controller reaches poses exactly: of an arm
+    /// that is measured one by one (Universal Robots), and whose measures are not stated. 0 of every other: its controller calculates
+    /// with the same lengths.
+    ///
+    /// Universal Robots' driver for ROS warns of centimetres (`ur_robot_driver`, "Extract calibration information").
+    pub fn unmeasured(&self) -> f64 {
+        match &self.structure {
+            Structure::Ur(_, None) => 20.0,
+            Structure::Ur(_, Some(_)) | Structure::Spherical(_) => 0.0,
+        }
+    }
+
     /// How far the wrist centre reaches from axis 2, and axis 2 from axis 1, mm: what data sheets call the reach.
     pub fn reach(&self) -> f64 {
         match &self.structure {

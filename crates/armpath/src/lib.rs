@@ -91,6 +91,8 @@ pub struct Settings {
     pub limit: f64,
     /// Largest part of a joint's speed that a cut may use, above 0, at most 1.
     pub speed: f64,
+    /// Where the arm stands before. Where it is given, the arm changes its posture only where no path keeps it.
+    pub start: Option<Joints>,
 }
 
 impl Default for Settings {
@@ -105,6 +107,7 @@ impl Default for Settings {
             elbow: 5_f64.to_radians(),
             limit: 1_f64.to_radians(),
             speed: 0.9,
+            start: None,
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::follow::{self, Taken};
 use crate::grid::{self, Node, POSTURES, Row};
 use crate::samples::{Cut, Job};
 use crate::{Blocked, Choice, Section, Why, Worst};
-use arm::{Arm, Joints, Posture};
+use arm::{Joints, Posture};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -20,6 +20,9 @@ const TURNS: [i32; 3] = [-1, 0, 1];
 
 /// What an edge costs for turning the tool by a step, s.
 const TURNING: f32 = 0.02;
+
+/// What another posture costs than the one before where it is to be kept, s: more than any path.
+const POSTURE: f32 = 1e5;
 
 /// The cheapest steps to a node.
 #[derive(Clone, Copy)]
@@ -41,7 +44,7 @@ pub(crate) type Edge = (usize, usize, i32);
 
 pub(crate) fn search(job: &Job) -> Result<Choice, Blocked> {
     let mut choice = Choice { sections: Vec::new(), worst: follow::NO_WORST };
-    let mut last: Option<Joints> = None;
+    let mut last = job.settings.start;
     for cut in &job.cuts {
         let knots = knots(job, cut);
         let mut from = 0;
@@ -123,7 +126,7 @@ fn cheapest(
 ) -> Result<(Vec<usize>, Posture), Blocked> {
     let steps = job.steps(cut);
     let first = grid::start(job, knots[0], steps);
-    let mut labels: Vec<Label> = first.iter().map(|node| begin(job.arm, node, last)).collect();
+    let mut labels: Vec<Label> = first.iter().map(|node| begin(job, node, last)).collect();
     let mut nodes = first;
     if nodes.iter().all(Node::is_dead) {
         let sample = &job.samples[knots[0]];
@@ -169,7 +172,8 @@ fn neighbour(step: usize, turn: i32, steps: usize) -> usize {
 }
 
 /// The label of a node at the start: what the arm needs to come here from where the section before ended.
-fn begin(arm: &Arm, node: &Node, last: Option<Joints>) -> Label {
+fn begin(job: &Job, node: &Node, last: Option<Joints>) -> Label {
+    let arm = job.arm;
     if node.is_dead() {
         return Label::DEAD;
     }
@@ -178,7 +182,15 @@ fn begin(arm: &Arm, node: &Node, last: Option<Joints>) -> Label {
         change.abs() / arm.joints()[i].speed
     };
     let time = last.map_or(0.0, |last| (0..6).map(|i| seconds(i, last[i])).fold(0.0, f64::max));
-    Label { cost: node.cost + time as f32, joints: node.end, low: node.end, high: node.end }
+    let end = node.end.map(f64::from);
+    let changes = last.is_some_and(|last| arm.posture(&last) != arm.posture(&end));
+    let keeping = if changes && job.settings.start.is_some() { POSTURE } else { 0.0 };
+    Label {
+        cost: node.cost + time as f32 + keeping,
+        joints: node.end,
+        low: node.end,
+        high: node.end,
+    }
 }
 
 /// The labels at the end of an interval, and whence each came.

@@ -38,6 +38,7 @@ mod krl;
 mod points;
 mod sinumerik;
 pub mod tools;
+mod urscript;
 
 pub use arm::{ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
@@ -79,13 +80,15 @@ pub enum Dialect {
     Points,
     /// KUKA's robot language (KRC2, KRC4).
     Krl,
+    /// The language of Universal Robots.
+    UrScript,
     /// ISO code in which a CAM system keeps its toolpaths and which no machine reads: the crate that reads them describes it.
     Source(&'static Facts),
 }
 
 impl Dialect {
     /// Every dialect of a control with the name that its file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 14] = [
+    pub const NAMES: [(&'static str, Dialect); 15] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -100,6 +103,7 @@ impl Dialect {
         ("agie", Dialect::Agie),
         ("points", Dialect::Points),
         ("krl", Dialect::Krl),
+        ("urscript", Dialect::UrScript),
     ];
 
     /// The dialect of that name.
@@ -124,6 +128,7 @@ impl Dialect {
             Dialect::Klartext => Language::Klartext,
             Dialect::Points => Language::Points,
             Dialect::Krl => Language::Krl,
+            Dialect::UrScript => Language::UrScript,
         }
     }
 
@@ -132,7 +137,9 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.corners,
             Language::Klartext => Corners::Unbounded,
-            Language::Sinumerik | Language::Points | Language::Krl => Corners::Followed,
+            Language::Sinumerik | Language::Points | Language::Krl | Language::UrScript => {
+                Corners::Followed
+            }
         }
     }
 
@@ -146,7 +153,9 @@ impl Dialect {
     pub fn ending(self) -> Ending {
         match self.language() {
             Language::Iso(facts) => facts.syntax.ending,
-            Language::Sinumerik | Language::Klartext | Language::Krl => Ending::Code,
+            Language::Sinumerik | Language::Klartext | Language::Krl | Language::UrScript => {
+                Ending::Code
+            }
             Language::Points => Ending::Text,
         }
     }
@@ -159,7 +168,7 @@ impl Dialect {
             Language::Klartext => FeedPath::AllAxes,
             Language::Points => FeedPath::AsSetUp,
             // The speed of the tip, whatever turns.
-            Language::Krl => FeedPath::LinearAxes,
+            Language::Krl | Language::UrScript => FeedPath::LinearAxes,
         }
     }
 
@@ -169,7 +178,7 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.work_offset,
             Language::Sinumerik => Some(WorkOffset::NONE),
-            Language::Klartext | Language::Points | Language::Krl => None,
+            Language::Klartext | Language::Points | Language::Krl | Language::UrScript => None,
         }
     }
 
@@ -188,6 +197,7 @@ enum Language {
     Klartext,
     Points,
     Krl,
+    UrScript,
 }
 
 /// How a program ends.
@@ -425,6 +435,7 @@ pub fn vocabulary(dialect: Dialect) -> Vec<String> {
         Language::Klartext => klartext::vocabulary(),
         Language::Points => Vec::new(),
         Language::Krl => krl::vocabulary(),
+        Language::UrScript => urscript::vocabulary(),
     }
 }
 
@@ -453,5 +464,6 @@ pub fn read(
         Language::Klartext => klartext::run(settings, text, channel),
         Language::Points => points::run(settings, text, channel),
         Language::Krl => krl::run(settings, text, channel),
+        Language::UrScript => urscript::run(settings, text, channel),
     })
 }

@@ -2,42 +2,16 @@
 
 mod dice;
 mod files;
+mod robot;
 
-use control::{Action, ArmAction, ArmPath, Dialect, Event, Settings};
-use dice::Dice;
+use control::{Action, ArmAction, ArmPath, Dialect, Event};
 use files::root;
-use geom::{Frame, Vec3};
+use geom::Vec3;
 use machine::Machine;
-use program::{Feed, OutputValue, Program};
-use proof::Report;
-
-/// The job of the specification of robots, as cutter-location data.
-const JOB: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-2\n\
-FEDRAT/MMPM,1200\nGOTO/60,0,-2\nCIRCLE/60,20,-2,0,0,1,20\nGOTO/80,20,-2\nRAPID\nGOTO/80,20,50\nFINI\n";
-
-fn source(text: &str) -> Program {
-    source::apt::read("job.cls", text.as_bytes(), &Default::default()).unwrap().program
-}
+use robot::{JOB, proof_of, proven, source};
 
 fn kuka() -> Machine {
     machine::load("kuka-kr6-r900").unwrap()
-}
-
-fn written(source: &Program, machine: &Machine) -> Result<String, String> {
-    let output = post::write(source, machine).map_err(|found| found[0].to_string())?;
-    Ok(String::from_utf8(output.text).unwrap())
-}
-
-fn proof_of(source: &Program, machine: &Machine, text: &str) -> Report {
-    proof::prove(source, machine, "job.src", text.as_bytes(), &Default::default())
-}
-
-#[track_caller]
-fn proven(source: &Program, machine: &Machine) -> String {
-    let text = written(source, machine).unwrap();
-    let report = proof_of(source, machine, &text);
-    assert!(report.proven, "{text}\n{:#?}", report.mismatches);
-    text
 }
 
 /// A machine of the library with lines of its file changed.
@@ -51,23 +25,12 @@ fn kuka_with(changes: &[(&str, &str)]) -> Machine {
     machine::load_text("mine.toml", &text).unwrap()
 }
 
-fn events(text: &str) -> Vec<Event> {
-    let mut events = Vec::new();
-    let settings = Settings::new(Dialect::Krl, [false; 3]);
-    control::read(&settings, "job.src", text.as_bytes(), &mut |event| {
-        events.push(event);
-        Ok(())
-    })
-    .unwrap();
-    events
-}
-
 fn paths(text: &str) -> Vec<ArmPath> {
     let of = |event: Event| match event.action {
         Action::Arm(ArmAction::Move(motion)) => Some(motion.path),
         _ => None,
     };
-    events(text).into_iter().filter_map(of).collect()
+    robot::events(Dialect::Krl, text).into_iter().filter_map(of).collect()
 }
 
 #[test]
@@ -196,110 +159,10 @@ fn each_line_of_the_job_is_needed_or_changes_nothing() {
     }
 }
 
-/// Whether the tips of two frames, and the axes, are the same: how the tool is turned about its axis the source leaves free.
-fn near(a: &Frame, b: &Frame) -> bool {
-    a.translation.distance(b.translation) < 2e-2
-        && a.matrix3.z_axis.distance(b.matrix3.z_axis) < 3e-5
-}
-
-/// Whether two programs make the same motion, but for what their tolerances leave open.
-fn alike(machine: &Machine, a: &str, b: &str) -> bool {
-    let kept = |text: &str| -> Vec<Action> {
-        let events = events(text).into_iter().map(|event| event.action);
-        let speed = |action: &ArmAction| {
-            matches!(action, ArmAction::JointSpeed(_) | ArmAction::TurnSpeed(_))
-        };
-        let matters = |action: &Action| match action {
-            Action::Comment(_) => false,
-            Action::Arm(action) => !speed(action),
-            _ => true,
-        };
-        events.filter(matters).collect()
-    };
-    let (a, b) = (kept(a), kept(b));
-    a.len() == b.len() && a.iter().zip(&b).all(|pair| same(machine, pair))
-}
-
-fn same(machine: &Machine, pair: (&Action, &Action)) -> bool {
-    let arm = machine.arm.as_ref().unwrap();
-    let tool = machine.cell.as_ref().unwrap().tool(None).unwrap();
-    match pair {
-        // A corner that is left by less is a better one.
-        (Action::Arm(ArmAction::Move(a)), Action::Arm(ArmAction::Move(b))) => {
-            a.turning == b.turning
-                && match (a.path, b.path) {
-                    (ArmPath::Joints(a), ArmPath::Joints(b)) => {
-                        let [a, b] =
-                            [a, b].map(|joints| arm.flange(&joints.map(f64::to_radians)) * tool);
-                        near(&a, &b)
-                    }
-                    (ArmPath::Line(a), ArmPath::Line(b)) => near(&a, &b),
-                    // Of the point on the way its orientation does not count.
-                    (ArmPath::Arc { via: a, end: c }, ArmPath::Arc { via: b, end: d }) => {
-                        a.translation.distance(b.translation) < 2e-2 && near(&c, &d)
-                    }
-                    _ => false,
-                }
-        }
-        (Action::Arm(ArmAction::Base(Some(a))), Action::Arm(ArmAction::Base(Some(b))))
-        | (Action::Arm(ArmAction::Tool(Some(a))), Action::Arm(ArmAction::Tool(Some(b)))) => {
-            near(a, b)
-        }
-        (Action::Feed(Feed::PerMinute(a)), Action::Feed(Feed::PerMinute(b))) => {
-            // That of a straight rapid is free.
-            (a - b).abs() < 0.1 || *a == 6000.0
-        }
-        (Action::Dwell(a), Action::Dwell(b)) => b >= a,
-        (Action::Output(a), Action::Output(b)) => match (a.value, b.value) {
-            (OutputValue::Analog(x), OutputValue::Analog(y)) => {
-                a.number == b.number && (x - y).abs() < 2e-5
-            }
-            _ => a == b,
-        },
-        (a, b) => a == b,
-    }
-}
-
-/// One sign of the program changed at a time: a digit, a sign, an address, a name.
 #[test]
 fn of_200_single_damages_each_is_refused_or_changes_nothing() {
     let sample = std::fs::read_to_string(root().join("machines/samples/robot.cls")).unwrap();
-    let (source, machine) = (source(&sample), kuka());
-    let text = proven(&source, &machine);
-    let begin = text.find("BAS (#VEL_PTP").unwrap();
-    let mut random = Dice(17);
-    let (mut refused, mut harmless) = (0, 0);
-    while refused + harmless < 200 {
-        let at = begin + random.index(text.len() - begin);
-        let old = text.as_bytes()[at];
-        let signs: &[u8] = match old {
-            b'0'..=b'9' => b"0123456789",
-            b'-' | b' ' => b" -",
-            b'A'..=b'Z' => b"ABCXYZSTEL",
-            _ => b".,{}#=",
-        };
-        let new = signs[random.index(signs.len())];
-        if new == old || matches!(old, b'\r' | b'\n') {
-            continue;
-        }
-        let mut damaged = text.clone().into_bytes();
-        damaged[at] = new;
-        let damaged = String::from_utf8(damaged).unwrap();
-        let report = proof_of(&source, &machine, &damaged);
-        if report.proven {
-            let line = text[..at].matches('\n').count();
-            let shown = damaged.lines().nth(line).unwrap();
-            assert!(
-                alike(&machine, &text, &damaged),
-                "{shown} for {}",
-                text.lines().nth(line).unwrap()
-            );
-            harmless += 1;
-        } else {
-            refused += 1;
-        }
-    }
-    eprintln!("refused {refused}, harmless {harmless}");
+    let refused = robot::damaged_by_dice(&sample, (&kuka(), Dialect::Krl), "BAS (#VEL_PTP", 17);
     assert!(refused > 120, "{refused}");
 }
 

@@ -13,13 +13,14 @@ use crate::text::printed;
 use crate::writer::Writer;
 use crate::{Output, promises};
 use ::arm::{Arm, Joints};
-use geom::{Euler, Frame, Mat3, Quat};
+use geom::{Euler, Frame, Mat3, Quat, Vec3};
 use machine::limits::Limits;
 use machine::{Cell, Machine, Word};
 use minijinja::value::Value;
 use plan::{Act, Kind, Motion, Position, Step, plan};
 use program::{Coolant, CutBox, Diagnostic, Outcome, OutputValue, Program, Rule, Spindle, Tool};
 use rapid::{Leg, Way, Ways};
+use std::f64::consts::TAU;
 
 /// Entries of the code word `corner`.
 mod corner {
@@ -117,6 +118,10 @@ struct Walk<'a> {
     tool: Option<Frame>,
     /// Where the arm is; home without a pose that the source has named.
     here: Position,
+    /// Whether it is there, or as far off as joints leave it.
+    is_exact: bool,
+    /// The orientation that was written last as a vector along its axis of rotation, radians.
+    vector: Vec3,
     tools: u32,
 }
 
@@ -172,6 +177,8 @@ impl<'a> Walk<'a> {
             coolant: Coolant::Off,
             tool: None,
             here: Position { tool: Frame::IDENTITY, joints: home },
+            is_exact: false,
+            vector: Vec3::ZERO,
             tools: 0,
         })
     }
@@ -258,6 +265,7 @@ impl<'a> Walk<'a> {
         };
         self.tool = Some(frame);
         (self.sent.feed, self.sent.corner) = (None, None);
+        self.vector = Vec3::ZERO;
         let part = self.cell.part;
         self.set(&POSE, &part);
         self.set(&MIDDLE, &frame);
@@ -320,12 +328,24 @@ impl<'a> Walk<'a> {
         Position { tool: at, joints: *joints }
     }
 
+    /// A straight line to where joints have led an arm that is measured one by one, and whose measures are not known here: its controller
+    /// corrects what they leave.
+    fn correct(&mut self) -> Outcome {
+        if self.is_exact {
+            return Ok(());
+        }
+        self.feed(self.cell.rapid)?;
+        let here = self.here;
+        self.straight(&here, 0.0)
+    }
+
     /// Goes by rapid along a route.
     fn follow(&mut self, route: &[Leg]) -> Outcome {
         for leg in route {
             match leg.way {
                 Way::Joints => self.joints(&leg.end.joints)?,
                 Way::Straight(feed) => {
+                    self.correct()?;
                     self.feed(feed)?;
                     self.straight(&leg.end, 0.0)?;
                 }
@@ -342,6 +362,7 @@ impl<'a> Walk<'a> {
         self.set_each(JOINTS, shown.map(f64::to_degrees));
         self.say_joint_speed();
         self.required(BlockName::Joints)?;
+        self.is_exact = self.arm.unmeasured() == 0.0;
         let tool = self.tool.unwrap_or(Frame::IDENTITY);
         self.here = self.at_joints(&tool, joints);
         Ok(())
@@ -375,6 +396,7 @@ impl<'a> Walk<'a> {
         self.limits.feed(program::Feed::PerMinute(feed), self.spindle, line)?;
         self.start_spindle()?;
         self.start_coolant()?;
+        self.correct()?;
         self.feed(feed)?;
         // Only within a cut is a corner passed.
         let goes_on = next.is_some_and(|next| next.kind != Kind::Rapid);
@@ -438,7 +460,7 @@ impl<'a> Walk<'a> {
     fn straight(&mut self, end: &Position, corner: f64) -> Outcome {
         self.along(end, corner);
         self.required(BlockName::Linear)?;
-        self.here = *end;
+        (self.here, self.is_exact) = (*end, true);
         Ok(())
     }
 
@@ -462,7 +484,8 @@ impl<'a> Walk<'a> {
         self.set_each(words.turns, [a, b, c]);
         let turn = Quat::from_mat3(&frame.matrix3);
         let turn = if turn.w < 0.0 { -turn } else { turn };
-        self.set_each(words.vector, turn.to_scaled_axis().to_array().map(f64::to_degrees));
+        self.vector = nearest_writing(turn.to_scaled_axis(), self.vector);
+        self.set_each(words.vector, self.vector.to_array().map(f64::to_degrees));
         self.set_each(words.quaternion, [turn.w, turn.x, turn.y, turn.z]);
     }
 
@@ -573,6 +596,18 @@ impl<'a> Walk<'a> {
         let help = format!("`{}` in its file, or a toolpath that does without", name.name());
         Err(Diagnostic::error(Rule::MissingBlock, message).help(help).into())
     }
+}
+
+/// The vector of the same orientation that is nearest to another one: it may turn the other way round, by what is left of a revolution.
+/// A tool that points straight down turns by half of one, which has two writings: a program that changed between them would look as if
+/// the tool turned.
+fn nearest_writing(vector: Vec3, to: Vec3) -> Vec3 {
+    let angle = vector.length();
+    if angle < 1e-9 {
+        return vector;
+    }
+    let other = vector * (1.0 - TAU / angle);
+    if other.distance(to) < vector.distance(to) - 1e-6 { other } else { vector }
 }
 
 /// The name of a program as controllers of robots take it: letters, digits and `_`, a letter first, at most 24.

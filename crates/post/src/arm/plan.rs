@@ -9,7 +9,7 @@ use program::{
     Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Outcome, Output, PathMode, Pose, Program,
     Record, Rule, Spindle, Tool,
 };
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// How far the radii at the ends of an arc of the source may differ, as a part of them.
 const RADII: f64 = 0.01;
@@ -176,7 +176,11 @@ impl<'a> Stretch<'a> {
             ));
         };
         let frames = Frames { tool, part: cell.part };
-        let choice: Choice = choose(arm, &frames, &self.points, &Settings::default()).map_err(|blocked| {
+        // Where axis 1 turns by a revolution the arm reaches everything over its back as well: it does not leave the posture of home.
+        let is_round = arm.joints()[0].max - arm.joints()[0].min > TAU;
+        let home = arm.model(&cell.home.map(f64::to_radians)).filter(|_| is_round);
+        let settings = Settings { start: home, ..Settings::default() };
+        let choice: Choice = choose(arm, &frames, &self.points, &settings).map_err(|blocked| {
             let message = format!("the arm cannot go here: {blocked}");
             let help = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
             let line = self.lines[blocked.point.min(self.lines.len() - 1)];

@@ -78,10 +78,15 @@ impl Ways<'_> {
         })
     }
 
+    /// How far the tool has to be beyond all cuts where joints lead it, mm.
+    fn clearance(&self) -> f64 {
+        self.can.rapid_clearance + self.arm.unmeasured()
+    }
+
     /// The position beyond all cuts along the tool's own axis, and the feed to go between it and `at`; none where it is that.
     fn lifted(&self, tool: &Frame, at: &Position, lift: f64) -> Option<(Position, Option<f64>)> {
         let axis = -at.tool.matrix3.z_axis;
-        let beyond = self.cuts.reach(axis) + self.can.rapid_clearance + lift;
+        let beyond = self.cuts.reach(axis) + self.clearance() + lift;
         let height = beyond - at.tool.translation.dot(axis);
         if height <= 0.0 || height.is_nan() {
             return Some((*at, None));
@@ -112,10 +117,10 @@ impl Ways<'_> {
             let joints = std::array::from_fn(|i| from[i] + part * (to[i] - from[i]));
             let at = world * self.arm.flange(&joints) * *tool;
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
-            let near = line.is_some_and(|[from, to]| {
+            let near = line.filter(|_| self.arm.unmeasured() == 0.0).is_some_and(|[from, to]| {
                 nearest_on_segment(from, to, tip).1 <= self.can.rapid_corridor / 2.0
             });
-            near || tip.dot(axis) - self.cuts.reach(axis) >= self.can.rapid_clearance
+            near || tip.dot(axis) - self.cuts.reach(axis) >= self.clearance()
         })
     }
 

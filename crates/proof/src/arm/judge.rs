@@ -40,6 +40,8 @@ struct Standing {
     joints: Joints,
     /// The tool in the base of the program.
     tool: Frame,
+    /// Whether it is there, or as far off as joints leave an arm that is not measured.
+    exact: bool,
 }
 
 pub(super) struct Judge<'a> {
@@ -344,6 +346,7 @@ impl<'a> Judge<'a> {
         }
         running.turn_speed = [None; 2];
         running.on_flange = None;
+        self.loaded = false;
         self.standing = None;
         self.leave_out();
         let wanted = self.expected.get(self.next).map(|expected| &expected.step);
@@ -529,7 +532,8 @@ impl<'a> Judge<'a> {
             return Ok(());
         };
         let at = base.inverse() * self.arm.flange(&joints) * tool;
-        let before = self.standing.replace(Standing { joints, tool: at });
+        let exact = self.arm.unmeasured() == 0.0;
+        let before = self.standing.replace(Standing { joints, tool: at, exact });
         let was_home = std::mem::replace(&mut self.is_home, home);
         let Some(before) = before else {
             return match home {
@@ -585,7 +589,10 @@ impl<'a> Judge<'a> {
         // A slant of the axis is a way aside, over the height.
         let aside = off.reject_from_normalized(pose.axis()).length() + lean * height.abs();
         let slack = self.axis_allowed().to_radians() * height.abs() + self.tip(true);
-        height >= -self.tip(true) && height <= most + self.tip(true) && aside <= 2.0 * slack
+        height >= -self.tip(true)
+            && height <= most + self.tip(true)
+            && aside <= 2.0 * slack
+            && lean.to_degrees() <= self.axis_allowed()
     }
 
     fn arrives(&self, at: &Frame, to: &Pose, by_joints: bool) -> bool {
@@ -605,8 +612,10 @@ impl<'a> Judge<'a> {
         };
         let turns: f64 = from.iter().zip(to).map(|(a, b)| (b - a).abs()).sum();
         let count = (turns * self.lever() / STRIDE).ceil().clamp(1.0, 1e6);
-        let clearance = self.machine.capabilities.rapid_clearance;
+        let unmeasured = self.arm.unmeasured();
+        let clearance = self.machine.capabilities.rapid_clearance + unmeasured;
         let corridor = self.machine.capabilities.rapid_corridor;
+        let line = line.filter(|_| unmeasured == 0.0);
         for step in 0..=count as usize {
             let part = step as f64 / count;
             let joints = std::array::from_fn(|i| from[i] + part * (to[i] - from[i]));
@@ -645,6 +654,9 @@ impl<'a> Judge<'a> {
         let length = a.translation.distance(b.translation);
         let turn = angle(&a.matrix3, &b.matrix3);
         let path = Path { at: &at, length, turn, time: None };
+        if !start.exact {
+            return self.correct(motion, start, path);
+        }
         let Some(expected) = self.expected.get(self.next).cloned() else {
             return self.lift(motion, start, path, from_corner);
         };
@@ -688,6 +700,26 @@ impl<'a> Judge<'a> {
         self.pass(start, path, cuts)?;
         self.complete(end, &expected);
         Ok(())
+    }
+
+    /// A straight line to where the joints should have led an arm that is not measured: they were beyond all cuts, by as much as they
+    /// may be off.
+    ///
+    /// # Errors
+    /// It leads elsewhere.
+    fn correct(&mut self, motion: &ArmMove, start: Standing, path: Path) -> Outcome {
+        if path.length > 2.0 * self.tip(true) || path.turn > self.axis_allowed().to_radians() {
+            let message = "joints have led an arm here whose calibration the machine file does not state, and the next line goes elsewhere";
+            let help = "a straight line to the same pose before it, or the calibration of the arm";
+            return Err(Diagnostic::error(Rule::UnknownPosition, message).help(help).into());
+        }
+        if motion.corner != Corner::Exact {
+            return refused(
+                Rule::PathTolerance,
+                "a corner is passed where the arm corrects its pose",
+            );
+        }
+        self.pass(start, path, false)
     }
 
     /// A straight way up along the tool's own axis, between two steps of the source.
@@ -752,6 +784,10 @@ impl<'a> Judge<'a> {
         from_corner: Option<Rounding>,
     ) -> Outcome {
         let start = self.start(motion)?;
+        if !start.exact {
+            let message = "an arc from where joints have led an arm whose calibration the machine file does not state";
+            return refused(Rule::UnknownPosition, message);
+        }
         let Some(expected) = self.expected.get(self.next).cloned() else {
             return refused(Rule::ExtraMotion, "the tool goes on where the source has ended");
         };
@@ -822,7 +858,7 @@ impl<'a> Judge<'a> {
         checked.note_limit(limit);
         checked.note_wrist(wrist);
         checked.speed_percent = checked.speed_percent.max(100.0 * speed);
-        self.standing = Some(Standing { joints, tool: end });
+        self.standing = Some(Standing { joints, tool: end, exact: true });
         self.is_home = false;
         Ok(())
     }

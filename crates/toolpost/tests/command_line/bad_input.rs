@@ -316,6 +316,7 @@ const READERS: &[(&str, &str, &str)] = &[
     ("sinumerik/style.mpf", "in.mpf", "show in.mpf --from sinumerik-828d"),
     ("klartext/milling.h", "in.h", "show in.h --from heidenhain-tnc640"),
     ("krl/job.src", "in.src", "prove in.src -m kuka-kr6-r900 --against part.cls"),
+    ("urscript/job.script", "in.script", "prove in.script -m universal-ur5e --against part.cls"),
     (
         "../../examples/flange.tbl",
         "in.tbl",
@@ -541,6 +542,7 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
             "linuxcnc-switchkins" => &["linuxcnc"],
             "grbl" => &["grbl-3018"],
             "krl" => &["kuka-kr6-r900"],
+            "urscript" => &["universal-ur5e"],
             _ => &[],
         };
         let named =

@@ -1,0 +1,7 @@
+//! What is active, and what each statement does.
+
+mod command;
+mod motion;
+mod state;
+
+pub(super) use state::State;

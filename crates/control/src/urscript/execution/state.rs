@@ -1,0 +1,97 @@
+//! What a program has set.
+
+use crate::ArmAction;
+use crate::event::Action;
+use crate::kernel::Channel;
+use crate::urscript::language::{Readable, Scan, Scope, Value};
+use geom::Frame;
+use program::{Outcome, Rule};
+use std::collections::HashMap;
+
+/// Most variables that a program may set.
+const MOST_VARIABLES: usize = 100_000;
+
+/// What is active. The tool and the load are as the installation says them, before the program does.
+pub(in crate::urscript) struct State {
+    globals: HashMap<Box<str>, Value>,
+    /// Those of the functions that have been called, the inmost last.
+    locals: Vec<HashMap<Box<str>, Value>>,
+    count: usize,
+    /// The `v` of the last line or arc, m/s.
+    pub(super) speed: Option<f64>,
+    /// The name of the operator's function that changes tools.
+    pub(super) tool_change: String,
+}
+
+impl Readable for State {
+    fn value(&self, name: &str) -> Option<Value> {
+        let local = self.locals.last().and_then(|locals| locals.get(name));
+        local.or_else(|| self.globals.get(name)).cloned()
+    }
+}
+
+impl State {
+    pub(in crate::urscript) fn new(tool_change: &str) -> State {
+        State {
+            globals: HashMap::new(),
+            locals: vec![HashMap::new()],
+            count: 0,
+            speed: None,
+            tool_change: tool_change.into(),
+        }
+    }
+
+    /// What holds before the first line: poses count in the base of the robot, and the tool is that of the installation.
+    pub(in crate::urscript) fn begins(&mut self, line: u32, channel: &mut Channel) -> Outcome {
+        for action in [
+            ArmAction::Base(Some(Frame::IDENTITY)),
+            ArmAction::PartOnFlange(false),
+            ArmAction::Tool(None),
+        ] {
+            channel.report(line, Action::Arm(action))?;
+        }
+        Ok(())
+    }
+
+    /// A variable has this value from here on.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub(in crate::urscript) fn assign(
+        &mut self,
+        scan: &Scan,
+        scope: Scope,
+        name: &str,
+        value: Value,
+    ) -> Outcome {
+        let last = self.locals.len().saturating_sub(1);
+        let Some(locals) = self.locals.get_mut(last) else { return Ok(()) };
+        let is_global = match scope {
+            Scope::Global => true,
+            Scope::Local => false,
+            Scope::Found => !locals.contains_key(name) && self.globals.contains_key(name),
+        };
+        let place = if is_global { &mut self.globals } else { locals };
+        if place.insert(name.into(), value).is_none() {
+            self.count += 1;
+        }
+        match self.count > MOST_VARIABLES {
+            true => {
+                let message = "more variables than a controller has room for";
+                Err(scan.since(0, Rule::TooMuch, message))
+            }
+            false => Ok(()),
+        }
+    }
+
+    /// A function begins, with these parameters.
+    pub(in crate::urscript) fn enter(&mut self, parameters: HashMap<Box<str>, Value>) {
+        self.locals.push(parameters);
+    }
+
+    /// It is at its end.
+    pub(in crate::urscript) fn leave(&mut self) {
+        let gone = self.locals.pop();
+        self.count = self.count.saturating_sub(gone.map_or(0, |gone| gone.len()));
+    }
+}

@@ -1,0 +1,166 @@
+//! What the tests of robots have in common: a toolpath posted and proven, and what the proof finds of damages to the program.
+#![allow(dead_code, reason = "each file of tests uses some of it")]
+
+use crate::dice::Dice;
+use control::{Action, ArmAction, ArmPath, Dialect, Event, Settings};
+use geom::Frame;
+use machine::Machine;
+use program::{Feed, OutputValue, Program};
+use proof::Report;
+
+/// The job of the specification of robots, as cutter-location data.
+pub const JOB: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-2\n\
+FEDRAT/MMPM,1200\nGOTO/60,0,-2\nCIRCLE/60,20,-2,0,0,1,20\nGOTO/80,20,-2\nRAPID\nGOTO/80,20,50\nFINI\n";
+
+pub fn source(text: &str) -> Program {
+    source::apt::read("job.cls", text.as_bytes(), &Default::default()).unwrap().program
+}
+
+pub fn written(source: &Program, machine: &Machine) -> Result<String, String> {
+    let output = post::write(source, machine).map_err(|found| found[0].to_string())?;
+    Ok(String::from_utf8(output.text).unwrap())
+}
+
+pub fn proof_of(source: &Program, machine: &Machine, text: &str) -> Report {
+    proof::prove(source, machine, "job.src", text.as_bytes(), &Default::default())
+}
+
+#[track_caller]
+pub fn proven(source: &Program, machine: &Machine) -> String {
+    let text = written(source, machine).unwrap();
+    let report = proof_of(source, machine, &text);
+    assert!(report.proven, "{text}\n{:#?}", report.mismatches);
+    text
+}
+
+/// What a control of `dialect` does.
+pub fn events(dialect: Dialect, text: &str) -> Vec<Event> {
+    let mut events = Vec::new();
+    let settings = Settings::new(dialect, [false; 3]);
+    control::read(&settings, "job", text.as_bytes(), &mut |event| {
+        events.push(event);
+        Ok(())
+    })
+    .unwrap();
+    events
+}
+
+/// Whether the tips of two frames, and the axes, are the same: how the tool is turned about its axis the source leaves free.
+fn near(a: &Frame, b: &Frame) -> bool {
+    a.translation.distance(b.translation) < 2e-2
+        && a.matrix3.z_axis.distance(b.matrix3.z_axis) < 3e-5
+}
+
+/// Whether two programs make the same motion, but for what their tolerances leave open.
+fn alike((machine, dialect): (&Machine, Dialect), a: &str, b: &str) -> bool {
+    let [a, b] = [a, b].map(|text| kept(dialect, text));
+    a.len() == b.len()
+        && a.iter().zip(&b).all(|((a, fast), (b, other))| {
+            // The speed of a straight rapid is free.
+            same(machine, (a, b)) && ((fast - other).abs() < 0.1 || *fast == 6000.0)
+        })
+}
+
+/// What matters of a program, each line and arc with its feed, mm/min.
+fn kept(dialect: Dialect, text: &str) -> Vec<(Action, f64)> {
+    let mut feed = 0.0;
+    let mut kept = Vec::new();
+    for Event { action, .. } in events(dialect, text) {
+        match action {
+            Action::Feed(Feed::PerMinute(new)) => feed = new,
+            Action::Comment(_)
+            | Action::Arm(ArmAction::JointSpeed(_) | ArmAction::TurnSpeed(_)) => {}
+            Action::Arm(ArmAction::Move(motion)) => {
+                let by_joints = matches!(motion.path, ArmPath::Joints(_));
+                let feed = if by_joints { 0.0 } else { feed };
+                kept.push((Action::Arm(ArmAction::Move(motion)), feed));
+            }
+            action => kept.push((action, 0.0)),
+        }
+    }
+    kept
+}
+
+fn same(machine: &Machine, pair: (&Action, &Action)) -> bool {
+    let arm = machine.arm.as_ref().unwrap();
+    let tool = machine.cell.as_ref().unwrap().tool(None).unwrap();
+    match pair {
+        // A corner that is left by less is a better one.
+        (Action::Arm(ArmAction::Move(a)), Action::Arm(ArmAction::Move(b))) => {
+            a.turning == b.turning
+                && match (a.path, b.path) {
+                    (ArmPath::Joints(a), ArmPath::Joints(b)) => {
+                        let [a, b] =
+                            [a, b].map(|joints| arm.flange(&joints.map(f64::to_radians)) * tool);
+                        near(&a, &b)
+                    }
+                    (ArmPath::Line(a), ArmPath::Line(b)) => near(&a, &b),
+                    // Of the point on the way its orientation does not count.
+                    (ArmPath::Arc { via: a, end: c }, ArmPath::Arc { via: b, end: d }) => {
+                        a.translation.distance(b.translation) < 2e-2 && near(&c, &d)
+                    }
+                    _ => false,
+                }
+        }
+        (Action::Arm(ArmAction::Base(Some(a))), Action::Arm(ArmAction::Base(Some(b))))
+        | (Action::Arm(ArmAction::Tool(Some(a))), Action::Arm(ArmAction::Tool(Some(b)))) => {
+            near(a, b)
+        }
+        (Action::Dwell(a), Action::Dwell(b)) => b >= a,
+        (Action::Output(a), Action::Output(b)) => match (a.value, b.value) {
+            (OutputValue::Analog(x), OutputValue::Analog(y)) => {
+                a.number == b.number && (x - y).abs() < 2e-5
+            }
+            _ => a == b,
+        },
+        (a, b) => a == b,
+    }
+}
+
+/// One sign of the program of `sample` changed at a time behind `begin`, 200 times: a digit, a sign, an address, a name. Each is refused,
+/// or changes nothing; how many are refused.
+pub fn damaged_by_dice(
+    sample: &str,
+    (machine, dialect): (&Machine, Dialect),
+    begin: &str,
+    seed: u64,
+) -> usize {
+    let source = source(sample);
+    let text = proven(&source, machine);
+    let begin = text.find(begin).unwrap();
+    let mut random = Dice(seed);
+    let (mut refused, mut harmless) = (0, 0);
+    while refused + harmless < 200 {
+        let at = begin + random.index(text.len() - begin);
+        let old = text.as_bytes()[at];
+        let signs: &[u8] = match old {
+            b'0'..=b'9' => b"0123456789",
+            b'-' | b' ' => b" -",
+            b'A'..=b'Z' => b"ABCXYZSTEL",
+            b'a'..=b'z' => b"aclmoprtv_",
+            _ => b".,{}()[]#=",
+        };
+        let new = signs[random.index(signs.len())];
+        if new == old || matches!(old, b'\r' | b'\n') {
+            continue;
+        }
+        let mut damaged = text.clone().into_bytes();
+        damaged[at] = new;
+        let damaged = String::from_utf8(damaged).unwrap();
+        let report = proof_of(&source, machine, &damaged);
+        if report.proven {
+            let line = text[..at].matches('\n').count();
+            let shown = damaged.lines().nth(line).unwrap();
+            assert!(
+                alike((machine, dialect), &text, &damaged),
+                "{shown} for {}",
+                text.lines().nth(line).unwrap()
+            );
+            harmless += 1;
+        } else {
+            refused += 1;
+        }
+    }
+    eprintln!("refused {refused}, harmless {harmless}");
+    refused
+}
