@@ -8,6 +8,7 @@ use crate::walk::walk;
 use geom::region::{Region, Ring};
 use geom::{Element, Vec2, Vec3};
 use glam::DVec2;
+use pcb::board::Axis;
 use pcb::{Copper, Hole, HoleShape};
 use program::Program;
 use std::collections::BTreeMap;
@@ -41,6 +42,7 @@ const EDGE: &str = "#8d8663";
 const HOLE: &str = "#4a4f55";
 const PROBLEM: &str = "#d1202f";
 const QUIET: &str = "#7b828a";
+const TURNING: &str = "stroke=\"#5b3fa0\" stroke-width=\"1.4\" stroke-dasharray=\"14 4 3 4\"";
 
 /// Colours of nets, light, so that cuts stand out on them.
 const NETS: [&str; 8] =
@@ -60,6 +62,8 @@ pub struct BoardPicture<'a> {
     pub widths: &'a [f64],
     /// Where something is not as it should be (mm), and what.
     pub problems: &'a [(Vec2, String)],
+    /// The line about which the board is turned over, where it is.
+    pub turning: Option<Axis>,
 }
 
 /// Draws a board as SVG under a title.
@@ -197,6 +201,7 @@ impl Drawn {
             }
         }
         lines(out, self.rapids, RAPID, 0.7, "stroke-dasharray=\"50 35\"");
+        turning(out, picture, view);
         for (place, _) in picture.problems.iter().take(MAX_MARKS) {
             let at = view.at(place.extend(0.0));
             let _ = writeln!(
@@ -206,6 +211,24 @@ impl Drawn {
             );
         }
     }
+}
+
+/// The line about which the board is turned over, from end to end of it and a little farther.
+fn turning(out: &mut String, picture: &BoardPicture, view: &View) {
+    let Some(axis) = picture.turning else { return };
+    let [low, high] = picture.extents();
+    let ends = match axis {
+        Axis::X(x) => [Vec3 { x, ..low }, Vec3 { x, ..high }],
+        Axis::Y(y) => [Vec3 { y, ..low }, Vec3 { y, ..high }],
+    };
+    let [from, to] = ends.map(|end| view.at(end));
+    let away = (to - from).normalize_or_zero() * MARK;
+    let (from, to) = (from - away, to + away);
+    let _ = writeln!(
+        out,
+        "<path {TURNING} d=\"M{:.1} {:.1}L{:.1} {:.1}\"/>",
+        from.x, from.y, to.x, to.y
+    );
 }
 
 fn flat(point: Vec3) -> Vec3 {
@@ -314,6 +337,11 @@ fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2
     }
     let stroke = format!("stroke=\"{RAPID}\" stroke-width=\"1\" stroke-dasharray=\"5 3.5\"");
     entry(out, &stroke, "RAPID", &format!("{:.0} MM", drawn.rapid));
+    match picture.turning {
+        Some(Axis::X(at)) => entry(out, TURNING, "TURNING LINE", &format!("X {at:.3}")),
+        Some(Axis::Y(at)) => entry(out, TURNING, "TURNING LINE", &format!("Y {at:.3}")),
+        None => {}
+    }
     if !picture.problems.is_empty() {
         let text = format!("{} PLACES TO LOOK AT", picture.problems.len());
         entry(out, &format!("stroke=\"{PROBLEM}\" stroke-width=\"2\""), &text, "");
@@ -354,10 +382,13 @@ mod tests {
             program: &program,
             widths: &[1.0],
             problems: &[(Vec2::splat(12.0), "too narrow".into())],
+            turning: Some(Axis::X(10.0)),
         };
         let svg = board("disc", &picture);
         // The board is 20 mm high and fills 680 pixels: a tool of 1 mm is 34 of them wide, 340 tenths.
         assert!(svg.contains("stroke-width=\"340.0\""), "{svg}");
+        // From the lower to the upper edge, in the middle, and 9 pixels farther.
+        assert!(svg.contains("d=\"M460.0 729.0L460.0 31.0\"") && svg.contains("X 10.000"), "{svg}");
         assert!(svg.contains("1 HOLES") && svg.contains("X12.00 Y12.00"));
         assert_eq!(svg.matches("<circle").count(), 1);
         assert!(svg.contains(&format!("fill=\"{}\"", NETS[0])));

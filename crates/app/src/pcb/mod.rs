@@ -9,7 +9,7 @@ use crate::input;
 use crate::post::{self, Posted};
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
-use ::pcb::board::Face;
+use ::pcb::board::{Axis, Face};
 use ::pcb::job::{self, Heights};
 use ::pcb::plan::{self, Part, Running, Settings, Setup, Work};
 use ::pcb::{Board, Operation};
@@ -47,6 +47,8 @@ pub struct Made {
     pub files: Vec<input::Source>,
     layers: Vec<(String, String)>,
     front: Board,
+    /// The line about which it is turned over.
+    axis: Axis,
     warnings: Vec<Diagnostic>,
 }
 
@@ -97,8 +99,9 @@ impl<'a> Job<'a> {
         let (works, mut left_out) = self.divided(planned)?;
         warnings.extend(plan::late_pins(&parts, settings));
         let rack = Rack::of(&works);
+        let is_turned = works.iter().any(|(part, _)| plan::face(*part, settings) == Face::Back);
         watch.begin("writing and proving")?;
-        let shop = Shop { job: self, front, back, rack, watch, surface };
+        let shop = Shop { job: self, front, back, is_turned, rack, watch, surface };
         let mut programs = Vec::with_capacity(works.len() + 1);
         if let Some(grid) = running.probe.filter(|_| !running.on_control) {
             let probing = shop.probing(grid)?;
@@ -133,7 +136,8 @@ impl<'a> Job<'a> {
             warnings = toolpath::held(warnings, self.strict)?;
         }
         let source::Source { layers, files, .. } = source;
-        Ok(Made { programs, left_out, files, layers, front: shop.front.board, warnings })
+        let Setup { board: front, axis, .. } = shop.front;
+        Ok(Made { programs, left_out, files, layers, front, axis, warnings })
     }
 
     /// The work of programs, apart from those that cannot be made.
@@ -375,6 +379,8 @@ struct Shop<'a> {
     front: Setup,
     /// The board with its back up.
     back: Setup,
+    /// Whether the board is turned over for one of the programs.
+    is_turned: bool,
     rack: Rack,
     watch: &'a dyn Watch,
     /// The surface that programs follow, where one was measured.
@@ -392,7 +398,7 @@ impl Shop<'_> {
 
     /// The program of a part of the board, proven, and its picture.
     fn made(&self, part: Part, work: &Work) -> Result<(Posted, Option<Vec<u8>>), Stop> {
-        let board = &self.setup(part).board;
+        let Setup { board, axis, .. } = self.setup(part);
         let name = format!("{}-{}", board.name, part.name());
         let number = |operation: &Operation| self.rack.number(&operation.tool.name);
         let operations: Vec<(u32, &Operation)> =
@@ -417,6 +423,7 @@ impl Shop<'_> {
             program: &toolpath.program,
             widths: &widths,
             problems: &work.places,
+            turning: self.is_turned.then_some(*axis),
         };
         let place = Part::ALL.iter().position(|other| *other == part).unwrap_or_default();
         let (posted, picture) = rayon::join(

@@ -4,8 +4,8 @@ use super::{Made, Program};
 use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
-use pcb::board::Face;
-use pcb::plan::{Part, Settings, Turn};
+use pcb::board::{Axis, Face};
+use pcb::plan::{Part, Settings};
 use program::Diagnostic;
 use serde_json::{Value, json};
 
@@ -40,16 +40,17 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
     rows.extend(missing.iter().map(|what| ("missing", (*what).to_owned())));
     rows.push(("machine", format!("{} ({})", machine.title, machine.name)));
     let mut up = Face::Front;
-    for made in programs {
-        if let Some(face) = made.up.filter(|face| *face != up) {
-            let line = if settings.placing.turn == Turn::Y { "Y" } else { "X" };
-            rows.push((
-                "turn",
-                format!("the board over, about a line along {line}: its {face} is up"),
-            ));
+    for program in programs {
+        if let Some(face) = program.up.filter(|face| *face != up) {
+            let (along, across, at) = turning(made.axis);
+            let text = format!(
+                "the board over, about the line {across} {} (along {along}): its {face} is up",
+                number(at, 3)
+            );
+            rows.push(("turn", text));
             up = face;
         }
-        rows.extend(made.rows());
+        rows.extend(program.rows());
     }
     rows.extend(made.left_out.iter().map(|left| {
         let why = left.findings().next().map_or_else(String::new, |found| found.message);
@@ -66,6 +67,7 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
     if more > 0 {
         rows.push(("", format!("{more} places more, in the report and the pictures")));
     }
+    let (along, _, at) = turning(made.axis);
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
         "board": {
@@ -75,6 +77,7 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
             "high_mm": high.to_array(),
             "holes": board.holes.len(),
             "missing": missing,
+            "turning_line": { "along": along, "at_mm": at },
         },
         "machine": toolpath::describe(machine),
         "programs": programs.iter().map(Program::describe).collect::<Vec<_>>(),
@@ -85,6 +88,14 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         "warnings": warnings,
     });
     Report { rows, data }
+}
+
+/// The line about which the board is turned over: the axis along which it runs, the other one, and where it is on that, mm.
+fn turning(axis: Axis) -> (&'static str, &'static str, f64) {
+    match axis {
+        Axis::X(at) => ("Y", "X", at),
+        Axis::Y(at) => ("X", "Y", at),
+    }
 }
 
 /// What a board lacks that boards have, where nobody has said which programs are made: a file that was not exported, or not

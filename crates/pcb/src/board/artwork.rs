@@ -2,12 +2,12 @@
 //!
 //! To unite copper is most of what reading a board takes, and no side needs that of the other: one side goes on
 //! while the copper of the other is still being united. What must be known of both before is how large the
-//! board is, since that says where it lies. So copper that may reach beyond the outline is united at once.
+//! board is, since that says where it lies. So copper that may reach beyond the outline is united, and cropped, at once.
 
 use super::copper::{Copper, Pattern};
-use super::{Board, Face, check};
-use geom::region::{Index, Region};
-use program::Diagnostic;
+use super::{Board, Face, check, crop};
+use geom::region::{Index, Region, RegionError};
+use program::{Diagnostic, Rule};
 
 /// Copper that is drawn so far within the box around the outline stays within it, mm, whatever uniting adds to
 /// its edges.
@@ -54,7 +54,31 @@ impl Artwork {
         }
         let found = check::layers(&self.board).map_err(|found| self.placed(found))?;
         self.warnings.extend(self.placed(found));
+        self.cropped().map_err(|found| self.placed(vec![*found]))?;
         Ok(self)
+    }
+
+    /// Leaves out what is outside the outline.
+    fn cropped(&mut self) -> Result<(), Box<Diagnostic>> {
+        let Some(edge) = self.edge()? else { return Ok(()) };
+        let index = Index::new(&edge);
+        for face in [Face::Front, Face::Back] {
+            let found = crop::copper(&mut self.board, face, &edge, &index)?;
+            let found = self.placed(found.into_iter().collect());
+            self.warnings.extend(found);
+            crop::coats(&mut self.board, face, &edge, &index);
+        }
+        Ok(())
+    }
+
+    /// What the outer contours of the outline enclose, where there is one.
+    fn edge(&self) -> Result<Option<Region>, Box<Diagnostic>> {
+        let edge = self.board.outline.as_ref().map(crop::filled).transpose();
+        edge.map_err(|error: RegionError| {
+            let message = format!("the outline cannot be compared with anything: {error}");
+            let help = "draw the edge of the board anew, or leave its layer out";
+            Diagnostic::error(Rule::Outline, message).help(help).into()
+        })
     }
 
     /// The board without the copper that is still to be united, which is within its
@@ -96,21 +120,27 @@ impl Artwork {
         go_on: impl Fn(Face, Board) -> T + Sync,
     ) -> Result<([T; 2], Vec<Diagnostic>), Vec<Diagnostic>> {
         let (front, back) = (self.front.take(), self.back.take());
+        let edge = self.edge().map_err(|found| self.placed(vec![*found]))?;
+        let edge = edge.as_ref().map(|edge| (edge, Index::new(edge)));
         let index = self.board.outline.as_ref().map(Index::new);
-        let index = index.as_ref();
         let side = |face: Face, pattern: Option<Pattern>| {
             let mut board = self.board.clone();
             let (copper, joined) = united(face, pattern)?;
+            let placed = |found: Box<Diagnostic>| self.placed(vec![*found]);
+            let mut cropped = None;
             if copper.is_some() {
                 board.side_mut(face).copper = copper;
+                if let Some((edge, index)) = &edge {
+                    cropped = crop::copper(&mut board, face, edge, index).map_err(placed)?;
+                }
             }
-            let outside = check::copper(&board, face, index);
-            let outside = outside.map_err(|found| self.placed(vec![*found]))?;
-            Ok((go_on(face, board), joined, outside))
+            let outside = check::copper(&board, face, index.as_ref()).map_err(placed)?;
+            let odd: Vec<Diagnostic> = cropped.into_iter().chain(outside).collect();
+            Ok((go_on(face, board), joined, odd))
         };
         let (front, back) = both(|| side(Face::Front, front), || side(Face::Back, back))?;
-        let odd = [front.2, back.2, check::holes(&self.board, index)];
-        let odd = self.placed(odd.into_iter().flatten().collect());
+        let holes = check::holes(&self.board, index.as_ref()).into_iter().collect();
+        let odd = self.placed([front.2, back.2, holes].concat());
         let mut warnings = self.warnings;
         warnings.extend([front.1, back.1, odd].into_iter().flatten());
         Ok(([front.0, back.0], warnings))

@@ -15,7 +15,7 @@ const SLIVER: f64 = 1e-3;
 /// A box whose sides are parallel to the axes: two opposite corners, mm.
 type Extents = (Vec2, Vec2);
 
-/// Copper of a side that is outside the outline, of which this is the index.
+/// Copper of a side, once it is cropped, that is in a cut-out of the outline, of which this is the index.
 ///
 /// # Errors
 /// `copper-outside` where the two cannot be compared.
@@ -42,10 +42,10 @@ pub(super) fn copper(
         };
         let first = shown(island.outer().extents());
         let message = format!(
-            "{area:.3} mm² of the {face} copper is outside the outline, in {places}, the first \
+            "{area:.3} mm² of the {face} copper is where there is no board, in {places}, the first \
              within {first}"
         );
-        let help = "it is cut through with the outline; look whether the outline is the right one";
+        let help = "it is cut through with the outline; look whether that contour is a cut-out, or a board within another contour";
         Diagnostic::warning(Rule::CopperOutside, message).help(help)
     }))
 }
@@ -91,6 +91,8 @@ pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> 
     let mut there = layers.into_iter().filter_map(|(name, extents)| Some((name, extents?)));
     let Some((first, board)) = there.next() else { return Ok(Vec::new()) };
     let (mut errors, mut warnings) = (Vec::new(), Vec::new());
+    // What is cropped may reach as far as it likes.
+    let is_cropped = |name: &str| first == "outline" && name != "holes" || name.ends_with("legend");
     for (name, extents) in there {
         let message = |what: &str| {
             let (layer, board) = (shown(extents), shown(board));
@@ -104,7 +106,7 @@ pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> 
             let found =
                 Diagnostic::error(Rule::LayersApart, message("a layer lies outside the board"));
             errors.push(found.help(help));
-        } else if size(low, high) < 0.5 * size(extents.0, extents.1) && !name.ends_with("legend") {
+        } else if size(low, high) < 0.5 * size(extents.0, extents.1) && !is_cropped(name) {
             let message = message("more than half of a layer lies outside the board");
             warnings.push(Diagnostic::warning(Rule::LayersShifted, message).help(help));
         }

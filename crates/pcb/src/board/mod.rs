@@ -5,12 +5,14 @@
 //!                 edge ──outline──▶
 //! ```
 //!
-//! `layer` recognises which file is which, `holes` what is drilled, `copper` what is copper; [`Artwork`] is a board of which
+//! `layer` recognises which file is which, `holes` what is drilled, `copper` what is copper, `crop` what is outside the edge;
+//! [`Artwork`] is a board of which
 //! each side is united by itself. What is done to a board as a whole is in `placed`: moved, turned over, on a panel.
 
 mod artwork;
 mod check;
 mod copper;
+mod crop;
 mod files;
 pub(crate) mod holes;
 mod layer;
@@ -91,9 +93,14 @@ impl Board {
         }
     }
 
-    /// The corners of the smallest box around all of it but what is printed, with sides parallel to the
-    /// axes, mm; `None` where there is nothing.
+    /// The corners of the smallest box around the board, with sides parallel to the axes, mm: of its outline, or of all that
+    /// there is but what is printed where it has none; `None` where there is nothing.
     pub fn extents(&self) -> Option<(Vec2, Vec2)> {
+        self.outline.as_ref().and_then(Region::extents).or_else(|| self.around_all())
+    }
+
+    /// The same of all that there is but what is printed: holes may be outside the outline.
+    fn around_all(&self) -> Option<(Vec2, Vec2)> {
         let copper = [&self.front, &self.back].into_iter().filter_map(|side| side.copper.as_ref());
         let regions = copper.map(|copper| &copper.region).chain(&self.outline);
         let edge = self.broken_edge.as_ref().and_then(|edge| edge.extents);

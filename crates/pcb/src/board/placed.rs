@@ -48,7 +48,7 @@ impl Board {
     /// # Errors
     /// `not-a-place` where that is no number or leads farther than 100 m.
     pub fn moved(&self, by: Vec2) -> Result<Board, Box<Diagnostic>> {
-        let (low, high) = self.extents().unwrap_or_default();
+        let (low, high) = self.around_all().unwrap_or_default();
         let far = (low + by).abs().max((high + by).abs()).max_element();
         if far.is_nan() || far > FAR {
             let message = format!("the board cannot be moved by X {} Y {} mm", by.x, by.y);

@@ -137,15 +137,19 @@ impl Image {
     /// The corners of the smallest box around everything that is dark; `None` where nothing is.
     pub fn extents(&self) -> Option<(Vec2, Vec2)> {
         let dark = self.objects.iter().filter(|object| object.dark);
-        let boxes = dark.filter_map(|object| match (self.stroke(object), object.shape) {
+        dark.filter_map(|object| self.extents_of(object)).reduce(around)
+    }
+
+    /// The corners of the smallest box around an object; `None` where it paints nothing.
+    pub(crate) fn extents_of(&self, object: &Object) -> Option<(Vec2, Vec2)> {
+        match (self.stroke(object), object.shape) {
             (Some((path, diameter)), _) => stroke::extents(&path, diameter),
             (None, Shape::Region { region, transform, at }) => {
                 let contours = &self.regions.get(region as usize)?.contours;
                 contours.iter().map(|contour| contour.placed_extents(&transform, at)).reduce(around)
             }
             (None, _) => contour::extents(&self.pieces(object)),
-        });
-        boxes.reduce(around)
+        }
     }
 
     /// The same elsewhere: transformed about the origin, which goes to `at`.

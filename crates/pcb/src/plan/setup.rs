@@ -14,6 +14,8 @@ const PINS_AWAY: f64 = 1.0;
 pub struct Setup {
     /// The board as it lies there: its front is up, whichever side that is.
     pub board: Board,
+    /// The line about which it is turned over.
+    pub axis: Axis,
     /// Holes next to the board by which it is aligned when it is turned over.
     pins: Vec<Hole>,
 }
@@ -49,7 +51,7 @@ impl Setup {
             Face::Front => front,
             Face::Back => front.turned_over(axis),
         };
-        Ok(Setup { board, pins })
+        Ok(Setup { board, axis, pins })
     }
 
     /// The holes that are drilled: those of the board, and those of the pins. The line about which a board is turned

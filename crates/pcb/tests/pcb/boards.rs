@@ -285,7 +285,7 @@ fn layers_that_do_not_fit() {
     assert!(found.message.contains("1 of 2 holes") && found.message.contains("X 20.2000 Y 5.0000"));
     let apart = board("X10000Y10000", "X110.0Y10.0");
     refused(apart, "layers-apart", "holes within X 109.600 to 110.400");
-    // A pad of three quarters outside.
+    // A pad of three quarters outside: this outline is another board's.
     let shifted = board("X20250Y10000", "X10.0Y10.0").unwrap();
     assert!(rules(&shifted).contains(&"layers-shifted"), "{:?}", rules(&shifted));
 }
@@ -307,10 +307,59 @@ fn how_large_a_board_is_is_known_before_its_copper_is_united() {
     };
     let (low, high) = (Vec2::ZERO, Vec2::splat(20.0));
     assert_eq!(size("X10000Y10000", "X5000Y5000"), (low, high));
-    // At the edge, and over it.
+    // At the edge, and over it: the outline is the board.
     assert_eq!(size("X19500Y10000", "X5000Y5000"), (low, high));
-    assert_eq!(size("X10000Y10000", "X500Y0"), (Vec2::new(0.0, -0.5), high));
-    assert_eq!(size("X19800Y10000", "X500Y0"), (Vec2::new(0.0, -0.5), Vec2::new(20.3, 20.0)));
+    assert_eq!(size("X10000Y10000", "X500Y0"), (low, high));
+    assert_eq!(size("X19800Y10000", "X500Y0"), (low, high));
+}
+
+#[test]
+fn what_is_outside_the_outline_is_cropped() {
+    // On the square of 20 mm: a pad whose half is over the edge, a track out of it of 0.2 mm, and a pad far below.
+    let copper = "%TO.N,A*%D11*\nX20000Y10000D03*\n%TO.N,B*%X10000Y10000D03*\nD10*\nX10000Y10000D02*\nX10000Y-5000D01*\n\
+                  %TO.N,C*%D11*\nX10000Y-9000D03*\n";
+    let print = "D10*\nX5000Y5000D02*\nX5000Y-5000D01*\nX15000Y-5000D01*\n";
+    let board = |edge: &str| {
+        let texts = [
+            ("a.gtl", layer("", copper)),
+            ("a.gko", layer("", edge)),
+            ("a.gto", layer("", print)),
+            ("a.gts", layer("", "D11*\nX0Y0D03*\nX10000Y10000D03*\n")),
+        ];
+        let files: Vec<(&str, &[u8])> =
+            texts.iter().map(|(name, text)| (*name, &text[..])).collect();
+        read(&files).unwrap()
+    };
+    let reading = board(&square());
+    let front = &reading.board.front;
+    let copper = front.copper.as_ref().unwrap();
+    let (low, high) = copper.region.extents().unwrap();
+    assert!(low.y.abs() < 1e-6 && (high.x - 20.0).abs() < 1e-6, "{low} {high}");
+    let mut nets: Vec<_> = copper.nets.iter().map(|net| net.as_deref().unwrap()).collect();
+    nets.sort_unstable();
+    assert_eq!(nets, ["A", "B"]);
+    // Half of A; all of C, and of the track of B 5 mm with its round end.
+    let gone = PI / 8.0 + PI / 4.0 + 0.2 * 5.0 + PI * 0.005;
+    let found =
+        reading.warnings.iter().find(|found| found.rule.name() == "copper-outside").unwrap();
+    assert!(found.message.starts_with(&format!("{gone:.3} mm²")), "{found}");
+    assert!(found.message.contains("in 3 places"), "{found}");
+    // Of the opening at the corner a quarter stays, of the printed line what is on the board.
+    let mask = front.mask.as_ref().unwrap().area();
+    assert!((mask - PI / 4.0 * 1.25).abs() < 1e-4, "{mask}");
+    let legend = front.legend.as_ref().unwrap();
+    let paths: Vec<_> = legend.objects.iter().filter_map(|one| legend.stroke(one)).collect();
+    assert_eq!(paths.len(), 1);
+    assert_eq!((paths[0].0.start, paths[0].0.end), (Vec2::new(5.0, 5.0), Vec2::new(5.0, 0.0)));
+    // What is in another closed outline stays, in a board of its own as in what may be a cut-out.
+    let all = lines(&[(-5.0, -12.0), (25.0, -12.0), (25.0, 25.0), (-5.0, 25.0), (-5.0, -12.0)]);
+    let lower = lines(&[(0.0, -12.0), (20.0, -12.0), (20.0, -1.0), (0.0, -1.0), (0.0, -12.0)]);
+    assert_eq!(board(&(square() + &all)).board.front.copper.unwrap().region.islands().len(), 3);
+    let both = board(&(square() + &lower)).board.front.copper.unwrap();
+    let nets: Vec<_> = both.nets.iter().flatten().map(|net| net.to_string()).collect();
+    assert_eq!(nets.iter().filter(|net| *net == "C").count(), 1, "{nets:?}");
+    // The track of B is parted between the two boards.
+    assert_eq!(nets.iter().filter(|net| *net == "B").count(), 2, "{nets:?}");
 }
 
 #[test]

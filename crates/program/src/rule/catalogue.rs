@@ -344,8 +344,8 @@ rules! {
         "export the body again, in mm"
         "A vertex of a PLY file without z";
     CopperOutside "copper-outside" []
-        "Copper lies outside the outline of the board."
-        "check whether the outline is the right one: the copper is cut through with it"
+        "Copper lies outside the outline of the board, and is left out there."
+        "check whether the outline is the right one: the board ends there"
         "A pad on the edge of the board";
     Corner "corner" ["nc-corner"]
         "A chamfer or rounding of a corner does not fit the moves around it."
@@ -824,7 +824,7 @@ rules! {
         "plot all layers with the same origin"
         "Copper plotted from another origin";
     LayersShifted "layers-shifted" []
-        "Layers reach farther than the outline."
+        "More than half of a layer lies outside the outline."
         "plot all layers with the same origin"
         "Copper 3 mm outside the edge";
     Lead "lead" []

@@ -114,6 +114,28 @@ fn a_board_lies_where_it_is_put() {
 }
 
 #[test]
+fn what_is_outside_the_outline_moves_nothing() {
+    let folder = small();
+    let parts = ["front", "back", "drill", "outline"];
+    let plain = made(&folder, &[]);
+    let right = parts.map(|part| plain.text(part));
+    // A text below the board, and a hole in it.
+    front(&folder, &format!("{FRONT}D11*\nX-30000Y-20000D02*\nX50000D01*\nD10*\nX4000Y5000D03*\n"));
+    let with = made(&folder, &[]);
+    assert_eq!(parts.map(|part| with.text(part)), right);
+    assert!(with.said.err.contains("warning[copper-outside]"), "{:?}", with.said);
+    let report = with.report();
+    assert_eq!(report["board"]["high_mm"], serde_json::json!([20.0, 10.0]));
+    // The middle of the outline.
+    assert_eq!(report["board"]["turning_line"], serde_json::json!({ "along": "Y", "at_mm": 10.0 }));
+    assert!(
+        with.said.out.contains("about the line X 10 (along Y): its back is up"),
+        "{:?}",
+        with.said
+    );
+}
+
+#[test]
 fn a_panel_is_many_boards() {
     let folder = small();
     let made = made(&folder, &["--panel", "2x2", "--spacing", "4"]);

@@ -85,8 +85,9 @@ impl Made {
             .collect()
     }
 
-    /// Holds a side against the image of its copper.
-    fn check(&self, side: &str, file: &Path) {
+    /// Compares a side with the image of its copper, within the box of four lines that is the edge of the board, where it is
+    /// given.
+    fn check(&self, side: &str, file: &Path, edge: Option<&Path>) {
         let text = std::fs::read(file).unwrap();
         let image = gerber::read(&file.display().to_string(), &text).unwrap().image;
         let Some((low, high)) = image.extents() else {
@@ -96,6 +97,11 @@ impl Made {
         let none = Lines::none(low.y, high.y, STEP);
         let mut copper = none.clone();
         copper.paint(&image);
+        if let Some(edge) = edge {
+            let mut board = none.clone();
+            board.paint(&inside(edge));
+            copper = copper.within(&board);
+        }
         let cut = self.cut(side, &none);
         let thinned = copper.within(&cut).area();
         assert!(thinned < 1e-6, "{}: {thinned} mm² of copper are cut", file.display());
@@ -160,6 +166,29 @@ impl Made {
     }
 }
 
+/// What is inside four lines, filled.
+fn inside(edge: &Path) -> Image {
+    let text = std::fs::read(edge).unwrap();
+    let image = gerber::read("edge", &text).unwrap().image;
+    let lines: Vec<geom::Element> =
+        image.objects.iter().filter_map(|object| Some(image.stroke(object)?.0)).collect();
+    let is_upright =
+        |line: &geom::Element| line.start.x == line.end.x || line.start.y == line.end.y;
+    assert!(lines.len() == 4 && lines.iter().all(is_upright));
+    let ends = || lines.iter().flat_map(|line| [line.start, line.end]);
+    let (low, high) = (ends().reduce(Vec2::min).unwrap(), ends().reduce(Vec2::max).unwrap());
+    let at = |x: f64, y: f64| format!("X{:.0}Y{:.0}", x * 1e6, y * 1e6);
+    let filled = format!(
+        "%FSLAX46Y46*%%MOMM*%G01*G36*{}D02*{}D01*{}D01*{}D01*{}D01*G37*M02*",
+        at(low.x, low.y),
+        at(high.x, low.y),
+        at(high.x, high.y),
+        at(low.x, high.y),
+        at(low.x, low.y)
+    );
+    gerber::read("filled", filled.as_bytes()).unwrap().image
+}
+
 /// The copper files of a board of KiCad's.
 fn copper(board: &Path) -> [(&'static str, PathBuf); 2] {
     let name = board.file_name().unwrap().to_string_lossy().into_owned();
@@ -185,7 +214,7 @@ fn what_a_program_for_grbl_leaves_is_the_copper_net_by_net() {
         let board = data.join("kicad").join(name);
         let made = Made::of(&board, "grbl-3018", *width, &[]);
         for (side, file) in copper(&board) {
-            made.check(side, &file);
+            made.check(side, &file, None);
         }
     }
 }
@@ -198,7 +227,7 @@ fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
         let more = ["--passes", "2", "--direction", "conventional"];
         let made = Made::of(&board, "linuxcnc-mill", *width, &more);
         for (side, file) in copper(&board) {
-            made.check(side, &file);
+            made.check(side, &file, None);
         }
     }
 }
@@ -209,8 +238,10 @@ fn the_large_board_is_cut_right() {
     let board = data.join("a64");
     for machine in ["grbl-3018", "linuxcnc-mill"] {
         let made = Made::of(&board, machine, 0.1, &[]);
-        for (side, letter) in [("front", "F"), ("back", "B")] {
-            made.check(side, &board.join(format!("A64-OlinuXino_Rev_D-{letter}.Cu.gbr")));
+        let layer = |name: &str| board.join(format!("A64-OlinuXino_Rev_D-{name}.gbr"));
+        for (side, name) in [("front", "F.Cu"), ("back", "B.Cu")] {
+            // Pads of its connectors reach beyond the edge.
+            made.check(side, &layer(name), Some(&layer("Edge.Cuts")));
         }
     }
 }
