@@ -20,7 +20,7 @@ fuzz_target!(|data: &[u8]| {
         if let Action::Arm(ArmAction::Move(motion)) = &event.action {
             match motion.path {
                 ArmPath::Joints(joints) => assert!(joints.iter().all(|joint| joint.is_finite())),
-                ArmPath::Point(end, _) | ArmPath::Line(end) => assert!(end.is_finite()),
+                ArmPath::Point(end) | ArmPath::Line(end) => assert!(end.is_finite()),
                 ArmPath::Arc { via, end } => assert!(via.is_finite() && end.is_finite()),
             }
         }

@@ -34,6 +34,8 @@ pub struct ArmMove {
     pub corner: Corner,
     /// How the tool turns on the way of a straight line or an arc; `None` is as the control is set up.
     pub turning: Option<Turning>,
+    /// What the program says of the posture at the end; of a motion to joints nothing.
+    pub posture: ArmPosture,
 }
 
 /// Where a motion goes.
@@ -42,7 +44,7 @@ pub enum ArmPath {
     /// All joints together to these positions, degrees.
     Joints([f64; 6]),
     /// All joints together to those that put the tool there.
-    Point(Frame, ArmPosture),
+    Point(Frame),
     /// The tip straight to a frame at the active feed.
     Line(Frame),
     /// The tip on a circle through the origin of `via` to `end` at the active feed.

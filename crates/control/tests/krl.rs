@@ -160,7 +160,7 @@ fn the_first_motion_is_a_ptp() {
 #[test]
 fn status_and_turn_are_read_and_checked() {
     let events = body("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 'B010',T 'B110010',E1 0.0}").unwrap();
-    let ArmPath::Point(_, posture) = moves(&events)[0].1.path else { panic!() };
+    let posture = moves(&events)[0].1.posture;
     assert_eq!(
         (posture.rear, posture.below, posture.flip),
         (Some(false), Some(false), Some(false))
@@ -346,7 +346,7 @@ fn a_data_list_in_a_folder_gives_positions_their_values() {
     let mut settings = settings();
     settings.setup.folders = vec![folder.path().to_path_buf()].into();
     let events = run_with(&settings, "DEF job()\nPTP XP1\nEND\n").unwrap();
-    let ArmPath::Point(end, _) = moves(&events)[0].1.path else { panic!() };
+    let ArmPath::Point(end) = moves(&events)[0].1.path else { panic!() };
     assert_eq!(end.translation, Vec3::new(5.0, 6.0, 7.0));
 }
 

@@ -1447,6 +1447,10 @@ rules! {
         "Along a vector the tool goes past the pole of the rotary axes, through which the control leads it in its own way."
         "lead the tool axis round the pole or through it in the CAM system, or write positions of the rotary axes (`simultaneous = \"tool-center-angles\"` in [orientation])"
         "A cut within 0.1° of the tool upright";
+    Posture "posture" []
+        "A robot's program states another posture than the one in which the arm comes to a position, or one at whose edge it stands."
+        "correct the letters and turns of an edited program; report a program that `post` has just made, with its toolpath"
+        "ls: `CONFIG : 'F U T, 0, 0, 0'` where joint 5 says that the wrist is not flipped";
     Probe "probe" ["nc-probe"]
         "A probing move is not as the control takes it."
         "give the probing move a feed in mm/min, a fixed tool axis, and an end other than its start"

@@ -5,7 +5,7 @@ use super::follow::{Followed, Path, angle, follow, limit, turned};
 use crate::report::{ArmChecked, Report};
 use ::arm::{Arm, Joints};
 use control::kernel::arc::through;
-use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Event, Rounding, Turning};
+use control::{Action, ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Event, Rounding, Turning};
 use geom::{Arc, Frame, Vec3, angle_between, between, nearest_on_segment};
 use machine::{Cell, Machine};
 use program::{
@@ -18,6 +18,9 @@ const ROUNDINGS: f64 = 3.0;
 
 /// Points of a motion of joints are so near that the tip moves by no more than this between them, mm.
 const STRIDE: f64 = 1.0;
+
+/// So near to the edge of what a posture states a joint is not let, degrees: rounding would decide.
+const EDGE: f64 = 1e-3;
 
 /// What the text of a program has switched on.
 struct Running {
@@ -509,7 +512,7 @@ impl<'a> Judge<'a> {
                 }
                 self.joints(shown)
             }
-            ArmPath::Point(..) => {
+            ArmPath::Point(_) => {
                 let message = "the joints go to a pose: in which posture, letters say that depend on rounding";
                 Err(Diagnostic::error(Rule::Unproven, message).help("write the joints").into())
             }
@@ -697,7 +700,7 @@ impl<'a> Judge<'a> {
             self.in_cut(&expected)?;
         }
         self.corner(motion, (from_corner, length), cuts, &expected)?;
-        self.pass(start, path, cuts)?;
+        self.pass(start, path, (motion, cuts))?;
         self.complete(end, &expected);
         Ok(())
     }
@@ -719,7 +722,7 @@ impl<'a> Judge<'a> {
                 "a corner is passed where the arm corrects its pose",
             );
         }
-        self.pass(start, path, false)
+        self.pass(start, path, (motion, false))
     }
 
     /// A straight way up along the tool's own axis, between two steps of the source.
@@ -745,7 +748,7 @@ impl<'a> Judge<'a> {
             return refused(Rule::ExtraMotion, "the tool moves where the source does not");
         }
         self.report.compared.excursions += 1;
-        self.pass(start, path, false)
+        self.pass(start, path, (motion, false))
     }
 
     /// # Errors
@@ -811,7 +814,7 @@ impl<'a> Judge<'a> {
         self.in_cut(&expected)?;
         self.corner(motion, (from_corner, arc.length()), true, &expected)?;
         let path = Path { at: &at, length: arc.length(), turn: angle(&a, &b), time: None };
-        self.pass(start, path, true)?;
+        self.pass(start, path, (motion, true))?;
         self.complete(end, &expected);
         Ok(())
     }
@@ -832,7 +835,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The joints follow the path.
-    fn pass(&mut self, start: Standing, path: Path, cuts: bool) -> Outcome {
+    fn pass(&mut self, start: Standing, path: Path, (motion, cuts): (&ArmMove, bool)) -> Outcome {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };
@@ -854,12 +857,44 @@ impl<'a> Judge<'a> {
                 return refused(rule, lost.to_string());
             }
         };
+        self.posture(&joints, &motion.posture)?;
         let checked = self.checked();
         checked.note_limit(limit);
         checked.note_wrist(wrist);
         checked.speed_percent = checked.speed_percent.max(100.0 * speed);
         self.standing = Some(Standing { joints, tool: end, exact: true });
         self.is_home = false;
+        Ok(())
+    }
+
+    /// # Errors
+    /// The program states another posture than that of these joints, or one so near to them that rounding decides.
+    fn posture(&self, joints: &Joints, stated: &ArmPosture) -> Outcome {
+        let own = self.arm.posture(joints);
+        let letters = [
+            (stated.rear, own.rear(), "the wrist is behind axis 1"),
+            (stated.below, own.below(), "the elbow is below"),
+            (stated.flip, own.flip(), "the wrist is flipped"),
+        ];
+        for (stated, own, what) in letters {
+            if stated.is_some_and(|stated| stated != own) {
+                let (is, not) = if own { ("", "not ") } else { ("not ", "") };
+                let message =
+                    format!("it is {is}so that {what}, and the program says it is {not}so");
+                return refused(Rule::Posture, message);
+            }
+        }
+        let shown = self.arm.shown(joints).unwrap_or(*joints).map(f64::to_degrees);
+        for (number, (at, range)) in (1..).zip(shown.iter().zip(stated.joints)) {
+            if let Some([from, to]) = range
+                && !(from + EDGE..=to - EDGE).contains(at)
+            {
+                let message = format!(
+                    "joint {number} is at {at:.4}°, and the program states {from}° to {to}°"
+                );
+                return refused(Rule::Posture, message);
+            }
+        }
         Ok(())
     }
 

@@ -21,6 +21,7 @@ impl State {
         motion: &Motion,
         channel: &mut Channel,
     ) -> Outcome {
+        let mut posture = ArmPosture::default();
         let (path, standing, approximation) = match motion {
             Motion::Here => {
                 if matches!(self.standing, Standing::NotStarted) {
@@ -29,7 +30,8 @@ impl State {
                 return Ok(());
             }
             Motion::Ptp(to, approximation) => {
-                let (path, standing) = self.point_to_point(scan, to)?;
+                let (path, standing, stated) = self.point_to_point(scan, to)?;
+                posture = stated;
                 (path, standing, *approximation)
             }
             Motion::Lin(to, approximation) => {
@@ -50,14 +52,14 @@ impl State {
         };
         self.standing = standing;
         let corner = self.corner(scan, approximation, &path)?;
-        let motion = ArmMove { turning: self.turning_of(&path), path, corner };
+        let motion = ArmMove { turning: self.turning_of(&path), path, corner, posture };
         channel.report(scan.source.line, Action::Arm(ArmAction::Move(Box::new(motion))))
     }
 
     /// How the tool turns on the way.
     fn turning_of(&self, path: &ArmPath) -> Option<Turning> {
         match (path, self.along_path) {
-            (ArmPath::Joints(_) | ArmPath::Point(..), _) => Some(Turning::ByJoints),
+            (ArmPath::Joints(_) | ArmPath::Point(_), _) => Some(Turning::ByJoints),
             (ArmPath::Line(_), _) | (ArmPath::Arc { .. }, Some(false)) => self.turning,
             (ArmPath::Arc { .. }, Some(true)) => self.turning.map(|_| Turning::AlongPath),
             (ArmPath::Arc { .. }, None) => None,
@@ -78,7 +80,7 @@ impl State {
     }
 
     /// `PTP` to joints, or to a position in a posture.
-    fn point_to_point(&self, scan: &Scan, to: &Value) -> Outcome<(ArmPath, Standing)> {
+    fn point_to_point(&self, scan: &Scan, to: &Value) -> Outcome<(ArmPath, Standing, ArmPosture)> {
         if to.has_only(&[&AXES, &OUTER]) {
             let before = match self.standing {
                 Standing::Joints(joints) => joints.map(Some),
@@ -86,11 +88,12 @@ impl State {
             };
             let help = "write all six axes";
             let joints = numbers(scan, to, AXES, before, help)?;
-            return Ok((ArmPath::Joints(joints), Standing::Joints(joints)));
+            let posture = ArmPosture::default();
+            return Ok((ArmPath::Joints(joints), Standing::Joints(joints), posture));
         }
         let end = self.pose(scan, to)?;
         let posture = posture(whole(scan, to, "S", 31)?, whole(scan, to, "T", 63)?);
-        Ok((ArmPath::Point(frame(end), posture), Standing::Pose(end)))
+        Ok((ArmPath::Point(frame(end)), Standing::Pose(end), posture))
     }
 
     /// The six numbers of a position; those that it does not have stay as they are.

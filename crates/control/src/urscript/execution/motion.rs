@@ -25,7 +25,7 @@ impl State {
     /// `movej(q,a=1.4,v=1.05,t=0,r=0)`: joints, or a pose in the posture in which the arm stands.
     pub(super) fn movej(&mut self, scan: &Scan, given: &Given, channel: &mut Channel) -> Outcome {
         let path = match given.needed(scan, "q")? {
-            Value::Pose(pose) => ArmPath::Point(within_reach(scan, *pose)?, ArmPosture::default()),
+            Value::Pose(pose) => ArmPath::Point(within_reach(scan, *pose)?),
             list => match list.numbers::<6>() {
                 Some(joints) => ArmPath::Joints(angles(scan, joints)?),
                 None => {
@@ -42,8 +42,7 @@ impl State {
             0.0 => Corner::Exact,
             _ => Corner::Unbounded,
         };
-        let motion = ArmMove { path, corner, turning: Some(Turning::ByJoints) };
-        report(scan, motion, channel)
+        report(scan, (path, Turning::ByJoints), corner, channel)
     }
 
     /// `movel(pose,a=1.2,v=0.25,t=0,r=0)`.
@@ -53,8 +52,7 @@ impl State {
         no_time(scan, given)?;
         self.feed(scan, given.positive(scan, "v", 0.25)?, channel)?;
         let corner = corner(scan, given)?;
-        let motion = ArmMove { path: ArmPath::Line(end), corner, turning: Some(Turning::Even) };
-        report(scan, motion, channel)
+        report(scan, (ArmPath::Line(end), Turning::Even), corner, channel)
     }
 
     /// `movec(pose_via,pose_to,a=1.2,v=0.25,r=0,mode=0)`: mode 0 turns the tool evenly to the orientation at the end, mode 1 keeps it
@@ -73,7 +71,7 @@ impl State {
         self.feed(scan, given.positive(scan, "v", 0.25)?, channel)?;
         let corner = corner(scan, given)?;
         let path = ArmPath::Arc { via, end };
-        report(scan, ArmMove { path, corner, turning: Some(turning) }, channel)
+        report(scan, (path, turning), corner, channel)
     }
 
     /// The speed of lines and arcs, m/s, where it changes.
@@ -89,7 +87,15 @@ impl State {
     }
 }
 
-fn report(scan: &Scan, motion: ArmMove, channel: &mut Channel) -> Outcome {
+fn report(
+    scan: &Scan,
+    (path, turning): (ArmPath, Turning),
+    corner: Corner,
+    channel: &mut Channel,
+) -> Outcome {
+    // No word says a posture.
+    let posture = ArmPosture::default();
+    let motion = ArmMove { path, corner, turning: Some(turning), posture };
     channel.report(scan.source.line, Action::Arm(ArmAction::Move(Box::new(motion))))
 }
 
