@@ -1,7 +1,7 @@
 //! Points on the surface of a mesh: no two nearer than a spacing, and no place of the surface farther than 1.3 spacings
 //! from a point.
 //!
-//! Darts are thrown into cells of the surface, triangles at most three quarters of a spacing long. A dart that hits nothing
+//! Darts are thrown into cells of the surface, triangles at most one and a quarter spacings long. A dart that hits nothing
 //! within a spacing becomes a point, which then covers its cell. Where it hits something, the cell is halved, unless a point covers
 //! it whole. A cell of at most `FINEST` spacings is given up: its dart lies within a spacing of a point, so all of it lies
 //! within 1 + `FINEST` spacings. That is the bound of the largest gap.
@@ -17,7 +17,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Longest edge of a cell that darts are thrown into first, spacings.
-const COARSEST: f64 = 0.75;
+const COARSEST: f64 = 1.25;
 
 /// Longest edge of a cell that is given up, spacings.
 const FINEST: f64 = 0.25;
@@ -157,11 +157,19 @@ struct Room {
     /// The tile's own box, µm.
     tile: (DVec3, DVec3),
     number: [i32; 3],
-    /// The last point of each cube, and of each point the one before it in its cube; 0 is none, 1 the first point. At their
-    /// distance no more than 11,000 points are in a room of 20 spacings.
+    /// The last point of each cube; 0 is none, 1 the first point. At their distance no more than 13,000 points are in a room
+    /// of 20.5 spacings.
     last: Vec<u16>,
-    before: Vec<u16>,
-    points: Vec<[f64; 3]>,
+    points: Vec<Seen>,
+}
+
+/// A point that darts see.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// µm.
+    point: Point,
+    /// The one before it in its cube, as in [`Room::last`].
+    before: u16,
 }
 
 impl Default for Room {
@@ -174,7 +182,6 @@ impl Default for Room {
             tile: (DVec3::ZERO, DVec3::ZERO),
             number: [0; 3],
             last: vec![0; CELLS * CELLS * CELLS],
-            before: Vec::new(),
             points: Vec::new(),
         }
     }
@@ -184,12 +191,12 @@ impl Room {
     fn enter(&mut self, number: [i32; 3], apart: Apart) {
         let spacing = f64::from(apart.spacing.max(1));
         for i in 0..self.points.len() {
-            if let Some(cube) = self.cube(DVec3::from_array(self.points[i])) {
+            let place = DVec3::from_array(self.points[i].point.map(f64::from));
+            if let Some(cube) = self.cube(place) {
                 self.last[cube] = 0;
             }
         }
         self.points.clear();
-        self.before.clear();
         let corner = DVec3::from_array(number.map(f64::from)) * (TILE * spacing);
         self.tile = (corner, corner + TILE * spacing);
         (self.apart, self.spacing, self.number) = (apart, spacing, number);
@@ -208,8 +215,7 @@ impl Room {
     fn see(&mut self, point: Point) {
         let place = DVec3::from_array(point.map(f64::from));
         if let Some(cube) = self.cube(place) {
-            self.points.push(place.to_array());
-            self.before.push(self.last[cube]);
+            self.points.push(Seen { point, before: self.last[cube] });
             self.last[cube] = self.points.len() as u16;
         }
     }
@@ -235,10 +241,12 @@ impl Room {
                         points.push(point);
                     }
                     Hit::Covers => {}
-                    Hit::Point => {
+                    Hit::Point(point) => {
                         let (edge, at) = longest(&cell);
                         if edge > finest {
-                            halved.extend(halves(&cell, at));
+                            let halves = halves(&cell, at);
+                            let open = |half: &Triangle| !self.covers(point, half);
+                            halved.extend(halves.into_iter().filter(open));
                         }
                     }
                 }
@@ -269,26 +277,33 @@ impl Room {
         }
     }
 
-    /// What a dart in `cell` hits within a spacing. Darts and points are whole µm: the comparison is exact. Places that are near
-    /// a point are a convex set: it holds a cell where it holds its corners.
+    /// Whether all of `cell` is within a spacing of `point`: places that are near a point are a convex set, which holds a cell
+    /// where it holds its corners.
+    fn covers(&self, point: DVec3, cell: &Triangle) -> bool {
+        let square = self.spacing * self.spacing;
+        cell.iter().all(|&corner| self.apart.squared(corner - point) < square)
+    }
+
+    /// What a dart in `cell` hits within a spacing. Darts and points are whole µm: the comparison is exact.
     fn hit(&self, dart: DVec3, cell: &Triangle) -> Hit {
         let Some(cube) = self.cube(dart) else { return Hit::Covers };
         let square = self.spacing * self.spacing;
         let mut hit = Hit::Nothing;
-        for rows in [cube - CELLS * CELLS, cube, cube + CELLS * CELLS] {
-            for row in [rows - CELLS, rows, rows + CELLS] {
+        // The middle first: what covers a cell is mostly there.
+        for rows in [cube, cube - CELLS * CELLS, cube + CELLS * CELLS] {
+            for row in [rows, rows - CELLS, rows + CELLS] {
                 for &last in &self.last[row - 1..=row + 1] {
                     let mut at = last;
                     while at > 0 {
-                        let point = DVec3::from_array(self.points[at as usize - 1]);
-                        let near = |place: DVec3| self.apart.squared(place - point) < square;
-                        if near(dart) {
-                            if cell.iter().all(|&corner| near(corner)) {
+                        let Seen { point, before } = self.points[at as usize - 1];
+                        let point = DVec3::from_array(point.map(f64::from));
+                        if self.apart.squared(dart - point) < square {
+                            if self.covers(point, cell) {
                                 return Hit::Covers;
                             }
-                            hit = Hit::Point;
+                            hit = Hit::Point(point);
                         }
-                        at = self.before[at as usize - 1];
+                        at = before;
                     }
                 }
             }
@@ -302,7 +317,7 @@ impl Room {
 enum Hit {
     Nothing,
     /// A point that does not cover the cell of the dart.
-    Point,
+    Point(DVec3),
     /// A point that covers it.
     Covers,
 }

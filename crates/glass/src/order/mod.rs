@@ -22,13 +22,16 @@ use window::Window;
 /// Points in a stretch that is improved by itself.
 const STRETCH: usize = 24_000;
 
+/// The last round is the one that saves less than a tick for so many points: the next would save less still.
+const ENOUGH: u64 = 200;
+
 /// How hot each part of a stretch's improvement is, ticks.
 const HEAT: [f64; 6] = [0.2, 0.16, 0.12, 0.08, 0.04, 0.0];
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// How often the whole order is improved.
+    /// How often the whole order is improved, at most.
     pub rounds: u32,
     /// Changes tried in a round for each step that takes more than a tick.
     pub tries: u64,
@@ -53,10 +56,12 @@ pub fn fastest(
 ) -> Vec<u32> {
     let mut order = greedy::order(points, axes, shadow, clock);
     let is_over = || effort.until.is_some_and(|until| Instant::now() >= until);
+    let mut left = ticks(axes, &order, clock);
     for round in 0..effort.rounds {
         if is_over() {
             break;
         }
+        let begun = left;
         // Every other round the stretches begin half a stretch later, so that what one round does not join the next one may.
         let shift = if round % 2 == 0 { 0 } else { STRETCH / 2 };
         let (head, rest) = order.split_at(shift.min(order.len()));
@@ -85,6 +90,10 @@ pub fn fastest(
         };
         let improved: Vec<Vec<u32>> = pieces.par_iter().enumerate().map(improved).collect();
         order = improved.concat();
+        left = ticks(axes, &order, clock);
+        if (begun - left) * ENOUGH < points.len() as u64 {
+            break;
+        }
     }
     order
 }
