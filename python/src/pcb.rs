@@ -64,8 +64,9 @@ impl Given<'_> {
 ///     What else is cut of copper, mask and legend.
 /// drills, drill_tolerance, hole_mill, peck, from_side
 ///     How holes are made, from ``front`` or ``back``.
-/// outline_tool, outline_step, tabs, tab_width, tab_height
-///     How the board is cut out.
+/// outline_tool, outline_step, tabs, tab_width, tab_height, close_gaps, board_margin
+///     How the board is cut out; gaps of its edge up to ``close_gaps`` are closed, and with ``board_margin`` a board without an
+///     edge is a rectangle.
 /// thickness, through, corner, as_drawn, turn, alignment, panel, spacing
 ///     Where the board lies; it is turned over about a line along ``y`` or ``x``; ``panel`` is columns and rows.
 /// feed, plunge, drill_feed, outline_feed, speed, travel, approach
@@ -97,7 +98,8 @@ impl Given<'_> {
                     overlap=0.25, direction="climb", narrow="leave-out", isolate="contours", clear=Vec::new(), margin=0.0,
                     mask_tool=None, legend_tool=None, engrave=0.05, drills=Vec::new(), drill_tolerance=0.05,
                     hole_mill=None, peck=None, from_side="front", outline_tool=2.0, outline_step=0.5, tabs=4,
-                    tab_width=2.0, tab_height=0.6, thickness=1.6, through=0.2, corner=None, as_drawn=false, turn="y",
+                    tab_width=2.0, tab_height=0.6, close_gaps=0.3, board_margin=None, thickness=1.6, through=0.2, corner=None,
+                    as_drawn=false, turn="y",
                     alignment=None, panel=None, spacing=4.0, feed=200.0, plunge=60.0, drill_feed=100.0,
                     outline_feed=150.0, speed=None, travel=2.0, approach=0.5, probe=None, on_control=false, heights=None,
                     picture=None, tolerance=None, strict=false))]
@@ -132,6 +134,8 @@ pub fn pcb<'py>(
     tabs: u32,
     tab_width: f64,
     tab_height: f64,
+    close_gaps: f64,
+    board_margin: Option<f64>,
     thickness: f64,
     through: f64,
     corner: Option<[f64; 2]>,
@@ -186,7 +190,15 @@ pub fn pcb<'py>(
                 &[("front", Face::Front), ("back", Face::Back)],
             )?,
         },
-        outline: Outline { outline_tool, outline_step, tabs, tab_width, tab_height },
+        outline: Outline {
+            outline_tool,
+            outline_step,
+            tabs,
+            tab_width,
+            tab_height,
+            close_gaps,
+            board_margin,
+        },
         placing: Placing {
             thickness,
             through,

@@ -335,6 +335,8 @@ def pcb(
     tabs: int = 4,
     tab_width: float = 2.0,
     tab_height: float = 0.6,
+    close_gaps: float = 0.3,
+    board_margin: float | None = None,
     thickness: float = 1.6,
     through: float = 0.2,
     corner: _Point | None = None,

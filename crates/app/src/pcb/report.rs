@@ -109,7 +109,7 @@ fn missing(made: &Made, settings: &Settings) -> Vec<&'static str> {
         (has(Part::Drill), "holes: no file has any, and nothing is drilled"),
         (
             has(Part::Outline),
-            "the outline: no file has the edge of the board, and nothing cuts it out",
+            "the outline: no file has the edge of the board, and nothing cuts it out (--board-margin 2 makes a rectangle)",
         ),
     ];
     let lacks = all.into_iter().filter(|(has, _)| !has && settings.only.is_empty());

@@ -55,6 +55,8 @@ pub fn read(given: &[input::Source], settings: &Settings) -> Result<Source, Stop
             (artwork, layers.into_iter().map(named).collect())
         }
     };
+    let asked = &settings.outline;
+    let artwork = artwork.outlined(asked.close_gaps, asked.board_margin).map_err(Stop::invalid)?;
     Ok(Source { artwork, layers, files })
 }
 

@@ -6,7 +6,8 @@
 
 use super::copper::{Copper, Pattern};
 use super::{Board, Face, check, crop};
-use geom::region::{Index, Region, RegionError};
+use geom::Vec2;
+use geom::region::{Fill, Index, Region, RegionError, Ring};
 use program::{Diagnostic, Rule};
 
 /// Copper that is drawn so far within the box around the outline stays within it, mm, whatever uniting adds to
@@ -58,9 +59,53 @@ impl Artwork {
         Ok(self)
     }
 
-    /// Leaves out what is outside the outline.
+    /// The board with an outline where none could be taken: of a broken edge, gaps of up to `close` mm closed; of a board
+    /// without an edge, with `margin`, the rectangle that reaches so far beyond its copper and holes, mm.
+    ///
+    /// # Errors
+    /// `copper-outside` where copper and outline cannot be compared, `outline` where the rectangle cannot be.
+    pub fn outlined(mut self, close: f64, margin: Option<f64>) -> Result<Artwork, Vec<Diagnostic>> {
+        let board = &mut self.board;
+        if let Some((region, found)) =
+            board.broken_edge.as_ref().and_then(|edge| edge.mended(close))
+        {
+            (board.outline, board.broken_edge) = (Some(region), None);
+            self.warnings.extend(found);
+            self.cropped().map_err(|found| self.placed(vec![*found]))?;
+        } else if board.outline.is_none()
+            && board.broken_edge.is_none()
+            && let (Some(margin), Some((low, high))) = (margin, board.extents())
+        {
+            let (low, high) = (low - margin, high + margin);
+            let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+            let region =
+                Ring::polygon(&corners).and_then(|ring| Region::inside([&ring], Fill::NonZero));
+            board.outline = Some(region.map_err(|error| {
+                let message =
+                    format!("no rectangle of {margin} mm around the board can be made: {error}");
+                let help = "give another --board-margin, or the layer of the outline";
+                vec![Diagnostic::error(Rule::Outline, message).help(help)]
+            })?);
+            let message = format!(
+                "no file has the edge of the board: it is a rectangle, {margin} mm around copper and holes"
+            );
+            let help = "give the layer of the outline where the board has another form";
+            self.warnings.push(Diagnostic::warning(Rule::NoOutline, message).help(help));
+        }
+        Ok(self)
+    }
+
+    /// Leaves out what is outside the outline, and cut-outs that are drilled.
     fn cropped(&mut self) -> Result<(), Box<Diagnostic>> {
         let Some(edge) = self.edge()? else { return Ok(()) };
+        let drilled = crop::drilled(&mut self.board).map_err(|error| {
+            let message = format!("the outline cannot be compared with the holes: {error}");
+            Box::new(
+                Diagnostic::error(Rule::Outline, message).help("draw the edge of the board anew"),
+            )
+        })?;
+        let drilled = self.placed(drilled.into_iter().collect());
+        self.warnings.extend(drilled);
         let index = Index::new(&edge);
         for face in [Face::Front, Face::Back] {
             let found = crop::copper(&mut self.board, face, &edge, &index)?;

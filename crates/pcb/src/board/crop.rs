@@ -5,8 +5,8 @@
 
 use super::{Board, Copper, Face};
 use crate::gerber::{Image, Object, Shape};
-use crate::{Path, SAME};
-use geom::region::{Fill, Index, Island, Region, RegionError};
+use crate::{Hole, Path, SAME};
+use geom::region::{Fill, Index, Island, Region, RegionError, Ring};
 use program::{Diagnostic, Rule};
 
 /// Copper outside that covers less is rounding, mm²: 10 mm of an edge by a tenth of a micrometre.
@@ -15,6 +15,39 @@ const SLIVER: f64 = 1e-3;
 /// Where more than this part of the copper and of its conductors is outside, the outline is of something else, and nothing
 /// is cropped.
 const MOST: f64 = 0.5;
+
+/// By how much the rim of a cut-out may be off that of a hole which is the same, mm.
+const SAME_RIM: f64 = 0.1;
+
+/// Leaves cut-outs to the drill that makes them: holes in the same place that are nowhere smaller.
+///
+/// # Errors
+/// Where the outline is more than can be computed.
+pub(super) fn drilled(board: &mut Board) -> Result<Option<Diagnostic>, RegionError> {
+    let Some(outline) = &mut board.outline else { return Ok(None) };
+    let is_drilled = |ring: &&Ring| board.holes.iter().any(|hole| is_rim(ring, hole));
+    let cutouts = || outline.islands().iter().flat_map(Island::holes);
+    let count = cutouts().filter(is_drilled).count();
+    let Some(first) = cutouts().find(is_drilled) else { return Ok(None) };
+    let (low, high) = first.extents();
+    let at = low.midpoint(high);
+    let others = cutouts().filter(|ring| !is_drilled(ring));
+    let rings: Vec<&Ring> = outline.islands().iter().map(Island::outer).chain(others).collect();
+    *outline = Region::inside(rings, Fill::EvenOdd)?;
+    let message = format!(
+        "{count} of the outline's cut-outs are holes in the drill files too, and left to drill.nc, the first at X {:.3} Y {:.3}",
+        at.x, at.y
+    );
+    let help = "nothing to do, if the same holes are meant";
+    Ok(Some(Diagnostic::warning(Rule::HoleTwice, message).help(help)))
+}
+
+/// Whether a cut-out is a hole that is drilled: where this is, and nowhere larger.
+fn is_rim(ring: &Ring, hole: &Hole) -> bool {
+    let ((low, high), (least, most)) = (ring.extents(), hole.extents());
+    let is_within = (least - SAME_RIM).cmple(low).all() && (most + SAME_RIM).cmpge(high).all();
+    is_within && low.midpoint(high).distance(least.midpoint(most)) < SAME_RIM
+}
 
 /// What the outer contours of an outline enclose, its cut-outs filled.
 pub(super) fn filled(outline: &Region) -> Result<Region, RegionError> {

@@ -16,6 +16,7 @@ mod crop;
 mod files;
 pub(crate) mod holes;
 mod layer;
+mod mend;
 pub mod outline;
 mod placed;
 

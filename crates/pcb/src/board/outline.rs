@@ -6,6 +6,7 @@
 //! themselves.
 
 use super::copper::covered;
+use super::mend;
 use crate::SAME;
 use crate::contour::around;
 use crate::crossing::self_crossing;
@@ -20,6 +21,12 @@ pub const GAP: f64 = 0.05;
 /// The widest gap that is closed without a word, mm: rounding. Crossings of less are none.
 const ROUNDING: f64 = 1e-3;
 
+/// The widest pen whose ink closes gaps, mm: wider ones draw something else than an edge.
+const WIDEST_PEN: f64 = 1.0;
+
+/// The ink of two ends is one where they are no farther apart than this part of the width of the pen.
+const INKED: f64 = 0.9;
+
 /// The most open ends that are reported.
 const MOST_ENDS: usize = 20;
 
@@ -33,30 +40,57 @@ pub struct BrokenEdge {
     pub findings: Vec<Diagnostic>,
     /// The corners of the box around what it draws, mm; `None` where it draws nothing.
     pub extents: Option<(Vec2, Vec2)>,
+    /// The lines that it draws, each with its line in the file.
+    lines: Vec<(Element, u32)>,
+    /// The width of the widest pen that draws them, mm: ends that its ink joins are one.
+    pen: f64,
+    /// The file.
+    file: String,
 }
 
 impl BrokenEdge {
     /// An edge on a layer of which [`of_image`] makes no outline: it is the middle of lines, or the rim of all that is drawn where
     /// there are none.
     pub(crate) fn of_image(findings: Vec<Diagnostic>, image: &Image) -> BrokenEdge {
-        let lines = image.objects.iter().filter_map(|object| match object.shape {
-            Shape::Stroke { path, .. } => Some(path.extents()),
+        let strokes = image.objects.iter().filter_map(|object| match object.shape {
+            Shape::Stroke { path, .. } => Some((path, object.line)),
             Shape::Region { .. } | Shape::Flash { .. } => None,
         });
-        let extents = lines.reduce(around).or_else(|| image.extents());
-        BrokenEdge { findings, extents }
+        let pens = image.objects.iter().filter_map(|object| Some(image.stroke(object)?.1));
+        let edge = BrokenEdge::of_lines(findings, &strokes.collect::<Vec<_>>());
+        let extents = edge.extents.or_else(|| image.extents());
+        BrokenEdge { extents, pen: pens.fold(0.0, f64::max), ..edge }
     }
 
     /// An edge of `lines` of which [`of_lines`] makes no outline.
     pub(crate) fn of_lines(findings: Vec<Diagnostic>, lines: &[(Element, u32)]) -> BrokenEdge {
         let extents = lines.iter().map(|(element, _)| element.extents()).reduce(around);
-        BrokenEdge { findings, extents }
+        BrokenEdge { findings, extents, lines: lines.to_vec(), pen: 0.0, file: String::new() }
+    }
+
+    /// The outline that its lines mean when gaps of up to `close` mm are closed, and those that the ink of its pen closes;
+    /// `None` where nobody can know.
+    pub(super) fn mended(&self, close: f64) -> Option<Outlined> {
+        // What else is on the layer, or how its contours cross, no line that is added mends.
+        let is_about_ends = |found: &Diagnostic| {
+            matches!(found.rule, Rule::OutlineOpen | Rule::OutlineBranch | Rule::OutlineTangled)
+        };
+        if !self.findings.iter().all(is_about_ends) {
+            return None;
+        }
+        let (region, found) =
+            mend::mended(&self.lines, close.max(INKED * self.pen.min(WIDEST_PEN)))?;
+        let found = found.into_iter().map(|found| match self.file.as_str() {
+            "" => found,
+            file => found.file(file),
+        });
+        Some((region, found.collect()))
     }
 
     /// The same, with the file of which its findings are.
     pub(crate) fn file(self, name: &str) -> BrokenEdge {
         let findings = self.findings.into_iter().map(|found| found.file(name)).collect();
-        BrokenEdge { findings, ..self }
+        BrokenEdge { findings, file: name.to_owned(), ..self }
     }
 }
 
@@ -203,7 +237,9 @@ fn open_ends(open: &[&Chain], lines: &[(Element, u32)]) -> Vec<Diagnostic> {
                 shown(nearest),
                 end.distance(nearest)
             );
-            let help = format!("close it; gaps of up to {GAP} mm are closed automatically");
+            let help = format!(
+                "close it, or give --close-gaps; gaps of up to {GAP} mm are closed automatically"
+            );
             found.push(Diagnostic::error(Rule::OutlineOpen, message).help(help).line(line));
         }
     }

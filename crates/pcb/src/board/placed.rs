@@ -177,12 +177,13 @@ impl Board {
             mask: side.mask.as_ref().map(place),
             legend: side.legend.as_ref().map(|image| image.placed(transform, at)),
         };
-        let edge = |edge: &BrokenEdge| BrokenEdge {
-            findings: edge.findings.clone(),
-            extents: edge.extents.map(|(low, high)| {
+        let edge = |edge: &BrokenEdge| {
+            let mut edge = edge.clone();
+            edge.extents = edge.extents.map(|(low, high)| {
                 let (low, high) = (point(low), point(high));
                 (low.min(high), low.max(high))
-            }),
+            });
+            edge
         };
         let hole = |hole: &Hole| Hole {
             shape: match &hole.shape {

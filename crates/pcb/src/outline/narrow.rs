@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 /// What is left of a corner is reported from this width on, mm.
 const SLIVER: f64 = 0.02;
 
+/// Which part of a slot its corners are at most that a tool leaves which goes into it.
+const CORNERS: f64 = 0.2;
+
 /// The largest tool that fits is looked for among so many widths up to that of the tool.
 const WIDTHS: usize = 16;
 
@@ -94,15 +97,21 @@ pub(super) fn corners(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
         // What a narrower tool does not reach is part of what a wider one does not.
         for narrower in narrower(width) {
             let left = unreached(board, narrower)?;
-            let starts: Vec<Vec2> = left
+            let parts: Vec<(Vec2, f64)> = left
                 .islands()
                 .iter()
-                .filter_map(|island| Some(island.outer().elements().first()?.start))
+                .filter_map(|island| {
+                    Some((island.outer().elements().first()?.start, island.area()))
+                })
                 .collect();
             for (corner, fits) in corners.islands().iter().zip(&mut fits) {
                 let (low, high) = corner.outer().extents();
+                // A tool that goes into a slot leaves its corners.
+                let most =
+                    if (high - low).max_element() > width { CORNERS * corner.area() } else { 0.0 };
                 let within = |p: &Vec2| low.cmple(*p).all() && high.cmpge(*p).all();
-                if fits.is_none() && !starts.iter().any(within) {
+                let rest = parts.iter().filter(|(start, _)| within(start));
+                if fits.is_none() && rest.map(|(_, area)| area).sum::<f64>() <= most {
                     *fits = Some(narrower);
                 }
             }
@@ -111,12 +120,24 @@ pub(super) fn corners(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
     let mut warnings: Vec<Diagnostic> = Vec::new();
     for (corner, fits) in corners.islands().iter().zip(fits) {
         let at = middle(corner.outer());
-        let message = format!(
-            "a tool of {} mm does not reach all of the corner at X {:.3} Y {:.3}",
-            shown(width),
-            at.x,
-            at.y
-        );
+        let (low, high) = corner.outer().extents();
+        let size = high - low;
+        let message = match size.max_element() > width {
+            true => format!(
+                "a tool of {} mm does not go into the slot of {:.2} x {:.2} mm at X {:.3} Y {:.3}",
+                shown(width),
+                size.x,
+                size.y,
+                at.x,
+                at.y
+            ),
+            false => format!(
+                "a tool of {} mm does not reach all of the corner at X {:.3} Y {:.3}",
+                shown(width),
+                at.x,
+                at.y
+            ),
+        };
         list(&mut warnings, Diagnostic::warning(Rule::NarrowCorner, message).help(way_out(fits)));
     }
     Ok(warnings)

@@ -30,6 +30,9 @@ const SHARPEST: f64 = 0.1;
 /// The thinnest step down that a machine makes, mm.
 const THINNEST: f64 = 0.001;
 
+/// The widest gap of an edge that is closed, mm.
+const WIDEST_GAP: f64 = 10.0;
+
 /// The most times around, and tabs.
 const MOST: f64 = 100.0;
 
@@ -70,6 +73,8 @@ impl Settings {
             ("tabs", f64::from(outline.tabs), 0.0, MOST),
             ("tab_width", outline.tab_width, LEAST_SETTING, MOST_SETTING),
             ("tab_height", outline.tab_height, LEAST_SETTING, MOST_SETTING),
+            ("close_gaps", outline.close_gaps, 0.0, WIDEST_GAP),
+            given("board_margin", outline.board_margin, 0.0),
             ("thickness", placing.thickness, LEAST_SETTING, MOST_SETTING),
             ("through", placing.through, 0.0, MOST_SETTING),
             ("corner", corner.x, -MOST_SETTING, MOST_SETTING),
@@ -299,11 +304,24 @@ pub struct Outline {
     pub tab_width: f64,
     /// How high a tab is, mm.
     pub tab_height: f64,
+    /// How wide a gap between lines of the edge may be that is closed, mm.
+    pub close_gaps: f64,
+    /// How far the board reaches beyond its copper and holes where no file has its edge, mm: it is a rectangle then. `None`: it
+    /// has no edge.
+    pub board_margin: Option<f64>,
 }
 
 impl Default for Outline {
     fn default() -> Outline {
-        Outline { outline_tool: 2.0, outline_step: 0.5, tabs: 4, tab_width: 2.0, tab_height: 0.6 }
+        Outline {
+            outline_tool: 2.0,
+            outline_step: 0.5,
+            tabs: 4,
+            tab_width: 2.0,
+            tab_height: 0.6,
+            close_gaps: 0.3,
+            board_margin: None,
+        }
     }
 }
 

@@ -5,13 +5,14 @@ use crate::drilling::{Drilling, Mill, Slots};
 use crate::gerber::Image;
 use crate::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
 use crate::outline::{Outline, Tabs};
+use crate::setting::shown;
 use crate::tour::Tour;
 use crate::{
     Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, MERGED, Operation, Path, Tool,
     depths,
 };
 use geom::Vec2;
-use geom::region::Region;
+use geom::region::{Fill, Region, RegionError, Ring};
 use program::{Diagnostic, Rule};
 use rayon::prelude::*;
 
@@ -239,7 +240,7 @@ impl Worker<'_> {
         Ok(())
     }
 
-    /// Cuts the board out.
+    /// Cuts the board out, and small cut-outs by the mill for holes.
     fn outline(&self, work: &mut Work, board: &Board) -> Result<(), Vec<Diagnostic>> {
         let (settings, placing) = (&self.asked.outline, &self.asked.placing);
         let outline = Outline {
@@ -258,10 +259,77 @@ impl Worker<'_> {
             }),
             from: Vec2::ZERO,
         };
-        let cut = outline.cut(&area(board)?)?;
+        let too_large = |error: RegionError| {
+            let message = format!("the outline of the board: {error}");
+            vec![Diagnostic::error(Rule::TooLarge, message).help("correct the outline")]
+        };
+        let (board, small) = by_size(&area(board)?, settings.outline_tool).map_err(too_large)?;
+        self.small(work, &small, &outline).map_err(too_large)?;
+        let cut = outline.cut(&board)?;
         let name = format!("outline, {}", cut.operation.tool.name);
         work.operations.push(Operation { name, ..cut.operation });
         work.warnings.extend(cut.warnings);
+        Ok(())
+    }
+
+    /// Cuts small cut-outs by the mill for holes where it fits, and marks the others.
+    fn small(&self, work: &mut Work, small: &[Ring], outline: &Outline) -> Result<(), RegionError> {
+        let mill = self.asked.drilling.hole_mill.unwrap_or(f64::INFINITY);
+        let (mut paths, mut missing) = (Vec::new(), Vec::new());
+        for ring in small {
+            let inside = Region::inside([ring], Fill::NonZero)?;
+            let reached =
+                if mill.is_finite() { inside.offset(-mill / 2.0)? } else { Region::default() };
+            match reached.is_empty() {
+                true => missing.push(ring.extents()),
+                // Counter-clockwise the board is on the right.
+                false => paths.extend(reached.rings().filter_map(Path::around)),
+            }
+        }
+        if let Direction::Conventional = self.direction() {
+            paths = paths.iter().map(Path::reversed).collect();
+        }
+        let depths = depths(outline.thickness + outline.below, outline.step);
+        let tour = Tour { from: Vec2::ZERO, to: None, reversible: false };
+        let cuts: Vec<Cut> =
+            tour.of_paths(&paths).iter().map(|path| Cut::along(path, &depths)).collect();
+        if !cuts.is_empty() {
+            let tool = Tool { feed: self.asked.running.outline_feed, ..self.end_mill(mill) };
+            work.operations.push(Operation {
+                name: format!("small cut-outs, {}", tool.name),
+                tool,
+                cuts,
+            });
+        }
+        let Some((low, high)) = missing.first().copied() else { return Ok(()) };
+        let size =
+            |(low, high): (Vec2, Vec2)| format!("{:.3} x {:.3} mm", high.x - low.x, high.y - low.y);
+        for (low, high) in &missing {
+            let what =
+                format!("a cut-out of {} is not cut: the tool is too wide", size((*low, *high)));
+            work.places.push((low.midpoint(*high), what));
+        }
+        let at = low.midpoint(high);
+        let message = format!(
+            "{} not cut: an end mill of {} mm does not go in, the first of {} at X {:.3} Y {:.3}",
+            counted(missing.len(), "cut-out"),
+            shown(outline.tool.cutter.width(0.0)),
+            size((low, high)),
+            at.x,
+            at.y
+        );
+        let smallest = missing
+            .iter()
+            .map(|(low, high)| (high - low).min_element())
+            .fold(f64::INFINITY, f64::min);
+        let fits = MILLS.iter().find(|mill| **mill < smallest);
+        let help = match fits {
+            Some(mill) => {
+                format!("give --hole-mill {mill}: it cuts all of them, the outline keeps its tool")
+            }
+            None => String::from("drill them, or change the outline: no usual mill is so thin"),
+        };
+        work.warnings.push(Diagnostic::warning(Rule::CutoutTooSmall, message).help(help));
         Ok(())
     }
 
@@ -369,6 +437,25 @@ impl Worker<'_> {
     }
 }
 
+/// Widths of end mills that one can buy, mm, the widest first.
+const MILLS: [f64; 9] = [3.0, 2.0, 1.5, 1.0, 0.8, 0.6, 0.5, 0.4, 0.3];
+
+/// The board with the cut-outs that a tool of `width` mm goes into, and the others.
+fn by_size(board: &Region, width: f64) -> Result<(Region, Vec<Ring>), RegionError> {
+    let (mut rings, mut small) = (Vec::new(), Vec::new());
+    for island in board.islands() {
+        rings.push(island.outer().clone());
+        for ring in island.holes() {
+            let is_small = Region::inside([ring], Fill::NonZero)?.offset(-width / 2.0)?.is_empty();
+            if is_small { &mut small } else { &mut rings }.push(ring.clone());
+        }
+    }
+    match small.is_empty() {
+        true => Ok((board.clone(), small)),
+        false => Ok((Region::inside(&rings, Fill::EvenOdd)?, small)),
+    }
+}
+
 /// So many of something.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
@@ -438,7 +525,7 @@ fn area(board: &Board) -> Result<Region, Vec<Diagnostic>> {
         return Err(edge.findings.clone());
     }
     let message = "no file says where the board ends";
-    let help = "give the layer of its outline too";
+    let help = "give the layer of its outline too, or --board-margin for a rectangle around copper and holes";
     Err(vec![Diagnostic::error(Rule::NoOutline, message).help(help)])
 }
 

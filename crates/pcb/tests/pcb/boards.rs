@@ -264,6 +264,85 @@ fn what_is_no_outline() {
     refused(outline(&lines(&[(0.0, 0.0), (5.0, 0.0)])), "outline-open", "a gap of 5.0000 mm");
 }
 
+/// The outline of these commands with gaps of so many mm closed.
+fn mended(commands: &str, close: f64) -> Result<Reading, Vec<Diagnostic>> {
+    let text = layer("", commands);
+    let files = [File { name: "edge.gko", layer: None, text: &text }];
+    let (artwork, layers) = board::artwork("board", &files, |_| true)?;
+    let (board, warnings) = artwork.outlined(close, None)?.united()?;
+    Ok(Reading { board, layers, warnings })
+}
+
+/// Each line by itself.
+fn loose(all: &[[(f64, f64); 2]]) -> String {
+    all.iter().map(|ends| lines(ends)).collect()
+}
+
+/// Mended to this area, mm² to 1e-5 of it, with these rules.
+#[track_caller]
+fn means(commands: &str, area: f64, expected: &[&str]) -> Reading {
+    assert!(outline(commands).is_err(), "it is whole without mending");
+    let reading = mended(commands, 0.3).unwrap();
+    let found = reading.board.outline.as_ref().unwrap().area();
+    assert!((found - area).abs() < 1e-5 * area, "{found} is not {area}");
+    let found: Vec<&str> =
+        rules(&reading).into_iter().filter(|rule| *rule != "layer-by-name").collect();
+    assert_eq!(found, expected, "{:?}", reading.warnings);
+    reading
+}
+
+#[test]
+fn an_outline_is_mended_as_people_draw_it() {
+    let (bottom, right) = ([(0.0, 0.0), (20.0, 0.0)], [(20.0, 0.0), (20.0, 20.0)]);
+    let (top, left) = ([(20.0, 20.0), (0.0, 20.0)], [(0.0, 20.0), (0.0, 0.0)]);
+    let three = loose(&[bottom, right, top]);
+    // A gap of 0.2 mm, at the end of a side and next to the middle of one that goes on.
+    let gap = three.clone() + &loose(&[[(0.0, 20.0), (0.0, 0.2)]]);
+    let found = means(&gap, 400.0, &["outline-gap"]);
+    let gap = found.warnings.iter().find(|found| found.rule.name() == "outline-gap").unwrap();
+    assert!(gap.message.contains("0.2000 mm at X 0.0") && gap.file == "edge.gko", "{gap}");
+    let onto = loose(&[[(-1.0, 0.0), (20.0, 0.0)], right, top, [(0.0, 20.0), (0.0, 0.25)]]);
+    means(&onto, 400.0, &["outline-gap", "outline-branch"]);
+    // Lines that overlap, one drawn again in two pieces, one again 0.1 mm inside, sides that go on at the corners.
+    let overlaps = loose(&[[(0.0, 0.0), (12.0, 0.0)], [(8.0, 0.0), (20.0, 0.0)], right, top, left]);
+    means(&overlaps, 400.0, &[]);
+    let pieces = loose(&[[(0.0, 0.0), (12.0, 0.0)], [(12.0, 0.0), (20.0, 0.0)]]);
+    means(&(three.clone() + &loose(&[left]) + &pieces), 400.0, &[]);
+    let twice = loose(&[left, [(0.1, 20.0), (0.1, 0.0)]]);
+    means(&(three.clone() + &twice), 400.0, &["outline-branch"]);
+    let longer = loose(&[
+        [(-2.0, 0.0), (22.0, 0.0)],
+        [(20.0, -2.0), (20.0, 22.0)],
+        [(22.0, 20.0), (-2.0, 20.0)],
+        [(0.0, 22.0), (0.0, -2.0)],
+    ]);
+    means(&longer, 400.0, &["outline-branch"]);
+    // A branch that ends inside, with a cut-out; a line inside that meets nothing.
+    let hole = lines(&[(4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0), (4.0, 4.0)]);
+    let branch = square() + &hole + &loose(&[[(0.0, 10.0), (3.0, 10.0)]]);
+    means(&branch, 384.0, &["outline-branch"]);
+    let stray = square() + &loose(&[[(10.0, 10.0), (13.0, 10.0)]]);
+    means(&stray, 400.0, &["outline-branch", "outline-open"]);
+    // The ink of a pen of 0.8 mm joins what is 0.6 mm apart.
+    let pen = "%ADD13C,0.8*%\n".to_owned()
+        + &lines(&[(0.0, 0.6), (0.0, 20.0), (20.0, 20.0), (20.0, 0.0), (0.0, 0.0)]);
+    means(&pen.replace("D10*", "D13*"), 400.0, &["outline-gap"]);
+}
+
+#[test]
+fn an_outline_that_nobody_can_know_is_not_mended() {
+    let three = lines(&[(0.0, 1.0), (0.0, 20.0), (20.0, 20.0), (20.0, 0.0), (0.0, 0.0)]);
+    refused(mended(&three, 0.3), "outline-open", "1.0000 mm");
+    assert_area(&mended(&three, 1.0).unwrap(), 400.0);
+    // A line from edge to edge; a closed contour in one that is open; two contours that cross.
+    let across = square() + &loose(&[[(0.0, 10.0), (20.0, 10.0)]]);
+    refused(mended(&across, 0.3), "outline-branch", "ends on another one");
+    let hole = lines(&[(4.0, 4.0), (8.0, 4.0), (8.0, 8.0), (4.0, 8.0), (4.0, 4.0)]);
+    refused(mended(&(hole + &three), 0.3), "outline-open", "1.0000 mm");
+    let over = lines(&[(15.0, 5.0), (25.0, 5.0), (25.0, 9.0), (15.0, 9.0), (15.0, 5.0)]);
+    refused(mended(&(square() + &over), 0.3), "outline-crosses", "");
+}
+
 #[test]
 fn layers_that_do_not_fit() {
     let board = |pad: &str, hole: &str| {

@@ -88,6 +88,8 @@ impl Pcb {
                 tabs: outline.tabs,
                 tab_width: outline.tab_width,
                 tab_height: outline.tab_height,
+                close_gaps: outline.close_gaps,
+                board_margin: outline.board_margin,
             },
             placing: plan::Placing {
                 thickness: placing.thickness,
@@ -266,6 +268,12 @@ pub struct Outline {
     /// How high a tab is.
     #[arg(long, value_name = "MM", value_parser = length, default_value = "0.6")]
     pub tab_height: f64,
+    /// How wide a gap between lines of the edge may be that is closed; each is reported.
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.3")]
+    pub close_gaps: f64,
+    /// Where no file has the edge: the board is a rectangle that reaches so far beyond copper and holes.
+    #[arg(long, value_name = "MM", value_parser = not_negative)]
+    pub board_margin: Option<f64>,
 }
 
 /// Where the board lies on the machine.

@@ -136,6 +136,67 @@ fn what_is_outside_the_outline_moves_nothing() {
 }
 
 #[test]
+fn a_gap_of_the_edge_is_closed_and_said() {
+    let folder = small();
+    let whole = made(&folder, &[]).text("outline");
+    edge(&folder, &EDGE.replace("\nY0D01*", "\nY200D01*"));
+    let closed = made(&folder, &[]);
+    assert_eq!(closed.text("outline"), whole);
+    assert!(closed.said.err.contains("a gap of 0.2000 mm at X 0.0000 Y"), "{:?}", closed.said);
+    // A thin pen: the ink of that of 1 mm joins the ends whatever is asked for.
+    edge(&folder, &EDGE.replace("\nY0D01*", "\nY200D01*").replace("D11*", "%ADD13C,0.1*%D13*"));
+    let said = call(&folder, &["--close-gaps", "0.1"]);
+    assert_eq!(said.code, 3, "{said:?}");
+    assert!(
+        said.err.contains("error[outline-open]") && said.err.contains("--close-gaps"),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn a_board_without_an_edge_is_a_rectangle_with_a_margin() {
+    let folder = small();
+    std::fs::remove_file(folder.path().join("board/edge.gbr")).unwrap();
+    let none = made(&folder, &[]);
+    assert!(
+        none.said.out.contains("missing  the outline") && none.said.out.contains("--board-margin")
+    );
+    // Copper from 3,2.5 to 15,8.5.
+    for more in [&[][..], &["--clear", "1"], &["--isolate", "middle"]] {
+        let made = made(&folder, &[&["--board-margin", "2"], more].concat());
+        assert_eq!(made.report()["board"]["high_mm"], serde_json::json!([16.0, 10.0]));
+        assert!(made.said.err.contains("warning[no-outline]"), "{:?}", made.said);
+        made.text("outline");
+    }
+}
+
+#[test]
+fn cut_outs_are_drilled_milled_or_marked() {
+    let folder = small();
+    // A round cut-out of 0.75 mm around a hole of 0.8 mm, one of 1.5 mm elsewhere, and a square of 4 mm.
+    let circle = |x: i64, radius: i64| {
+        format!("G75*\nX{}Y5000D02*\nG03X{}Y5000I-{radius}J0D01*\nG01*\n", x + radius, x + radius)
+    };
+    let square = "X7000Y3000D02*\nX11000D01*\nY7000D01*\nX7000D01*\nY3000D01*\n";
+    edge(&folder, &format!("{EDGE}{}{}{square}", circle(4000, 375), circle(17000, 750)));
+    let plain = made(&folder, &[]);
+    let said = &plain.said.err;
+    assert!(
+        said.contains("1 of the outline's cut-outs are holes in the drill files too, and left to drill.nc, the first at X 4.000"),
+        "{said}"
+    );
+    assert!(said.contains("1 cut-out not cut: an end mill of 2 mm does not go in, the first of 1.500 x 1.500 mm at X 17.000 Y 5.000"), "{said}");
+    assert!(said.contains("--hole-mill 1:"), "{said}");
+    assert!(!said.contains("-outside]"), "{said}");
+    assert_eq!(plain.operations("outline"), ["outline, end mill 2 mm"]);
+    assert_eq!(plain.report_of("outline")["places"][0]["x"], 17.0);
+    let milled = made(&folder, &["--hole-mill", "1"]);
+    let operations = ["small cut-outs, end mill 1 mm", "outline, end mill 2 mm"];
+    assert_eq!(milled.operations("outline"), operations);
+    assert!(!milled.said.err.contains("cutout-too-small"), "{:?}", milled.said);
+}
+
+#[test]
 fn a_panel_is_many_boards() {
     let folder = small();
     let made = made(&folder, &["--panel", "2x2", "--spacing", "4"]);
