@@ -16,6 +16,11 @@ const MOST_LINES: usize = 20_000;
 /// A face between lines that is nowhere wider, mm, is one of lines that are drawn twice, not quite on each other.
 const SLIM: f64 = 0.5;
 
+/// What is next to the board is text where it is no longer than this part of the board, and encloses less than this part of
+/// its area.
+const TEXT: f64 = 0.2;
+const TEXT_AREA: f64 = 0.01;
+
 /// The outline that `lines` mean, each with its line in the file, when gaps of up to `close` mm are closed; `None` where
 /// nobody can know: contours that are open elsewhere, or that lines divide.
 pub(super) fn mended(lines: &[(Element, u32)], close: f64) -> Option<Outlined> {
@@ -25,20 +30,40 @@ pub(super) fn mended(lines: &[(Element, u32)], close: f64) -> Option<Outlined> {
     let elements: Vec<Element> = lines.iter().map(|(element, _)| *element).collect();
     let bridges = bridges(&elements, close);
     let all: Vec<Element> = elements.iter().chain(&bridges).copied().collect();
-    let (region, stray) = enclosed(&all).ok()??;
-    let mut found: Vec<Diagnostic> = bridges.iter().map(closed).collect();
-    found.extend(drawn_over(&elements, &region).ok()?);
-    if let Some(at) = stray.first() {
-        let message = format!(
-            "{} line{} within the outline enclose nothing, the first near {}: no edge",
-            stray.len(),
-            if stray.len() == 1 { "" } else { "s" },
-            shown(*at)
-        );
-        let help = "close the contour where it is a cut-out, or give --close-gaps";
-        found.push(Diagnostic::warning(Rule::OutlineOpen, message).help(help));
-    }
+    let Enclosed { region, open, text } = enclosed(&all).ok()??;
+    // In text no gap is closed that is worth a word.
+    let index = Index::new(&region);
+    let is_edge = |bridge: &&Element| index.nearest(bridge.at(0.5), close).is_some();
+    let mut found: Vec<Diagnostic> = bridges.iter().filter(is_edge).map(closed).collect();
+    let is_text = |element: &Element| {
+        index.island_at(element.start).is_none() && index.nearest(element.at(0.5), SLIM).is_none()
+    };
+    let edge: Vec<Element> =
+        elements.iter().filter(|line| text.is_empty() || !is_text(line)).copied().collect();
+    found.extend(drawn_over(&edge, &index));
+    found.extend(counted(
+        &open,
+        "what is within the outline encloses nothing",
+        "close the contour where it is a cut-out, or give --close-gaps",
+    ));
+    found.extend(counted(
+        &text,
+        "what is next to the board is text",
+        "leave them out of the layer of the outline",
+    ));
     Some((region, found))
+}
+
+/// A warning about what is drawn in these places and is no edge.
+fn counted(places: &[Vec2], what: &str, help: &str) -> Option<Diagnostic> {
+    let first = places.first()?;
+    let message = format!(
+        "no edge, since {what}: {} drawing{} on the layer of the outline, the first near {}",
+        places.len(),
+        if places.len() == 1 { "" } else { "s" },
+        shown(*first)
+    );
+    Some(Diagnostic::warning(Rule::OutlineOpen, message).help(help))
 }
 
 /// Lines over the gaps between ends that meet nothing, and from such ends to lines that they nearly reach.
@@ -99,40 +124,75 @@ fn bridges(elements: &[Element], close: f64) -> Vec<Element> {
     bridges
 }
 
-/// What `lines` enclose, and a place of each group of lines within it that encloses nothing; `None` where such a group is
-/// outside, or where lines divide what a contour encloses.
-fn enclosed(lines: &[Element]) -> Result<Option<(Region, Vec<Vec2>)>, RegionError> {
-    let mut ink = Shapes::default();
-    ink.strokes.extend(lines.iter().map(|line| (*line, GAP)));
-    let ink = ink.united()?;
-    let (mut contours, mut open) = (Vec::<Ring>::new(), Vec::new());
-    for island in ink.islands() {
+/// What is drawn in one piece.
+struct Drawing {
+    /// The corners of its box, mm.
+    low: Vec2,
+    high: Vec2,
+    /// How many faces it encloses, without slim ones.
+    faces: usize,
+    /// What it encloses.
+    contour: Region,
+}
+
+impl Drawing {
+    fn of(island: &Island) -> Result<Drawing, RegionError> {
         let (low, high) = island.outer().extents();
         let mut faces = 0;
         for face in island.holes() {
             faces += usize::from(!is_slim(face)?);
         }
-        match faces {
-            0 => open.push(low.midpoint(high)),
-            1 => contours.extend(contour(island)?),
-            _ => return Ok(None),
-        }
+        let contour = if faces > 0 { contour(island)? } else { Region::default() };
+        Ok(Drawing { low, high, faces, contour })
     }
-    let region = Region::inside(&contours, Fill::EvenOdd)?;
-    if region.is_empty() {
-        return Ok(None);
+
+    fn size(&self) -> f64 {
+        (self.high - self.low).max_element()
     }
-    let index = Index::new(&region);
-    match open.iter().all(|place| index.island_at(*place).is_some()) {
-        true => Ok(Some((region, open))),
-        false => Ok(None),
+
+    fn middle(&self) -> Vec2 {
+        self.low.midpoint(self.high)
     }
 }
 
+/// What lines enclose.
+struct Enclosed {
+    region: Region,
+    /// Where lines within it enclose nothing.
+    open: Vec<Vec2>,
+    /// Where something small is drawn next to it: text, a dimension.
+    text: Vec<Vec2>,
+}
+
+/// What `lines` enclose; `None` where what is open or divided by lines may be an edge.
+fn enclosed(lines: &[Element]) -> Result<Option<Enclosed>, RegionError> {
+    let mut ink = Shapes::default();
+    ink.strokes.extend(lines.iter().map(|line| (*line, GAP)));
+    let drawings: Vec<Drawing> =
+        ink.united()?.islands().iter().map(Drawing::of).collect::<Result<_, _>>()?;
+    let area = |drawing: &Drawing| drawing.contour.area();
+    let largest = drawings.iter().max_by(|a, b| area(a).total_cmp(&area(b)));
+    let Some(board) = largest.filter(|board| board.faces == 1) else { return Ok(None) };
+    let index = Index::new(&board.contour);
+    let (mut rings, mut open, mut text) = (Vec::<&Ring>::new(), Vec::new(), Vec::new());
+    for drawing in &drawings {
+        let is_within = index.island_at(drawing.middle()).is_some();
+        let is_small = drawing.size() <= TEXT * board.size();
+        match drawing.faces {
+            _ if !is_within && is_small && area(drawing) < TEXT_AREA * area(board) => {
+                text.push(drawing.middle());
+            }
+            0 if is_within && drawing.size() < board.size() => open.push(drawing.middle()),
+            1 => rings.extend(drawing.contour.islands().iter().map(Island::outer)),
+            _ => return Ok(None),
+        }
+    }
+    Ok(Some(Enclosed { region: Region::inside(rings, Fill::EvenOdd)?, open, text }))
+}
+
 /// What the ink around a contour encloses with its middle.
-fn contour(island: &Island) -> Result<Vec<Ring>, RegionError> {
-    let filled = Region::inside([island.outer()], Fill::NonZero)?.offset(-GAP / 2.0)?;
-    Ok(filled.islands().iter().map(|island| island.outer().clone()).collect())
+fn contour(island: &Island) -> Result<Region, RegionError> {
+    Region::inside([island.outer()], Fill::NonZero)?.offset(-GAP / 2.0)
 }
 
 fn is_slim(face: &Ring) -> Result<bool, RegionError> {
@@ -140,15 +200,14 @@ fn is_slim(face: &Ring) -> Result<bool, RegionError> {
 }
 
 /// A warning about lines that are no part of the edge, to 1 µm: doubled ones beside it, and ends that stand out.
-fn drawn_over(elements: &[Element], region: &Region) -> Result<Option<Diagnostic>, RegionError> {
-    let index = Index::new(region);
+fn drawn_over(elements: &[Element], index: &Index) -> Option<Diagnostic> {
     let off = |element: &&Element| {
         [0.0, 0.25, 0.5, 0.75, 1.0]
             .iter()
             .any(|t| index.nearest(element.at(*t), GAP / 2.0).is_none())
     };
     let others: Vec<&Element> = elements.iter().filter(off).collect();
-    Ok(others.first().map(|first| {
+    others.first().map(|first| {
         let message = format!(
             "{} of {} lines of the outline stand out of the edge, run next to it, or lie within it, the first from {} to {}",
             others.len(),
@@ -158,7 +217,7 @@ fn drawn_over(elements: &[Element], region: &Region) -> Result<Option<Diagnostic
         );
         let help = "the edge is the outermost of what the lines enclose: look at it in the picture of outline.nc";
         Diagnostic::warning(Rule::OutlineBranch, message).help(help)
-    }))
+    })
 }
 
 fn closed(bridge: &Element) -> Diagnostic {

@@ -330,6 +330,26 @@ fn an_outline_is_mended_as_people_draw_it() {
 }
 
 #[test]
+fn text_next_to_an_outline_is_no_edge() {
+    // An H, a P and an 8 above the square.
+    let letters = loose(&[
+        [(1.0, 22.0), (1.0, 24.0)],
+        [(2.0, 22.0), (2.0, 24.0)],
+        [(1.0, 23.0), (2.0, 23.0)],
+        [(4.0, 22.0), (4.0, 24.0)],
+    ]);
+    let round = lines(&[(4.0, 24.0), (5.0, 24.0), (5.0, 23.0), (4.0, 23.0)]);
+    let eight = lines(&[(7.0, 22.0), (8.0, 22.0), (8.0, 24.0), (7.0, 24.0), (7.0, 22.0)])
+        + &loose(&[[(7.0, 23.0), (8.0, 23.0)]]);
+    let found = means(&(square() + &letters + &round + &eight), 400.0, &["outline-open"]);
+    let text = found.warnings.iter().find(|found| found.rule.name() == "outline-open").unwrap();
+    assert!(text.message.contains("next to the board is text: 3 drawings"), "{text}");
+    // What may be a board, and is open, is none.
+    let open = lines(&[(30.0, 0.0), (45.0, 0.0), (45.0, 15.0)]);
+    refused(mended(&(square() + &open), 0.3), "outline-open", "");
+}
+
+#[test]
 fn an_outline_that_nobody_can_know_is_not_mended() {
     let three = lines(&[(0.0, 1.0), (0.0, 20.0), (20.0, 20.0), (20.0, 0.0), (0.0, 0.0)]);
     refused(mended(&three, 0.3), "outline-open", "1.0000 mm");
