@@ -35,6 +35,7 @@ pub mod iso;
 pub mod kernel;
 mod klartext;
 mod krl;
+mod ls;
 mod points;
 mod sinumerik;
 pub mod tools;
@@ -82,13 +83,15 @@ pub enum Dialect {
     Krl,
     /// The language of Universal Robots.
     UrScript,
+    /// Listings of FANUC's robot programs.
+    Ls,
     /// ISO code in which a CAM system keeps its toolpaths and which no machine reads: the crate that reads them describes it.
     Source(&'static Facts),
 }
 
 impl Dialect {
     /// Every dialect of a control with the name that its file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 15] = [
+    pub const NAMES: [(&'static str, Dialect); 16] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -104,6 +107,7 @@ impl Dialect {
         ("points", Dialect::Points),
         ("krl", Dialect::Krl),
         ("urscript", Dialect::UrScript),
+        ("ls", Dialect::Ls),
     ];
 
     /// The dialect of that name.
@@ -129,6 +133,7 @@ impl Dialect {
             Dialect::Points => Language::Points,
             Dialect::Krl => Language::Krl,
             Dialect::UrScript => Language::UrScript,
+            Dialect::Ls => Language::Ls,
         }
     }
 
@@ -137,9 +142,11 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.corners,
             Language::Klartext => Corners::Unbounded,
-            Language::Sinumerik | Language::Points | Language::Krl | Language::UrScript => {
-                Corners::Followed
-            }
+            Language::Sinumerik
+            | Language::Points
+            | Language::Krl
+            | Language::UrScript
+            | Language::Ls => Corners::Followed,
         }
     }
 
@@ -153,9 +160,11 @@ impl Dialect {
     pub fn ending(self) -> Ending {
         match self.language() {
             Language::Iso(facts) => facts.syntax.ending,
-            Language::Sinumerik | Language::Klartext | Language::Krl | Language::UrScript => {
-                Ending::Code
-            }
+            Language::Sinumerik
+            | Language::Klartext
+            | Language::Krl
+            | Language::UrScript
+            | Language::Ls => Ending::Code,
             Language::Points => Ending::Text,
         }
     }
@@ -168,7 +177,7 @@ impl Dialect {
             Language::Klartext => FeedPath::AllAxes,
             Language::Points => FeedPath::AsSetUp,
             // The speed of the tip, whatever turns.
-            Language::Krl | Language::UrScript => FeedPath::LinearAxes,
+            Language::Krl | Language::UrScript | Language::Ls => FeedPath::LinearAxes,
         }
     }
 
@@ -178,7 +187,11 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.work_offset,
             Language::Sinumerik => Some(WorkOffset::NONE),
-            Language::Klartext | Language::Points | Language::Krl | Language::UrScript => None,
+            Language::Klartext
+            | Language::Points
+            | Language::Krl
+            | Language::UrScript
+            | Language::Ls => None,
         }
     }
 
@@ -198,6 +211,7 @@ enum Language {
     Points,
     Krl,
     UrScript,
+    Ls,
 }
 
 /// How a program ends.
@@ -269,6 +283,8 @@ pub struct Settings {
     pub kinematics: Option<Kinematics>,
     /// Name of the operator's program that changes the tool of an arm; empty where there is none.
     pub tool_change: String,
+    /// The number of the user frame, the tool and the position register that programs of an arm set for themselves (FANUC).
+    pub own_frame: Option<u32>,
     /// The wire, where the machine has one.
     pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
@@ -402,6 +418,7 @@ impl Settings {
             operator_parameters: Vec::new(),
             kinematics: None,
             tool_change: String::new(),
+            own_frame: None,
             wire: Wire::default(),
             path_tolerance: 0.0,
             orientation_tolerance: 0.0,
@@ -436,6 +453,7 @@ pub fn vocabulary(dialect: Dialect) -> Vec<String> {
         Language::Points => Vec::new(),
         Language::Krl => krl::vocabulary(),
         Language::UrScript => urscript::vocabulary(),
+        Language::Ls => ls::vocabulary(),
     }
 }
 
@@ -465,5 +483,6 @@ pub fn read(
         Language::Points => points::run(settings, text, channel),
         Language::Krl => krl::run(settings, text, channel),
         Language::UrScript => urscript::run(settings, text, channel),
+        Language::Ls => ls::run(settings, text, channel),
     })
 }
