@@ -99,6 +99,8 @@ pub struct Cell {
     pub spindle_analog: Option<(u32, f64)>,
     /// Number of the output that switches the coolant on.
     pub coolant_output: Option<u32>,
+    /// The number of the user frame, the tool and the position register that its programs set for themselves.
+    pub own_frame: Option<u32>,
     /// What hangs on the flange with a tool in the spindle, where it is stated.
     pub load: Option<Load>,
 }
@@ -343,6 +345,10 @@ pub struct Capabilities {
     pub rapid_clearance: f64,
     /// Whether corners that reach beyond half of a motion have to be written shorter, since the control does not shorten them (robots).
     pub fits_corners: bool,
+    /// By how much an arc through a point may turn, radians (robots).
+    pub arc_sweep: f64,
+    /// Most numbered lines of a program (robots).
+    pub program_lines: usize,
 }
 
 /// Where the move ends that switches cutter compensation on.

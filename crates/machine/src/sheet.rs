@@ -115,6 +115,8 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     rapid_corridor: Tolerance, "mm", "How far a rapid may be from the straight line of the source where it is not beyond all cuts; 0.1 where it is missing.";
     rapid_clearance: Clearance, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid on any path; 1 where it is missing.";
     fits_corners: bool, "", "Whether a robot's corners that reach beyond half of a motion have to be written shorter, since its control does not shorten them.";
+    arc_sweep: ArcSweep, "degrees", "By how much a robot's arc through a point may turn; 180 where it is missing.";
+    program_lines: usize, "", "Most numbered lines of a robot's program; any number where it is missing.";
 });
 
 sheet!(merged SettingsSheet "settings" {
@@ -253,6 +255,7 @@ sheet!(merged CellSheet "cell" {
     spindle_analog: u32, "", "Number of the analog output that sets its speed.";
     spindle_full: Speed, "1/min", "Speed of the spindle at the full value of that output.";
     coolant_output: u32, "", "Number of the digital output that switches the coolant on.";
+    own_frame: OwnFrame, "", "The number of the user frame, the tool and the position register that programs set for themselves (FANUC): no other program and no operator uses them.";
     load_mass: Mass, "kg", "What hangs on the flange: the spindle with a tool in it.";
     load_center: LoadCenter, "mm", "Its centre of gravity in the frame of the flange.";
 });
@@ -347,6 +350,8 @@ value! {
     Lean(f64, "f64") |degrees| above_0(*degrees, 90.0), "a number above 0, at most 90 degrees,";
     SixAngles([f64; 6], "[f64; 6]") |six| six.iter().all(|degrees| degrees.abs() <= 360.0), "six numbers from -360 to 360 degrees";
     SixNumbers([f64; 6], "[f64; 6]") |six| six.iter().all(|number| number.abs() <= 1e5), "six numbers from -100000 to 100000";
+    ArcSweep(f64, "f64") |degrees| (10.0..=180.0).contains(degrees), "a number from 10 to 180 degrees";
+    OwnFrame(u32, "u32") |number| (1..=9).contains(number), "a whole number from 1 to 9";
     Mass(f64, "f64") |kg| above_0(*kg, 5000.0), "a number above 0, at most 5000 kg,";
     LoadCenter([f64; 3], "[f64; 3]") |point| point.iter().all(|mm| mm.abs() <= 1e4), "three numbers from -10000 to 10000 mm";
     Percent(f64, "f64") |percent| above_0(*percent, 100.0), "a number above 0, at most 100 %,";

@@ -118,6 +118,7 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
         sets_work_offsets: machine.settings.sets_work_offsets,
         operator_parameters: machine.operator_parameters.clone(),
         tool_change: machine.cell.as_ref().map(|cell| cell.tool_change.clone()).unwrap_or_default(),
+        own_frame: machine.cell.as_ref().and_then(|cell| cell.own_frame),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,
             thread: wire.thread,

@@ -94,6 +94,9 @@ names! {
         ArcThrough Block "arc_through", "", "Each arc outside the planes of arcs that the machine file lists: through the point half way, {{MX}} {{MY}} {{MZ}}, in any plane. Such arcs are lines where the block is missing.";
         Frames Block "frames", "", "On a robot, before anything moves and behind each tool change: the frame of the source in the world as {{X}} to {{C}}, the tool in the frame of the flange as {{MX}} to {{MC}}.";
         Joints Block "joints", "", "On a robot, each motion of all joints: {{J1}} to {{J6}}.";
+        Position Block "position", "", "On a robot whose positions stand behind the instructions, each position of a line or an arc, by its number {{POINT}}.";
+        PositionJoints Block "position_joints", "", "The same of a motion of joints.";
+        PositionsStart Block "positions_start", "", "Before those positions.";
         Feed Block "feed", "", "On a robot, where the speed of lines and arcs changes: {{F}}. Without it `linear` and `arc_through` place {{F}}.";
         CornerDistance Block "corner_distance", "", "On a robot, where the distance changes within which corners are passed: {{CORNER}}. Without it `linear` and `arc_through` place {{CORNER}}.";
         Thread Block "thread", "", "Each straight move in step with the spindle, {{LEAD}} mm a turn. It runs along the axes whose words it places.";
@@ -187,6 +190,13 @@ names! {
         J4 Word "J4", "degrees", "Position of joint 4.";
         J5 Word "J5", "degrees", "Position of joint 5.";
         J6 Word "J6", "degrees", "Position of joint 6.";
+        Point Word "POINT", "", "Number of the position at which a robot's motion ends, where positions stand behind the instructions.";
+        MiddlePoint Word "MIDDLE_POINT", "", "Number of the position half way along an arc.";
+        Turn1 Word "TURN1", "turns", "Turns of joint 1 in a position: 0 from -180 to below 180 degrees.";
+        Turn4 Word "TURN4", "turns", "Turns of joint 4.";
+        Turn6 Word "TURN6", "turns", "Turns of joint 6.";
+        OwnFrame Word "OWN_FRAME", "", "`own_frame` of the cell, in every block.";
+        Lines Word "LINES", "", "Number of the numbered lines of a robot's program, in `program_start`.";
         JointSpeed Word "JOINT_SPEED", "%", "Speed of motions of joints, of the fastest, in `program_start` and `joints`.";
         JointRate Word "JOINT_RATE", "degrees/s", "The same part of the speed of the slowest joint: no joint turns faster.";
         TurnSpeed Word "TURN_SPEED", "degrees/s", "`turn_speed` of the options, in `frames`: how fast the tool may turn, its axis and about it each.";
@@ -260,6 +270,9 @@ names! {
         AnalogOutput Code "analog", "at_once, with_motion", "When an analog output is set. Those that the control lacks are left out.";
         Until Code "until", "read, rise, fall, high, low", "What the program waits for at an input; `read` does not wait. Those that the control lacks are left out.";
         ProbeMode Code "probe_mode", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
+        Wrist Code "wrist", "plain, flipped", "Posture of a robot in a position: whether joint 5 of the model is negative.";
+        Elbow Code "elbow", "up, down", "Whether the elbow is below the line from shoulder to wrist.";
+        Shoulder Code "shoulder", "front, rear", "Whether the wrist is behind axis 1.";
         CornerMode Code "corner", "exact, blend", "How a robot passes the end of a line or an arc: it stops there, or within {{CORNER}}.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";

@@ -179,15 +179,26 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
             [pose_words(templates, B::Frames, &POSE), pose_words(templates, B::Frames, &MIDDLE)]
                 .concat(),
         ),
-        (B::Joints, joints.to_vec()),
-        (B::Linear, [pose_words(templates, B::Linear, &POSE), along.clone()].concat()),
-        (
-            B::ArcThrough,
-            // Of the point half way many controls take the position alone.
-            [pose_words(templates, B::ArcThrough, &POSE), MIDDLE.tip.to_vec(), along].concat(),
-        ),
         (B::Dwell, vec![W::P]),
     ];
+    // Where positions stand behind the instructions, these have their numbers.
+    if templates.has(B::Position) {
+        needed.extend([
+            (B::Position, pose_words(templates, B::Position, &POSE)),
+            (B::PositionJoints, joints.to_vec()),
+            (B::Joints, vec![W::Point]),
+            (B::Linear, [&[W::Point], &along[..]].concat()),
+            (B::ArcThrough, [&[W::Point, W::MiddlePoint], &along[..]].concat()),
+        ]);
+    } else {
+        // Of the point half way many controls take the position alone.
+        let arc = [pose_words(templates, B::ArcThrough, &POSE), MIDDLE.tip.to_vec()].concat();
+        needed.extend([
+            (B::Joints, joints.to_vec()),
+            (B::Linear, [pose_words(templates, B::Linear, &POSE), along.clone()].concat()),
+            (B::ArcThrough, [arc, along].concat()),
+        ]);
+    }
     for (block, word) in [(B::Feed, W::F), (B::CornerDistance, W::Corner)] {
         if templates.has(block) {
             needed.push((block, vec![word]));

@@ -136,6 +136,34 @@ impl Writer {
         self.set.add(word);
     }
 
+    /// Every block from here on may write `word` with this value.
+    pub(crate) fn set_always(&mut self, word: WordName, value: f64) {
+        self.set(word, value);
+        if self.set.has(word) {
+            self.constant.add(word);
+        }
+    }
+
+    /// Where the text ends now.
+    pub(crate) fn end(&self) -> usize {
+        self.text.len()
+    }
+
+    /// Takes what has been written since the text ended there.
+    pub(crate) fn cut(&mut self, from: usize) -> Vec<u8> {
+        self.text.split_off(from)
+    }
+
+    /// Puts text that has been cut at a place.
+    pub(crate) fn paste(&mut self, at: usize, text: Vec<u8>) {
+        self.text.splice(at..at, text);
+    }
+
+    /// How many lines have carried a number.
+    pub(crate) fn numbered(&self) -> u64 {
+        (self.next_number - u64::from(self.first)) / u64::from(self.step.max(1))
+    }
+
     /// Whether the control has one of `words`.
     #[inline]
     pub(crate) fn has(&self, words: &[WordName]) -> bool {

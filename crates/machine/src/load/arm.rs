@@ -98,6 +98,7 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
         spindle_output: sheet.spindle_output,
         spindle_analog,
         coolant_output: sheet.coolant_output,
+        own_frame: sheet.own_frame.map(|number| number.0),
         load,
     })
 }

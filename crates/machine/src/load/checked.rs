@@ -434,6 +434,8 @@ impl CheckedSheet {
                 rapid_corridor: capabilities.rapid_corridor.map_or(0.1, |mm| mm.0),
                 rapid_clearance: capabilities.rapid_clearance.map_or(1.0, |mm| mm.0),
                 fits_corners: capabilities.fits_corners.unwrap_or(false),
+                arc_sweep: capabilities.arc_sweep.map_or(180.0, |degrees| degrees.0).to_radians(),
+                program_lines: capabilities.program_lines.unwrap_or(usize::MAX),
             },
             settings: ControlSettings {
                 floating_holder: self.settings.floating_holder.unwrap_or(false),

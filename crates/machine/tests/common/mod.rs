@@ -34,6 +34,8 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             rapid_corridor: 0.1,
             rapid_clearance: 1.0,
             fits_corners: false,
+            arc_sweep: std::f64::consts::PI,
+            program_lines: usize::MAX,
         },
         settings: ControlSettings::default(),
         format: Format {

@@ -13,7 +13,7 @@ use crate::text::printed;
 use crate::writer::Writer;
 use crate::{Output, promises};
 use ::arm::{Arm, Joints};
-use geom::{Euler, Frame, Mat3, Quat, Vec3};
+use geom::{Euler, Frame, Mat3, Quat, Vec3, wrap};
 use machine::limits::Limits;
 use machine::{Cell, Machine, Word};
 use minijinja::value::Value;
@@ -27,6 +27,9 @@ mod corner {
     pub(super) const EXACT: usize = 0;
     pub(super) const BLEND: usize = 1;
 }
+
+/// By how much the word of a feed may round it, as a part of it.
+const ROUGH: f64 = 0.05;
 
 /// The words of a pose: where the tip is, and the orientation in each form that a control may place.
 pub(crate) struct PoseWords {
@@ -122,6 +125,9 @@ struct Walk<'a> {
     is_exact: bool,
     /// The orientation that was written last as a vector along its axis of rotation, radians.
     vector: Vec3,
+    /// Positions that stand behind the instructions, and how many they are.
+    table: Vec<u8>,
+    points: u32,
     tools: u32,
 }
 
@@ -148,6 +154,13 @@ impl<'a> Walk<'a> {
         scope.program =
             program_value(machine, name, &[], None, [("blank", false), ("stock", false)]);
         let mut writer = Writer::new(machine);
+        if let Some(number) = cell.own_frame {
+            writer.set_always(WordName::OwnFrame, f64::from(number));
+        } else if templates.places(BlockName::Frames, WordName::OwnFrame) {
+            let message = "the control keeps frames by numbers, and the cell does not state which its programs may set";
+            let help = "`own_frame` below [cell]: a user frame, a tool and a position register of this number that nothing else uses";
+            return Err(one(Diagnostic::error(Rule::Frame, message).help(help)));
+        }
         writer.set(WordName::JointSpeed, cell.joint_speed);
         if templates.places(BlockName::Frames, WordName::LoadMass) && cell.load.is_none() {
             let message =
@@ -179,13 +192,19 @@ impl<'a> Walk<'a> {
             here: Position { tool: Frame::IDENTITY, joints: home },
             is_exact: false,
             vector: Vec3::ZERO,
+            table: Vec::new(),
+            points: 0,
             tools: 0,
         })
     }
 
     /// The whole program.
     fn all(&mut self, steps: &[Step]) -> Outcome {
-        self.block(BlockName::ProgramStart)?;
+        // Where its head counts its lines, it is written last.
+        let counts = self.templates.places(BlockName::ProgramStart, WordName::Lines);
+        if !counts {
+            self.block(BlockName::ProgramStart)?;
+        }
         for (index, step) in steps.iter().enumerate() {
             let (line, done) = match step {
                 Step::Act(act, line) => (*line, self.act(*act, *line)),
@@ -204,7 +223,24 @@ impl<'a> Walk<'a> {
         self.begin()?;
         self.home()?;
         self.switch_off()?;
-        self.block(BlockName::ProgramEnd)
+        let (lines, most) = (self.writer.numbered(), self.machine.capabilities.program_lines);
+        if lines > most as u64 {
+            let message = format!("the program has {lines} lines, the control takes {most}");
+            let help = "fewer points: a larger tolerance of the toolpath, or one program for each operation";
+            return Err(Diagnostic::error(Rule::TooMuch, message).help(help).into());
+        }
+        self.block(BlockName::PositionsStart)?;
+        let table = std::mem::take(&mut self.table);
+        self.writer.paste(self.writer.end(), table);
+        self.block(BlockName::ProgramEnd)?;
+        if counts {
+            let at = self.writer.end();
+            self.writer.set(WordName::Lines, lines as f64);
+            self.block(BlockName::ProgramStart)?;
+            let head = self.writer.cut(at);
+            self.writer.paste(0, head);
+        }
+        Ok(())
     }
 
     fn act(&mut self, act: Act, line: u32) -> Outcome {
@@ -360,6 +396,9 @@ impl<'a> Walk<'a> {
             return Err(Diagnostic::error(Rule::ArmCoupling, message).into());
         };
         self.set_each(JOINTS, shown.map(f64::to_degrees));
+        let point = self.position(BlockName::PositionJoints)?;
+        self.set_each(JOINTS, shown.map(f64::to_degrees));
+        self.writer.set(WordName::Point, point);
         self.say_joint_speed();
         self.required(BlockName::Joints)?;
         self.is_exact = self.arm.unmeasured() == 0.0;
@@ -409,8 +448,12 @@ impl<'a> Walk<'a> {
                 let [a, b] =
                     [&self.here.tool, &motion.end.tool].map(|tool| Quat::from_mat3(&tool.matrix3));
                 let half = Mat3::from_quat(a.slerp(b, 0.5));
-                self.set(&MIDDLE, &Frame::from_mat3_translation(half, via));
-                self.along(&motion.end, distance);
+                let middle = Frame::from_mat3_translation(half, via);
+                let via = self.point(&self.at_frame(&middle)?)?;
+                let end = self.point(&motion.end)?;
+                self.set(&MIDDLE, &middle);
+                self.writer.set(WordName::MiddlePoint, via);
+                self.along(&motion.end, (distance, end));
                 self.required(BlockName::ArcThrough)?;
                 self.here = motion.end;
                 Ok(())
@@ -424,7 +467,12 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// The control has no block for that.
     fn corner(&mut self, motion: &Motion, next: &Motion) -> Outcome<f64> {
-        let mut distance = 2.0 * motion.corner;
+        let step = self.machine.words.get(WordName::Corner.name()).map_or(0.0, Word::resolution);
+        // Not more than the corner may be off, whatever the word rounds.
+        let mut distance = match step > 0.0 {
+            true => (2.0 * motion.corner / step + 1e-6).floor() * step,
+            false => 2.0 * motion.corner,
+        };
         if self.machine.capabilities.fits_corners {
             // The ends of two corners on one motion must not overlap: a step of the word is room for rounding.
             let step =
@@ -447,18 +495,86 @@ impl<'a> Walk<'a> {
     }
 
     /// The words that lines and arcs have in common: their end, how it is passed, and the feed.
-    fn along(&mut self, end: &Position, corner: f64) {
+    fn along(&mut self, end: &Position, (corner, point): (f64, f64)) {
         self.set(&POSE, &end.tool);
+        self.writer.set(WordName::Point, point);
         let code = if corner > 0.0 { corner::BLEND } else { corner::EXACT };
         self.writer.code(WordName::CornerMode, code);
-        self.writer.set(WordName::Corner, corner);
+        // An exact stop that has a word of its own has no distance.
+        if corner > 0.0 || !self.templates.places(BlockName::Linear, WordName::CornerMode) {
+            self.writer.set(WordName::Corner, corner);
+        }
         if let Some(feed) = self.sent.feed {
             self.writer.set(WordName::F, feed);
         }
     }
 
+    /// Writes a position behind the instructions, where the control keeps them there; its number.
+    fn position(&mut self, block: BlockName) -> Outcome<f64> {
+        if !self.templates.has(block) {
+            return Ok(0.0);
+        }
+        self.points += 1;
+        let number = f64::from(self.points);
+        self.writer.set(WordName::Point, number);
+        let from = self.writer.end();
+        self.block(block)?;
+        let entry = self.writer.cut(from);
+        self.table.extend_from_slice(&entry);
+        Ok(number)
+    }
+
+    /// The same of a pose, with the posture in which the arm comes there.
+    ///
+    /// # Errors
+    /// Its letters or turns would hang on rounding.
+    fn point(&mut self, at: &Position) -> Outcome<f64> {
+        if !self.templates.has(BlockName::Position) {
+            return Ok(0.0);
+        }
+        self.set(&POSE, &at.tool);
+        let posture = self.arm.posture(&at.joints);
+        self.writer.code(WordName::Wrist, usize::from(posture.flip()));
+        self.writer.code(WordName::Elbow, usize::from(posture.below()));
+        self.writer.code(WordName::Shoulder, usize::from(posture.rear()));
+        let shown = self.arm.shown(&at.joints).unwrap_or(at.joints).map(f64::to_degrees);
+        for (word, joint) in [(WordName::Turn1, 0), (WordName::Turn4, 3), (WordName::Turn6, 5)] {
+            let turns = (shown[joint] + 180.0) / 360.0;
+            if (turns - turns.round()).abs() * 360.0 < 2e-3 {
+                let message = format!(
+                    "joint {} comes to {:.4}°, where rounding decides how many turns the position states",
+                    joint + 1,
+                    shown[joint]
+                );
+                let help =
+                    "turn the part or the spindle by some degrees (`part`, `spindle` below [cell])";
+                return Err(Diagnostic::error(Rule::Posture, message).help(help).into());
+            }
+            self.writer.set(word, turns.floor());
+        }
+        self.position(BlockName::Position)
+    }
+
+    /// The position of the arm at a frame near where it is, in the same posture.
+    ///
+    /// # Errors
+    /// It does not reach there.
+    fn at_frame(&self, tool: &Frame) -> Outcome<Position> {
+        let off = self.tool.unwrap_or(Frame::IDENTITY).inverse();
+        let flange = self.cell.part * *tool * off;
+        let before = self.here.joints;
+        let found = self.arm.inverse(&flange, before[3]);
+        let Some(joints) = found.get(self.arm.posture(&before)) else {
+            let message = "the arm does not reach the point half way along the arc in its posture";
+            return Err(Diagnostic::error(Rule::ArmPath, message).into());
+        };
+        let joints = std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
+        Ok(Position { tool: *tool, joints })
+    }
+
     fn straight(&mut self, end: &Position, corner: f64) -> Outcome {
-        self.along(end, corner);
+        let point = self.point(end)?;
+        self.along(end, (corner, point));
         self.required(BlockName::Linear)?;
         (self.here, self.is_exact) = (*end, true);
         Ok(())
@@ -468,6 +584,13 @@ impl<'a> Walk<'a> {
     fn feed(&mut self, feed: f64) -> Outcome {
         if self.sent.feed == Some(feed) {
             return Ok(());
+        }
+        let written = self.writer.rounded(WordName::F, feed);
+        if (written - feed).abs() > ROUGH * feed {
+            let message = format!(
+                "the control would take the feed of {feed:.3} mm/min for {written:.3} mm/min: its word has no more digits"
+            );
+            return Err(Diagnostic::error(Rule::Feed, message).into());
         }
         self.sent.feed = Some(feed);
         if self.templates.has(BlockName::Feed) {

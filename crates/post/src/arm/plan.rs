@@ -9,7 +9,7 @@ use program::{
     Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Outcome, Output, PathMode, Pose, Program,
     Record, Rule, Spindle, Tool,
 };
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// How far the radii at the ends of an arc of the source may differ, as a part of them.
 const RADII: f64 = 0.01;
@@ -388,7 +388,7 @@ impl<'a> Walk<'a, '_> {
         Ok(())
     }
 
-    /// An arc in parts of half a circle at the most; one that rises in chords.
+    /// An arc in parts that turn by no more than the control takes; one that rises in chords.
     fn arc(&mut self, line: u32, arc: &Arc, end: &Pose) -> Outcome {
         let feed = self.feed(arc.length())?;
         let corner = self.corner;
@@ -401,7 +401,8 @@ impl<'a> Walk<'a, '_> {
             }
             return Ok(());
         }
-        let parts = (arc.sweep / PI - 1e-9).ceil().max(1.0) as usize;
+        let most = self.machine.capabilities.arc_sweep;
+        let parts = (arc.sweep / most - 1e-9).ceil().max(1.0) as usize;
         let steps = 2 * (arc.sweep / parts as f64 / ALONG_ARC / 2.0).ceil().max(1.0) as usize;
         for i in 0..parts {
             let at = |step: usize| (i as f64 + step as f64 / steps as f64) / parts as f64;

@@ -292,7 +292,9 @@ impl<'a> Judge<'a> {
                 if self.cell.spindle_analog.is_some_and(|(number, _)| number == output.number) =>
             {
                 let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
-                let speed = part * full;
+                // What the output counts at its full value.
+                let scale = self.machine.words.get("VALUE").map_or(1.0, |word| word.scale);
+                let speed = part / scale * full;
                 if running.is_on && running.speed != Some(speed) {
                     running.runs_up = self.machine.spindle.dwell;
                 }

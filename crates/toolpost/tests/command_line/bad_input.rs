@@ -317,6 +317,7 @@ const READERS: &[(&str, &str, &str)] = &[
     ("klartext/milling.h", "in.h", "show in.h --from heidenhain-tnc640"),
     ("krl/job.src", "in.src", "prove in.src -m kuka-kr6-r900 --against part.cls"),
     ("urscript/job.script", "in.script", "prove in.script -m universal-ur5e --against part.cls"),
+    ("ls/job.ls", "in.ls", "prove in.ls -m fanuc-lrmate-200id-mill --against part.cls"),
     (
         "../../examples/flange.tbl",
         "in.tbl",
@@ -543,6 +544,7 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
             "grbl" => &["grbl-3018"],
             "krl" => &["kuka-kr6-r900"],
             "urscript" => &["universal-ur5e"],
+            "fanuc-robot" => &["fanuc-lrmate-200id-mill"],
             _ => &[],
         };
         let named =
