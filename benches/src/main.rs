@@ -13,7 +13,8 @@
 //!
 //! The toolpath is generated ([`path`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
 //! wire becomes points ([`wire`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read
-//! ([`layer`]), real boards made whole ([`board`]). Joints of an arm are found for frames ([`mod@arm`]). Memory is what the program asks the allocator for
+//! ([`layer`]), real boards made whole ([`board`]). Joints of an arm are found for frames ([`mod@arm`]), points
+//! in glass are found and ordered ([`mod@glass`]). Memory is what the program asks the allocator for
 //! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
 //! and memory grow no faster. Then come real files ([`library`]).
 
@@ -22,6 +23,7 @@ mod board;
 mod clock;
 mod copper;
 mod floor;
+mod glass;
 mod layer;
 mod library;
 mod memory;
@@ -68,6 +70,9 @@ struct Arguments {
     /// Frames that an arm is to reach; 0 leaves it out.
     #[arg(long, default_value_t = 200_000)]
     frames: usize,
+    /// Points on a sphere in glass; 0 leaves it out.
+    #[arg(long, default_value_t = 100_000)]
+    pulses: usize,
     /// Folder of a real circuit board, to be made whole; may be given several times.
     #[arg(long)]
     board: Vec<PathBuf>,
@@ -114,6 +119,9 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     }
     if arguments.frames > 0 {
         arm::measure(arguments.frames, arguments.rounds)?;
+    }
+    if arguments.pulses > 0 {
+        glass::measure(arguments.pulses, arguments.rounds)?;
     }
     board::measure(&arguments.board, arguments.rounds)?;
     if arguments.records > 0 {
