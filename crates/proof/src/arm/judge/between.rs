@@ -1,0 +1,141 @@
+//! What happens between motions: outputs, dwells, stops, tool changes, the load, the end.
+
+use super::super::expected::Step;
+use super::{Judge, refused};
+use geom::Vec3;
+use program::{Outcome, Output, OutputValue, Rule};
+
+impl Judge<'_> {
+    /// What hangs on the flange.
+    ///
+    /// # Errors
+    /// The machine's file states another load.
+    pub(super) fn load(&mut self, mass: f64, center: Vec3) -> Outcome {
+        self.loaded = true;
+        let Some(load) = self.cell.load else { return Ok(()) };
+        let off = center.distance(load.center);
+        match (mass - load.mass).abs() <= 5e-3 && off <= 0.1 {
+            true => Ok(()),
+            false => refused(
+                Rule::Payload,
+                format!(
+                    "the load of the program is {mass} kg, its centre {off:.1} mm off; the machine's file states {} kg",
+                    load.mass
+                ),
+            ),
+        }
+    }
+
+    /// An output: the spindle's, the coolant's, or one of the source's own.
+    pub(super) fn output(&mut self, output: &Output) -> Outcome {
+        self.exact()?;
+        let running = &mut self.running;
+        match output.value {
+            OutputValue::Digital(on) if self.cell.spindle_output == Some(output.number) => {
+                if on && !running.is_on {
+                    running.runs_up = self.machine.spindle.dwell;
+                }
+                running.is_on = on;
+            }
+            OutputValue::Digital(on) if self.cell.coolant_output == Some(output.number) => {
+                running.coolant = on;
+            }
+            OutputValue::Analog(part)
+                if self.cell.spindle_analog.is_some_and(|(number, _)| number == output.number) =>
+            {
+                let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
+                // What the output counts at its full value.
+                let scale = self.machine.words.get("VALUE").map_or(1.0, |word| word.scale);
+                let speed = part / scale * full;
+                if running.is_on && running.speed != Some(speed) {
+                    running.runs_up = self.machine.spindle.dwell;
+                }
+                running.speed = Some(speed);
+            }
+            OutputValue::Digital(_) | OutputValue::Analog(_) => {
+                let output = *output;
+                return self.happens(
+                    Rule::Output,
+                    "sets an output",
+                    |step| matches!(step, Step::Output(wanted) if *wanted == output),
+                );
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn dwell(&mut self, seconds: f64) -> Outcome {
+        self.exact()?;
+        let allowed = self.report.tolerances.dwell_s;
+        if self.running.runs_up > 0.0 && seconds >= self.running.runs_up - allowed {
+            self.running.runs_up = 0.0;
+            return Ok(());
+        }
+        self.happens(
+            Rule::Dwell,
+            "dwells",
+            |step| matches!(step, Step::Dwell(wanted) if (wanted - seconds).abs() <= allowed),
+        )
+    }
+
+    /// Something between motions that the source has there too.
+    pub(super) fn happens(
+        &mut self,
+        rule: Rule,
+        what: &str,
+        is: impl Fn(&Step) -> bool,
+    ) -> Outcome {
+        self.leave_out();
+        match self.expected.get(self.next) {
+            Some(expected) if self.done == 0.0 && is(&expected.step) => {
+                self.next += 1;
+                self.report.compared.events += 1;
+                Ok(())
+            }
+            _ => {
+                refused(rule, format!("the program {what} where the source does not, or otherwise"))
+            }
+        }
+    }
+
+    /// A tool change by the operator's program.
+    pub(super) fn tool(&mut self, number: u32) -> Outcome {
+        self.exact()?;
+        let running = &mut self.running;
+        if running.is_on || running.coolant || !self.is_home {
+            let message = "the tool is changed where the arm is not home, or with the spindle or the coolant on";
+            return refused(Rule::ToolChange, message);
+        }
+        running.turn_speed = [None; 2];
+        running.on_flange = None;
+        self.loaded = false;
+        self.standing = None;
+        self.leave_out();
+        let wanted = self.expected.get(self.next).map(|expected| &expected.step);
+        match wanted {
+            Some(Step::Tool(tool)) if tool.number == number => {
+                self.report.compared.tool_changes += 1;
+                self.report.program.tool(number.to_string());
+                self.next += 1;
+                Ok(())
+            }
+            _ => refused(
+                Rule::ExtraToolChange,
+                format!("the program changes to tool {number}, the source does not"),
+            ),
+        }
+    }
+
+    pub(super) fn ends(&mut self) -> Outcome {
+        self.exact()?;
+        self.ended = true;
+        let running = &self.running;
+        if running.is_on || running.coolant {
+            return refused(Rule::LeftOn, "the program ends with the spindle or the coolant on");
+        }
+        match self.is_home {
+            true => Ok(()),
+            false => refused(Rule::Home, "the program does not end with the joints at home"),
+        }
+    }
+}

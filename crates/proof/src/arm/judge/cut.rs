@@ -1,0 +1,155 @@
+//! What the control has to have been given in a cut: frames, feed, spindle, coolant, corners.
+
+use super::super::expected::Expected;
+use super::super::follow::angle;
+use super::{Judge, refused};
+use control::{ArmMove, Corner, Rounding};
+use geom::Frame;
+use program::{Coolant, Outcome, Rule, Spindle};
+
+impl Judge<'_> {
+    /// # Errors
+    /// Base and tool are not those of the cell, within the rounding of their words.
+    pub(super) fn frames(&self) -> Outcome {
+        let length = self.expected.get(self.next).or(self.expected.last());
+        let length = length.and_then(|expected| expected.state.tool_length);
+        let Some(tool) = self.cell.tool(length) else {
+            let message =
+                "neither the source nor `tool_length` of the cell states the length of the tool";
+            return refused(Rule::ToolLength, message);
+        };
+        // Poses in the world itself are compared there.
+        let in_world = self.running.base == Some(Frame::IDENTITY);
+        let base = if in_world { Frame::IDENTITY } else { self.cell.part };
+        if !self.loaded && self.machine.words.contains_key("LOAD_MASS") {
+            let message = "the program moves and has not stated the load on the flange";
+            return refused(Rule::Payload, message);
+        }
+        for (name, stated, wanted) in
+            [("base", self.running.base, base), ("tool", self.running.tool, tool)]
+        {
+            let Some(stated) = stated else {
+                return refused(
+                    Rule::Frame,
+                    format!("the program moves and has not stated its {name}"),
+                );
+            };
+            let apart = stated.translation.distance(wanted.translation);
+            let turn = angle(&stated.matrix3, &wanted.matrix3).to_degrees();
+            if apart > self.report.tolerances.tip_mm || turn > 2e-4 {
+                let message = format!(
+                    "the {name} of the program is {apart:.4} mm and {turn:.5}° off that of the machine's file"
+                );
+                return refused(Rule::Frame, message);
+            }
+        }
+        match self.running.on_flange {
+            Some(false) => Ok(()),
+            Some(true) | None => refused(
+                Rule::Frame,
+                "the program does not say that the part stands and the tool moves",
+            ),
+        }
+    }
+
+    /// # Errors
+    /// Feed, spindle or coolant are not as the source wants them in this cut.
+    pub(super) fn in_cut(&self, expected: &Expected) -> Outcome {
+        let state = &expected.state;
+        let Some(feed) = self.running.feed else {
+            return refused(Rule::NoFeed, "the program cuts and has not stated its feed");
+        };
+        if (feed - state.feed).abs() > self.feed_step + 1e-9 * state.feed.abs() {
+            let message = format!("the feed is {feed:.3} mm/min, the source has {:.3}", state.feed);
+            return refused(Rule::Feed, message);
+        }
+        let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
+        let step = self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution);
+        let is_right = match state.spindle {
+            Spindle::Off => !self.running.is_on,
+            Spindle::Clockwise(speed) => {
+                self.running.is_on
+                    && self.running.speed.is_some_and(|own| (own - speed).abs() <= full * step)
+            }
+            Spindle::CounterClockwise(_) => false,
+        };
+        if !is_right {
+            let message = format!(
+                "the spindle is {} at {:.0} 1/min, the source has {:?}",
+                if self.running.is_on { "on" } else { "off" },
+                self.running.speed.unwrap_or(0.0),
+                state.spindle
+            );
+            return refused(Rule::Spindle, message);
+        }
+        if self.running.is_on && self.running.runs_up > 0.0 {
+            let message =
+                format!("the cut begins before the spindle has had {} s", self.running.runs_up);
+            return refused(Rule::SpindleDwell, message);
+        }
+        let coolant = match state.coolant {
+            Coolant::Off => !self.running.coolant,
+            Coolant::Flood => self.running.coolant,
+            Coolant::Mist | Coolant::FloodAndMist | Coolant::Through => false,
+        };
+        match coolant {
+            true => Ok(()),
+            false => refused(
+                Rule::Coolant,
+                format!("the coolant is not as the source wants it ({:?})", state.coolant),
+            ),
+        }
+    }
+
+    /// # Errors
+    /// A corner is left by more than is allowed, overlaps with the one before on a motion of this length, or is passed from a cut to what
+    /// is none.
+    pub(super) fn corner(
+        &mut self,
+        motion: &ArmMove,
+        (before, length): (Option<Rounding>, f64),
+        cuts: bool,
+        expected: &Expected,
+    ) -> Outcome {
+        if before.is_some() && !cuts {
+            return refused(Rule::PathTolerance, "the corner between a cut and a rapid is passed");
+        }
+        let own = match motion.corner {
+            Corner::Within(rounding) => Some(rounding),
+            Corner::Exact | Corner::Unbounded => None,
+        };
+        let rounded: f64 = [before, own]
+            .into_iter()
+            .flatten()
+            .filter(|rounding| !rounding.shortened)
+            .map(|rounding| rounding.distance)
+            .sum();
+        if rounded > length {
+            let message = format!(
+                "the corners at both ends of a motion of {length:.4} mm reach {rounded:.4} mm into it: the controller would skip a point"
+            );
+            return refused(Rule::PathTolerance, message);
+        }
+        let rounding = match motion.corner {
+            Corner::Exact => return Ok(()),
+            Corner::Within(rounding) => rounding,
+            Corner::Unbounded => {
+                return refused(
+                    Rule::PathTolerance,
+                    "a corner is passed by an amount that is not stated in mm",
+                );
+            }
+        };
+        // Both legs of the corner are left within the distance: no point between is farther from them than half of it.
+        let own = self.machine.path_tolerance();
+        let allowed = expected.state.corner.map_or(own, |wanted| wanted.min(own));
+        let distance = rounding.distance;
+        if !cuts || distance / 2.0 > allowed + 1e-9 {
+            let message =
+                format!("a corner may be left by {} mm, {allowed} mm are allowed", distance / 2.0);
+            return refused(Rule::PathTolerance, message);
+        }
+        self.open = Some(rounding);
+        Ok(())
+    }
+}

@@ -1,0 +1,120 @@
+//! Motions of the joints: home, rapids, and the path that the tool takes on them.
+
+use super::super::expected::{REENTRY, Step};
+use super::super::follow::limit;
+use super::{Judge, STRIDE, Standing, refused};
+use ::arm::Joints;
+use geom::{Frame, Vec3, angle_between, nearest_on_segment};
+use program::{Diagnostic, Outcome, Pose, Rule};
+
+impl Judge<'_> {
+    /// A motion of all joints.
+    pub(super) fn joints(&mut self, shown: [f64; 6]) -> Outcome {
+        let home = shown.iter().zip(self.cell.home).all(|(at, home)| (at - home).abs() < 1e-3);
+        let Some(joints) = self.arm.model(&shown.map(f64::to_radians)) else {
+            return refused(Rule::ArmCoupling, "how the controller counts joint 3 is not known");
+        };
+        let margin =
+            limit(self.arm, &joints).or_else(|lost| refused(Rule::AxisLimit, lost.to_string()))?;
+        self.checked().note_limit(margin);
+        self.frames()?;
+        let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
+            return Ok(());
+        };
+        let at = base.inverse() * self.arm.flange(&joints) * tool;
+        let exact = self.arm.unmeasured() == 0.0;
+        let before = self.standing.replace(Standing { joints, tool: at, exact });
+        let was_home = std::mem::replace(&mut self.is_home, home);
+        let Some(before) = before else {
+            return match home {
+                true => Ok(()),
+                false if was_home => Ok(()),
+                false => refused(Rule::Home, "the first motion does not bring the joints home"),
+            };
+        };
+        let wanted = self.expected.get(self.next).map(|expected| expected.step.clone());
+        let rapid = match &wanted {
+            Some(Step::Rapid(from, to)) => Some((*from, *to)),
+            _ => None,
+        };
+        let arrives = match &wanted {
+            Some(Step::Rapid(_, to)) => self.arrives(&at, to, true),
+            Some(Step::Above(last)) => self.is_above(&at, last, REENTRY),
+            _ => false,
+        };
+        let line = match (&wanted, rapid) {
+            (Some(Step::Above(_)), _) => {
+                Some([before.tool, at].map(|tool| self.in_part(&tool).translation))
+            }
+            (_, Some((Some(from), to))) => Some([from.point(), to.point()]),
+            (_, _) => None,
+        };
+        self.clear(&before.joints, &joints, line.filter(|_| arrives))?;
+        // From above the end of a rapid the tool goes down to it along its axis.
+        let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));
+        match arrives {
+            true => {
+                self.report.compared.rapids += 1;
+                self.next += 1;
+                Ok(())
+            }
+            false if self.done == 0.0 && (home || is_over) => Ok(()),
+            false => {
+                let end = self.in_part(&at).translation;
+                let message = format!(
+                    "the joints bring the tip to X{:.3} Y{:.3} Z{:.3}, where the source does not go by rapid",
+                    end.x, end.y, end.z
+                );
+                refused(Rule::EndPoint, message)
+            }
+        }
+    }
+
+    /// Whether the tool stands on the axis of a pose, above it by `most` mm at the most.
+    pub(super) fn is_above(&self, at: &Frame, pose: &Pose, most: f64) -> bool {
+        let tool = self.in_part(at);
+        let off = tool.translation - pose.point();
+        let height = off.dot(pose.axis());
+        let lean = angle_between(-tool.matrix3.z_axis, pose.axis());
+        // A slant of the axis is a way aside, over the height.
+        let aside = off.reject_from_normalized(pose.axis()).length() + lean * height.abs();
+        let slack = self.axis_allowed().to_radians() * height.abs() + self.tip(true);
+        height >= -self.tip(true)
+            && height <= most + self.tip(true)
+            && aside <= 2.0 * slack
+            && lean.to_degrees() <= self.axis_allowed()
+    }
+
+    /// # Errors
+    /// On the way of the joints the tool is neither beyond all cuts along its axis nor near the line of the source.
+    fn clear(&self, from: &Joints, to: &Joints, line: Option<[Vec3; 2]>) -> Outcome {
+        let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
+            return Ok(());
+        };
+        let turns: f64 = from.iter().zip(to).map(|(a, b)| (b - a).abs()).sum();
+        let count = (turns * self.lever() / STRIDE).ceil().clamp(1.0, 1e6);
+        let unmeasured = self.arm.unmeasured();
+        let clearance = self.machine.capabilities.rapid_clearance + unmeasured;
+        let corridor = self.machine.capabilities.rapid_corridor;
+        let line = line.filter(|_| unmeasured == 0.0);
+        for step in 0..=count as usize {
+            let part = step as f64 / count;
+            let joints = std::array::from_fn(|i| from[i] + part * (to[i] - from[i]));
+            let at = self.in_part(&(base.inverse() * self.arm.flange(&joints) * tool));
+            let (tip, axis) = (at.translation, -at.matrix3.z_axis);
+            let beyond = tip.dot(axis) - self.cuts.reach(axis);
+            let near =
+                line.is_some_and(|[start, end]| nearest_on_segment(start, end, tip).1 <= corridor);
+            if beyond < clearance - STRIDE / 2.0 && !near {
+                let message = format!(
+                    "on the way of the joints the tip comes to X{:.1} Y{:.1} Z{:.1}, {beyond:.2} mm beyond the cuts along the tool: \
+                     {clearance} mm are asked for",
+                    tip.x, tip.y, tip.z
+                );
+                let help = "go there by a straight line, or higher";
+                return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
+            }
+        }
+        Ok(())
+    }
+}

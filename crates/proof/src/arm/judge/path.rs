@@ -1,0 +1,439 @@
+//! Lines and arcs: on the path of the source, with joints that follow.
+
+use super::super::expected::{Expected, REENTRY, Step};
+use super::super::follow::{Followed, Path, angle, follow, turned};
+use super::{Judge, STRIDE, Standing, refused};
+use ::arm::Joints;
+use control::kernel::arc::through;
+use control::{ArmMove, ArmPosture, Corner, Rounding, Turning};
+use geom::{Arc, Frame, Vec3, angle_between, between, nearest_on_segment};
+use program::{Diagnostic, Outcome, Pose, Rule};
+use std::f64::consts::TAU;
+
+/// How far rounding of its three points moves an arc, in tip tolerances: see `crate::arc`.
+const ROUNDINGS: f64 = 3.0;
+
+/// So near to the edge of what a posture states a joint is not let, degrees: rounding would decide.
+const EDGE: f64 = 1e-3;
+
+impl Judge<'_> {
+    /// A straight line of the tip.
+    pub(super) fn line(
+        &mut self,
+        line: u32,
+        motion: &ArmMove,
+        end: &Frame,
+        from_corner: Option<Rounding>,
+    ) -> Outcome {
+        let start = self.start(motion)?;
+        let (a, b) = (start.tool, *end);
+        let at = |part: f64| {
+            let turned = turned(&a.matrix3, &b.matrix3, part);
+            Frame::from_mat3_translation(turned, a.translation.lerp(b.translation, part))
+        };
+        let length = a.translation.distance(b.translation);
+        let turn = angle(&a.matrix3, &b.matrix3);
+        let path = Path { at: &at, length, turn, time: None };
+        if !start.exact {
+            return self.correct(motion, start, path);
+        }
+        let Some(expected) = self.expected.get(self.next).cloned() else {
+            return self.lift(motion, start, path, from_corner);
+        };
+        let cuts = match &expected.step {
+            Step::Rapid(from, to) => {
+                if !self.arrives(end, to, false) {
+                    return self.lift(motion, start, path, from_corner);
+                }
+                self.is_rapid_path(&start, &at, (from.as_ref(), to), length)?;
+                self.report.compared.rapids += 1;
+                false
+            }
+            Step::Above(last) => {
+                if !self.is_above(end, last, REENTRY) {
+                    return refused(
+                        Rule::Peck,
+                        "the tool does not go back into the hole to a little above the last depth",
+                    );
+                }
+                false
+            }
+            Step::Line(from, to) => {
+                self.on_line(&at, [from, to], line)?;
+                true
+            }
+            Step::Arc(arc, _) => {
+                self.chord(&at, arc, end)?;
+                true
+            }
+            Step::Home
+            | Step::Tool(_)
+            | Step::Dwell(_)
+            | Step::Stop
+            | Step::Output(_)
+            | Step::Input(_) => return self.lift(motion, start, path, from_corner),
+        };
+        if cuts {
+            self.in_cut(&expected)?;
+        }
+        self.corner(motion, (from_corner, length), cuts, &expected)?;
+        self.pass(start, path, (motion, cuts))?;
+        self.complete(end, &expected);
+        Ok(())
+    }
+
+    /// A straight line to where the joints should have led an arm that is not measured: they were beyond all cuts, by as much as they
+    /// may be off.
+    ///
+    /// # Errors
+    /// It leads elsewhere.
+    fn correct(&mut self, motion: &ArmMove, start: Standing, path: Path) -> Outcome {
+        if path.length > 2.0 * self.tip(true) || path.turn > self.axis_allowed().to_radians() {
+            let message = "joints have led an arm here whose calibration the machine file does not state, and the next line goes elsewhere";
+            let help = "a straight line to the same pose before it, or the calibration of the arm";
+            return Err(Diagnostic::error(Rule::UnknownPosition, message).help(help).into());
+        }
+        if motion.corner != Corner::Exact {
+            return refused(
+                Rule::PathTolerance,
+                "a corner is passed where the arm corrects its pose",
+            );
+        }
+        self.pass(start, path, (motion, false))
+    }
+
+    /// A straight way up along the tool's own axis, between two steps of the source.
+    ///
+    /// # Errors
+    /// It is none.
+    fn lift(
+        &mut self,
+        motion: &ArmMove,
+        start: Standing,
+        path: Path,
+        from_corner: Option<Rounding>,
+    ) -> Outcome {
+        let (from, to) = (self.in_part(&start.tool), self.in_part(&(path.at)(1.0)));
+        let way = to.translation - from.translation;
+        let axis = -from.matrix3.z_axis;
+        let aside = way.reject_from_normalized(axis).length();
+        let is_lift = self.done == 0.0
+            && way.dot(axis) > 0.0
+            && aside <= self.tip(true) + 1e-4 * path.length
+            && path.turn < 1e-4;
+        if !is_lift || from_corner.is_some() || motion.corner != Corner::Exact {
+            return refused(Rule::ExtraMotion, "the tool moves where the source does not");
+        }
+        self.report.compared.excursions += 1;
+        self.pass(start, path, (motion, false))
+    }
+
+    /// # Errors
+    /// A straight rapid is neither on the line of the source, nor down along the tool to its end, nor beyond all cuts.
+    fn is_rapid_path(
+        &self,
+        start: &Standing,
+        at: &dyn Fn(f64) -> Frame,
+        (from, to): (Option<&Pose>, &Pose),
+        length: f64,
+    ) -> Outcome {
+        let tip = self.in_part(&start.tool).translation;
+        let is_own = from.is_some_and(|from| tip.distance(from.point()) <= 2.0 * self.tip(true));
+        if is_own || self.is_above(&start.tool, to, f64::INFINITY) {
+            return Ok(());
+        }
+        let clearance = self.machine.capabilities.rapid_clearance;
+        let count = (length / STRIDE).ceil().clamp(1.0, 1e6);
+        for step in 0..=count as usize {
+            let tool = self.in_part(&at(step as f64 / count));
+            let (tip, axis) = (tool.translation, -tool.matrix3.z_axis);
+            if tip.dot(axis) - self.cuts.reach(axis) < clearance - STRIDE / 2.0 {
+                let message = "a straight rapid begins elsewhere than that of the source, and comes near to what is cut";
+                return refused(Rule::RapidPath, message);
+            }
+        }
+        Ok(())
+    }
+
+    /// An arc through a point.
+    pub(super) fn arc(
+        &mut self,
+        line: u32,
+        motion: &ArmMove,
+        [via, end]: [&Frame; 2],
+        from_corner: Option<Rounding>,
+    ) -> Outcome {
+        let start = self.start(motion)?;
+        if !start.exact {
+            let message = "an arc from where joints have led an arm whose calibration the machine file does not state";
+            return refused(Rule::UnknownPosition, message);
+        }
+        let Some(expected) = self.expected.get(self.next).cloned() else {
+            return refused(Rule::ExtraMotion, "the tool goes on where the source has ended");
+        };
+        let Step::Arc(wanted, to) = &expected.step else {
+            return refused(Rule::Arc, "the program cuts an arc where the source does not");
+        };
+        let points = [start.tool.translation, via.translation, end.translation];
+        let Some((center, normal)) = through(points[0], points[1], points[2]) else {
+            return refused(
+                Rule::ArcPoints,
+                "the three points of the arc are on a line, or two of them are one",
+            );
+        };
+        let radius = points[0].distance(center);
+        let Ok(arc) = Arc::new(points[0], points[2], center, normal, 0, radius * 1e-6) else {
+            return refused(Rule::Arc, "the three points span no arc");
+        };
+        let (a, b) = (start.tool.matrix3, end.matrix3);
+        let at = |part: f64| Frame::from_mat3_translation(turned(&a, &b, part), arc.at(part));
+        self.on_arc(&at, wanted, &arc, to, line)?;
+        self.in_cut(&expected)?;
+        self.corner(motion, (from_corner, arc.length()), true, &expected)?;
+        let path = Path { at: &at, length: arc.length(), turn: angle(&a, &b), time: None };
+        self.pass(start, path, (motion, true))?;
+        self.complete(end, &expected);
+        Ok(())
+    }
+
+    /// Where the motion begins.
+    fn start(&self, motion: &ArmMove) -> Outcome<Standing> {
+        self.frames()?;
+        if motion.turning != Some(Turning::Even) {
+            let message = "how the tool turns on the way is not stated, or not evenly";
+            return Err(Diagnostic::error(Rule::OrientationWay, message)
+                .help("it turns evenly from the start to the end: $ORI_TYPE=#VAR and $CIRC_TYPE=#BASE in KRL, mode=0 in URScript")
+                .into());
+        }
+        match self.standing {
+            Some(standing) => Ok(standing),
+            None => refused(Rule::UnknownPosition, "a straight line from where nobody knows"),
+        }
+    }
+
+    /// The joints follow the path.
+    fn pass(&mut self, start: Standing, path: Path, (motion, cuts): (&ArmMove, bool)) -> Outcome {
+        let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
+            return Ok(());
+        };
+        let Some(feed) = self.running.feed else {
+            return refused(Rule::NoFeed, "the program goes straight and has not stated how fast");
+        };
+        let time = (path.length / (feed / 60.0)).max(match self.running.turn_speed {
+            // A turn is part swing and part turn about the tool; the slower of both decides.
+            [Some(swing), Some(roll)] => path.turn.to_degrees() / (swing + roll),
+            [_, None] | [None, _] => 0.0,
+        });
+        let end = (path.at)(1.0);
+        let path = Path { time: Some(time), ..path };
+        let followed = follow(self.arm, [&base, &tool], start.joints, &path);
+        let Followed { joints, limit, wrist, speed } = match followed {
+            Ok(followed) => followed,
+            Err(lost) => {
+                let rule = if cuts { Rule::AxisLimit } else { Rule::RapidPath };
+                return refused(rule, lost.to_string());
+            }
+        };
+        self.posture(&joints, &motion.posture)?;
+        let checked = self.checked();
+        checked.note_limit(limit);
+        checked.note_wrist(wrist);
+        checked.speed_percent = checked.speed_percent.max(100.0 * speed);
+        self.standing = Some(Standing { joints, tool: end, exact: true });
+        self.is_home = false;
+        Ok(())
+    }
+
+    /// # Errors
+    /// The program states another posture than that of these joints, or one so near to them that rounding decides.
+    fn posture(&self, joints: &Joints, stated: &ArmPosture) -> Outcome {
+        let own = self.arm.posture(joints);
+        let letters = [
+            (stated.rear, own.rear(), "the wrist is behind axis 1"),
+            (stated.below, own.below(), "the elbow is below"),
+            (stated.flip, own.flip(), "the wrist is flipped"),
+        ];
+        for (stated, own, what) in letters {
+            if stated.is_some_and(|stated| stated != own) {
+                let (is, not) = if own { ("", "not ") } else { ("not ", "") };
+                let message =
+                    format!("it is {is}so that {what}, and the program says it is {not}so");
+                return refused(Rule::Posture, message);
+            }
+        }
+        let shown = self.arm.shown(joints).unwrap_or(*joints).map(f64::to_degrees);
+        for (number, (at, range)) in (1..).zip(shown.iter().zip(stated.joints)) {
+            if let Some([from, to]) = range
+                && !(from + EDGE..=to - EDGE).contains(at)
+            {
+                let message = format!(
+                    "joint {number} is at {at:.4}°, and the program states {from}° to {to}°"
+                );
+                return refused(Rule::Posture, message);
+            }
+        }
+        Ok(())
+    }
+
+    /// The step is done where the tool has come to its end.
+    fn complete(&mut self, end: &Frame, expected: &Expected) {
+        let (to, counted) = match &expected.step {
+            Step::Rapid(_, to) | Step::Above(to) => (to, None),
+            Step::Line(_, to) => (to, Some(&mut self.report.compared.lines)),
+            Step::Arc(_, to) => (to, Some(&mut self.report.compared.arcs)),
+            Step::Home
+            | Step::Tool(_)
+            | Step::Dwell(_)
+            | Step::Stop
+            | Step::Output(_)
+            | Step::Input(_) => return,
+        };
+        let tool = match self.running.base {
+            Some(base) => self.cell.part.inverse() * base * *end,
+            None => return,
+        };
+        if let Some(counted) = counted {
+            let is_end = tool.translation.distance(to.point()) <= self.report.tolerances.tip_mm
+                && self.done > 1.0 - 1e-9;
+            if !is_end {
+                return;
+            }
+            *counted += 1;
+        }
+        self.next += 1;
+        self.done = 0.0;
+    }
+
+    /// # Errors
+    /// The line is not on that of the source, or goes back on it.
+    fn on_line(&mut self, at: &dyn Fn(f64) -> Frame, [from, to]: [&Pose; 2], line: u32) -> Outcome {
+        let allowed = self.tip(true);
+        let length = from.point().distance(to.point());
+        let part = |tip: Vec3| nearest_on_segment(from.point(), to.point(), tip);
+        let (mut reached, _) = part(self.in_part(&at(1.0)).translation);
+        let at_end = self.off(&at(1.0), to).0 <= self.tip(false);
+        if at_end || length < allowed {
+            reached = 1.0;
+        }
+        if reached < self.done - allowed / length.max(allowed) {
+            return refused(Rule::Path, "the tool goes back on the line of the source");
+        }
+        let samples = 1 + (angle_between(from.axis(), to.axis()) / 0.02).ceil().min(1e4) as usize;
+        for step in 0..=samples {
+            let share = step as f64 / samples as f64;
+            let tool = self.in_part(&at(share));
+            let (_, aside) = part(tool.translation);
+            let along = self.done + share * (reached - self.done);
+            let lean = angle_between(-tool.matrix3.z_axis, between(from.axis(), to.axis(), along))
+                .to_degrees();
+            if aside.is_nan() || aside > allowed {
+                return refused(
+                    Rule::Path,
+                    format!("the tip is {aside:.4} mm off the line of the source"),
+                );
+            }
+            if lean > self.report.tolerances.sweep_degrees {
+                return refused(
+                    Rule::Path,
+                    format!("the axis is {lean:.3}° off that of the source on the way"),
+                );
+            }
+            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, line);
+        }
+        if reached == 1.0 {
+            self.note_end(&at(1.0), to, line)?;
+        }
+        self.done = reached;
+        Ok(())
+    }
+
+    /// Angle from the start of an arc to a point, that comes behind the part that is done; radians.
+    fn angle_on(arc: &Arc, done: f64, tip: Vec3) -> f64 {
+        let spoke = |point: Vec3| (point - arc.center).reject_from_normalized(arc.normal);
+        let (a, b) = (spoke(arc.at(done)), spoke(tip));
+        let turn = arc.normal.dot(a.cross(b)).atan2(a.dot(b));
+        done * arc.sweep + if turn < -1e-6 { turn + TAU } else { turn }
+    }
+
+    fn on_arc(
+        &mut self,
+        at: &dyn Fn(f64) -> Frame,
+        wanted: &Arc,
+        arc: &Arc,
+        to: &Pose,
+        line: u32,
+    ) -> Outcome {
+        let allowed = ROUNDINGS * self.tip(true);
+        let before = self.done;
+        let end = self.in_part(&at(1.0));
+        let mut reached = Judge::angle_on(wanted, before, end.translation) / wanted.sweep;
+        let left = (reached - 1.0).abs() * wanted.length();
+        if end.translation.distance(wanted.end) <= self.tip(false) && left <= 2.0 * allowed {
+            reached = 1.0;
+        }
+        if reached <= before || reached > 1.0 + 1e-9 {
+            return refused(
+                Rule::Arc,
+                "the arc goes back, or beyond the end of that of the source",
+            );
+        }
+        // Points of a circle of another direction or radius are off it somewhere.
+        let samples = 4 * (1 + (arc.sweep / 0.5).ceil().min(100.0) as usize);
+        for step in 1..=samples {
+            let share = step as f64 / samples as f64;
+            let tool = self.in_part(&at(share));
+            let aside = tool.translation.distance(wanted.at(before + share * (reached - before)));
+            if aside.is_nan() || aside > allowed {
+                return refused(
+                    Rule::Arc,
+                    format!("the tip is {aside:.4} mm off the arc of the source"),
+                );
+            }
+            let lean = angle_between(-tool.matrix3.z_axis, to.axis()).to_degrees();
+            if lean > self.report.tolerances.sweep_degrees {
+                return refused(
+                    Rule::Path,
+                    format!("the axis is {lean:.3}° off that of the source on the arc"),
+                );
+            }
+            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, line);
+        }
+        if reached == 1.0 {
+            self.note_end(&at(1.0), to, line)?;
+        }
+        self.done = reached;
+        Ok(())
+    }
+
+    /// A line that is a chord of an arc.
+    fn chord(&mut self, at: &dyn Fn(f64) -> Frame, wanted: &Arc, end: &Frame) -> Outcome {
+        let allowed = self.tip(true);
+        let before = self.done;
+        let tip = self.in_part(end).translation;
+        let mut reached = Judge::angle_on(wanted, before, tip) / wanted.sweep;
+        if tip.distance(wanted.end) <= self.tip(false) && reached > 1.0 - 0.25 {
+            reached = 1.0;
+        }
+        if reached <= before
+            || reached > 1.0 + 1e-9
+            || (reached - before) * wanted.sweep > TAU / 4.0
+        {
+            return refused(Rule::Path, "the line is no chord of the arc of the source");
+        }
+        for step in 1..=8 {
+            let share = f64::from(step) / 8.0;
+            let off = self
+                .in_part(&at(share))
+                .translation
+                .distance(wanted.at(before + share * (reached - before)));
+            if off.is_nan() || off > allowed + self.report.tolerances.chord_mm {
+                return refused(
+                    Rule::ArcChord,
+                    format!("the chord is {off:.4} mm off the arc of the source"),
+                );
+            }
+        }
+        self.done = reached;
+        Ok(())
+    }
+}
