@@ -158,7 +158,14 @@ pub enum Format {
     Binary,
 }
 
-/// Whether words may be those that fire the laser: nothing that moves, ends, stops or calls, or changes how numbers count.
+/// M words that do not fire once: those that stop, end, call or change the tool, and those that switch something on or off that
+/// then stays so (RS274/NGC 3.6: M3 to M5, M7 to M9, M48, M49; LinuxCNC, "M Codes": M62 to M65).
+const NEVER_ONCE: [f64; 19] = [
+    0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 30.0, 48.0, 49.0, 62.0, 63.0, 64.0, 65.0,
+    98.0, 99.0,
+];
+
+/// Whether words may be those that fire the laser: nothing that moves, ends, stops, calls or stays on, or changes how numbers count.
 fn fires(words: &str) -> bool {
     let number = |word: &str, letters: &str| {
         let mut word = word.chars();
@@ -166,7 +173,7 @@ fn fires(words: &str) -> bool {
         letter.and_then(|_| word.as_str().parse::<f64>().ok())
     };
     let mut words = words.split(' ');
-    let own = |number: f64| ![0.0, 1.0, 2.0, 6.0, 30.0, 98.0, 99.0].contains(&number);
+    let own = |number: f64| !NEVER_ONCE.contains(&number);
     words.next().and_then(|word| number(word, "M")).is_some_and(own)
         && words.all(|word| number(word, "PQRS").is_some())
 }
@@ -219,7 +226,7 @@ impl Machine {
                 Err(String::from("program.fire is for G-code only"))
             }
             (Some(word), Format::Gcode) if !fires(word) => Err(format!(
-                "program.fire = \"{word}\" does more than fire: it is an M word other than M0 to M2, M6, M30, M98 and M99, with P, Q, R or S"
+                "program.fire = \"{word}\" does more than fire once: name an M word that ends by itself (such as M101), with P, Q, R or S; not one that stops, calls, or stays on as M3, M8 and M64 do"
             )),
             (Some(_), Format::Gcode)
             | (None, Format::Numbered | Format::Points | Format::Binary) => Ok(()),

@@ -16,7 +16,7 @@ use toolpost_glass::proof::{Proof, Task, prove};
 
 fn machine(format: &str) -> Machine {
     let text = library("glass-xyz-100hz").unwrap();
-    let fire = if format == "gcode" { "\nfire = \"M64 P0\"" } else { "" };
+    let fire = if format == "gcode" { "\nfire = \"M101 P0\"" } else { "" };
     Machine::read(
         &text.replace("format = \"numbered\"", &format!("format = \"{format}\"{fire}")),
         "",
@@ -210,12 +210,12 @@ fn a_program_that_is_edited_is_proven_against_the_body_again() {
         found.iter().map(|found| found.rule.name()).collect()
     };
     let pulse = text.match_indices("G0 X").nth(100).unwrap().0;
-    let end = pulse + text[pulse..].find("M64 P0\n").unwrap() + "M64 P0\n".len();
+    let end = pulse + text[pulse..].find("M101 P0\n").unwrap() + "M101 P0\n".len();
     let with = |piece: &str| format!("{}{piece}{}", &text[..pulse], &text[end..]);
     // A pulse that is deleted, one that is made twice, and a detour out of the travel.
     assert_eq!(rules(&with("")), ["lost"]);
     let own = &text[pulse..end];
-    assert_eq!(rules(&with(&format!("{own}M64 P0\n"))), ["twice", "spacing"]);
+    assert_eq!(rules(&with(&format!("{own}M101 P0\n"))), ["twice", "spacing"]);
     assert_eq!(rules(&with(&format!("G0 X171\n{own}"))), ["travel"]);
     // A detour takes time: to X0 and back, some 10 mm, 110 ms each, in whole ticks.
     let away = prove(&with(&format!("G0 X0\n{own}"))).unwrap();
@@ -261,7 +261,7 @@ fn programs_that_a_controller_would_not_take_are_refused() {
     ] {
         refused(&good.replacen(from, to, 1), "numbered");
     }
-    let good = "(one)\nG21 G90\nG0 X10.000 Y10.000 Z-9.868\nM64 P0\nM2\n";
+    let good = "(one)\nG21 G90\nG0 X10.000 Y10.000 Z-9.868\nM101 P0\nM2\n";
     assert!(judged(good.as_bytes(), &cloud, "gcode").is_empty());
     for (from, to) in [
         ("G21 ", ""),
@@ -270,8 +270,8 @@ fn programs_that_a_controller_would_not_take_are_refused() {
         ("G21", "G20"),
         (" Z-9.868", ""),
         ("M2\n", ""),
-        ("M2\n", "M2\nM64 P0\n"),
-        ("M64 P0", "M64 P1"),
+        ("M2\n", "M2\nM101 P0\n"),
+        ("M101 P0", "M101 P1"),
         ("G0 X", "G2 X"),
         // G1 needs a feed, an axis stands once in a line, and what is between two comments is run.
         ("G0 X", "G1 X"),

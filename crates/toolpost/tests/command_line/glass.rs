@@ -59,7 +59,7 @@ fn a_body_becomes_a_proven_program_and_a_report() {
     let shown = folder.run(&["glass", "show", "glass-xyz-100hz"]);
     folder.write(
         "mine.toml",
-        shown.out.replace("\"numbered\"   #", "\"gcode\"\nfire = \"M64 P0\" #"),
+        shown.out.replace("\"numbered\"   #", "\"gcode\"\nfire = \"M101 P0\" #"),
     );
     let table = folder.run(&["glass", "show", "materials"]).out;
     folder.write(
