@@ -8,6 +8,7 @@ use control::{Action, ArmAction, ArmPath, Dialect, Event};
 use files::root;
 use geom::Vec3;
 use machine::Machine;
+use program::{CompensatedPath, Program};
 use robot::{JOB, proof_of, proven, source};
 
 fn kuka() -> Machine {
@@ -190,7 +191,7 @@ fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
     refused("RPM,12000,CLW", "RPM,30000,CLW", &machine, 4, "30000");
     refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "spindle_ccw");
     refused("RAPID\nGOTO/60,0,50", "LOADTL/2\nRAPID\nGOTO/60,0,50", &machine, 11, "tool_change");
-    refused("LOADTL/1", "LOADTL/1\nCUTCOM/LEFT", &machine, 4, "no cutter compensation");
+    refused("LOADTL/1", "LOADTL/1\nCUTCOM/LEFT", &machine, 4, "--cutcom centre");
     refused("RAPID\nGOTO/0,0,50\n", "", &machine, 6, "begins where nobody knows");
     let fast = kuka_with(&[("feed_max = 12000", "feed_max = 200000")]);
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,190000", &fast, 10, "of its speed at this feed");
@@ -198,6 +199,35 @@ fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
     refused("LOADTL/1", "LOADTL/1", &without, 8, "spindle_analog");
     let without = kuka_with(&[("tool_length = 50\n", "")]);
     refused("LOADTL/1", "LOADTL/1", &without, 6, "the length of the tool");
+}
+
+/// A way in, two sides of a square about the centre of a tool of radius 3, and a way out, with compensation on.
+const COMPENSATED: &str = "PARTNO/JOB\nUNITS/MM\nCUTTER/6\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
+GOTO/0,0,-2\nCUTCOM/LEFT\nFEDRAT/MMPM,1200\nGOTO/10,0,-2\nGOTO/60,0,-2\nGOTO/60,40,-2\nCUTCOM/OFF\nGOTO/60,60,-2\n\
+RAPID\nGOTO/60,60,50\nFINI\n";
+
+#[test]
+fn a_path_of_the_centre_with_compensation_is_posted_as_it_is_and_no_other_is() {
+    let machine = kuka();
+    let compensated = |path| Program { compensated_path: path, ..source(COMPENSATED) };
+    let plain = source(&COMPENSATED.replace("CUTCOM/LEFT\n", "").replace("CUTCOM/OFF\n", ""));
+    let center = compensated(Some(CompensatedPath::Center));
+    let text = proven(&center, &machine);
+    assert_eq!(text, proven(&plain, &machine));
+    let warnings = post::write(&center, &machine).unwrap().warnings;
+    let warned: Vec<_> = warnings.iter().map(|found| (found.rule.name(), found.line)).collect();
+    assert_eq!(warned, [("compensated-path", 10)]);
+    for (path, rule) in
+        [(None, "compensated-path"), (Some(CompensatedPath::Contour), "compensation-unsupported")]
+    {
+        let source = compensated(path);
+        let found = post::write(&source, &machine).unwrap_err();
+        assert_eq!((found[0].rule.name(), found[0].line), (rule, 10));
+        // The centre on the contour would cut 3 mm too deep: the judge refuses the same text.
+        let report = proof_of(&source, &machine, &text);
+        assert!(!report.proven, "{path:?}");
+        assert_eq!(report.mismatches[0].rule.name(), "compensated-path");
+    }
 }
 
 #[test]

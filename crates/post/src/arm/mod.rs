@@ -81,6 +81,12 @@ pub(crate) fn write(
     if let Err(error) = plan(program, machine, robot).and_then(|steps| walk.all(&steps)) {
         walk.findings.error(*error);
     }
+    if let Some(line) = program.compensates() {
+        let message = "the source gives the path of the tool's centre with cutter compensation: it is written as it is, and offsets \
+                       at the robot do not change the size of what is cut";
+        let found = Diagnostic::warning(Rule::CompensatedPath, message);
+        walk.findings.warn(found.help("a robot has no compensation").line(line));
+    }
     let warnings = walk.findings.finish(machine.capabilities.lowering_tolerance)?;
     let (text, blocks) = walk.writer.finish();
     Ok(Output { text, blocks, warnings })

@@ -6,8 +6,8 @@ use geom::{Arc, Frame, Mat3, Vec3};
 use machine::{Cell, Machine};
 use program::lowering::{HoleMove, feed_per_minute, hole};
 use program::{
-    Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Outcome, Output, PathMode, Pose, Program,
-    Record, Rule, Spindle, Tool,
+    CompensatedPath, Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Outcome, Output, PathMode,
+    Pose, Program, Record, Rule, Spindle, Tool,
 };
 use std::f64::consts::TAU;
 
@@ -121,6 +121,7 @@ pub(super) fn plan<'a>(
         cycle: None,
         spindle: Spindle::Off,
         corner: machine.path_tolerance(),
+        path: source.compensated_path,
     };
     for record in &source.records {
         walk.record(record).map_err(|found| Box::new(found.line(record.line)))?;
@@ -220,6 +221,29 @@ struct Walk<'a, 'm> {
     cycle: Option<&'a Cycle>,
     spindle: Spindle,
     corner: f64,
+    /// Which path the coordinates are where compensation is on.
+    path: Option<CompensatedPath>,
+}
+
+/// # Errors
+/// No robot has cutter compensation: the path of the tool's centre alone goes without, and what the source gives has to be known to be one.
+fn check_path(path: Option<CompensatedPath>) -> Outcome {
+    let (rule, message, help) = match path {
+        Some(CompensatedPath::Center) => return Ok(()),
+        Some(CompensatedPath::Contour) => (
+            Rule::CompensationUnsupported,
+            "the source gives the contour with cutter compensation, and a robot has none",
+            "have the CAM system write the path of the tool's centre (of an NC program: its tool table, `--tools`)",
+        ),
+        None => (
+            Rule::CompensatedPath,
+            "nothing in the source shows whether its coordinates with compensation are the path of the tool's centre, which a robot \
+             follows, or the contour",
+            "`--cutcom centre` or `--cutcom contour` (in Python `cutcom`): look at the setting of the CAM system, or compare with the \
+             drawing",
+        ),
+    };
+    Err(Diagnostic::error(rule, message).help(help).into())
 }
 
 impl<'a> Walk<'a, '_> {
@@ -290,11 +314,7 @@ impl<'a> Walk<'a, '_> {
             Op::CycleOff => self.cycle = None,
             Op::Hole(pose) => self.hole(record.line, pose)?,
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
-                let message = "a robot has no cutter compensation";
-                let help = "have the CAM system write the path of the tool's centre";
-                return Err(Diagnostic::error(Rule::CompensationUnsupported, message)
-                    .help(help)
-                    .into());
+                check_path(self.path)?
             }
             Op::Thread(_)
             | Op::Probe(_)

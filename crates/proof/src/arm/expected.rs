@@ -4,8 +4,8 @@ use geom::Arc;
 use machine::Machine;
 use program::lowering::feed_per_minute;
 use program::{
-    Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Outcome, Output,
-    PathMode, Pose, Program, Rule, Spindle, Tool,
+    Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Outcome, Output, PathMode, Pose,
+    Program, Rule, Spindle, Tool,
 };
 
 /// How far the radii at the ends of a source's arc may differ, as a part of them.
@@ -148,7 +148,8 @@ impl Walk<'_> {
             Op::CycleOff => self.cycle = None,
             Op::Hole(pose) => self.hole(line, pose)?,
             Op::OptionalStop if self.machine.leaves_out("optional_stop") => {}
-            Op::Compensation(Compensation::Off)
+            // Where it is on, the path is that of the tool's centre: see `compensation::unsettled_for_arm`.
+            Op::Compensation(_)
             | Op::SurfaceSpeed(None)
             | Op::End
             | Op::Frame(_)
@@ -165,7 +166,6 @@ impl Walk<'_> {
             | Op::SurfaceSpeed(Some(_))
             | Op::Beam(_)
             | Op::Pulses(_)
-            | Op::Compensation(Compensation::Left(_) | Compensation::Right(_))
             | Op::WorkOffset(_)
             | Op::WorkOffsetData(_)
             | Op::Surface(_)

@@ -39,6 +39,10 @@ pub(crate) fn prove(
 ) -> Report {
     let applied = Applied::new(machine, tolerances);
     let mut report = Report { tolerances: applied, ..Report::default() };
+    if let Some(found) = crate::compensation::unsettled_for_arm(source) {
+        report.mismatch(source.compensates().unwrap_or_default(), found);
+        return report;
+    }
     let expected = match Expected::of(source, machine) {
         Ok(expected) => expected,
         Err(found) => {
