@@ -75,6 +75,8 @@ impl Given<'_> {
 ///     Columns and rows of the places at which the height of the board is measured.
 /// on_control : bool
 ///     Let the programs that cut copper measure these heights themselves, and follow them.
+/// split_tools : bool
+///     Write a program for each tool, so that none changes tools.
 /// heights : str or os.PathLike, optional
 ///     Measured heights that the programs follow.
 /// picture : {"svg", "png"}, optional
@@ -101,7 +103,8 @@ impl Given<'_> {
                     tab_width=2.0, tab_height=0.6, close_gaps=0.3, board_margin=None, thickness=1.6, through=0.2, corner=None,
                     as_drawn=false, turn="y",
                     alignment=None, panel=None, spacing=4.0, feed=200.0, plunge=60.0, drill_feed=100.0,
-                    outline_feed=150.0, speed=None, travel=2.0, approach=0.5, probe=None, on_control=false, heights=None,
+                    outline_feed=150.0, speed=None, travel=2.0, approach=0.5, probe=None, on_control=false, split_tools=false,
+                    heights=None,
                     picture=None, tolerance=None, strict=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pcb<'py>(
@@ -153,6 +156,7 @@ pub fn pcb<'py>(
     approach: f64,
     probe: Option<[u32; 2]>,
     on_control: bool,
+    split_tools: bool,
     heights: Option<PathBuf>,
     picture: Option<&str>,
     tolerance: Option<f64>,
@@ -219,6 +223,7 @@ pub fn pcb<'py>(
             approach,
             probe,
             on_control,
+            split_tools,
         },
     };
     let formats = [("svg", Format::Svg), ("png", Format::Png)];

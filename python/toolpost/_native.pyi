@@ -354,6 +354,7 @@ def pcb(
     approach: float = 0.5,
     probe: tuple[int, int] | None = None,
     on_control: bool = False,
+    split_tools: bool = False,
     heights: _Path | None = None,
     picture: Literal["svg", "png"] | None = None,
     tolerance: float | None = None,

@@ -178,11 +178,12 @@ fn a_board_is_made_without_a_command_line_from_memory_as_from_a_file() {
         assert_eq!(watch.steps(), ["reading", "planning", "writing and proving"]);
         let account = made.account(&job, None);
         assert_eq!(account.verdict, Verdict::Done);
-        let texts = made.programs.iter().map(|program| (program.name, program.posted.text.clone()));
+        let texts =
+            made.programs.iter().map(|program| (program.name.clone(), program.posted.text.clone()));
         (texts.collect::<Vec<_>>(), account.report())
     });
     assert_eq!(
-        made[0].0.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+        made[0].0.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
         ["front", "drill", "back", "outline"]
     );
     assert_eq!(made[0], made[1]);

@@ -16,6 +16,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let (settings, tolerances) = (args.settings(), args.closeness.tolerances());
     let mut job = Job::new(&machine, &settings, &tolerances)?;
     job.surface = args.running.heights.clone().map(Source::File);
+    let named = args.files.named().into_iter();
+    job.named = named.map(|(file, layer)| (Source::File(file), layer)).collect();
     (job.picture, job.strict) = (args.picture, args.strict);
     files::check_folder(&args.output)?;
     not_among_inputs(args)?;

@@ -7,9 +7,10 @@ mod source;
 use crate::account::{Account, Stop, Verdict};
 use crate::input;
 use crate::post::{self, Posted};
+use crate::summary::number;
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
-use ::pcb::board::{Axis, Face};
+use ::pcb::board::{Axis, Face, Layer};
 use ::pcb::job::{self, Heights};
 use ::pcb::plan::{self, Part, Running, Settings, Setup, Work};
 use ::pcb::{Board, Operation};
@@ -31,6 +32,8 @@ pub struct Job<'a> {
     heights: Heights,
     /// Measured heights that the programs follow: what a probing program has logged, or X, Y and Z in columns.
     pub surface: Option<input::Source>,
+    /// Files of the board of which the caller says what they hold.
+    pub named: Vec<(input::Source, Layer)>,
     /// How a picture is drawn next to each program; `None`: not at all.
     pub picture: Option<Format>,
     /// Whether a warning about the board, or a program that cannot be made, stops the work.
@@ -70,7 +73,8 @@ impl<'a> Job<'a> {
         settings.check()?;
         let heights = heights(&settings.running)?;
         let (surface, picture, strict) = (None, None, false);
-        Ok(Job { machine, settings, tolerances, heights, surface, picture, strict })
+        let named = Vec::new();
+        Ok(Job { machine, settings, tolerances, heights, surface, named, picture, strict })
     }
 
     /// Writes the programs of the board that `board` is (a folder of files, some files, a board of KiCad's, a model) and
@@ -82,7 +86,7 @@ impl<'a> Job<'a> {
     pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
         watch.begin("reading")?;
         let Job { machine, settings, .. } = *self;
-        let source = source::read(board, settings)?;
+        let source = source::read(board, &self.named, settings)?;
         let parts = plan::parts(&source.artwork, settings)?;
         let surface = surface(&parts, settings, self.surface.as_ref())?;
         let running = &settings.running;
@@ -102,7 +106,8 @@ impl<'a> Job<'a> {
         let is_turned = works.iter().any(|(part, _)| plan::face(*part, settings) == Face::Back);
         watch.begin("writing and proving")?;
         let shop = Shop { job: self, front, back, is_turned, rack, watch, surface };
-        let mut programs = Vec::with_capacity(works.len() + 1);
+        let tasks = tasks(works, running.split_tools);
+        let mut programs = Vec::with_capacity(tasks.len() + 1);
         if let Some(grid) = running.probe.filter(|_| !running.on_control) {
             let probing = shop.probing(grid)?;
             if probing.posted.account.verdict != Verdict::Done {
@@ -110,8 +115,9 @@ impl<'a> Job<'a> {
             }
             programs.push(probing);
         }
-        let made: Vec<_> = works.par_iter().map(|(part, work)| shop.made(*part, work)).collect();
-        for (made, (part, work)) in made.into_iter().zip(works) {
+        let made: Vec<_> = tasks.par_iter().map(|task| shop.made(task)).collect();
+        for (made, task) in made.into_iter().zip(tasks) {
+            let part = task.part;
             let (posted, picture) = match made {
                 Ok(made) => made,
                 Err(stop) if stop.verdict == Verdict::Cancelled => return Err(stop),
@@ -124,9 +130,10 @@ impl<'a> Job<'a> {
                 left_out.push(LeftOut { part, account: posted.account });
                 continue;
             }
-            let probes = shop.probes(part, &work);
+            let probes = shop.probes(part, &task.work);
             let up = Some(plan::face(part, settings));
-            programs.push(Program { name: part.name(), up, work, posted, picture, probes });
+            let Task { name, work, .. } = task;
+            programs.push(Program { name, part: Some(part), up, work, posted, picture, probes });
         }
         for made in &programs {
             let file = format!("{}.nc", made.name);
@@ -203,6 +210,40 @@ impl Watch for Quiet<'_> {
 
 /// What programs do.
 type Works = Vec<(Part, Work)>;
+
+/// What one program does.
+struct Task {
+    part: Part,
+    /// What the program is called.
+    name: String,
+    /// How many programs are before it of all that a board can have.
+    place: usize,
+    work: Work,
+}
+
+/// A program for each part of the board, or for each tool of each.
+fn tasks(works: Works, split: bool) -> Vec<Task> {
+    let place = |part: Part| Part::ALL.iter().position(|other| *other == part).unwrap_or_default();
+    // Those of the parts, and the probe.
+    let mut more = Part::ALL.len() + 1;
+    let mut tasks = Vec::with_capacity(works.len());
+    for (part, mut work) in works {
+        let operations = std::mem::take(&mut work.operations);
+        if !split || operations.len() < 2 {
+            work.operations = operations;
+            tasks.push(Task { part, name: part.name().to_owned(), place: place(part), work });
+            continue;
+        }
+        for (i, operation) in operations.into_iter().enumerate() {
+            let name = format!("{}-{}-{}mm", part.name(), i + 1, number(operation.width(), 3));
+            // What is odd about all of them is reported with the first.
+            let work = Work { operations: vec![operation], ..std::mem::take(&mut work) };
+            tasks.push(Task { part, name, place: more, work });
+            more += 1;
+        }
+    }
+    tasks
+}
 
 /// What a program does, or why it cannot.
 type Planned = (Part, Result<Work, Vec<Diagnostic>>);
@@ -328,7 +369,9 @@ fn can_probe(parts: &[Part], [columns, rows]: [u32; 2], machine: &Machine) -> Re
 /// A program that was made.
 pub struct Program {
     /// What it and its picture are called.
-    pub name: &'static str,
+    pub name: String,
+    /// What of the board it is about; `None` where it measures its height.
+    part: Option<Part>,
     /// The side of the board that is up when it runs; `None` where it is run for either.
     up: Option<Face>,
     work: Work,
@@ -397,9 +440,11 @@ impl Shop<'_> {
     }
 
     /// The program of a part of the board, proven, and its picture.
-    fn made(&self, part: Part, work: &Work) -> Result<(Posted, Option<Vec<u8>>), Stop> {
+    fn made(&self, task: &Task) -> Result<(Posted, Option<Vec<u8>>), Stop> {
+        let Task { part, work, .. } = task;
+        let part = *part;
         let Setup { board, axis, .. } = self.setup(part);
-        let name = format!("{}-{}", board.name, part.name());
+        let name = format!("{}-{}", board.name, task.name);
         let number = |operation: &Operation| self.rack.number(&operation.tool.name);
         let operations: Vec<(u32, &Operation)> =
             work.operations.iter().map(|operation| (number(operation), operation)).collect();
@@ -425,9 +470,8 @@ impl Shop<'_> {
             problems: &work.places,
             turning: self.is_turned.then_some(*axis),
         };
-        let place = Part::ALL.iter().position(|other| *other == part).unwrap_or_default();
         let (posted, picture) = rayon::join(
-            || self.proven(&toolpath, part.name(), place),
+            || self.proven(&toolpath, &task.name, task.place),
             || format.map(|format| format.bytes(drawing::board(&name, &picture))).transpose(),
         );
         Ok((posted?, picture?))
@@ -480,7 +524,8 @@ impl Shop<'_> {
         let place = Part::ALL.len();
         let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE, place)?;
         let (work, picture, probes) = (Work::default(), None, None);
-        Ok(Program { name: PROBE, up: None, work, posted, picture, probes })
+        let name = String::from(PROBE);
+        Ok(Program { name, part: None, up: None, work, posted, picture, probes })
     }
 
     /// The text of a program, proven, that is so many places behind the first of all programs that a board can have.

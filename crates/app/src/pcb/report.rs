@@ -1,6 +1,6 @@
 //! What is reported of the programs of a board.
 
-use super::{Made, Program};
+use super::{Made, PROBE, Program};
 use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
@@ -56,9 +56,9 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         let why = left.findings().next().map_or_else(String::new, |found| found.message);
         ("left out", format!("{}.nc: {why}", left.part.name()))
     }));
-    let places = programs
-        .iter()
-        .flat_map(|made| made.work.places.iter().map(|(place, what)| (made.name, *place, what)));
+    let places = programs.iter().flat_map(|made| {
+        made.work.places.iter().map(|(place, what)| (made.name.as_str(), *place, what))
+    });
     let shown = |(name, place, what): (&str, geom::Vec2, &String)| {
         format!("{name}, X{:.3} Y{:.3}: {what}", place.x, place.y)
     };
@@ -102,7 +102,7 @@ fn turning(axis: Axis) -> (&'static str, &'static str, f64) {
 /// taken for what it is, leaves out a program without an error.
 fn missing(made: &Made, settings: &Settings) -> Vec<&'static str> {
     let is_left_out = |part: Part| made.left_out.iter().any(|left| left.part == part);
-    let is_made = |part: Part| made.programs.iter().any(|made| made.name == part.name());
+    let is_made = |part: Part| made.programs.iter().any(|made| made.part == Some(part));
     let has = |part: Part| is_made(part) || is_left_out(part);
     let all = [
         (has(Part::Front) || has(Part::Back), "copper: no file has any, and nothing is isolated"),
@@ -125,8 +125,12 @@ impl Program {
         let measured = |value: &Value| value.as_f64().unwrap_or_default();
         let operations: Vec<&str> =
             self.work.operations.iter().map(|operation| operation.name.as_str()).collect();
+        let part = self.part.map_or(PROBE, Part::name);
+        let cuts = operations.join(", ");
+        // One of several programs of a part has a name of its own.
+        let cuts = if self.name == part { cuts } else { format!("{}.nc: {cuts}", self.name) };
         let mut rows = vec![
-            (self.name, operations.join(", ")),
+            (part, cuts),
             (
                 "",
                 format!(

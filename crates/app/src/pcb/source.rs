@@ -3,7 +3,7 @@
 use crate::account::Stop;
 use crate::files;
 use crate::input;
-use pcb::board::{Artwork, File};
+use pcb::board::{Artwork, File, Layer};
 use pcb::plan::{self, Settings};
 use program::{Diagnostic, Rule};
 use std::path::Path;
@@ -21,17 +21,32 @@ pub struct Source {
     pub files: Vec<input::Source>,
 }
 
-/// Reads the board that `given` is, with the layers that programs need for which `settings` ask.
+/// Reads the board that `given` is, and the files `named` of which the caller says what they hold, with the layers that programs
+/// need for which `settings` ask.
 ///
 /// # Errors
 /// What is wrong with a file, or with all of them together.
-pub fn read(given: &[input::Source], settings: &Settings) -> Result<Source, Stop> {
-    let name = name(given);
+pub fn read(
+    given: &[input::Source],
+    named: &[(input::Source, Layer)],
+    settings: &Settings,
+) -> Result<Source, Stop> {
+    let first = named.first().map(|(file, _)| file.clone());
+    let name = name(given.first().or(first.as_ref()));
     let all = match given {
         [input::Source::File(folder)] if folder.is_dir() => within(folder)?,
         files => files.to_vec(),
     };
-    let files = chosen(given, all)?;
+    let mut files = chosen(given, all)?;
+    let whole = |file: &input::Source| std::fs::canonicalize(file.path()).ok();
+    files.retain(|file| named.iter().all(|(other, _)| whole(other) != whole(file)));
+    if let Some(board) =
+        files.iter().find(|file| ending(file) == "kicad_pcb").filter(|_| !named.is_empty())
+    {
+        return Err(not_alone(board));
+    }
+    let unnamed = files.len();
+    files.extend(named.iter().map(|(file, _)| file.clone()));
     let mut texts = Vec::with_capacity(files.len());
     for file in &files {
         texts.push((file.name(), file.text()?));
@@ -46,8 +61,10 @@ pub fn read(given: &[input::Source], settings: &Settings) -> Result<Source, Stop
             (artwork, vec![(file.clone(), String::from("a model"))])
         }
         _ => {
-            let all = texts.iter().map(|(name, text)| File { name, layer: None, text });
-            let all: Vec<File> = all.collect();
+            let layer = |i: usize| Some(named.get(i.checked_sub(unnamed)?)?.1);
+            let all = texts.iter().enumerate();
+            let all: Vec<File> =
+                all.map(|(i, (name, text))| File { name, layer: layer(i), text }).collect();
             let wanted = |layer| plan::needs(layer, settings);
             let (artwork, layers) =
                 pcb::board::artwork(&name, &all, wanted).map_err(Stop::invalid)?;
@@ -98,12 +115,12 @@ fn chosen(named: &[input::Source], given: Vec<input::Source>) -> Result<Vec<inpu
 }
 
 /// What the board is called.
-fn name(given: &[input::Source]) -> String {
+fn name(first: Option<&input::Source>) -> String {
     let named = |source: &input::Source| match source.file().filter(|path| path.is_dir()) {
         Some(path) => files::name(&std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())),
         None => source.path().file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    given.first().map_or_else(String::new, named)
+    first.map_or_else(String::new, named)
 }
 
 /// The files of a folder, in the order of their names.

@@ -81,6 +81,20 @@ struct Known<'a> {
     file: &'a File<'a>,
     layer: Layer,
     format: Format,
+    source: From,
+}
+
+/// Who says what a file holds, the surest last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum From {
+    /// Its name has a side in it.
+    Side,
+    /// Its name is as a CAD system gives it.
+    Name,
+    /// The file itself.
+    File,
+    /// The user.
+    User,
 }
 
 /// Which file is which: those that have something of a board that is wanted.
@@ -90,34 +104,47 @@ fn told_apart<'a>(
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Vec<Known<'a>>, Vec<Diagnostic>> {
     let (mut known, mut unwanted) = (Vec::new(), Vec::new());
-    let (mut others, mut not_through) = (Vec::new(), Vec::new());
+    let (mut others, mut not_through, mut unknown) = (Vec::new(), Vec::new(), Vec::new());
     for file in files {
         let format = Format::of(file.text);
         let named = || match (format, Layer::named(file.name)) {
-            (Some(Format::Excellon), _) => Some(Layer::Holes(None)),
+            (Some(Format::Excellon), _) => Some((Layer::Holes(None), From::File)),
             // A drawing of the holes, or a list of the drills, is named like them.
             (_, Some(Layer::Holes(_))) => None,
-            (_, named) => named,
+            (Some(Format::Gerber), None) => Some((Layer::by_side(file.name)?, From::Side)),
+            (_, named) => Some((named?, From::Name)),
         };
-        let stated = file.layer.or_else(|| Layer::stated(file.text));
-        let layer = stated.or_else(named);
+        let stated = || Some((Layer::stated(file.text)?, From::File));
+        let given = file.layer.map(|layer| (layer, From::User));
+        let (layer, source) = given.or_else(stated).or_else(named).unzip();
+        let source = source.unwrap_or(From::Side);
         match layer {
-            None if format == Some(Format::Gerber) => warnings.push(unknown(file.name)),
+            None if format == Some(Format::Gerber) => unknown.push(file.name),
             Some(Layer::Other) if Layer::is_not_through(file.text) => not_through.push(file.name),
             None | Some(Layer::Other) => others.push(file.name),
             Some(layer) if !wanted(layer) => unwanted.push(file.name),
             Some(layer) => {
-                if stated.is_none() && format == Some(Format::Gerber) {
-                    let message = format!("taken as {layer}, by its name");
-                    let help = "say which layer it is where it is another one";
-                    let found = Diagnostic::warning(Rule::LayerByName, message).help(help);
-                    warnings.push(found.file(file.name));
-                }
                 let holes = matches!(layer, Layer::Holes(_));
                 let usual = if holes { Format::Excellon } else { Format::Gerber };
-                known.push(Known { file, layer, format: format.unwrap_or(usual) });
+                known.push(Known { file, layer, format: format.unwrap_or(usual), source });
             }
         }
+    }
+    others.extend(less_sure(&mut known));
+    let guessed: Vec<String> = known.iter().filter_map(Known::guessed).collect();
+    if !guessed.is_empty() {
+        let message = format!("taken by the names of the files: {}", guessed.join("; "));
+        let help = "say it where one is another layer: --front, --back, --outline or --drill with the file";
+        warnings.push(Diagnostic::warning(Rule::LayerByName, message).help(help));
+    }
+    if !unknown.is_empty() {
+        let message = format!(
+            "left out, as neither they nor their names say which layer they are: {}",
+            listed(&unknown)
+        );
+        let help =
+            "say it for those of this board: --front, --back, --outline or --drill with the file";
+        warnings.push(Diagnostic::warning(Rule::LayerUnknown, message).help(help));
     }
     if !others.is_empty() {
         let message = format!("left out, as they hold no layer that is cut: {}", listed(&others));
@@ -134,7 +161,7 @@ fn told_apart<'a>(
     if known.is_empty() && unwanted.is_empty() {
         let message = format!("none of {} files is a layer of a board", files.len());
         let help = "give the Gerber and Excellon files of a board; copper files end in .gtl and .gbl, \
-                    or -F_Cu.gbr and -B_Cu.gbr, or say what they are (X2)";
+                    or -F_Cu.gbr and -B_Cu.gbr, or say what they are (X2); or name them by --front and --back";
         return Err(vec![Diagnostic::error(Rule::NoBoard, message).help(help)]);
     }
     let twice = known.iter().enumerate().filter_map(|(i, one)| {
@@ -147,6 +174,12 @@ fn told_apart<'a>(
 }
 
 impl Known<'_> {
+    /// What it is taken for by its name alone.
+    fn guessed(&self) -> Option<String> {
+        let is_guessed = self.source <= From::Name && self.format == Format::Gerber;
+        is_guessed.then(|| format!("{} as {}", self.file.name, self.layer))
+    }
+
     /// A board with nothing but this layer.
     fn read(&self) -> Result<Artwork, Vec<Diagnostic>> {
         let File { name, text, .. } = *self.file;
@@ -212,10 +245,16 @@ impl Known<'_> {
     }
 }
 
-fn unknown(name: &str) -> Diagnostic {
-    let message = "a Gerber file, but neither it nor its name says which layer it is: left out";
-    let help = "name it as CAD systems do (-F_Cu.gbr, .gtl), or say which layer it is";
-    Diagnostic::warning(Rule::LayerUnknown, message).help(help).file(name)
+/// Takes out files of which a surer one holds the same layer; answers their names.
+fn less_sure<'a>(known: &mut Vec<Known<'a>>) -> Vec<&'a str> {
+    let sure: Vec<(Layer, From)> = known.iter().map(|one| (one.layer, one.source)).collect();
+    let is_surer = |one: &Known| {
+        let holes = matches!(one.layer, Layer::Holes(_));
+        !holes && sure.iter().any(|(layer, source)| *layer == one.layer && *source > one.source)
+    };
+    let names = known.iter().filter(|one| is_surer(one)).map(|one| one.file.name).collect();
+    known.retain(|one| !is_surer(one));
+    names
 }
 
 fn twice(one: &Known, earlier: &Known) -> Diagnostic {

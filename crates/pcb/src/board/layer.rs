@@ -125,6 +125,76 @@ impl Layer {
     }
 }
 
+impl Layer {
+    /// What a Gerber file holds whose name has a side in it, and perhaps what of that side: `board.top.gbr`, `BottomMask.ger`.
+    pub(super) fn by_side(name: &str) -> Option<Layer> {
+        let name = name.to_ascii_lowercase();
+        let name = name.rsplit(['/', '\\']).next().unwrap_or(&name);
+        let (mut face, mut what) = (None, None);
+        for word in name.split(|c: char| !c.is_ascii_alphabetic()).filter(|word| !word.is_empty()) {
+            let side = SIDES.iter().find_map(|(side, of)| {
+                let rest = word.strip_prefix(side).or_else(|| word.strip_suffix(side))?;
+                (rest.is_empty() || kind(rest).is_some()).then_some((*of, rest))
+            });
+            let rest = side.map_or(word, |(_, rest)| rest);
+            face = face.or(side.map(|(face, _)| face));
+            what = kind(rest).filter(|kind| *kind != Kind::Copper).or(what);
+        }
+        match what.unwrap_or(Kind::Copper) {
+            Kind::Copper => face.map(Layer::Copper),
+            Kind::Mask => face.map(Layer::Mask),
+            Kind::Legend => face.map(Layer::Legend),
+            Kind::Other => Some(Layer::Other),
+        }
+    }
+}
+
+/// What of a side a word of a name is about.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Copper,
+    Mask,
+    Legend,
+    Other,
+}
+
+fn kind(word: &str) -> Option<Kind> {
+    KINDS.iter().find(|(words, _)| words.contains(&word)).map(|(_, kind)| *kind)
+}
+
+/// Words for the sides: gEDA and pcb-rnd, DipTrace, EasyEDA, Mentor.
+const SIDES: [(&str, Face); 5] = [
+    ("top", Face::Front),
+    ("front", Face::Front),
+    ("bottom", Face::Back),
+    ("back", Face::Back),
+    ("bot", Face::Back),
+];
+
+/// Words for what is on a side.
+const KINDS: [(&[&str], Kind); 4] = [
+    (&["layer", "copper", "cu", "side", "etch", "etchlayer"], Kind::Copper),
+    (&["mask", "soldermask", "solderresist", "resist", "stopmask"], Kind::Mask),
+    (&["silk", "silks", "silkscreen", "legend", "overlay"], Kind::Legend),
+    (
+        &[
+            "paste",
+            "solderpaste",
+            "pastemask",
+            "stencil",
+            "assembly",
+            "fab",
+            "courtyard",
+            "adhesive",
+            "inner",
+            "drill",
+            "drawing",
+            "document",
+        ],
+        Kind::Other,
+    ),
+];
+
 /// The fields of what the file says it is (`.FileFunction`).
 fn function(text: &[u8]) -> Option<impl Iterator<Item = &str>> {
     let attribute = b"TF.FileFunction,";
@@ -190,7 +260,20 @@ const WORDS: [(&[&str], Layer); 8] = [
         &["b_silks", "b.silks", "b_silkscreen", "b.silkscreen", "silkscreen_bottom"],
         Layer::Legend(Face::Back),
     ),
-    (&["edge_cuts", "edge.cuts", "profile", "outline", "boardoutline"], Layer::Outline),
+    (
+        &[
+            "edge_cuts",
+            "edge.cuts",
+            "profile",
+            "outline",
+            "boardoutline",
+            "boardoutlinelayer",
+            "edge",
+            "edges",
+            "contour",
+        ],
+        Layer::Outline,
+    ),
     (
         &["f_paste", "f.paste", "b_paste", "b.paste", "solderpaste_top", "solderpaste_bottom"],
         Layer::Other,
@@ -257,6 +340,20 @@ mod tests {
             ("drill_1_16.xln", Layer::Holes(None)),
         ] {
             assert_eq!(Layer::named(name), Some(layer), "{name}");
+        }
+        for (name, layer) in [
+            ("hellboard.front.gbr", Some(Layer::Copper(Front))),
+            ("out/Bottom.gbr", Some(Layer::Copper(Back))),
+            ("board.topmask.gbr", Some(Layer::Mask(Front))),
+            ("board-top-silk.gbr", Some(Layer::Legend(Front))),
+            ("BottomSolderMask.ger", Some(Layer::Mask(Back))),
+            ("EtchLayer2Bottom.gdo", Some(Layer::Copper(Back))),
+            ("AssemblyTop.gdo", Some(Layer::Other)),
+            ("Top Paste.gbr", Some(Layer::Other)),
+            ("desktop.gbr", None),
+            ("backup.gbr", None),
+        ] {
+            assert_eq!(Layer::by_side(name), layer, "{name}");
         }
         for name in ["README", "profiles.gbr", "board.gbr", "stuff_cut.gbr", "F_Custom.gbr", ""] {
             assert_eq!(Layer::named(name), None, "{name}");

@@ -18,6 +18,10 @@ use program::{Diagnostic, Rule};
 /// Diameters this near to each other are one, mm.
 const ALIKE: f64 = 1e-4;
 
+/// Holes whose diameters differ by no more are made by one drill where there would be one for each, mm: 0.8 and 0.813, of mm and
+/// of inches. It is less than a drill in a simple spindle is off.
+const NEAR: f64 = 0.015;
+
 /// How holes are made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drilling {
@@ -25,7 +29,7 @@ pub struct Drilling {
     pub thickness: f64,
     /// How far tools go below the board, mm, 0 or more: for drills not less than the height of their tip.
     pub below: f64,
-    /// Diameters of the drills at hand, mm; `None` where there is one for each hole.
+    /// Diameters of the drills at hand, mm; `None` where there is one for each hole, and for holes that are 0.015 mm apart one.
     pub drills: Option<Vec<f64>>,
     /// By how much a drill may be wider or narrower than its hole, mm.
     pub tolerance: f64,
@@ -98,8 +102,10 @@ impl Drilling {
         let mut warnings = Vec::new();
         let mut drilled: Vec<(f64, &Hole)> = Vec::new();
         let mut milled: Vec<&Hole> = Vec::new();
+        let drills = self.drills.clone();
+        let drills = drills.unwrap_or_else(|| alike(holes, NEAR.min(self.tolerance)));
         for hole in holes {
-            match self.maker(hole) {
+            match self.maker(hole, &drills) {
                 Ok(Maker::Cutter) => milled.push(hole),
                 Ok(Maker::Drill(diameter)) => {
                     if (diameter - hole.diameter).abs() > ALIKE {
@@ -155,7 +161,7 @@ impl Drilling {
         self.thickness + self.below.max(0.0)
     }
 
-    fn maker(&self, hole: &Hole) -> Outcome<Maker> {
+    fn maker(&self, hole: &Hole, drills: &[f64]) -> Outcome<Maker> {
         let long = match &hole.shape {
             HoleShape::Round(_) => false,
             HoleShape::Slot(a, b) => a.distance(*b) > ALIKE && self.slots == Slots::Mill,
@@ -165,10 +171,9 @@ impl Drilling {
         if long || instead {
             return self.cutter_for(hole).ok_or_else(|| self.no_cutter(hole));
         }
-        let Some(drills) = &self.drills else { return Ok(Maker::Drill(hole.diameter)) };
         let off = |drill: f64| (drill - hole.diameter).abs();
         let nearest = drills.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)));
-        match nearest.filter(|drill| off(*drill) <= self.tolerance.max(ALIKE)) {
+        match nearest.filter(|drill| off(*drill) <= self.tolerance + ALIKE) {
             Some(drill) => Ok(Maker::Drill(drill)),
             None => self.cutter_for(hole).ok_or_else(|| self.no_drill(hole, nearest)),
         }
@@ -242,6 +247,22 @@ impl Drilling {
         let name = "mill holes".to_owned();
         Ok(Operation { name, tool: mill.tool.clone(), cuts: in_order(cuts, at) })
     }
+}
+
+/// A drill for all holes, and for those whose diameters are no more than `near` mm apart one: that of most of them.
+fn alike(holes: &[Hole], near: f64) -> Vec<f64> {
+    let mut diameters: Vec<f64> = holes.iter().map(|hole| hole.diameter).collect();
+    diameters.sort_by(f64::total_cmp);
+    let mut drills = Vec::new();
+    let mut rest = &diameters[..];
+    while let Some(least) = rest.first() {
+        let (near, others) =
+            rest.split_at(rest.partition_point(|diameter| diameter - least <= near + ALIKE));
+        let same = near.chunk_by(|a, b| b - a <= ALIKE).max_by_key(|same| same.len());
+        drills.extend(same.and_then(<[f64]>::first));
+        rest = others;
+    }
+    drills
 }
 
 /// Groups of cuts, one after the other in an order of short travel; `at` is where the tool comes from, and

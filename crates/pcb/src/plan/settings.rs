@@ -391,6 +391,8 @@ pub struct Running {
     pub probe: Option<[u32; 2]>,
     /// Whether the programs that cut copper measure these heights themselves, with the tool that cuts, and follow them.
     pub on_control: bool,
+    /// Whether each tool has a program of its own.
+    pub split_tools: bool,
 }
 
 impl Default for Running {
@@ -405,6 +407,7 @@ impl Default for Running {
             approach: 0.5,
             probe: None,
             on_control: false,
+            split_tools: false,
         }
     }
 }

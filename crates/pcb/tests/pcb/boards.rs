@@ -139,7 +139,7 @@ fn a_file_is_what_it_says_or_what_its_name_says() {
     assert_eq!(rules(&reading), ["layer-by-name", "layer-unknown", "file-unused"]);
     let of = |rule: &str| reading.warnings.iter().find(|found| found.rule.name() == rule).unwrap();
     assert!(of("layer-by-name").message.contains("outline"));
-    assert_eq!(of("layer-unknown").file, "stuff.gbr");
+    assert!(of("layer-unknown").message.ends_with(": stuff.gbr"));
     assert!(of("file-unused").message.contains("paste.gtp, readme.txt"));
     assert_area(&reading, 400.0);
     for face in [Face::Front, Face::Back] {
@@ -158,6 +158,30 @@ fn somebody_may_say_which_layer_it_is() {
     let reading = board::read("x", &files).unwrap();
     assert!(rules(&reading).is_empty() && reading.board.front.copper.is_some());
     assert_area(&reading, 400.0);
+}
+
+#[test]
+fn a_surer_file_is_taken_of_two() {
+    let (edge, copper) = (layer("", &square()), layer("", "D11*\nX10000Y10000D03*\n"));
+    let stated = layer("Copper,L1,Top", "D11*\nX12000Y10000D03*\n");
+    let texts: [(&str, &[u8]); 4] =
+        [("b.outline.gbr", &edge), ("b.top.gbr", &copper), ("b.gtl", &copper), ("b.gbr", &stated)];
+    let reading = read(&texts).unwrap();
+    let x = |reading: &Reading| {
+        reading.board.front.copper.as_ref().unwrap().region.extents().unwrap().0.x
+    };
+    assert!((x(&reading) - 11.5).abs() < 1e-9);
+    let found = &reading.warnings[0];
+    assert_eq!(found.message, "taken by the names of the files: b.outline.gbr as outline");
+    let reading = read(&texts[..2]).unwrap();
+    assert!(
+        reading.warnings[0]
+            .message
+            .ends_with("b.outline.gbr as outline; b.top.gbr as front copper")
+    );
+    // Two that are as sure are refused.
+    let twice = [texts[2], ("c.gtl", &copper[..])];
+    refused(read(&twice), "layer-twice", "b.gtl");
 }
 
 #[test]
@@ -489,7 +513,7 @@ fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
     let odd: Vec<(&str, &str)> =
         odd.iter().map(|found| (found.rule.name(), found.file.as_str())).collect();
     let joined = [("nets-joined", "a.gtl"), ("nets-joined", "a.gbl")];
-    let named = ["a.gbl", "a.gko", "a.gtl"].map(|file| ("layer-by-name", file));
+    let named = [("layer-by-name", "")];
     let outside = [("copper-outside", ""), ("hole-outside", "")];
     let drawn = [("deprecated", "a.gko")];
     assert_eq!(odd, [&named[..], &drawn, &joined, &outside].concat());

@@ -1,7 +1,7 @@
 //! What can be typed after `toolpost pcb`.
 
 use super::{Choice, Closeness, choice, length, lengths, option, place};
-use ::pcb::board::Face;
+use ::pcb::board::{Face, Layer};
 use ::pcb::isolation::{Direction, Narrow};
 use ::pcb::plan::{self, Isolate, Part, Settings, Turn};
 use clap::Args;
@@ -14,8 +14,10 @@ use std::path::PathBuf;
 pub struct Pcb {
     /// The board: a folder of Gerber and Excellon files, or such files; a board of KiCad (.kicad_pcb); or a
     /// board of nodes, tracks and pads (.toml, .json).
-    #[arg(value_name = "BOARD", required = true)]
+    #[arg(value_name = "BOARD", required_unless_present_any = ["front", "back", "drill"])]
     pub board: Vec<PathBuf>,
+    #[command(flatten)]
+    pub files: Files,
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
@@ -111,6 +113,7 @@ impl Pcb {
                 approach: running.approach,
                 probe: running.probe,
                 on_control: running.on_control,
+                split_tools: running.split_tools,
             },
         }
     }
@@ -170,6 +173,37 @@ const TURNS: [Choice<Turn>; 2] = [
     ("y", "Along Y: left and right change places", Turn::Y),
     ("x", "Along X: up and down change places", Turn::X),
 ];
+
+/// Files of which nobody has to guess what they hold.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Files")]
+pub struct Files {
+    /// The Gerber file of the copper of the front, whatever its name; others are still looked for in BOARD.
+    #[arg(long, value_name = "FILE")]
+    pub front: Option<PathBuf>,
+    /// The Gerber file of the copper of the back.
+    #[arg(long, value_name = "FILE")]
+    pub back: Option<PathBuf>,
+    /// The Gerber file of the edge.
+    #[arg(long, value_name = "FILE")]
+    pub outline: Option<PathBuf>,
+    /// A drill file; may be given several times.
+    #[arg(long, value_name = "FILE")]
+    pub drill: Vec<PathBuf>,
+}
+
+impl Files {
+    /// Each file, and what it holds.
+    pub fn named(&self) -> Vec<(PathBuf, Layer)> {
+        let one = [
+            (&self.front, Layer::Copper(Face::Front)),
+            (&self.back, Layer::Copper(Face::Back)),
+            (&self.outline, Layer::Outline),
+        ];
+        let one = one.into_iter().filter_map(|(file, layer)| Some((file.clone()?, layer)));
+        one.chain(self.drill.iter().map(|file| (file.clone(), Layer::Holes(None)))).collect()
+    }
+}
 
 /// How copper is isolated.
 #[derive(Debug, Args)]
@@ -235,8 +269,8 @@ pub struct Drilling {
     /// The drills that there are [default: one for each width of holes].
     #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',')]
     pub drills: Vec<f64>,
-    /// By how much a drill may be wider or narrower than its hole.
-    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.05", requires = "drills")]
+    /// By how much a drill may be wider or narrower than its hole; without --drills at most 0.015 mm count.
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.05")]
     pub drill_tolerance: f64,
     /// Width of the end mill for holes without a drill, for slots and routes.
     #[arg(long, value_name = "MM", value_parser = length)]
@@ -339,6 +373,9 @@ pub struct Running {
     /// edge count. Replaces probe.nc and --heights.
     #[arg(long, requires = "probe", conflicts_with = "heights")]
     pub on_control: bool,
+    /// Write a program for each tool (drill-1-0.8mm.nc), so that none changes tools: Z 0 is set anew with each.
+    #[arg(long)]
+    pub split_tools: bool,
     /// Measured heights that the programs follow: what a probing program has logged, or X, Y and Z in
     /// columns.
     #[arg(long, value_name = "FILE")]

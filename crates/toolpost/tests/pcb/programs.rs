@@ -136,6 +136,34 @@ fn what_is_outside_the_outline_moves_nothing() {
 }
 
 #[test]
+fn somebody_may_say_what_a_file_holds() {
+    let folder = small();
+    let parts = ["front", "back", "drill", "outline"];
+    let plain = made(&folder, &[]);
+    let right = parts.map(|part| plain.text(part).replace("board", "one"));
+    for (name, new) in [("front", "one"), ("back", "two"), ("edge", "three")] {
+        let text = folder.read(&format!("board/{name}.gbr"));
+        let text = text.lines().filter(|line| !line.contains("FileFunction")).collect::<Vec<_>>();
+        folder.write(&format!("{new}.gbr"), text.join("\n") + "\n");
+    }
+    folder.write("four.txt", DRILL);
+    let named = [
+        "--front",
+        "one.gbr",
+        "--back",
+        "two.gbr",
+        "--outline",
+        "three.gbr",
+        "--drill",
+        "four.txt",
+    ];
+    let call = ["pcb", "-o", "named", "-m", "grbl-3018", "--tool", "0.4", "--picture", "none"];
+    let said = folder.run(&[&call[..], &named].concat());
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    assert_eq!(parts.map(|part| folder.read(&format!("named/{part}.nc"))), right);
+}
+
+#[test]
 fn a_gap_of_the_edge_is_closed_and_said() {
     let folder = small();
     let whole = made(&folder, &[]).text("outline");
@@ -393,6 +421,45 @@ fn holes_are_made_by_the_drills_that_there_are() {
     let differs =
         "warning[drill-differs]: a hole of 0.82 mm at X 14.000 Y 5.000 is drilled with 0.8 mm";
     assert!(one.said.err.contains(differs), "{}", one.said.err);
+}
+
+#[test]
+fn holes_of_nearly_one_width_have_one_drill() {
+    let folder = small();
+    let drill = "M48\nMETRIC\nT1C0.8\nT2C0.813\nT3C0.85\n%\nT1\nX4.0Y5.0\nX6.0Y5.0\nT2\nX14.0Y5.0\nT3\nX16.0Y5.0\nM30\n";
+    folder.write("board/holes.drl", drill);
+    let near = made(&folder, &[]);
+    assert_eq!(near.operations("drill"), ["drill 0.8 mm", "drill 0.85 mm"]);
+    assert!(
+        near.said.err.contains("a hole of 0.813 mm at X 14.000 Y 5.000 is drilled with 0.8 mm")
+    );
+    let each = made(&folder, &["--drill-tolerance", "0"]);
+    assert_eq!(each.operations("drill"), ["drill 0.8 mm", "drill 0.813 mm", "drill 0.85 mm"]);
+    // 0.85 - 0.8 is a little more than 0.05 in numbers of the machine.
+    let given = made(&folder, &["--drills", "0.8"]);
+    assert_eq!(given.operations("drill"), ["drill 0.8 mm"]);
+}
+
+#[test]
+fn each_tool_may_have_a_program_of_its_own() {
+    let folder = small();
+    let drill = "M48\nMETRIC\nT1C0.8\nT2C1.2\n%\nT1\nX4.0Y5.0\nT2\nX14.0Y5.0\nM30\n";
+    folder.write("board/holes.drl", drill);
+    let split = made(&folder, &["--split-tools"]);
+    let names = split.report();
+    let names: Vec<_> =
+        names["programs"].as_array().unwrap().iter().map(|one| one["name"].clone()).collect();
+    assert_eq!(names, ["front", "drill-1-0.8mm", "drill-2-1.2mm", "back", "outline"]);
+    assert_eq!(split.holes("drill-1-0.8mm").len(), 1);
+    assert_eq!(split.holes("drill-2-1.2mm").len(), 1);
+    // Each is fitted, and Z 0 set with it, before the first move; nothing is changed in between.
+    let text = split.text("drill-2-1.2mm");
+    assert_eq!(
+        (text.matches("M0\n").count(), text.contains("(change the tool")),
+        (1, false),
+        "{text}"
+    );
+    assert!(!split.said.out.contains("missing"), "{:?}", split.said);
 }
 
 #[test]
