@@ -17,6 +17,8 @@ pub enum ArmAction {
     PartOnFlange(bool),
     /// Speed of moves of joints, percent of the fastest.
     JointSpeed(f64),
+    /// Speed of the joint that turns farthest in the moves of joints that follow, degrees/s.
+    JointRate(f64),
     /// How fast the tool may turn in lines and arcs, degrees/s: its axis, and about its axis; `None` is as the control is set up.
     TurnSpeed([Option<f64>; 2]),
     /// A motion.

@@ -317,6 +317,9 @@ fn a_listing_has_its_parts_and_its_positions_are_whole() {
     for (from, to, what) in [
         ("/PROG  JOB", "/PROX", "no /PROG"),
         ("/MN", "/XX", "no /MN"),
+        ("JOB", "A_NAME_OF_MORE_LETTERS_THAN_ANY_CONTROL_TAKES", "up to 36 letters"),
+        ("JOB", "1JOB", "a letter first"),
+        ("/MN", "DEFAULT_GROUP = *,*,*,*,*;\n/MN", "no motion group 1"),
         ("/END", "", "no /END behind it"),
         ("/END", "/END\nmore", "behind /END"),
         ("FINE ;", "FINE", "has no end: ;"),

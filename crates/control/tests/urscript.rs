@@ -215,6 +215,13 @@ fn an_arc_turns_the_tool_evenly_or_with_its_tangent() {
 #[test]
 fn speeds_are_those_of_the_command_and_the_tool_turns_by_4_radians_a_metre() {
     let events = body("movel(p[0,0,0,0,0,0])\nmovel(p[1,0,0,0,0,0],1.2,0.5)").unwrap();
+    let of_joints = body("movej([0,0,0,0,0,0],a=1,v=0.5)").unwrap();
+    let rate = of_joints.iter().find_map(|event| match event.action {
+        Action::Arm(ArmAction::JointRate(rate)) => Some(rate),
+        _ => None,
+    });
+    // 0.5 rad/s are 28.65 degrees/s.
+    assert!((rate.unwrap() - 28.647_889_8).abs() < 1e-6);
     // Without v a line goes at 0.25 m/s.
     assert_eq!(feeds(&events), [15_000.0, 30_000.0].map(Feed::PerMinute));
     let turns: Vec<f64> = events

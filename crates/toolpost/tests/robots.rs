@@ -105,6 +105,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("$VEL.CP=0.005000", "$VEL.CP=0.050000", "feed"),
     ("$VEL.CP=0.020000", ";", "feed"),
     ("$OUT[1]=TRUE", "$OUT[1]=FALSE", "dwell"),
+    ("BAS (#VEL_PTP,20)", "BAS (#VEL_PTP,100)", "feed"),
     ("$OUT[1]=TRUE", "$OUT[3]=TRUE", "output"),
     ("$ANOUT[1]=0.50000", "$ANOUT[1]=0.60000", "spindle"),
     ("$ANOUT[1]=0.50000", "$ANOUT[2]=0.50000", "output"),

@@ -240,7 +240,12 @@ impl<'a> Judge<'a> {
                 }
             }
             ArmAction::PartOnFlange(on_flange) => self.running.on_flange = Some(*on_flange),
-            ArmAction::JointSpeed(_) => {}
+            ArmAction::JointSpeed(percent) => return self.joint_speed(*percent),
+            ArmAction::JointRate(rate) => {
+                let slowest =
+                    self.arm.joints().iter().map(|joint| joint.speed).fold(f64::INFINITY, f64::min);
+                return self.joint_speed(100.0 * rate / slowest.to_degrees());
+            }
             ArmAction::Load(mass, center) => return self.load(*mass, *center),
             ArmAction::TurnSpeed(speed) => self.running.turn_speed = *speed,
             ArmAction::Move(motion) => return self.motion(line, motion),

@@ -69,7 +69,9 @@ fn kept(dialect: Dialect, text: &str) -> Vec<(Action, f64)> {
         match action {
             Action::Feed(Feed::PerMinute(new)) => feed = new,
             Action::Comment(_)
-            | Action::Arm(ArmAction::JointSpeed(_) | ArmAction::TurnSpeed(_)) => {}
+            | Action::Arm(
+                ArmAction::JointSpeed(_) | ArmAction::JointRate(_) | ArmAction::TurnSpeed(_),
+            ) => {}
             Action::Arm(ArmAction::Move(motion)) => {
                 let by_joints = matches!(motion.path, ArmPath::Joints(_));
                 let feed = if by_joints { 0.0 } else { feed };

@@ -13,6 +13,9 @@ use std::collections::HashMap;
 /// Most calls within calls: no manual at hand states a number.
 const DEEPEST: usize = 10;
 
+/// Most letters of a program's name (R-30iB; older controllers take 8).
+const LONGEST: usize = 36;
+
 /// Most lines of a program (R-30iB: 9999).
 const MOST_LINES: u32 = 9_999;
 
@@ -58,6 +61,15 @@ impl<'t> File<'t> {
                 name = word.and_then(|word| std::str::from_utf8(word).ok());
                 continue;
             }
+            if let Some(groups) = trimmed.strip_prefix(b"DEFAULT_GROUP") {
+                let first =
+                    groups.iter().find(|byte| !byte.is_ascii_whitespace() && **byte != b'=');
+                if first != Some(&b'1') {
+                    let message =
+                        "the program has no motion group 1 (DEFAULT_GROUP): it cannot move the arm";
+                    return Err(scan.since(0, Rule::ProgramFrame, message));
+                }
+            }
             part = match (part, trimmed) {
                 (Part::Head, b"/MN") => Part::Instructions,
                 (Part::Instructions, b"/POS") => Part::Positions,
@@ -82,6 +94,14 @@ impl<'t> File<'t> {
             Diagnostic::error(Rule::ProgramFrame, message).line(1)
         };
         let Some(name) = name else { return Err(missing("/PROG with a name").into()) };
+        let first = name.bytes().next().is_some_and(|byte| byte.is_ascii_alphabetic());
+        let allowed = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+        if !first || name.len() > LONGEST || !name.bytes().all(allowed) {
+            let message = format!(
+                "a program has a name of up to {LONGEST} letters, digits and _, a letter first"
+            );
+            return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
+        }
         if part != Part::Behind {
             return Err(missing("/MN, or no /END behind it").into());
         }

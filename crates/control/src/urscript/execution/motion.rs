@@ -35,8 +35,13 @@ impl State {
             },
         };
         given.positive(scan, "a", 1.4)?;
-        given.positive(scan, "v", 1.05)?;
+        let rate = given.positive(scan, "v", 1.05)?;
         no_time(scan, given)?;
+        if self.joint_rate != Some(rate) {
+            self.joint_rate = Some(rate);
+            let action = ArmAction::JointRate(rate.to_degrees());
+            channel.report(scan.source.line, Action::Arm(action))?;
+        }
         // The joints go evenly: by how much the tip leaves its path, they decide.
         let corner = match given.number(scan, "r", 0.0)? {
             0.0 => Corner::Exact,

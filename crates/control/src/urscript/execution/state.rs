@@ -19,6 +19,8 @@ pub(in crate::urscript) struct State {
     count: usize,
     /// The `v` of the last line or arc, m/s.
     pub(super) speed: Option<f64>,
+    /// The `v` of the last motion of joints, rad/s.
+    pub(super) joint_rate: Option<f64>,
     /// The name of the operator's function that changes tools.
     pub(super) tool_change: String,
 }
@@ -37,6 +39,7 @@ impl State {
             locals: vec![HashMap::new()],
             count: 0,
             speed: None,
+            joint_rate: None,
             tool_change: tool_change.into(),
         }
     }

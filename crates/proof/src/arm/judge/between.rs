@@ -6,6 +6,23 @@ use geom::Vec3;
 use program::{Outcome, Output, OutputValue, Rule};
 
 impl Judge<'_> {
+    /// The speed of motions of joints, percent of the fastest; or, of the slowest joint.
+    ///
+    /// # Errors
+    /// It is above that of the cell.
+    pub(super) fn joint_speed(&self, percent: f64) -> Outcome {
+        let most = self.cell.joint_speed;
+        match percent <= most * 1.001 {
+            true => Ok(()),
+            false => refused(
+                Rule::Feed,
+                format!(
+                    "the joints go at {percent:.1} %, `joint_speed` of the cell allows {most} %"
+                ),
+            ),
+        }
+    }
+
     /// What hangs on the flange.
     ///
     /// # Errors
