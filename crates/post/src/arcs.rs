@@ -64,6 +64,10 @@ const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 /// √½ steps in the plane, and its centre by less.
 const ANGLE_STEPS: f64 = 0.85;
 
+/// An arc of a smaller radius is written as lines, mm: a few steps of the last decimal do not say a circle, and LinuxCNC refuses radii
+/// below 0.00127 mm.
+const LEAST_RADIUS: f64 = 0.002;
+
 /// How an arc is written.
 struct Form {
     facts: &'static Facts,
@@ -337,7 +341,8 @@ impl Walk<'_> {
             let lever = || 1.0 - (wanted.min(TAU) / 2.0).cos();
             let most = CENTER_STEPS * self.resolution * (1.0 + 1e-9);
             let close = moved * 2.0 <= most || moved * lever() <= most;
-            (near && even && moved <= can.lowering_tolerance && close && radius > 0.0).then_some(
+            let is_circle = radius >= LEAST_RADIUS;
+            (near && even && moved <= can.lowering_tolerance && close && is_circle).then_some(
                 Block { to, end, center: written, middle, radius: said, sweep: sign * sweep, rise },
             )
         };
@@ -432,8 +437,10 @@ impl Walk<'_> {
         let tolerance = self.machine.capabilities.lowering_tolerance;
         // Over a surface only one line ends where the arc does; round a quarter or less it cannot turn back.
         let bulge = arc.radius() * (1.0 - (arc.sweep / 2.0).cos());
-        let one = self.follows(arc) && arc.sweep <= PI / 2.0 && bulge <= tolerance;
-        let all = if one { 1.0 } else { arc.chords(tolerance) as f64 };
+        let over_surface = self.follows(arc) && arc.sweep <= PI / 2.0 && bulge <= tolerance;
+        // No decimal says where such an arc goes between its ends.
+        let within_a_step = arc.radius() <= self.resolution;
+        let all = if over_surface || within_a_step { 1.0 } else { arc.chords(tolerance) as f64 };
         let lines = ((until - from) * all - 1e-9).ceil().max(1.0) as usize;
         self.followed(arc, lines == 1 && until - from == 1.0, what)?;
         for line in 1..=lines {
