@@ -151,7 +151,7 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             lacks(
                 "[settings]".into(),
                 "length_moves_axis = true",
-                "parameter 5006#6: true where it is 0; G49 then moves Z by the length",
+                "parameter 5006#6: true where it is 0; a block with G43, G43.4, G49 or another H then moves Z by the length",
             );
         }
     }
