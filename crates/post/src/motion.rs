@@ -10,7 +10,7 @@ use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
 use machine::linearise::RotaryPose;
 use machine::plan::{NEAR, Step};
-use program::{Diagnostic, Feed, Pose, Rule};
+use program::{Diagnostic, Pose, Rule};
 
 /// How far beyond everything the source touches the tool is drawn back before it turns, mm.
 const CLEAR: f64 = 5.0;
@@ -241,6 +241,7 @@ impl Walk<'_> {
     /// Writes the straight cut that has been aimed, `length` mm long, one of so many pieces of the source's.
     #[inline]
     fn cut(&mut self, length: f64, pieces: usize, cut: Cut) -> Outcome {
+        self.goes_on = false;
         if !self.writer.changes(POSITION | ORIENTATION) {
             self.writer.unset(Words::ALL);
             return Ok(());
@@ -265,10 +266,8 @@ impl Walk<'_> {
     #[inline]
     fn can_go_on(&self) -> bool {
         matches!(self.place.kind, Kind::Plain | Kind::Tilted(..))
-            && matches!(self.wanted.feed(), Some(Feed::PerMinute(_)))
-            && !self.compensation_pending()
             && self.wire.is_none()
-            && self.wanted.surface().is_none()
+            && self.wanted.repeats_straight_cuts(self.sent.compensation())
     }
 
     /// The block for a straight move in the orientation at hand.

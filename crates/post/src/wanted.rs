@@ -118,4 +118,24 @@ impl<'a> Wanted<'a> {
     pub(crate) fn set_surface(&mut self, surface: &'a Surface) {
         self.surface = Some(surface);
     }
+
+    /// Whether straight cuts in one orientation differ in where they go alone, where the control has been sent the compensation `sent`:
+    /// what the short path of a straight cut asks of what is wanted. Every field is named, so that a new one stops the compiler here.
+    #[inline]
+    pub(crate) fn repeats_straight_cuts(&self, sent: Compensation) -> bool {
+        let Wanted {
+            // The length of the cut, or the way that it goes, counts in its block.
+            feed,
+            compensation,
+            surface,
+            // A record changes them, and a cut behind another record than a cut takes the long path.
+            tool: _,
+            spindle: _,
+            coolant: _,
+            compensation_line: _,
+            cycle: _,
+            path_tolerance: _,
+        } = self;
+        matches!(feed, Some(Feed::PerMinute(_))) && *compensation == sent && surface.is_none()
+    }
 }

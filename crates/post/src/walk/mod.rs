@@ -235,26 +235,30 @@ impl<'a> Walk<'a> {
             };
         }
         let goes_on = std::mem::take(&mut self.goes_on);
+        if let Op::Line(pose) = &record.op
+            && goes_on
+            && self.keeps_orientation(pose)
+        {
+            return self.line_on(pose);
+        }
+        let done = self.obey(record, stop);
+        // What another record cuts straight on its way has a feed or an end of its own. An arc changes nothing but how the control moves.
+        let is_line = matches!(record.op, Op::Line(_));
+        let keeps = goes_on && matches!(record.op, Op::Arc(_));
+        self.goes_on = done.is_ok() && (keeps || is_line && self.goes_on);
+        done
+    }
+
+    fn obey(&mut self, record: &'a Record, stop: Option<Stop>) -> Outcome {
         match &record.op {
-            Op::Line(pose) if goes_on && self.keeps_orientation(pose) => self.line_on(pose),
             Op::Rapid(pose) => self.motion(stop, |walk, stop| walk.rapid(pose, stop)),
             Op::Line(pose) => {
                 self.come_back(stop.as_ref())?;
-                let mut goes_on = false;
-                let done = self.motion(stop, |walk, stop| {
-                    let done = walk.line(pose, stop);
-                    goes_on = walk.goes_on;
-                    done
-                });
-                self.goes_on = goes_on;
-                done
+                self.motion(stop, |walk, stop| walk.line(pose, stop))
             }
             Op::Arc(to) => {
                 self.come_back(stop.as_ref())?;
-                let done = self.motion(stop, |walk, stop| walk.arc(to, stop));
-                // It changes nothing but how the control moves.
-                self.goes_on = goes_on && done.is_ok();
-                done
+                self.motion(stop, |walk, stop| walk.arc(to, stop))
             }
             Op::Thread(thread) => {
                 self.come_back(stop.as_ref())?;
@@ -382,7 +386,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A motion, by a tool that has been called. What it cuts straight on its way has a feed or an end of its own.
+    /// A motion, by a tool that has been called.
     #[inline]
     fn motion(
         &mut self,
@@ -392,9 +396,7 @@ impl<'a> Walk<'a> {
         if self.wanted.tool().is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
-        let done = stop.map_or(Ok(()), |stop| go(self, &stop));
-        self.goes_on = false;
-        done
+        stop.map_or(Ok(()), |stop| go(self, &stop))
     }
 
     /// Positions are counted from another work offset from here on; the way there leads over the part.
