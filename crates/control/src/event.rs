@@ -583,6 +583,14 @@ impl Risk {
         Risk { rule: Rule::LeftOn, what, help, refused: true }
     }
 
+    /// `SetDO` and `SetAO` of RAPID with a name of the controller's configuration.
+    pub(crate) const OPERATOR_SIGNAL: Risk = Risk {
+        rule: Rule::OperatorData,
+        what: "names a signal whose number the machine file does not say",
+        help: "`address` of [words.SIGNAL] and [words.CHANNEL] is what names of signals begin with, their number follows",
+        refused: true,
+    };
+
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: Rule::OperatorData,

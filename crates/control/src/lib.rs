@@ -37,6 +37,7 @@ mod klartext;
 mod krl;
 mod ls;
 mod points;
+mod rapid;
 mod sinumerik;
 pub mod tools;
 mod urscript;
@@ -85,13 +86,15 @@ pub enum Dialect {
     UrScript,
     /// Listings of FANUC's robot programs.
     Ls,
+    /// ABB's robot language (IRC5, OmniCore).
+    Rapid,
     /// ISO code in which a CAM system keeps its toolpaths and which no machine reads: the crate that reads them describes it.
     Source(&'static Facts),
 }
 
 impl Dialect {
     /// Every dialect of a control with the name that its file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 16] = [
+    pub const NAMES: [(&'static str, Dialect); 17] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -108,6 +111,7 @@ impl Dialect {
         ("krl", Dialect::Krl),
         ("urscript", Dialect::UrScript),
         ("ls", Dialect::Ls),
+        ("rapid", Dialect::Rapid),
     ];
 
     /// The dialect of that name.
@@ -134,6 +138,7 @@ impl Dialect {
             Dialect::Krl => Language::Krl,
             Dialect::UrScript => Language::UrScript,
             Dialect::Ls => Language::Ls,
+            Dialect::Rapid => Language::Rapid,
         }
     }
 
@@ -146,7 +151,8 @@ impl Dialect {
             | Language::Points
             | Language::Krl
             | Language::UrScript
-            | Language::Ls => Corners::Followed,
+            | Language::Ls
+            | Language::Rapid => Corners::Followed,
         }
     }
 
@@ -164,7 +170,8 @@ impl Dialect {
             | Language::Klartext
             | Language::Krl
             | Language::UrScript
-            | Language::Ls => Ending::Code,
+            | Language::Ls
+            | Language::Rapid => Ending::Code,
             Language::Points => Ending::Text,
         }
     }
@@ -177,7 +184,9 @@ impl Dialect {
             Language::Klartext => FeedPath::AllAxes,
             Language::Points => FeedPath::AsSetUp,
             // The speed of the tip, whatever turns.
-            Language::Krl | Language::UrScript | Language::Ls => FeedPath::LinearAxes,
+            Language::Krl | Language::UrScript | Language::Ls | Language::Rapid => {
+                FeedPath::LinearAxes
+            }
         }
     }
 
@@ -191,7 +200,8 @@ impl Dialect {
             | Language::Points
             | Language::Krl
             | Language::UrScript
-            | Language::Ls => None,
+            | Language::Ls
+            | Language::Rapid => None,
         }
     }
 
@@ -212,6 +222,7 @@ enum Language {
     Krl,
     UrScript,
     Ls,
+    Rapid,
 }
 
 /// How a program ends.
@@ -285,6 +296,8 @@ pub struct Settings {
     pub tool_change: String,
     /// The number of the user frame, the tool and the position register that programs of an arm set for themselves (FANUC).
     pub own_frame: Option<u32>,
+    /// What the names of a robot's digital and of its analog outputs begin with, where outputs have names; their numbers follow.
+    pub signals: [String; 2],
     /// The wire, where the machine has one.
     pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
@@ -419,6 +432,7 @@ impl Settings {
             kinematics: None,
             tool_change: String::new(),
             own_frame: None,
+            signals: [const { String::new() }; 2],
             wire: Wire::default(),
             path_tolerance: 0.0,
             orientation_tolerance: 0.0,
@@ -454,6 +468,7 @@ pub fn vocabulary(dialect: Dialect) -> Vec<String> {
         Language::Krl => krl::vocabulary(),
         Language::UrScript => urscript::vocabulary(),
         Language::Ls => ls::vocabulary(),
+        Language::Rapid => rapid::vocabulary(),
     }
 }
 
@@ -484,5 +499,6 @@ pub fn read(
         Language::Krl => krl::run(settings, text, channel),
         Language::UrScript => urscript::run(settings, text, channel),
         Language::Ls => ls::run(settings, text, channel),
+        Language::Rapid => rapid::run(settings, text, channel),
     })
 }

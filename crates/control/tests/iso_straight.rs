@@ -19,6 +19,8 @@ fn dialects() -> impl Iterator<Item = Dialect> {
                 | Dialect::Klartext
                 | Dialect::Points
                 | Dialect::Krl
+                | Dialect::UrScript
+                | Dialect::Rapid
         )
     };
     Dialect::NAMES.into_iter().map(|(_, dialect)| dialect).filter(move |dialect| !other(dialect))

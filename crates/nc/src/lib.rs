@@ -119,6 +119,8 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
         operator_parameters: machine.operator_parameters.clone(),
         tool_change: machine.cell.as_ref().map(|cell| cell.tool_change.clone()).unwrap_or_default(),
         own_frame: machine.cell.as_ref().and_then(|cell| cell.own_frame),
+        signals: ["SIGNAL", "CHANNEL"]
+            .map(|word| machine.words.get(word).map_or("", |word| word.address.trim()).to_owned()),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,
             thread: wire.thread,

@@ -184,6 +184,10 @@ names! {
         MiddleQuaternion2 Word "MQ2", "", "Its part along X.";
         MiddleQuaternion3 Word "MQ3", "", "Its part along Y.";
         MiddleQuaternion4 Word "MQ4", "", "Its part along Z.";
+        Configuration1 Word "CF1", "", "Quarter of a turn in which joint 1 of a robot is at the end of a line or an arc: 0 from 0 to below 90°, -1 below 0.";
+        Configuration4 Word "CF4", "", "That of joint 4.";
+        Configuration6 Word "CF6", "", "That of joint 6.";
+        ConfigurationX Word "CFX", "", "Posture of a robot there: 4 for a wrist behind axis 1, 2 for an elbow below, 1 for joint 5 below 0, added up.";
         J1 Word "J1", "degrees", "Position of joint 1 of a robot, as the controller shows it.";
         J2 Word "J2", "degrees", "Position of joint 2.";
         J3 Word "J3", "degrees", "Position of joint 3.";

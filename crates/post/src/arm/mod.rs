@@ -406,6 +406,8 @@ impl<'a> Walk<'a> {
         self.set_each(JOINTS, shown.map(f64::to_degrees));
         self.writer.set(WordName::Point, point);
         self.say_joint_speed();
+        // The speed of the tip, for controls that bound moves of joints by it.
+        self.writer.set(WordName::F, self.cell.rapid);
         self.required(BlockName::Joints)?;
         self.is_exact = self.arm.unmeasured() == 0.0;
         let tool = self.tool.unwrap_or(Frame::IDENTITY);
@@ -504,6 +506,7 @@ impl<'a> Walk<'a> {
     fn along(&mut self, end: &Position, (corner, point): (f64, f64)) {
         self.set(&POSE, &end.tool);
         self.writer.set(WordName::Point, point);
+        self.set_configuration(&end.joints);
         let code = if corner > 0.0 { corner::BLEND } else { corner::EXACT };
         self.writer.code(WordName::CornerMode, code);
         // An exact stop that has a word of its own has no distance.
@@ -576,6 +579,22 @@ impl<'a> Walk<'a> {
         };
         let joints = std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
         Ok(Position { tool: *tool, joints })
+    }
+
+    /// Quarters of joints 1, 4 and 6 and the posture. Where a joint is at the edge of a quarter, the control does not use it.
+    fn set_configuration(&mut self, joints: &Joints) {
+        let Some(shown) = self.arm.shown(joints) else { return };
+        let quarter = |joint: usize| (shown[joint].to_degrees() / 90.0).floor();
+        let posture = self.arm.posture(joints);
+        let bits = [(posture.rear(), 4.0), (posture.below(), 2.0), (posture.flip(), 1.0)];
+        let posture = bits.into_iter().filter(|(is, _)| *is).map(|(_, bit)| bit).sum();
+        let words = [
+            WordName::Configuration1,
+            WordName::Configuration4,
+            WordName::Configuration6,
+            WordName::ConfigurationX,
+        ];
+        self.set_each(words, [quarter(0), quarter(3), quarter(5), posture]);
     }
 
     fn straight(&mut self, end: &Position, corner: f64) -> Outcome {

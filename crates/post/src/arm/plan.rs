@@ -17,6 +17,11 @@ const RADII: f64 = 0.01;
 /// Points along an arc, at which joints are looked for, are so far apart at the most, radians.
 const ALONG_ARC: f64 = 0.1;
 
+/// Arcs that turn by less than this, radians, or from whose start the point half way is nearer than this, mm, are written as chords:
+/// controllers refuse three points so near to a line or to each other (RAPID: 1° between the other two points, 0.1 mm).
+const LEAST_SWEEP: f64 = 0.08;
+const LEAST_CHORD: f64 = 0.12;
+
 /// What an arm does, in order.
 pub(super) enum Step<'a> {
     /// A motion.
@@ -414,14 +419,16 @@ impl<'a> Walk<'a, '_> {
         let corner = self.corner;
         let pose = |part: f64| end.at(arc.at(part));
         let count = arc.chords(self.machine.capabilities.lowering_tolerance);
+        let most = self.machine.capabilities.arc_sweep;
+        let half_way = 2.0 * arc.length() / arc.sweep * (arc.sweep.min(most) / 4.0).sin();
+        let is_flat = arc.sweep < LEAST_SWEEP || half_way < LEAST_CHORD;
         // An arc that its chord does not leave has no third point off the line.
-        if count == 1 || arc.rise().abs() > self.machine.resolution() {
+        if count == 1 || is_flat || arc.rise().abs() > self.machine.resolution() {
             for i in 1..=count {
                 self.go(line, &pose(i as f64 / count as f64)?, Kind::Line, (feed, corner));
             }
             return Ok(());
         }
-        let most = self.machine.capabilities.arc_sweep;
         let parts = (arc.sweep / most - 1e-9).ceil().max(1.0) as usize;
         let steps = 2 * (arc.sweep / parts as f64 / ALONG_ARC / 2.0).ceil().max(1.0) as usize;
         for i in 0..parts {

@@ -318,6 +318,7 @@ const READERS: &[(&str, &str, &str)] = &[
     ("krl/job.src", "in.src", "prove in.src -m kuka-kr6-r900 --against part.cls"),
     ("urscript/job.script", "in.script", "prove in.script -m universal-ur5e --against part.cls"),
     ("ls/job.ls", "in.ls", "prove in.ls -m fanuc-lrmate-200id-mill --against part.cls"),
+    ("rapid/job.mod", "in.mod", "prove in.mod -m abb-irb120 --against part.cls"),
     (
         "../../examples/flange.tbl",
         "in.tbl",
@@ -545,6 +546,7 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
             "krl" => &["kuka-kr6-r900"],
             "urscript" => &["universal-ur5e"],
             "fanuc-robot" => &["fanuc-lrmate-200id-mill"],
+            "rapid" => &["abb-irb120"],
             _ => &[],
         };
         let named =

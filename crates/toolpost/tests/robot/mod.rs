@@ -108,6 +108,9 @@ fn same(machine: &Machine, pair: (&Action, &Action)) -> bool {
         | (Action::Arm(ArmAction::Tool(Some(a))), Action::Arm(ArmAction::Tool(Some(b)))) => {
             near(a, b)
         }
+        (Action::Arm(ArmAction::Load(a, c)), Action::Arm(ArmAction::Load(b, d))) => {
+            (a - b).abs() <= 5e-3 && c.distance(*d) <= 0.1
+        }
         (Action::Dwell(a), Action::Dwell(b)) => b >= a,
         (Action::Output(a), Action::Output(b)) => match (a.value, b.value) {
             (OutputValue::Analog(x), OutputValue::Analog(y)) => {

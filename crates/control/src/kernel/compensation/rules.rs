@@ -77,7 +77,7 @@ impl Rules {
             // So with wires, whose offsets are the generator's.
             Dialect::FanucWire | Dialect::Sodick | Dialect::Agie => None,
             // Robots have none: what writes for them works it out.
-            Dialect::Krl | Dialect::UrScript | Dialect::Ls => None,
+            Dialect::Krl | Dialect::UrScript | Dialect::Ls | Dialect::Rapid => None,
             // A CAM system has worked its paths out already; what it has not, is the new control's.
             Dialect::Grbl | Dialect::Marlin | Dialect::Points | Dialect::Source(_) => None,
         }

@@ -1,0 +1,6 @@
+//! What is active, and what each statement does.
+
+mod motion;
+mod state;
+
+pub(super) use state::State;

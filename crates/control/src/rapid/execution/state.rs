@@ -1,0 +1,223 @@
+//! What a program has set: data, modes, frames.
+
+use crate::event::{Action, Risk};
+use crate::kernel::Channel;
+use crate::rapid::language::{Declaration, Name, Readable, Scan, Target, Value};
+use crate::{ArmAction, Turning};
+use geom::Frame;
+use program::{Input, Outcome, Output, OutputValue, Rule, Tool, Until};
+use std::collections::HashMap;
+
+/// Most data that a program may declare.
+const MOST_VARIABLES: usize = 100_000;
+
+/// Data of a program.
+struct Variable {
+    kind: &'static str,
+    value: Option<Value>,
+    constant: bool,
+}
+
+/// What the motion before has set, so that each is reported where it changes alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Reported {
+    pub(super) tool: Option<Frame>,
+    pub(super) base: Option<Frame>,
+    pub(super) on_flange: Option<bool>,
+    pub(super) load: Option<[f64; 4]>,
+    pub(super) speed: Option<[f64; 2]>,
+}
+
+/// What is active. The modes are not known before the program states them: what a program that was stopped has left is in force
+/// where the operator does not begin at `main`.
+pub(in crate::rapid) struct State {
+    variables: HashMap<Name, Variable>,
+    /// `SingArea`.
+    pub(super) turning: Option<Turning>,
+    /// `CirPathMode`.
+    pub(super) circles: Option<Turning>,
+    /// Whether `ConfL \Off` lets the arm take the posture nearest to where it stands.
+    pub(super) is_nearest: bool,
+    pub(super) reported: Reported,
+    /// The tool in the work object, where the motion before has ended at a pose.
+    pub(super) standing: Option<Frame>,
+    /// The name of the operator's procedure that changes tools.
+    tool_change: String,
+    /// What names of digital and of analog signals begin with; their numbers follow.
+    signals: [String; 2],
+}
+
+impl Readable for State {
+    fn value(&self, name: Name) -> Option<(&'static str, Option<&Value>)> {
+        let variable = self.variables.get(&name)?;
+        Some((variable.kind, variable.value.as_ref()))
+    }
+}
+
+impl State {
+    pub(in crate::rapid) fn new(tool_change: &str, signals: &[String; 2]) -> State {
+        State {
+            variables: HashMap::new(),
+            turning: None,
+            circles: None,
+            is_nearest: false,
+            reported: Reported::default(),
+            standing: None,
+            tool_change: tool_change.to_ascii_uppercase(),
+            signals: signals.clone().map(|name| name.to_ascii_uppercase()),
+        }
+    }
+
+    /// `ConfL`.
+    pub(in crate::rapid) fn set_nearest(&mut self, is_nearest: bool) {
+        self.is_nearest = is_nearest;
+    }
+
+    /// `SingArea`.
+    pub(in crate::rapid) fn set_turning(&mut self, turning: Turning) {
+        self.turning = Some(turning);
+    }
+
+    /// `CirPathMode`.
+    pub(in crate::rapid) fn set_circles(&mut self, turning: Turning) {
+        self.circles = Some(turning);
+    }
+
+    /// Data are declared.
+    ///
+    /// # Errors
+    /// Others have that name, or there are too many.
+    pub(in crate::rapid) fn declare(
+        &mut self,
+        scan: &Scan,
+        from: usize,
+        declared: Declaration,
+    ) -> Outcome {
+        let Declaration { name, kind, value, constant } = declared;
+        if self.variables.len() >= MOST_VARIABLES {
+            let message = "more data than a controller has room for";
+            return Err(scan.since(from, Rule::TooMuch, message));
+        }
+        match self.variables.insert(name, Variable { kind, value, constant }) {
+            None => Ok(()),
+            Some(_) => Err(scan.since(from, Rule::Twice, format!("{name} is declared twice"))),
+        }
+    }
+
+    /// What a procedure has declared ends with it.
+    pub(in crate::rapid) fn leave(&mut self, declared: &[Name]) {
+        for name in declared {
+            self.variables.remove(name);
+        }
+    }
+
+    /// An assignment.
+    pub(in crate::rapid) fn assign(
+        &mut self,
+        scan: &Scan,
+        from: usize,
+        target: &Target,
+        value: Value,
+    ) -> Outcome {
+        let wrong = |message: String| Err(scan.since(from, Rule::Variable, message));
+        let Some(variable) = self.variables.get_mut(&target.name) else {
+            return wrong(format!("{} is not declared here", target.name));
+        };
+        if variable.constant {
+            return wrong(format!("{} is a constant", target.name));
+        }
+        if target.places.is_empty() {
+            variable.value = Some(value);
+            return Ok(());
+        }
+        let Some(mut part) = variable.value.as_mut() else {
+            return wrong(format!("no statement has set the other parts of {}", target.name));
+        };
+        for place in &target.places {
+            let Value::List(parts) = part else { return wrong(String::from("it has no parts")) };
+            match parts.get_mut(*place) {
+                Some(inner) => part = inner,
+                None => return wrong(String::from("it has no such part")),
+            }
+        }
+        *part = value;
+        Ok(())
+    }
+
+    /// A call of the operator's tool change; whether it is that.
+    pub(in crate::rapid) fn called(
+        &mut self,
+        (scan, from, line): (&Scan, usize, u32),
+        name: Name,
+        arguments: &[Value],
+        channel: &mut Channel,
+    ) -> Outcome<bool> {
+        if self.tool_change.is_empty() || name.as_str() != self.tool_change {
+            return Ok(false);
+        }
+        let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
+        let number = match arguments {
+            [Value::Number(number)] if whole(number) => *number as u32,
+            _ => {
+                let message = "a tool change has the number of the tool as its one argument";
+                return Err(scan.since(from, Rule::Tool, message));
+            }
+        };
+        let tool = Tool { number, ..Tool::default() };
+        channel.report(line, Action::Tool(Box::new(tool)))?;
+        // What the operator's procedure leaves behind, this program does not say.
+        (self.turning, self.circles, self.is_nearest) = (None, None, false);
+        (self.reported, self.standing) = (Reported::default(), None);
+        for variable in self.variables.values_mut().filter(|variable| !variable.constant) {
+            variable.value = None;
+        }
+        channel.report(line, Action::Arm(ArmAction::TurnSpeed([None; 2])))?;
+        channel.report(line, Action::Arm(ArmAction::Base(None)))?;
+        channel.report(line, Action::Arm(ArmAction::Tool(None)))?;
+        Ok(true)
+    }
+
+    /// The number of a signal by its name; `None` where the machine has no such name.
+    fn signal(&self, name: Name, which: usize) -> Option<u32> {
+        let prefix = &self.signals[which];
+        let digits = name.as_str().strip_prefix(prefix.as_str())?;
+        let plain = !prefix.is_empty() && !digits.starts_with('0') && digits.len() <= 6;
+        digits.parse().ok().filter(|_| plain)
+    }
+
+    /// `SetDO`, `SetAO`.
+    pub(in crate::rapid) fn output(
+        &mut self,
+        line: u32,
+        name: Name,
+        value: OutputValue,
+        channel: &mut Channel,
+    ) -> Outcome {
+        let which = usize::from(matches!(value, OutputValue::Analog(_)));
+        match self.signal(name, which) {
+            Some(number) => {
+                let output = Output { number, value, with_motion: false };
+                channel.report(line, Action::Output(output))
+            }
+            None => channel.report(line, Action::Risk(Box::new(Risk::OPERATOR_SIGNAL))),
+        }
+    }
+
+    /// `WaitDI`.
+    pub(in crate::rapid) fn input(
+        &mut self,
+        line: u32,
+        name: Name,
+        on: bool,
+        channel: &mut Channel,
+    ) -> Outcome {
+        // Inputs have names of their own: their number is that at the end of the name.
+        let digits = name.as_str().trim_start_matches(|c: char| !c.is_ascii_digit());
+        let Ok(number) = digits.parse() else {
+            return channel.report(line, Action::Risk(Box::new(Risk::OPERATOR_SIGNAL)));
+        };
+        let until = if on { Until::High } else { Until::Low };
+        let input = Input { number, until, timeout: f64::INFINITY };
+        channel.report(line, Action::Input(Box::new(input)))
+    }
+}

@@ -1,0 +1,266 @@
+//! Through a module: its data, `main`, and what that calls in it and in the modules of other files.
+
+use super::execution::State;
+use super::language::{Name, REFUSED, RESERVED, Routine, Scan, Statement, declaration, read};
+use crate::Settings;
+use crate::event::Action;
+use crate::kernel::Channel;
+use crate::kernel::flow::BlockLocation;
+use program::{Diagnostic, Outcome, OutputValue, Rule};
+use std::collections::HashMap;
+
+/// Most calls within calls.
+const DEEPEST: usize = 20;
+
+/// A module.
+struct Module<'t> {
+    text: &'t [u8],
+    /// The line that is reported for all of it; none of its own for the file that is run.
+    shown: Option<u32>,
+    /// Where its procedures begin: behind their heads.
+    routines: HashMap<Name, BlockLocation>,
+}
+
+/// Whether a procedure has come to its end, or the program.
+#[derive(Clone, Copy, PartialEq)]
+enum Ended {
+    Routine(u32),
+    Program(u32),
+}
+
+/// Runs a program.
+pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
+    let mut state = State::new(&settings.tool_change, &settings.signals);
+    let module = Module::of(text, None, &mut state)?;
+    let main = Name::of(b"MAIN").and_then(|name| module.routines.get(&name).copied());
+    let Some(main) = main else {
+        let message = "the module has no procedure main";
+        return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
+    };
+    let mut run = Run { settings, state, channel };
+    let (Ended::Routine(end) | Ended::Program(end)) = run.routine(&module, main, 0)?;
+    run.channel.report(end, Action::End)
+}
+
+impl<'t> Module<'t> {
+    /// Takes the data of a module, and finds its procedures.
+    ///
+    /// # Errors
+    /// What is not understood, but for what stands in procedures.
+    fn of(text: &'t [u8], shown: Option<u32>, state: &mut State) -> Outcome<Module<'t>> {
+        let mut scan = Scan::new(text, BlockLocation { at: 0, line: 1 });
+        head(&mut scan)?;
+        if !scan.take_word("MODULE")? {
+            return Err(scan.wrong("the file begins with MODULE and a name"));
+        }
+        let from = scan.at;
+        let name = scan.needed("the name of the module")?;
+        if RESERVED.contains(&name.as_str()) {
+            let message = format!("{name} is a word of RAPID: no module may be called so");
+            return Err(scan.since(from, Rule::Definition, message));
+        }
+        if scan.take(b'(') {
+            while !scan.take(b')') {
+                scan.needed("an attribute of the module")?;
+                scan.take(b',');
+            }
+        }
+        let mut routines = HashMap::new();
+        loop {
+            scan.peek();
+            let from = scan.at;
+            scan.take_word("LOCAL")?;
+            let word = scan.needed("a declaration, PROC or ENDMODULE")?;
+            match word.as_str() {
+                "CONST" | "PERS" | "VAR" => {
+                    let declared = declaration(&mut scan, state, word)?;
+                    state.declare(&scan, from, declared)?;
+                }
+                "PROC" => {
+                    let Routine(name) = Routine::read(&mut scan)?;
+                    if routines.insert(name, scan.location()).is_some() {
+                        let message = format!("the module has two procedures {name}");
+                        return Err(scan.since(from, Rule::Twice, message));
+                    }
+                    over(&mut scan)?;
+                }
+                "ENDMODULE" => break,
+                _ => {
+                    let message = format!("{word} is not followed here");
+                    return Err(scan.since(from, Rule::Unsupported, message));
+                }
+            }
+        }
+        match scan.peek() {
+            None => Ok(Module { text, shown, routines }),
+            Some(_) => Err(scan.wrong("something stands behind ENDMODULE")),
+        }
+    }
+}
+
+/// `%%% VERSION:1 LANGUAGE:ENGLISH %%%`, with which older controllers begin a file.
+fn head(scan: &mut Scan) -> Outcome {
+    scan.peek();
+    if !scan.rest().starts_with(b"%%%") {
+        return Ok(());
+    }
+    match memchr::memmem::find(&scan.rest()[3..], b"%%%") {
+        Some(length) => {
+            scan.at += length + 6;
+            Ok(())
+        }
+        None => Err(scan.wrong("the head of the file has no end: %%%")),
+    }
+}
+
+/// Goes over the statements of a procedure to behind its `ENDPROC`.
+fn over(scan: &mut Scan) -> Outcome {
+    loop {
+        scan.peek();
+        let from = scan.at;
+        let word = scan.needed("a statement or ENDPROC")?;
+        let word = word.as_str();
+        if word == "ENDPROC" {
+            return Ok(());
+        }
+        if matches!(word, "PROC" | "MODULE" | "ENDMODULE") {
+            let message = "a procedure has no end: ENDPROC is missing before this";
+            return Err(scan.since(from, Rule::NoEnd, message));
+        }
+        if REFUSED.contains(&word) {
+            let message = format!("{word} is not followed");
+            return Err(scan.since(from, Rule::Unsupported, message));
+        }
+        scan.skip()?;
+    }
+}
+
+struct Run<'r, 'c> {
+    settings: &'r Settings,
+    state: State,
+    channel: &'r mut Channel<'c>,
+}
+
+impl Run<'_, '_> {
+    /// Runs a procedure from behind its head to its end.
+    fn routine(&mut self, module: &Module, from: BlockLocation, depth: usize) -> Outcome<Ended> {
+        let mut scan = Scan::new(module.text, from);
+        let mut declared = Vec::new();
+        let ended = loop {
+            scan.blanks();
+            let line = module.shown.unwrap_or(scan.location().line);
+            if let Some(comment) = scan.comment() {
+                if !comment.is_empty() {
+                    let text = String::from_utf8_lossy(comment);
+                    self.channel.report(line, Action::Comment(text.into()))?;
+                }
+                continue;
+            }
+            let from = scan.at;
+            match read(&mut scan, &self.state)? {
+                Statement::EndRoutine | Statement::Return => break Ended::Routine(line),
+                Statement::Exit => break Ended::Program(line),
+                Statement::Call(name, arguments) => {
+                    let place = (&scan, from, line);
+                    if self.state.called(place, name, &arguments, self.channel)? {
+                        continue;
+                    }
+                    let call = (name, arguments.is_empty());
+                    if let Ended::Program(end) = self.call(module, place, call, depth)? {
+                        break Ended::Program(end);
+                    }
+                }
+                Statement::Declare(declaration) => {
+                    declared.push(declaration.name);
+                    self.state.declare(&scan, from, declaration)?;
+                }
+                other => self.statement((&scan, from, line), other)?,
+            }
+        };
+        self.state.leave(&declared);
+        Ok(ended)
+    }
+
+    fn statement(
+        &mut self,
+        (scan, from, line): (&Scan, usize, u32),
+        statement: Statement,
+    ) -> Outcome {
+        match statement {
+            Statement::Motion(motion) => {
+                return self.state.go((scan, from, line), &motion, self.channel);
+            }
+            Statement::Assign(target, value) => {
+                return self.state.assign(scan, from, &target, value);
+            }
+            Statement::Configuration(on) => self.state.set_nearest(!on),
+            Statement::Singularity(turning) => self.state.set_turning(turning),
+            Statement::Circles(turning) => self.state.set_circles(turning),
+            Statement::Digital(name, on) => {
+                let value = OutputValue::Digital(on);
+                return self.state.output(line, name, value, self.channel);
+            }
+            Statement::Analog(name, number) => {
+                let value = OutputValue::Analog(number);
+                return self.state.output(line, name, value, self.channel);
+            }
+            Statement::Input(name, on) => return self.state.input(line, name, on, self.channel),
+            Statement::Wait(seconds) => return self.channel.report(line, Action::Dwell(seconds)),
+            Statement::Message(text) => return self.channel.report(line, Action::Message(text)),
+            Statement::Stop => return self.channel.report(line, Action::Stop),
+            Statement::Nothing
+            | Statement::Declare(_)
+            | Statement::Call(..)
+            | Statement::Exit
+            | Statement::Return
+            | Statement::EndRoutine => {}
+        }
+        Ok(())
+    }
+
+    /// A call of a procedure of this module, or of another one; whether it is called without arguments.
+    fn call(
+        &mut self,
+        module: &Module,
+        (scan, from, line): (&Scan, usize, u32),
+        (name, plain): (Name, bool),
+        depth: usize,
+    ) -> Outcome<Ended> {
+        let refused = |rule: Rule, message: String| scan.since(from, rule, message);
+        if depth >= DEEPEST {
+            return Err(refused(Rule::Nesting, format!("calls nest deeper than {DEEPEST}")));
+        }
+        self.channel.budget.jump().map_err(|message| refused(Rule::Endless, message))?;
+        let own = module.routines.get(&name).copied();
+        let folders = &self.settings.setup.folders;
+        let lower = format!("{}.mod", name.as_str().to_ascii_lowercase());
+        let called = [format!("{name}.mod"), lower].into_iter().find(|file| folders.have(file));
+        if !plain && (own.is_some() || called.is_some()) {
+            let message = format!("{name} is called with arguments, which is not followed");
+            return Err(refused(Rule::Argument, message));
+        }
+        if let Some(place) = own {
+            return self.routine(module, place, depth + 1);
+        }
+        let Some(called) = called else {
+            let message = format!(
+                "{name} is no instruction that is understood, and no procedure of this module or of a folder for called programs"
+            );
+            return Err(refused(Rule::CalledProgram, message));
+        };
+        let text = folders.open(&called);
+        let text = text.map_err(|message| refused(Rule::CalledProgram, message))?;
+        let inside = |found: Box<Diagnostic>| {
+            let message = format!("in {called}, line {}: {}", found.line, found.message);
+            Box::new(Diagnostic { message, ..*found }.line(line))
+        };
+        let other = Module::of(&text, Some(line), &mut self.state).map_err(inside)?;
+        match other.routines.get(&name).copied() {
+            Some(place) => self.routine(&other, place, depth + 1).map_err(inside),
+            None => {
+                let message = format!("{called} has no procedure {name}");
+                Err(refused(Rule::CalledProgram, message))
+            }
+        }
+    }
+}

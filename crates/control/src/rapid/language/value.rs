@@ -1,0 +1,115 @@
+//! Names and values.
+
+use geom::{Frame, Quat, Vec3};
+use std::fmt;
+
+/// Most letters of a name ("Identifiers" of the RAPID manual).
+const LONGEST: usize = 32;
+
+/// How far from 1 the length of a quaternion may be.
+const LENGTH: f64 = 1e-4;
+
+/// A name in capitals: RAPID makes no difference of letters.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Name {
+    letters: [u8; LONGEST],
+    length: u8,
+}
+
+impl Name {
+    /// The name of that text; `None` where it is longer than a name may be.
+    pub(crate) fn of(text: &[u8]) -> Option<Name> {
+        let mut letters = [0; LONGEST];
+        letters.get_mut(..text.len())?.copy_from_slice(text);
+        letters.make_ascii_uppercase();
+        Some(Name { letters, length: text.len() as u8 })
+    }
+
+    /// Its letters.
+    pub(crate) fn as_str(&self) -> &str {
+        let letters = self.letters.get(..usize::from(self.length)).unwrap_or_default();
+        std::str::from_utf8(letters).unwrap_or_default()
+    }
+}
+
+impl fmt::Debug for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// What an expression comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Value {
+    Number(f64),
+    Flag(bool),
+    Text(Box<str>),
+    /// The parts of a record, in their order.
+    List(Vec<Value>),
+}
+
+impl Value {
+    /// What it is, for an error.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Value::Number(_) => "a number",
+            Value::Flag(_) => "TRUE or FALSE",
+            Value::Text(_) => "a text",
+            Value::List(_) => "an aggregate",
+        }
+    }
+
+    /// Its parts; none where it is no record.
+    pub(crate) fn parts(&self) -> &[Value] {
+        match self {
+            Value::List(parts) => parts,
+            Value::Number(_) | Value::Flag(_) | Value::Text(_) => &[],
+        }
+    }
+
+    /// Its number.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self {
+            Value::Number(number) => Some(*number),
+            Value::Flag(_) | Value::Text(_) | Value::List(_) => None,
+        }
+    }
+
+    /// Whether it is `TRUE`.
+    pub(crate) fn is_true(&self) -> bool {
+        *self == Value::Flag(true)
+    }
+
+    /// Its numbers, where it is a record of so many, as the control keeps them: a `num` of a position has 24 bits.
+    pub(crate) fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
+        let parts = self.parts();
+        let mut all = [0.0; N];
+        for (number, part) in all.iter_mut().zip(parts) {
+            *number = f64::from(part.number()? as f32);
+        }
+        (parts.len() == N).then_some(all)
+    }
+}
+
+/// The frame of a `pose`, or of the first two parts of a robtarget: a place and a quaternion, its scalar first.
+///
+/// # Errors
+/// What is wrong in it.
+pub(crate) fn frame(parts: &[Value]) -> Result<Frame, String> {
+    let [place, turn, ..] = parts else { return Err(String::from("a frame is needed here")) };
+    let (Some(place), Some([w, x, y, z])) = (place.numbers::<3>(), turn.numbers::<4>()) else {
+        return Err(String::from("a frame has three lengths and a quaternion"));
+    };
+    let turn = Quat::from_xyzw(x, y, z, w);
+    let length = turn.length();
+    if (length - 1.0).is_nan() || (length - 1.0).abs() > LENGTH {
+        return Err(format!("the quaternion has the length {length:.5}, and not 1"));
+    }
+    Ok(Frame::from_rotation_translation(turn.normalize(), Vec3::from(place)))
+}
