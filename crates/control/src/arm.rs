@@ -15,10 +15,12 @@ pub enum ArmAction {
     Base(Option<Frame>),
     /// Whether the base is on the flange and the tool stands (a part on the robot).
     PartOnFlange(bool),
-    /// Speed of moves of joints, percent of the fastest.
-    JointSpeed(f64),
+    /// Speed of moves of joints, percent of the fastest; `None` is as the control is set up.
+    JointSpeed(Option<f64>),
     /// Speed of the joint that turns farthest in the moves of joints that follow, degrees/s.
     JointRate(f64),
+    /// Another acceleration, of joints or of lines, than that with which the control is set up.
+    Acceleration,
     /// How fast the tool may turn in lines and arcs, degrees/s: its axis, and about its axis; `None` is as the control is set up.
     TurnSpeed([Option<f64>; 2]),
     /// A motion.

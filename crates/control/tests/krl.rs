@@ -86,7 +86,7 @@ fn the_job_of_the_specification_makes_its_motion() {
     assert_eq!(feeds, [300.0, 1200.0, 6000.0].map(Feed::PerMinute));
     let spindle = |on| Output { number: 1, value: OutputValue::Digital(on), with_motion: false };
     for (line, action) in [
-        (10, Action::Arm(ArmAction::JointSpeed(20.0))),
+        (10, Action::Arm(ArmAction::JointSpeed(Some(20.0)))),
         (12, Action::Output(spindle(true))),
         (13, Action::Dwell(2.0)),
         (22, Action::Output(spindle(false))),

@@ -115,7 +115,7 @@ fn the_job_of_the_specification_makes_its_motion() {
     let spindle = |on| Output { number: 1, value: OutputValue::Digital(on), with_motion: false };
     for (line, action) in [
         (3, Action::Arm(ArmAction::Base(None))),
-        (5, Action::Arm(ArmAction::JointSpeed(20.0))),
+        (5, Action::Arm(ArmAction::JointSpeed(Some(20.0)))),
         (6, Action::Output(spindle(true))),
         (7, Action::Dwell(2.0)),
         (13, Action::Output(spindle(false))),

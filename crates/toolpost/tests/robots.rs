@@ -126,6 +126,52 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("END", "HALT\r\nEND", "stop"),
     ("END", "$OUT[2]=TRUE\r\nEND", "left-on"),
     ("DEF JOB ( )", "DEF JOB ( )\r\nDEF OTHER ( )", "program-frame"),
+    // An INT over an INT is cut off: 1/2 is 0, 121/2 is 60.
+    ("$ANOUT[1]=0.50000", "$ANOUT[1]=1/2", "spindle"),
+    ("$OUT[1]=TRUE", "$OUT[1]=(1/2)>0", "dwell"),
+    ("$VEL.CP=0.005000", "$VEL.CP=5/1000", "number"),
+    ("LIN {X 60.000", "LIN {X 121/2-0.5", "end-point"),
+    ("WAIT SEC 3.00", "WAIT SEC 7/2-1", "dwell"),
+    ("BAS (#INITMOV,0)", "DECL INT K\r\nK=-182.4366", "type"),
+    ("BAS (#INITMOV,0)", "K=3", "variable"),
+    // How fast the joints go.
+    ("BAS (#VEL_PTP,20)", "BAS (#VEL_PTP,100)", "rapid-feed"),
+    ("BAS (#VEL_PTP,20)\r\n", "", "rapid-feed"),
+    ("BAS (#VEL_PTP,20)", "BAS (#VEL_PTP,20)\r\n$VEL_AXIS[1]=100", "rapid-feed"),
+    ("BAS (#VEL_PTP,20)", "BAS (#VEL_PTP,20)\r\n$ACC_AXIS[1]=100", "unproven"),
+    ("BAS (#VEL_PTP,20)", "BAS (#VEL_PTP,20)\r\n$ACC.CP=50", "unproven"),
+    ("BAS (#VEL_PTP,20)", "BAS (#VEL_PTP,20)\r\nBAS (#ACC_PTP,100)", "unproven"),
+    ("$IPO_MODE=#BASE", "BAS (#INITMOV,0)\r\n$IPO_MODE=#BASE", "rapid-feed"),
+    // The point on the way is 0.02 mm outside of the circle.
+    ("CIRC {X 74.142,Y 5.858", "CIRC {X 74.156,Y 5.844", "arc"),
+    ("CIRC {X 74.142,Y 5.858", "CIRC {X 74.145,Y 5.855", "arc"),
+    ("$VEL.CP=0.100000", "$VEL.CP=3", "rapid-feed"),
+    (
+        "{X 60.000,Y 0.000,Z -2.000,A 0.0000",
+        "{X 60.000,Y 0.000,Z -2.000,A 180.0000",
+        "orientation-way",
+    ),
+    (
+        "{X 60.000,Y 0.000,Z -2.000,A 0.0000",
+        "{X 60.000,Y 0.000,Z -2.000,A 179.6000",
+        "orientation-way",
+    ),
+    ("$TOOL=", "$LOAD={M 100,CM {X 0,Y 0,Z 0,A 0,B 0,C 0},J {X 1,Y 1,Z 1}}\r\n$TOOL=", "payload"),
+    ("WAIT SEC 3.00", "WAIT SEC 1E300", "dwell"),
+    ("WAIT SEC 3.00", "WAIT SEC 600", "dwell"),
+    (
+        ",{X 80.000,Y 20.000,Z -2.000,A 0.0000,B 0.0000,C 180.0000}",
+        ",{X 80.000,Y 20.000,Z -2.000}",
+        "unknown-position",
+    ),
+    ("; KUKA", "; KUKA\r$OUT[1]=TRUE ;", "syntax"),
+    ("; KUKA", "; KUKA\u{b}", "syntax"),
+    ("; KUKA", "; KUKA\u{2028}", "syntax"),
+    ("DEF JOB ( )", "DEF LIN ( )", "syntax"),
+    ("$IPO_MODE=#BASE", "DECL INT K\r\n$IPO_MODE=#BASE", "definition"),
+    ("DEF JOB ( )", "DEF JOB ( )\r\n&REL 2", "program-frame"),
+    ("END\r\n", "END\r\nEND\r\n", "program-frame"),
+    ("END\r\n", "END\r\n$OUT[1]=TRUE\r\n", "program-frame"),
     (
         "PTP {A1 0.0000,A2 -90.0000,A3 90.0000,A4 0.0000,A5 45.0000,A6 0.0000}\r\n$OUT[1]=FALSE",
         "$OUT[1]=FALSE",
@@ -146,14 +192,32 @@ fn each_damage_to_the_job_is_refused_by_its_rule() {
     }
 }
 
+/// A line of 10° over 40 mm at 1200 mm/min takes 2 s.
+const TILT: &str = "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,1200\n\
+GOTO/0,0,0,0,0,1\nGOTO/40,0,0,0,0.17364818,0.98480775\nRAPID\nGOTO/40,8.68240888,49.2403877,0,0.17364818,0.98480775\nFINI\n";
+
+#[test]
+fn a_tool_that_turns_too_slowly_for_its_feed_is_refused() {
+    let (source, machine) = (source(TILT), kuka());
+    let text = proven(&source, &machine);
+    // At 5°/s the turn takes as long as the cut; at 4°/s 2.5 s.
+    let turning = |speed: &str| text.replace("$VEL.ORI1=60", &format!("$VEL.ORI1={speed}"));
+    assert!(proof_of(&source, &machine, &turning("5")).proven);
+    for damaged in [turning("4"), turning("0.01"), text.replace("$VEL.ORI1=60\r\n", "")] {
+        let report = proof_of(&source, &machine, &damaged);
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(found, ["feed"], "{:#?}", report.mismatches);
+    }
+}
+
 /// A line left out, doubled, or two of them in the other order: the program differs, or does the same.
 #[test]
 fn each_line_of_the_job_is_needed_or_changes_nothing() {
     let (source, machine) = (source(JOB), kuka());
     let text = proven(&source, &machine);
     let lines: Vec<&str> = text.split_inclusive("\r\n").collect();
-    // Comments, the head of the file, speeds of joints, and what is the same by itself.
-    let harmless = ["&", ";", "BAS (#VEL_PTP", "$VEL.ORI", "BAS (#INITMOV"];
+    // Comments, the head of the file, speeds of turns where nothing turns, and what is the same by itself.
+    let harmless = ["&", ";", "$VEL.ORI", "BAS (#INITMOV"];
     for left_out in 0..lines.len() {
         let line = lines[left_out];
         if harmless.iter().any(|start| line.starts_with(start)) {

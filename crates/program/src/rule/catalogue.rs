@@ -1492,7 +1492,7 @@ rules! {
         "use R0 to R999, and set a parameter before the block that reads it"
         "sinumerik: `R2000=1`";
     RapidFeed "rapid-feed" []
-        "How fast rapids are is not known, or a rapid is written as a cut."
+        "How fast rapids are is not known, or faster than the machine file states, or a rapid is written as a cut."
         "write the `rapid` of the machine, in mm/min, below [axes]; a rapid of the toolpath is a rapid (G0) in the program"
         "A LinuxCNC file without `rapid` in [axes]";
     RapidPath "rapid-path" []

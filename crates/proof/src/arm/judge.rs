@@ -21,6 +21,8 @@ struct Running {
     /// mm/min.
     feed: Option<f64>,
     turn_speed: [Option<f64>; 2],
+    /// Percent.
+    joint_speed: Option<f64>,
     is_on: bool,
     speed: Option<f64>,
     /// How long the spindle still takes to its speed, s.
@@ -86,6 +88,7 @@ impl<'a> Judge<'a> {
             running: Running {
                 feed: None,
                 turn_speed: [None; 2],
+                joint_speed: None,
                 is_on: false,
                 speed: None,
                 runs_up: 0.0,
@@ -240,11 +243,17 @@ impl<'a> Judge<'a> {
                 }
             }
             ArmAction::PartOnFlange(on_flange) => self.running.on_flange = Some(*on_flange),
-            ArmAction::JointSpeed(percent) => return self.joint_speed(*percent),
+            ArmAction::JointSpeed(speed) => self.running.joint_speed = *speed,
             ArmAction::JointRate(rate) => {
                 let slowest =
                     self.arm.joints().iter().map(|joint| joint.speed).fold(f64::INFINITY, f64::min);
-                return self.joint_speed(100.0 * rate / slowest.to_degrees());
+                self.running.joint_speed = Some(100.0 * rate / slowest.to_degrees());
+            }
+            ArmAction::Acceleration => {
+                let message = "the program sets an acceleration, and no machine file states which one the arm may have";
+                return Err(Diagnostic::error(Rule::Unproven, message)
+                    .help("leave it as the control is set up")
+                    .into());
             }
             ArmAction::Load(mass, center) => return self.load(*mass, *center),
             ArmAction::TurnSpeed(speed) => self.running.turn_speed = *speed,

@@ -12,7 +12,9 @@
 //!    straight line of the source.
 //! 4. Corners that are passed within a cut, by no more than `path_tolerance`.
 //! 5. In every cut feed, spindle, coolant; base and tool as the cell states them.
-//! 6. Home by joints at the beginning, at tool changes, and at the end, with spindle and coolant off.
+//! 6. Home by joints at the beginning, at tool changes, and at the end; spindle and coolant are off at tool changes and at the end, and may
+//!    be on on the way home.
+//! 7. Joints and straight rapids no faster than the cell states; no half turns of the tool, and no turn that a cut's feed has no time for.
 //!
 //! It knows nothing of the arm itself, the cell and the load: the summary says so.
 

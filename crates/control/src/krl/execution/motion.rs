@@ -45,6 +45,7 @@ impl State {
             }
             Motion::Circ(via, end, approximation) => {
                 self.started(scan)?;
+                whole_arc(scan, [via, end])?;
                 let (via, end) = (self.pose(scan, via)?, self.pose(scan, end)?);
                 let path = ArmPath::Arc { via: frame(via), end: frame(end) };
                 (path, Standing::Pose(end), *approximation)
@@ -139,6 +140,20 @@ impl State {
             (Approximation::Distance | Approximation::Other, _) => Ok(Corner::Unbounded),
         }
     }
+}
+
+/// # Errors
+/// A point of an arc leaves something out: from which point the controller takes it, no source states.
+fn whole_arc(scan: &Scan, [via, end]: [&Value; 2]) -> Outcome {
+    for (point, needed) in [(via, &COORDINATES[..3]), (end, &COORDINATES[..])] {
+        if let Some(name) = needed.iter().find(|name| point.field(name).is_none()) {
+            let message =
+                format!("{name} is left out in an arc, and from where it is taken is not known");
+            let help = "write X, Y and Z of the point on the way, and all of X, Y, Z, A, B and C of the end";
+            return Err(Box::new(scan.since(0, Rule::UnknownPosition, message).help(help)));
+        }
+    }
+    Ok(())
 }
 
 /// The numbers of six fields, or what they were before.

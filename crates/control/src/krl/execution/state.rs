@@ -31,6 +31,8 @@ type Key = (Name, Option<i64>, Option<Name>);
 /// machine's configuration.
 pub(in crate::krl) struct State {
     variables: HashMap<Key, Value>,
+    /// The types of declared variables.
+    types: HashMap<Name, Name>,
     pub(super) standing: Standing,
     /// `$APO.CDIS`, mm.
     pub(super) distance: Option<f64>,
@@ -40,6 +42,8 @@ pub(in crate::krl) struct State {
     pub(super) along_path: Option<bool>,
     /// `$VEL.ORI1` and `$VEL.ORI2`, degrees/s.
     pub(super) turn_speed: [Option<f64>; 2],
+    /// `$VEL_AXIS`, percent.
+    pub(super) joint_speeds: [Option<f64>; 6],
     /// The name of the operator's program that changes tools.
     tool_change: String,
 }
@@ -60,11 +64,13 @@ impl State {
     pub(in crate::krl) fn new(tool_change: &str) -> State {
         State {
             variables: HashMap::new(),
+            types: HashMap::new(),
             standing: Standing::NotStarted,
             distance: None,
             turning: None,
             along_path: None,
             turn_speed: [None; 2],
+            joint_speeds: [None; 6],
             tool_change: tool_change.to_ascii_uppercase(),
         }
     }
@@ -86,7 +92,49 @@ impl State {
             let message = "more variables than a controller has room for";
             return Err(scan.since(0, Rule::TooMuch, message));
         }
+        let value = self.typed(scan, target, value)?;
         self.variables.insert((target.name, target.index, target.field), value);
+        Ok(())
+    }
+
+    /// What a variable of a declared type holds of `value`.
+    ///
+    /// # Errors
+    /// A REAL for an INT: sources differ on how the controller rounds it. A number for a variable whose type nothing states.
+    fn typed(&self, scan: &Scan, target: Target, value: Value) -> Outcome<Value> {
+        if let Some(field) = target.field {
+            return Ok(value.in_field(field));
+        }
+        let kind = self.types.get(&target.name).map(Name::as_str);
+        match (kind, value) {
+            (Some("REAL"), value) => Ok(value.real()),
+            (Some("INT"), value @ Value::Number(_)) => {
+                let help = "write a whole number without a point, or declare the variable REAL";
+                Err(Box::new(unfit(scan, target.name, &value, "a whole number").help(help)))
+            }
+            (None, Value::Number(_) | Value::Integer(_)) => {
+                let message = format!("whether {} is INT or REAL is not stated", target.name);
+                Err(Box::new(scan.since(0, Rule::Variable, message).help("declare it: DECL REAL")))
+            }
+            (_, value) => Ok(value),
+        }
+    }
+
+    /// Variables are of a type from here on.
+    ///
+    /// # Errors
+    /// One of them is of another type already; there are too many of them.
+    pub(in crate::krl) fn declare(&mut self, scan: &Scan, kind: Name, names: &[Name]) -> Outcome {
+        for name in names {
+            if self.types.len() >= MOST_VARIABLES {
+                let message = "more variables than a controller has room for";
+                return Err(scan.since(0, Rule::TooMuch, message));
+            }
+            if self.types.insert(*name, kind).is_some_and(|other| other != kind) {
+                let message = format!("{name} is declared twice, of different types");
+                return Err(scan.since(0, Rule::Twice, message));
+            }
+        }
         Ok(())
     }
 
@@ -124,7 +172,9 @@ impl State {
         }
         let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
         let number = match arguments {
-            [Value::Number(number)] if whole(number) => *number as u32,
+            [value] if value.number().as_ref().is_some_and(whole) => {
+                value.number().unwrap_or_default() as u32
+            }
             _ => {
                 let message = "a tool change has the number of the tool as its one argument";
                 return Err(scan.since(0, Rule::Tool, message));
@@ -143,6 +193,8 @@ impl State {
         (self.distance, self.turning, self.along_path) = (None, None, None);
         self.turn_speed = [None; 2];
         channel.report(line, Action::Arm(ArmAction::TurnSpeed(self.turn_speed)))?;
+        self.joint_speeds = [None; 6];
+        channel.report(line, Action::Arm(ArmAction::JointSpeed(None)))?;
         self.frame(line, ArmAction::Base(None), channel)?;
         self.frame(line, ArmAction::Tool(None), channel)
     }

@@ -54,6 +54,11 @@ pub(super) fn assign(
             let on_flange = chosen(scan, name, &value, &[("BASE", false), ("TCP", true)])?;
             channel.report(line, Action::Arm(ArmAction::PartOnFlange(on_flange)))
         }
+        ("$ACC", Some("CP" | "ORI1" | "ORI2")) | ("$ACC_AXIS", None) => {
+            positive(scan, name, &value)?;
+            channel.report(line, Action::Arm(ArmAction::Acceleration))
+        }
+        ("$VEL_AXIS", None) => joint_speed(state, scan, index, &value, channel),
         (_, field) => mode(state, scan, name, field, &value),
     }
 }
@@ -68,10 +73,8 @@ fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: 
             }
             state.distance = Some(distance);
         }
-        // They make the arm slower or its corners wider: a motion that is passed by them has no bound (`Unbounded`).
-        ("$APO", Some("CVEL" | "CORI" | "CPTP"))
-        | ("$ACC", Some("CP" | "ORI1" | "ORI2"))
-        | ("$VEL_AXIS" | "$ACC_AXIS", None) => drop(positive(scan, name, value)?),
+        // They make corners wider: a motion that is passed by them has no bound (`Unbounded`).
+        ("$APO", Some("CVEL" | "CORI" | "CPTP")) => drop(positive(scan, name, value)?),
         ("$ADVANCE", None) => {
             let count = number(scan, name, value)?;
             if count.fract() != 0.0 || !(0.0..=5.0).contains(&count) {
@@ -105,24 +108,31 @@ pub(super) fn bas(
     channel: &mut Channel,
 ) -> Outcome {
     let line = scan.source.line;
-    let [Value::Entry(command), Value::Number(value)] = arguments else {
+    let command = match arguments {
+        [Value::Entry(command), value] => value.number().map(|value| (command, value)),
+        _ => None,
+    };
+    let Some((command, value)) = command else {
         let message = "BAS has a command and a number: BAS (#VEL_PTP,20)";
         return Err(scan.since(0, Rule::Argument, message));
     };
-    let percent = *value > 0.0 && *value <= 100.0;
+    let percent = value > 0.0 && value <= 100.0;
     match command.as_str() {
         "INITMOV" => state.forget(line, channel),
-        "VEL_PTP" if percent => channel.report(line, Action::Arm(ArmAction::JointSpeed(*value))),
-        "ACC_PTP" if percent => Ok(()),
-        "VEL_CP" if *value > 0.0 => {
+        "VEL_PTP" if percent => {
+            state.joint_speeds = [Some(value); 6];
+            channel.report(line, Action::Arm(ArmAction::JointSpeed(Some(value))))
+        }
+        "ACC_PTP" if percent => channel.report(line, Action::Arm(ArmAction::Acceleration)),
+        "VEL_CP" if value > 0.0 => {
             channel.report(line, Action::Feed(Feed::PerMinute(value * PER_MINUTE)))
         }
         "TOOL" => {
-            let frame = numbered(state, scan, "TOOL_DATA", *value)?;
+            let frame = numbered(state, scan, "TOOL_DATA", value)?;
             state.frame(line, ArmAction::Tool(frame), channel)
         }
         "BASE" => {
-            let frame = numbered(state, scan, "BASE_DATA", *value)?;
+            let frame = numbered(state, scan, "BASE_DATA", value)?;
             state.frame(line, ArmAction::Base(frame), channel)
         }
         _ => {
@@ -130,6 +140,27 @@ pub(super) fn bas(
             Err(scan.since(0, Rule::UnknownCommand, message))
         }
     }
+}
+
+/// `$VEL_AXIS[1]=20`: percent of the speed of one joint. The fastest of the joints counts.
+fn joint_speed(
+    state: &mut State,
+    scan: &Scan,
+    index: Option<i64>,
+    value: &Value,
+    channel: &mut Channel,
+) -> Outcome {
+    let joint = index.and_then(|index| usize::try_from(index).ok()?.checked_sub(1));
+    let speed = joint.and_then(|joint| state.joint_speeds.get_mut(joint));
+    let percent = value.number().filter(|percent| *percent > 0.0 && *percent <= 100.0);
+    let (Some(speed), Some(percent)) = (speed, percent) else {
+        let message = "$VEL_AXIS[1] to $VEL_AXIS[6] take a number above 0, up to 100 percent";
+        return Err(scan.since(0, Rule::Number, message));
+    };
+    *speed = Some(percent);
+    let all: Option<Vec<f64>> = state.joint_speeds.iter().copied().collect();
+    let fastest = all.map(|all| all.into_iter().fold(0.0, f64::max));
+    channel.report(scan.source.line, Action::Arm(ArmAction::JointSpeed(fastest)))
 }
 
 /// The frame of a number: 0 is that of the flange, or the world; `None` is one that the operator has measured.
@@ -157,8 +188,10 @@ fn output(
     let value = match (name.as_str(), value) {
         ("$OUT", Value::Flag(on)) => OutputValue::Digital(*on),
         ("$OUT", other) => return Err(unfit(scan, name, other, "TRUE or FALSE")),
-        (_, Value::Number(part)) if part.abs() <= 1.0 => OutputValue::Analog(*part),
-        (_, other) => return Err(unfit(scan, name, other, "a number from -1 to 1")),
+        (_, value) => match value.number().filter(|part| part.abs() <= 1.0) {
+            Some(part) => OutputValue::Analog(part),
+            None => return Err(unfit(scan, name, value, "a number from -1 to 1")),
+        },
     };
     let output = Output { number, value, with_motion: false };
     channel.report(scan.source.line, Action::Output(output))
@@ -190,10 +223,8 @@ fn load(value: &Value) -> Option<(f64, Vec3)> {
 }
 
 fn number(scan: &Scan, name: Name, value: &Value) -> Outcome<f64> {
-    match value {
-        Value::Number(number) if number.is_finite() => Ok(*number),
-        other => Err(unfit(scan, name, other, "a number")),
-    }
+    let finite = value.number().filter(|number| number.is_finite());
+    finite.ok_or_else(|| unfit(scan, name, value, "a number"))
 }
 
 fn positive(scan: &Scan, name: Name, value: &Value) -> Outcome<f64> {

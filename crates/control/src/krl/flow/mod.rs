@@ -41,7 +41,10 @@ impl<'t> File<'t> {
     /// Two programs have one name; a line with `DEF` is not understood.
     fn of(text: &'t [u8], shown: Option<u32>) -> Outcome<File<'t>> {
         let (mut programs, mut first) = (HashMap::new(), None);
+        let mut is_inside = false;
         for (place, after, block) in lines(text) {
+            is_inside =
+                stands(Source { line: place.line, text: block }, is_inside, first.is_some())?;
             if !begins_program(block) {
                 continue;
             }
@@ -55,6 +58,40 @@ impl<'t> File<'t> {
             }
         }
         Ok(File { text, shown, programs, first })
+    }
+}
+
+/// Whether the line behind this one stands within a program.
+///
+/// # Errors
+/// A sign is there that ends a line for some readers and not for others; a statement outside of programs, or a line of the head of
+/// the file behind it.
+fn stands(source: Source, is_inside: bool, has_program: bool) -> Outcome<bool> {
+    let text = source.text;
+    let wrong = |rule: Rule, message: &str| Err(source.error(rule, 0..text.len(), message));
+    let separates = |pair: &[u8]| pair == b"\xC2\x85";
+    let parts = |three: &[u8]| matches!(three, b"\xE2\x80\xA8" | b"\xE2\x80\xA9");
+    if text.iter().any(|byte| byte.is_ascii_control() && *byte != b'\t')
+        || text.windows(2).any(separates)
+        || text.windows(3).any(parts)
+    {
+        return wrong(Rule::Syntax, "a control character stands in the line: it may end it");
+    }
+    let text = text.trim_ascii_start();
+    let length = text.iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_');
+    let word = text.get(..length.count()).unwrap_or_default().to_ascii_uppercase();
+    match (word.as_slice(), text.first(), is_inside) {
+        (_, None | Some(b';'), _) => Ok(is_inside),
+        (_, Some(b'&'), _) if !has_program => Ok(is_inside),
+        (_, Some(b'&'), _) => {
+            wrong(Rule::ProgramFrame, "a line with & stands before the first DEF")
+        }
+        (b"DEF" | b"DEFFCT", _, _) => Ok(true),
+        (b"END" | b"ENDFCT", _, true) => Ok(false),
+        (_, _, true) => Ok(true),
+        (_, _, false) => {
+            wrong(Rule::ProgramFrame, "the line stands outside of programs: between DEF and END")
+        }
     }
 }
 
@@ -73,12 +110,20 @@ struct Run<'r, 'c> {
 impl Run<'_, '_> {
     /// Runs a program from behind its `DEF` to its end; the line of that.
     fn routine(&mut self, file: &File, from: BlockLocation, depth: usize) -> Outcome<u32> {
-        let mut place = from;
+        let (mut place, mut has_begun) = (from, false);
         while let Some((text, after)) = line(file.text, place) {
             let mut scan = Scan::new(Source { line: place.line, text });
             let statement = read(&mut scan, &self.state)?;
             let number = file.shown.unwrap_or(place.line);
             scan.source.line = number;
+            if matches!(statement, Statement::Declare(_, _, None)) && has_begun {
+                let message = "declarations stand before the first statement of a program";
+                return Err(scan.since(0, Rule::Definition, message));
+            }
+            has_begun |= !matches!(
+                statement,
+                Statement::Declare(..) | Statement::Nothing | Statement::Comment(_)
+            );
             match statement {
                 Statement::End | Statement::Return => return Ok(number),
                 Statement::Define(_) | Statement::DefineData => {
@@ -107,13 +152,13 @@ impl Run<'_, '_> {
             }
             Statement::Wait(waiting) => self.state.wait(scan, waiting, self.channel),
             Statement::Halt => self.channel.report(number, Action::Stop),
-            Statement::Declare(_, Some(_)) => {
+            Statement::Declare(_, _, Some(_)) => {
                 let message =
                     "values of declarations stand in the data list (.dat), not in the program";
                 Err(scan.since(0, Rule::Definition, message))
             }
-            Statement::Declare(_, None)
-            | Statement::Nothing
+            Statement::Declare(kind, names, None) => self.state.declare(scan, kind, &names),
+            Statement::Nothing
             | Statement::Define(_)
             | Statement::DefineData
             | Statement::End
@@ -176,8 +221,15 @@ impl Run<'_, '_> {
         for (place, _, block) in lines(&text) {
             let mut scan = Scan::new(Source { line: place.line, text: block });
             let listed = read(&mut scan, &self.state).and_then(|statement| match statement {
-                Statement::Declare(name, Some(value)) => {
-                    self.state.set(&scan, Target { name, index: None, field: None }, value)
+                Statement::Declare(kind, names, value) => {
+                    self.state.declare(&scan, kind, &names)?;
+                    match (names.first(), value) {
+                        (Some(name), Some(value)) => {
+                            let target = Target { name: *name, index: None, field: None };
+                            self.state.set(&scan, target, value)
+                        }
+                        (_, _) => Ok(()),
+                    }
                 }
                 Statement::Assign(target, value) => self.state.set(&scan, target, value),
                 _ => Ok(()),

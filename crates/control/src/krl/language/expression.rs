@@ -57,10 +57,10 @@ pub(crate) fn read_number(scan: &mut Scan, variables: &dyn Readable) -> Outcome<
     scan.peek();
     let from = scan.at;
     let value = read(scan, variables)?;
-    match value {
-        Value::Number(number) if number.is_finite() => Ok(number),
-        Value::Number(_) => Err(scan.since(from, Rule::Number, "a number beyond all numbers")),
-        other => Err(mistaken(scan, from, &other, "a number")),
+    match value.number() {
+        Some(number) if number.is_finite() => Ok(number),
+        Some(_) => Err(scan.since(from, Rule::Number, "a number beyond all numbers")),
+        None => Err(mistaken(scan, from, &value, "a number")),
     }
 }
 
@@ -112,7 +112,7 @@ impl Expression<'_, '_, '_> {
                 return Err(self.scan.since(from, Rule::RepeatedWord, message));
             }
             let value = self.nested(evaluate)?;
-            fields.push((name, value));
+            fields.push((name, value.in_field(name)));
             if self.scan.take(b'}') {
                 return Ok(Value::Fields(fields));
             }
@@ -133,10 +133,10 @@ impl Expression<'_, '_, '_> {
             _ => 0,
         };
         self.scan.at += length;
-        let number = if radix == 0 { None } else { u32::from_str_radix(digits, radix).ok() };
+        let number = if radix == 0 { None } else { i32::from_str_radix(digits, radix).ok() };
         let closed = self.scan.take(b'\'');
         match number.filter(|_| closed) {
-            Some(number) => Ok(Value::Number(f64::from(number))),
+            Some(number) => Ok(Value::Integer(number)),
             None => Err(self.scan.since(
                 from,
                 Rule::Number,
@@ -216,7 +216,10 @@ impl Grammar for Expression<'_, '_, '_> {
                 let value = self.nested(Self::operand)?;
                 match value {
                     Value::Number(number) if sign == b'-' => Ok(Value::Number(-number)),
-                    Value::Number(_) => Ok(value),
+                    Value::Integer(number) if sign == b'-' => {
+                        Ok(Value::Integer(number.wrapping_neg()))
+                    }
+                    Value::Number(_) | Value::Integer(_) => Ok(value),
                     other => Err(mistaken(self.scan, from, &other, "a number")),
                 }
             }
@@ -278,14 +281,17 @@ impl Grammar for Expression<'_, '_, '_> {
                 _ => refused(String::from("`:` chains two frames of X, Y, Z, A, B, C")),
             };
         }
+        if let (Some(x), Some(y)) = (a.number(), b.number()) {
+            let value = match (&a, &b) {
+                (Value::Integer(a), Value::Integer(b)) => calculated_whole(operator, *a, *b),
+                _ => calculated(operator, x, y),
+            };
+            return value.ok_or_else(|| {
+                let message = "the operator has no result for these numbers";
+                self.scan.source.error(Rule::Arithmetic, span.start..span.end, message)
+            });
+        }
         match (a, b) {
-            (Value::Number(a), Value::Number(b)) => match calculated(operator, a, b) {
-                Some(value) => Ok(value),
-                None => {
-                    let message = "the operator has no result for these numbers";
-                    Err(self.scan.source.error(Rule::Arithmetic, span.start..span.end, message))
-                }
-            },
             (Value::Flag(a), Value::Flag(b)) => match operator {
                 Operator::And => Ok(Value::Flag(a && b)),
                 Operator::Or => Ok(Value::Flag(a || b)),
@@ -323,7 +329,15 @@ fn number(scan: &mut Scan) -> Outcome<Value> {
     };
     scan.at += read.len;
     if !matches!(scan.rest().first(), Some(b'e' | b'E')) {
-        return Ok(Value::Number(read.value));
+        let digits = &scan.source.text[from..scan.at];
+        if digits.contains(&b'.') {
+            return Ok(Value::Number(read.value));
+        }
+        let whole = std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok());
+        return whole.map(Value::Integer).ok_or_else(|| {
+            let message = "a whole number is at most 2147483647";
+            scan.since(from, Rule::Number, message)
+        });
     }
     let rest = scan.rest().get(1..).unwrap_or_default();
     let sign = usize::from(matches!(rest.first(), Some(b'+' | b'-')));
@@ -334,6 +348,27 @@ fn number(scan: &mut Scan) -> Outcome<Value> {
         Some(number) => Ok(Value::Number(number)),
         None => Err(scan.since(from, Rule::Number, "this is no number")),
     }
+}
+
+/// Of two INT the result is one: a division is cut off towards 0.
+fn calculated_whole(operator: Operator, a: i32, b: i32) -> Option<Value> {
+    let whole = match operator {
+        Operator::Times => a.checked_mul(b),
+        Operator::Over => a.checked_div(b),
+        Operator::Plus => a.checked_add(b),
+        Operator::Minus => a.checked_sub(b),
+        Operator::Equal
+        | Operator::Unequal
+        | Operator::Less
+        | Operator::Greater
+        | Operator::LessOrEqual
+        | Operator::GreaterOrEqual
+        | Operator::Chain
+        | Operator::And
+        | Operator::Exor
+        | Operator::Or => return calculated(operator, f64::from(a), f64::from(b)),
+    };
+    whole.map(Value::Integer)
 }
 
 fn calculated(operator: Operator, a: f64, b: f64) -> Option<Value> {

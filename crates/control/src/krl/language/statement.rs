@@ -3,11 +3,14 @@
 use super::expression::{Readable, mistaken, read as value, read_index, read_number};
 use super::scan::Scan;
 use super::value::{Name, Value};
-use super::words::{REFUSED, TYPES};
+use super::words::{REFUSED, STATEMENTS, TYPES};
 use program::{Outcome, Rule};
 
 /// Most arguments of a call that are read.
 const MOST_ARGUMENTS: usize = 16;
+
+/// A wait longer than a day, s, is no wait.
+const LONGEST: f64 = 86_400.0;
 
 /// A statement.
 #[derive(Debug)]
@@ -24,8 +27,8 @@ pub(crate) enum Statement {
     End,
     /// `RETURN`.
     Return,
-    /// A declaration, with the value that a data list gives.
-    Declare(Name, Option<Value>),
+    /// A declaration: type, variables, and the value that a data list gives.
+    Declare(Name, Vec<Name>, Option<Value>),
     /// `PTP`, `LIN`, `LIN_REL`, `CIRC`.
     Motion(Motion),
     /// `target = value`.
@@ -117,14 +120,14 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
         "DECL" => {
             scan.take_word("GLOBAL")?;
             match scan.name()? {
-                Some(_) => declaration(scan, variables)?,
+                Some(kind) => declaration(scan, variables, kind)?,
                 None => return Err(scan.wrong("the type of the variable is needed here")),
             }
         }
         word if TYPES.contains(&word)
             && !matches!(scan.peek(), Some(b'=' | b'.' | b'[' | b'(')) =>
         {
-            declaration(scan, variables)?
+            declaration(scan, variables, first)?
         }
         word if REFUSED.contains(&word) => {
             let message = format!("{word} is not followed");
@@ -199,6 +202,10 @@ fn wait(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
             let message = "a wait below 0 s ends nothing: the control does not wait";
             return Err(scan.since(from, Rule::Dwell, message));
         }
+        if seconds > LONGEST {
+            let message = "a wait above a day (86400 s) is none that a program means";
+            return Err(scan.since(from, Rule::Dwell, message));
+        }
         return Ok(Statement::Wait(Waiting::Seconds(seconds)));
     }
     if !scan.take_word("FOR")? {
@@ -246,6 +253,9 @@ fn define(scan: &mut Scan) -> Outcome<Statement> {
     let Some(name) = scan.name()? else {
         return Err(scan.wrong("the name of the program is needed here"));
     };
+    if [STATEMENTS, REFUSED, TYPES].iter().any(|words| words.contains(&name.as_str())) {
+        return Err(scan.wrong(format!("{name} is a word of the language, and names no program")));
+    }
     scan.expect(b'(')?;
     if !scan.take(b')') {
         return Err(scan.wrong("programs with parameters are not followed"));
@@ -278,7 +288,7 @@ fn external(scan: &mut Scan, first: Name) -> Outcome<Statement> {
 }
 
 /// The variables of a declaration behind their type; one alone may have a value.
-fn declaration(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
+fn declaration(scan: &mut Scan, variables: &dyn Readable, kind: Name) -> Outcome<Statement> {
     let mut names = Vec::new();
     loop {
         let Some(name) = scan.name()? else {
@@ -290,11 +300,11 @@ fn declaration(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> 
             break;
         }
     }
-    match names[..] {
-        [name] if scan.take(b'=') => Ok(Statement::Declare(name, Some(value(scan, variables)?))),
-        [name, ..] => Ok(Statement::Declare(name, None)),
-        [] => Ok(Statement::Nothing),
-    }
+    let value = match names.len() == 1 && scan.take(b'=') {
+        true => Some(value(scan, variables)?),
+        false => None,
+    };
+    Ok(Statement::Declare(kind, names, value))
 }
 
 fn call(scan: &mut Scan, variables: &dyn Readable, name: Name) -> Outcome<Statement> {

@@ -44,7 +44,10 @@ impl fmt::Display for Name {
 /// What an expression comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
+    /// A REAL.
     Number(f64),
+    /// An INT: a division of two of them leaves out what is behind the point.
+    Integer(i32),
     Flag(bool),
     /// An entry of an enumeration: `#BASE`.
     Entry(Name),
@@ -69,6 +72,7 @@ impl Value {
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Value::Number(_) => "a number",
+            Value::Integer(_) => "a whole number",
             Value::Flag(_) => "TRUE or FALSE",
             Value::Entry(_) => "an entry of an enumeration",
             Value::Text(_) => "a text",
@@ -81,8 +85,23 @@ impl Value {
     pub(crate) fn number(&self) -> Option<f64> {
         match self {
             Value::Number(number) => Some(*number),
+            Value::Integer(number) => Some(f64::from(*number)),
             _ => None,
         }
+    }
+
+    /// The same as a REAL, where it is an INT.
+    pub(crate) fn real(self) -> Value {
+        match self {
+            Value::Integer(number) => Value::Number(f64::from(number)),
+            other => other,
+        }
+    }
+
+    /// What a field of a frame or of axes holds of this: they are REAL, but for S and T.
+    pub(crate) fn in_field(self, field: Name) -> Value {
+        let is_real = [COORDINATES, AXES, OUTER].concat().contains(&field.as_str());
+        if is_real { self.real() } else { self }
     }
 
     /// The number of a field.

@@ -72,6 +72,38 @@ pub(super) const REFUSED: &[&str] = &[
     "PTP_SPLINE",
 ];
 
+/// Words that are followed: none of them names a program.
+pub(super) const STATEMENTS: &[&str] = &[
+    "PTP",
+    "LIN",
+    "LIN_REL",
+    "CIRC",
+    "WAIT",
+    "SEC",
+    "HALT",
+    "DEF",
+    "DEFDAT",
+    "END",
+    "ENDDAT",
+    "ENDFCT",
+    "RETURN",
+    "EXT",
+    "GLOBAL",
+    "INTERRUPT",
+    "DECL",
+    "PUBLIC",
+    "TRUE",
+    "FALSE",
+    "NOT",
+    "AND",
+    "OR",
+    "EXOR",
+    "B_NOT",
+    "B_AND",
+    "B_OR",
+    "B_EXOR",
+];
+
 /// Types that a declaration names.
 pub(super) const TYPES: &[&str] =
     &["INT", "REAL", "BOOL", "CHAR", "FRAME", "POS", "E6POS", "AXIS", "E6AXIS", "LOAD"];

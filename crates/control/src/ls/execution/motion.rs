@@ -95,7 +95,7 @@ impl State {
             }
             None if self.joint_speed != Some(value) => {
                 self.joint_speed = Some(value);
-                channel.report(line, Action::Arm(ArmAction::JointSpeed(value)))
+                channel.report(line, Action::Arm(ArmAction::JointSpeed(Some(value))))
             }
             Some(_) | None => Ok(()),
         }

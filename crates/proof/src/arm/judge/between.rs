@@ -5,31 +5,21 @@ use super::{Judge, refused};
 use geom::Vec3;
 use program::{Outcome, Output, OutputValue, Rule};
 
-impl Judge<'_> {
-    /// The speed of motions of joints, percent of the fastest; or, of the slowest joint.
-    ///
-    /// # Errors
-    /// It is above that of the cell.
-    pub(super) fn joint_speed(&self, percent: f64) -> Outcome {
-        let most = self.cell.joint_speed;
-        match percent <= most * 1.001 {
-            true => Ok(()),
-            false => refused(
-                Rule::Feed,
-                format!(
-                    "the joints go at {percent:.1} %, `joint_speed` of the cell allows {most} %"
-                ),
-            ),
-        }
-    }
+/// So much longer than the spindle needs to its speed a program may wait for it, s.
+const MOST_WAITING: f64 = 60.0;
 
+impl Judge<'_> {
     /// What hangs on the flange.
     ///
     /// # Errors
     /// The machine's file states another load.
     pub(super) fn load(&mut self, mass: f64, center: Vec3) -> Outcome {
         self.loaded = true;
-        let Some(load) = self.cell.load else { return Ok(()) };
+        let Some(load) = self.cell.load else {
+            let message =
+                format!("the load of the program is {mass} kg, and the machine's file states none");
+            return refused(Rule::Payload, message);
+        };
         let off = center.distance(load.center);
         match (mass - load.mass).abs() <= 5e-3 && off <= 0.1 {
             true => Ok(()),
@@ -84,7 +74,8 @@ impl Judge<'_> {
     pub(super) fn dwell(&mut self, seconds: f64) -> Outcome {
         self.exact()?;
         let allowed = self.report.tolerances.dwell_s;
-        if self.running.runs_up > 0.0 && seconds >= self.running.runs_up - allowed {
+        let runs_up = self.running.runs_up;
+        if runs_up > 0.0 && (runs_up - allowed..=runs_up + MOST_WAITING).contains(&seconds) {
             self.running.runs_up = 0.0;
             return Ok(());
         }
@@ -124,6 +115,7 @@ impl Judge<'_> {
             return refused(Rule::ToolChange, message);
         }
         running.turn_speed = [None; 2];
+        running.joint_speed = None;
         running.on_flange = None;
         self.loaded = false;
         self.standing = None;

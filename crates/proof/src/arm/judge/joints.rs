@@ -18,6 +18,7 @@ impl Judge<'_> {
             limit(self.arm, &joints).or_else(|lost| refused(Rule::AxisLimit, lost.to_string()))?;
         self.checked().note_limit(margin);
         self.frames()?;
+        self.joint_speed()?;
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };
@@ -67,6 +68,24 @@ impl Judge<'_> {
                 );
                 refused(Rule::EndPoint, message)
             }
+        }
+    }
+
+    /// # Errors
+    /// The joints go faster than the cell states, or nothing states how fast though the control has a word for it.
+    fn joint_speed(&self) -> Outcome {
+        let most = self.cell.joint_speed;
+        let word = self.machine.words.get("JOINT_SPEED");
+        // A control whose motions state rates rounds those.
+        let step = word.map_or(1e-3 * most, |word| 0.5 * word.resolution());
+        match self.running.joint_speed {
+            Some(speed) if speed <= most + step => Ok(()),
+            Some(speed) => refused(
+                Rule::RapidFeed,
+                format!("the joints go at {speed:.1} %, `joint_speed` of the cell is {most} %"),
+            ),
+            None if word.is_none() => Ok(()),
+            None => refused(Rule::RapidFeed, "nothing states how fast the joints go"),
         }
     }
 

@@ -6,7 +6,7 @@ use super::{Judge, STRIDE, Standing, refused};
 use ::arm::Joints;
 use control::kernel::arc::through;
 use control::{ArmMove, ArmPosture, Corner, Rounding, Turning};
-use geom::{Arc, Frame, Vec3, angle_between, between, nearest_on_segment};
+use geom::{Arc, Frame, Mat3, Quat, Vec3, angle_between, between, nearest_on_segment};
 use program::{Diagnostic, Outcome, Pose, Rule};
 use std::f64::consts::TAU;
 
@@ -15,6 +15,15 @@ const ROUNDINGS: f64 = 3.0;
 
 /// So near to the edge of what a posture states a joint is not let, degrees: rounding would decide.
 const EDGE: f64 = 1e-3;
+
+/// A turn that is so near to half a turn goes one way or the other: rounding would decide, radians (0.5°).
+const HALF_TURN: f64 = std::f64::consts::PI - 8.726_646_259_971_648e-3;
+
+/// A turn below this, radians (0.01°), is rounding.
+const SMALL_TURN: f64 = 1.745_329_251_994_329_6e-4;
+
+/// By so much of itself the time of a cut may be longer than its feed wants it.
+const SLOWER: f64 = 0.05;
 
 impl Judge<'_> {
     /// A straight line of the tip.
@@ -32,7 +41,7 @@ impl Judge<'_> {
             Frame::from_mat3_translation(turned, a.translation.lerp(b.translation, part))
         };
         let length = a.translation.distance(b.translation);
-        let turn = angle(&a.matrix3, &b.matrix3);
+        let turn = sure_turn(&a.matrix3, &b.matrix3)?;
         let path = Path { at: &at, length, turn, time: None };
         if !start.exact {
             return self.correct(motion, start, path);
@@ -187,10 +196,12 @@ impl Judge<'_> {
         };
         let (a, b) = (start.tool.matrix3, end.matrix3);
         let at = |part: f64| Frame::from_mat3_translation(turned(&a, &b, part), arc.at(part));
+        let turn = sure_turn(&a, &b)?;
         self.on_arc(&at, wanted, &arc, to, line)?;
+        self.bulge(&arc, points[1], wanted, line)?;
         self.in_cut(&expected)?;
         self.corner(motion, (from_corner, arc.length()), true, &expected)?;
-        let path = Path { at: &at, length: arc.length(), turn: angle(&a, &b), time: None };
+        let path = Path { at: &at, length: arc.length(), turn, time: None };
         self.pass(start, path, (motion, true))?;
         self.complete(end, &expected);
         Ok(())
@@ -219,7 +230,19 @@ impl Judge<'_> {
         let Some(feed) = self.running.feed else {
             return refused(Rule::NoFeed, "the program goes straight and has not stated how fast");
         };
-        let time = (path.length / (feed / 60.0)).max(match self.running.turn_speed {
+        let feed_time = path.length / (feed / 60.0);
+        match cuts {
+            true => self.keeps_feed(&path, feed_time)?,
+            false if feed > self.cell.rapid + self.feed_step => {
+                let most = self.cell.rapid;
+                let message = format!(
+                    "a straight rapid goes at {feed:.0} mm/min, `rapid` of the cell is {most:.0}"
+                );
+                return refused(Rule::RapidFeed, message);
+            }
+            false => {}
+        }
+        let time = feed_time.max(match self.running.turn_speed {
             // A turn is part swing and part turn about the tool; the slower of both decides.
             [Some(swing), Some(roll)] => path.turn.to_degrees() / (swing + roll),
             [_, None] | [None, _] => 0.0,
@@ -242,6 +265,36 @@ impl Judge<'_> {
         self.standing = Some(Standing { joints, tool: end, exact: true });
         self.is_home = false;
         Ok(())
+    }
+
+    /// # Errors
+    /// The tool turns on the way so slowly that the feed is not kept, or nothing states how fast it turns.
+    fn keeps_feed(&self, path: &Path, feed_time: f64) -> Outcome {
+        let [swing, roll] = turns((path.at)(0.0).matrix3, (path.at)(1.0).matrix3);
+        // Where the tip stays no feed is kept.
+        if path.length <= self.tip(true) || swing.hypot(roll) < SMALL_TURN {
+            return Ok(());
+        }
+        let time = match self.running.turn_speed {
+            // One speed for the whole turn.
+            [Some(speed), Some(0.0)] => swing.hypot(roll).to_degrees() / speed,
+            [Some(of_swing), Some(of_roll)] => {
+                (swing.to_degrees() / of_swing).max(roll.to_degrees() / of_roll)
+            }
+            [_, None] | [None, _] if self.machine.words.contains_key("TURN_SPEED") => {
+                return refused(Rule::Feed, "the tool turns in a cut, and nothing states how fast");
+            }
+            [_, None] | [None, _] => 0.0,
+        };
+        match time > feed_time * (1.0 + SLOWER) {
+            true => refused(
+                Rule::Feed,
+                format!(
+                    "the tool turns in a cut, which takes {time:.3} s; at its feed the cut takes {feed_time:.3} s"
+                ),
+            ),
+            false => Ok(()),
+        }
     }
 
     /// # Errors
@@ -405,6 +458,49 @@ impl Judge<'_> {
         Ok(())
     }
 
+    /// How far the circle of three points is off that of the source, between its ends.
+    ///
+    /// # Errors
+    /// By more than the tolerance and what the rounding of the three points does.
+    fn bulge(&mut self, arc: &Arc, via: Vec3, wanted: &Arc, line: u32) -> Outcome {
+        let aside = |tip: Vec3| {
+            let radius = (wanted.start - wanted.center).reject_from_normalized(wanted.normal);
+            let off = (tip - wanted.center).reject_from_normalized(wanted.normal);
+            let height = (tip - wanted.start).dot(wanted.normal);
+            (off.length() - radius.length()).hypot(height)
+        };
+        let in_part = |tip: Vec3| self.in_part(&Frame::from_translation(tip)).translation;
+        let spoke = |point: Vec3| (point - arc.center).reject_from_normalized(arc.normal);
+        let (a, b) = (spoke(arc.at(0.0)), spoke(via));
+        let on_way = arc.normal.dot(a.cross(b)).atan2(a.dot(b)).rem_euclid(TAU);
+        // A point that is moved aside moves the circle by this part of it, with the two others kept: the polynomial of sines.
+        let share = |at: f64, own: f64, others: [f64; 2]| {
+            let part = |other: f64| ((at - other) / 2.0).sin() / ((own - other) / 2.0).sin();
+            (part(others[0]) * part(others[1])).abs()
+        };
+        // Half a step of X, Y and Z each; where the arc begins has been judged.
+        let half = 0.5 * self.machine.resolution() * 3.0_f64.sqrt();
+        let begins = half.max(aside(in_part(arc.at(0.0))));
+        let (mut worst, tip) = (0.0, self.report.tolerances.tip_mm);
+        for step in 1..=64 {
+            let part = f64::from(step) / 64.0;
+            let (at, end) = (part * arc.sweep, arc.sweep);
+            let rounding = begins * share(at, 0.0, [on_way, end])
+                + half * (share(at, on_way, [0.0, end]) + share(at, end, [0.0, on_way]));
+            let aside = aside(in_part(arc.at(part)));
+            if aside.is_nan() || aside > tip + rounding {
+                let message = format!(
+                    "the circle of the three points is {aside:.4} mm off the arc of the source"
+                );
+                return refused(Rule::Arc, message);
+            }
+            worst = f64::max(worst, aside);
+        }
+        let source = self.expected.get(self.next).map_or(0, |expected| expected.line);
+        self.report.deviations.tip_mm.note(worst, source, line);
+        Ok(())
+    }
+
     /// A line that is a chord of an arc.
     fn chord(&mut self, at: &dyn Fn(f64) -> Frame, wanted: &Arc, end: &Frame) -> Outcome {
         let allowed = self.tip(true);
@@ -436,4 +532,30 @@ impl Judge<'_> {
         self.done = reached;
         Ok(())
     }
+}
+
+/// By how much the tool turns, radians.
+///
+/// # Errors
+/// So near to half a turn that its direction is not sure.
+fn sure_turn(from: &Mat3, to: &Mat3) -> Outcome<f64> {
+    let turn = angle(from, to);
+    match turn < HALF_TURN {
+        true => Ok(turn),
+        false => Err(Diagnostic::error(
+            Rule::OrientationWay,
+            "the tool turns by half a turn in one motion: in which direction, rounding decides",
+        )
+        .help("a pose between the two, or another turn about the tool")
+        .into()),
+    }
+}
+
+/// By how much the axis of the tool swings and how much the tool turns about it, radians, on an even turn.
+fn turns(from: Mat3, to: Mat3) -> [f64; 2] {
+    let [from, to] = [from, to].map(|turned| Quat::from_mat3(&turned));
+    let between = from.inverse() * to;
+    let about = Vec3::new(between.x, between.y, between.z).normalize_or_zero();
+    let turn = 2.0 * Vec3::new(between.x, between.y, between.z).length().atan2(between.w.abs());
+    [turn * about.x.hypot(about.y), turn * about.z.abs()]
 }
