@@ -20,6 +20,7 @@ fn dialects() -> impl Iterator<Item = Dialect> {
                 | Dialect::Points
                 | Dialect::Krl
                 | Dialect::UrScript
+                | Dialect::Ls
                 | Dialect::Rapid
         )
     };

@@ -439,7 +439,7 @@ impl Walk<'_> {
         let bulge = arc.radius() * (1.0 - (arc.sweep / 2.0).cos());
         let over_surface = self.follows(arc) && arc.sweep <= PI / 2.0 && bulge <= tolerance;
         // No decimal says where such an arc goes between its ends.
-        let within_a_step = arc.radius() <= self.resolution;
+        let within_a_step = !self.follows(arc) && arc.radius() <= self.resolution;
         let all = if over_surface || within_a_step { 1.0 } else { arc.chords(tolerance) as f64 };
         let lines = ((until - from) * all - 1e-9).ceil().max(1.0) as usize;
         self.followed(arc, lines == 1 && until - from == 1.0, what)?;

@@ -10,12 +10,12 @@ use machine::Machine;
 use robot::{JOB, proof_of, proven, source, written};
 
 fn irb120() -> Machine {
-    machine::load("abb-irb120").unwrap()
+    machine::load("abb-irb120-mill").unwrap()
 }
 
 /// The machine of the library with lines of its file changed.
 fn irb120_with(changes: &[(&str, &str)]) -> Machine {
-    let path = root().join("machines/robots/abb-irb120.toml");
+    let path = root().join("machines/robots/abb-irb120-mill.toml");
     let mut text = std::fs::read_to_string(path).unwrap();
     for (from, to) in changes {
         assert!(text.contains(from), "{from}");
@@ -26,7 +26,7 @@ fn irb120_with(changes: &[(&str, &str)]) -> Machine {
 
 #[test]
 fn the_job_of_the_specification_is_posted_and_proven_on_two_arms() {
-    for name in ["abb-irb120", "abb-irb6700-235"] {
+    for name in ["abb-irb120-mill", "abb-irb6700-235-mill"] {
         let text = proven(&source(JOB), &machine::load(name).unwrap());
         assert!(text.starts_with("MODULE MOD_JOB\r\n"), "{text}");
         assert!(text.ends_with("SetDO DO10_1,0;\r\nEXIT;\r\nENDPROC\r\nENDMODULE\r\n"), "{text}");
@@ -64,6 +64,9 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("MoveC [[74.142", "MoveC [[74.242", "arc"),
     ("MoveC [[74.142,5.858", "MoveC [[45.858,5.858", "arc"),
     ("[5.000,500,5000,1000]", "[50.000,500,5000,1000]", "feed"),
+    ("[100.000,50.000,5000,1000],fine", "v7000,fine", "rapid-feed"),
+    ("[100.000,50.000,5000,1000],fine", "[100.000,60.000,5000,1000],fine", "rapid-feed"),
+    ("PROC main()", "LOCAL PERS num spon:=1;\nPROC main()\nWaitTime spon;\nspon:=0;", "variable"),
     ("[20.000,500,5000,1000]", "[20.010,500,5000,1000]", "feed"),
     ("SetDO DO10_1,1", "SetDO DO10_1,0", "dwell"),
     ("SetDO DO10_1,1", "SetDO DO10_3,1", "output"),

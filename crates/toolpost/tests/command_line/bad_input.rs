@@ -318,7 +318,7 @@ const READERS: &[(&str, &str, &str)] = &[
     ("krl/job.src", "in.src", "prove in.src -m kuka-kr6-r900 --against part.cls"),
     ("urscript/job.script", "in.script", "prove in.script -m universal-ur5e --against part.cls"),
     ("ls/job.ls", "in.ls", "prove in.ls -m fanuc-lrmate-200id-mill --against part.cls"),
-    ("rapid/job.mod", "in.mod", "prove in.mod -m abb-irb120 --against part.cls"),
+    ("rapid/job.mod", "in.mod", "prove in.mod -m abb-irb120-mill --against part.cls"),
     (
         "../../examples/flange.tbl",
         "in.tbl",
@@ -352,6 +352,10 @@ const READERS: &[(&str, &str, &str)] = &[
     ("excellon/holes.drl", "in.drl", "pcb in.drl -m grbl-3018 -o out"),
     ("gerber/pads.gbr", "in.gtl", "pcb in.gtl -m grbl-3018 -o out"),
     ("gerber/pads.gbr", "plots/in.gtl", "pcb plots -m grbl-3018 -o out"),
+    ("gerber/pads.gbr", "in.gtl", "pcb --front in.gtl -m grbl-3018 -o out"),
+    ("gerber/pads.gbr", "in.gbl", "pcb --back in.gbl -m grbl-3018 -o out"),
+    ("gerber/pads.gbr", "in.gko", "pcb board.toml --outline in.gko -m grbl-3018 -o out"),
+    ("excellon/holes.drl", "in.drl", "pcb --drill in.drl -m grbl-3018 -o out"),
     ("board/lamp.toml", "in.toml", "pcb in.toml -m grbl-3018 -o out"),
     ("board/two-pins.json", "in.json", "pcb in.json -m grbl-3018 -o out"),
     ("kicad/v6.kicad_pcb", "in.kicad_pcb", "pcb in.kicad_pcb -m grbl-3018 -o out"),
@@ -385,6 +389,11 @@ const READERS: &[(&str, &str, &str)] = &[
         "../../crates/glass/data/materials.toml",
         "in.toml",
         "glass cloud.xyz --block 9x9x9 --material k9 --materials in.toml --lens 70 -m glass-xyz-50hz -o out.prg",
+    ),
+    (
+        "glass_body/roof.obj",
+        "in.obj",
+        "glass in.obj --block 20x20x30 --material k9 --lens 70 -m glass-xyz-100hz -o out.prg",
     ),
     (
         "PULSES",
@@ -546,7 +555,7 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
             "krl" => &["kuka-kr6-r900"],
             "urscript" => &["universal-ur5e"],
             "fanuc-robot" => &["fanuc-lrmate-200id-mill"],
-            "rapid" => &["abb-irb120"],
+            "rapid" => &["abb-irb120-mill"],
             _ => &[],
         };
         let named =
@@ -557,8 +566,8 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
     }
     for kind in std::fs::read_dir(seeds()).unwrap() {
         let name = kind.unwrap().file_name().to_string_lossy().into_owned();
-        // Cutter-location data for the writer, and bytes that draw regions.
-        if !["post", "region"].contains(&name.as_str())
+        // Cutter-location data for the writer, and bytes that draw regions; pictures, and pulses, which stand in the list as `PULSES`.
+        if !["post", "region", "glass_picture", "glass_program"].contains(&name.as_str())
             && !READERS.iter().any(|(seed, _, _)| seed.starts_with(&format!("{name}/")))
         {
             missing.push(name);
