@@ -302,7 +302,12 @@ fn each_word_of_the_vocabulary_is_understood() {
     for word in toolpost_control::vocabulary(Dialect::Krl) {
         let pose = "LIN {X 1,Y 2,Z 3,A 0,B 90,C 0}\n";
         let modes = "$APO.CDIS=1\n";
-        assert!(body(&format!("{START}{pose}{modes}{word}")).is_ok(), "{word}");
+        // Declarations come first.
+        let lines = match word.starts_with("DECL") {
+            true => format!("{word}\n{START}{pose}"),
+            false => format!("{START}{pose}{modes}{word}"),
+        };
+        assert!(body(&lines).is_ok(), "{word}");
     }
 }
 
@@ -321,7 +326,7 @@ fn what_is_not_understood_is_refused_with_its_line() {
         ("$ADVANCE=6", "0 to 5"),
         ("LIN {X 1,X 2}", "X stands twice"),
         ("CIRC {X 1,Y 0,Z 0,A 0,B 0,C 0},{X 2,Y 1,Z 0,A 0,B 0,C 0},CA 360", "CA"),
-        ("DECL INT n=5", "data list"),
+        ("DECL INT n", "declarations"),
         ("$BASE={X 1,Y 2,Z 3}", "needs each of X, Y, Z, A, B and C"),
         ("foo(1)", "called with arguments"),
         ("HALT now", "`n` is not understood"),
@@ -334,7 +339,9 @@ fn what_is_not_understood_is_refused_with_its_line() {
         assert!(found.contains(what), "{lines}: {found}");
     }
     assert!(run_with(&settings(), "DEF job()\nHALT\n").unwrap_err().contains("no END"));
-    assert!(run_with(&settings(), "HALT\n").unwrap_err().contains("no program"));
+    assert!(body("DECL INT n=5").unwrap_err().contains("data list"));
+    assert!(run_with(&settings(), "HALT\n").unwrap_err().contains("outside of programs"));
+    assert!(run_with(&settings(), "\n").unwrap_err().contains("no program"));
 }
 
 #[test]

@@ -157,9 +157,9 @@ fn orientations_are_vectors_along_the_axis_of_rotation() {
 #[test]
 fn a_variable_is_found_in_its_function_before_it_is_global() {
     let program = "def other(x):
-  y = x + 1
+  z = x + 1
   speed = 0.3
-  movel(p[0,0,y,0,0,0],v=speed)
+  movel(p[0,0,z,0,0,0],v=speed)
 end
 def job():
   global speed = 0.1
@@ -182,6 +182,15 @@ job()
     let hidden = program.replace("  speed = 0.3", "  local speed = 0.3");
     let events = run_with(&settings(), &hidden).unwrap();
     assert_eq!(feeds(&events), [18_000.0, 6000.0].map(Feed::PerMinute));
+    // What a function sets of the first level, the controller sets for all; which level that is, differs.
+    for (from, to) in [
+        ("  z = x", "  y = x"),
+        ("  y = 5", "  y = 5\n  global y = 6"),
+        ("  y = 5", "  local speed = 5"),
+    ] {
+        let found = run_with(&settings(), &program.replace(from, to)).unwrap_err();
+        assert!(found.contains("stands in two scopes"), "{to}: {found}");
+    }
 }
 
 #[test]

@@ -201,7 +201,7 @@ names! {
         Turn6 Word "TURN6", "turns", "Turns of joint 6.";
         OwnFrame Word "OWN_FRAME", "", "`own_frame` of the cell, in every block.";
         Lines Word "LINES", "", "Number of the numbered lines of a robot's program, in `program_start`.";
-        JointSpeed Word "JOINT_SPEED", "%", "Speed of motions of joints, of the fastest, in `program_start` and `joints`.";
+        JointSpeed Word "JOINT_SPEED", "%", "Speed of motions of joints, of the fastest, in `frames` and `joints`.";
         JointRate Word "JOINT_RATE", "degrees/s", "The same part of the speed of the slowest joint: no joint turns faster.";
         TurnSpeed Word "TURN_SPEED", "degrees/s", "`turn_speed` of the options, in `frames`: how fast the tool may turn, its axis and about it each.";
         Corner Word "CORNER", "mm", "How far before its end a cut may leave its path: twice what the corner may be off; 0 where it stops.";

@@ -71,7 +71,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("17:J P[1] 20% FINE ;\r\n", "", "home"),
     ("18:J P[2] 20% FINE ;\r\n", "", "extra-motion"),
     ("J P[2] 20% FINE", "J P[2] 20% CNT50", "path-tolerance"),
-    ("J P[2] 20% FINE", "J P[2] 21% FINE", "feed"),
+    ("J P[2] 20% FINE", "J P[2] 21% FINE", "rapid-feed"),
     ("X = 60.000", "X = 61.000", "path"),
     ("Y = 0.000 mm, Z = -2.000", "Y = 0.000 mm, Z = -2.010", "path"),
     ("X = 60.000 mm, Y = 0.000", "X = 60.000 mm, Y = 0.010", "path"),

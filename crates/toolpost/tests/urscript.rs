@@ -174,7 +174,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("set_standard_analog_out(0,0.50000)", "set_standard_analog_out(1,0.50000)", "output"),
     ("sleep(3.00)", "sleep(1.00)", "dwell"),
     ("sleep(3.00)\n", "", "spindle-dwell"),
-    ("v=0.6283", "v=0.6383", "feed"),
+    ("v=0.6283", "v=0.6383", "rapid-feed"),
     ("set_standard_digital_out(0,False)\nend", "end", "left-on"),
     ("\nend", "\nset_standard_digital_out(1,True)\nend", "left-on"),
     ("\nend", "\npopup(\"wait\",blocking=True)\nend", "stop"),

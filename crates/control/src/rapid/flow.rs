@@ -7,7 +7,7 @@ use crate::event::Action;
 use crate::kernel::Channel;
 use crate::kernel::flow::BlockLocation;
 use program::{Diagnostic, Outcome, OutputValue, Rule};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Most calls within calls.
 const DEEPEST: usize = 20;
@@ -66,6 +66,7 @@ impl<'t> Module<'t> {
             }
         }
         let mut routines = HashMap::new();
+        let (mut declared, mut assigned) = (Vec::new(), HashSet::new());
         loop {
             scan.peek();
             let from = scan.at;
@@ -73,8 +74,9 @@ impl<'t> Module<'t> {
             let word = scan.needed("a declaration, PROC or ENDMODULE")?;
             match word.as_str() {
                 "CONST" | "PERS" | "VAR" => {
-                    let declared = declaration(&mut scan, state, word)?;
-                    state.declare(&scan, from, declared)?;
+                    let data = declaration(&mut scan, state, word)?;
+                    declared.push(data.name);
+                    state.declare(&scan, from, data)?;
                 }
                 "PROC" => {
                     let Routine(name) = Routine::read(&mut scan)?;
@@ -82,7 +84,7 @@ impl<'t> Module<'t> {
                         let message = format!("the module has two procedures {name}");
                         return Err(scan.since(from, Rule::Twice, message));
                     }
-                    over(&mut scan)?;
+                    over(&mut scan, &mut assigned)?;
                 }
                 "ENDMODULE" => break,
                 _ => {
@@ -90,6 +92,9 @@ impl<'t> Module<'t> {
                     return Err(scan.since(from, Rule::Unsupported, message));
                 }
             }
+        }
+        for name in declared {
+            state.outlive(name, assigned.contains(&name));
         }
         match scan.peek() {
             None => Ok(Module { text, shown, routines }),
@@ -113,13 +118,16 @@ fn head(scan: &mut Scan) -> Outcome {
     }
 }
 
-/// Goes over the statements of a procedure to behind its `ENDPROC`.
-fn over(scan: &mut Scan) -> Outcome {
+/// Goes over the statements of a procedure to behind its `ENDPROC`, and notes what they assign.
+fn over(scan: &mut Scan, assigned: &mut HashSet<Name>) -> Outcome {
     loop {
         scan.peek();
         let from = scan.at;
-        let word = scan.needed("a statement or ENDPROC")?;
-        let word = word.as_str();
+        let name = scan.needed("a statement or ENDPROC")?;
+        if matches!(scan.peek(), Some(b'.' | b':')) {
+            assigned.insert(name);
+        }
+        let word = name.as_str();
         if word == "ENDPROC" {
             return Ok(());
         }

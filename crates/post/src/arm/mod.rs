@@ -167,7 +167,6 @@ impl<'a> Walk<'a> {
             let help = "`own_frame` below [cell]: a user frame, a tool and a position register of this number that nothing else uses";
             return Err(one(Diagnostic::error(Rule::Frame, message).help(help)));
         }
-        writer.set(WordName::JointSpeed, cell.joint_speed);
         if templates.places(BlockName::Frames, WordName::LoadMass) && cell.load.is_none() {
             let message =
                 "the control asks for the load on the flange, and the cell does not state it";
@@ -319,6 +318,7 @@ impl<'a> Walk<'a> {
             self.writer.set(WordName::LoadMass, load.mass);
             self.set_each(words, load.center.to_array());
         }
+        self.say_joint_speed();
         self.required(BlockName::Frames)?;
         self.joints(&self.home_joints())
     }

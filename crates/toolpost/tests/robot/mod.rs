@@ -3,7 +3,7 @@
 
 use crate::dice::Dice;
 use control::{Action, ArmAction, ArmPath, Dialect, Event, Settings};
-use geom::Frame;
+use geom::{Frame, Vec3};
 use machine::Machine;
 use program::{Feed, OutputValue, Program};
 use proof::Report;
@@ -54,10 +54,20 @@ fn near(a: &Frame, b: &Frame) -> bool {
 /// Whether two programs make the same motion, but for what their tolerances leave open.
 fn alike((machine, dialect): (&Machine, Dialect), a: &str, b: &str) -> bool {
     let [a, b] = [a, b].map(|text| kept(dialect, text));
+    // Where each motion begins.
+    let mut from = None;
     a.len() == b.len()
         && a.iter().zip(&b).all(|((a, fast), (b, other))| {
+            let here = from;
+            from = match a {
+                Action::Arm(ArmAction::Move(motion)) => match motion.path {
+                    ArmPath::Line(end) | ArmPath::Arc { end, .. } => Some(end.translation),
+                    ArmPath::Joints(_) | ArmPath::Point(_) => None,
+                },
+                _ => from,
+            };
             // The speed of a straight rapid is free.
-            same(machine, (a, b)) && ((fast - other).abs() < 0.1 || *fast == 6000.0)
+            same(machine, here, (a, b)) && ((fast - other).abs() < 0.1 || *fast == 6000.0)
         })
 }
 
@@ -83,7 +93,18 @@ fn kept(dialect: Dialect, text: &str) -> Vec<(Action, f64)> {
     kept
 }
 
-fn same(machine: &Machine, pair: (&Action, &Action)) -> bool {
+/// Whether arcs from `from` to `end` through `a` and through `b` are one: a point may lie anywhere on it.
+fn one_arc(from: Option<Vec3>, a: Vec3, b: Vec3, end: Vec3) -> bool {
+    let Some(from) = from else { return false };
+    let Some((center, axis)) = control::kernel::arc::through(from, a, end) else { return false };
+    let spoke = b - center;
+    let side = |via: Vec3| (end - from).cross(via - from).dot(axis);
+    (spoke.length() - (a - center).length()).abs() < 2e-3
+        && spoke.dot(axis).abs() < 2e-3
+        && side(a) * side(b) > 0.0
+}
+
+fn same(machine: &Machine, from: Option<Vec3>, pair: (&Action, &Action)) -> bool {
     let arm = machine.arm.as_ref().unwrap();
     let tool = machine.cell.as_ref().unwrap().tool(None).unwrap();
     match pair {
@@ -99,7 +120,8 @@ fn same(machine: &Machine, pair: (&Action, &Action)) -> bool {
                     (ArmPath::Line(a), ArmPath::Line(b)) => near(&a, &b),
                     // Of the point on the way its orientation does not count.
                     (ArmPath::Arc { via: a, end: c }, ArmPath::Arc { via: b, end: d }) => {
-                        a.translation.distance(b.translation) < 2e-2 && near(&c, &d)
+                        let [a, b] = [a, b].map(|via| via.translation);
+                        (a.distance(b) < 2e-2 || one_arc(from, a, b, c.translation)) && near(&c, &d)
                     }
                     _ => false,
                 }

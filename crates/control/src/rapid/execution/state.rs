@@ -16,6 +16,8 @@ struct Variable {
     kind: &'static str,
     value: Option<Value>,
     constant: bool,
+    /// Data of a module that none of its procedures assigns: another one may not either.
+    fixed: bool,
 }
 
 /// What the motion before has set, so that each is reported where it changes alone.
@@ -98,9 +100,21 @@ impl State {
             let message = "more data than a controller has room for";
             return Err(scan.since(from, Rule::TooMuch, message));
         }
-        match self.variables.insert(name, Variable { kind, value, constant }) {
+        let variable = Variable { kind, value, constant, fixed: false };
+        match self.variables.insert(name, variable) {
             None => Ok(()),
             Some(_) => Err(scan.since(from, Rule::Twice, format!("{name} is declared twice"))),
+        }
+    }
+
+    /// Data of a module, which procedures of it assign or not. What a program assigns keeps that value for its next run (persistent data,
+    /// and variables in continuous mode: ABB, "RAPID data"), so it has none before it is assigned.
+    pub(in crate::rapid) fn outlive(&mut self, name: Name, is_assigned: bool) {
+        if let Some(variable) = self.variables.get_mut(&name) {
+            match is_assigned && !variable.constant {
+                true => variable.value = None,
+                false => variable.fixed = true,
+            }
         }
     }
 
@@ -125,6 +139,12 @@ impl State {
         };
         if variable.constant {
             return wrong(format!("{} is a constant", target.name));
+        }
+        if variable.fixed {
+            return wrong(format!(
+                "{} belongs to another module, which relies on its value in the next run",
+                target.name
+            ));
         }
         if target.places.is_empty() {
             variable.value = Some(value);

@@ -206,7 +206,7 @@ impl State {
         let tool = program::Tool { number, ..program::Tool::default() };
         channel.report(line, Action::Tool(Box::new(tool)))?;
         // What the operator's function leaves behind, this program does not say.
-        self.speed = None;
+        (self.speed, self.joint_rate) = (None, None);
         self.begins(line, channel)
     }
 }

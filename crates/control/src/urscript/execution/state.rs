@@ -59,7 +59,8 @@ impl State {
     /// A variable has this value from here on.
     ///
     /// # Errors
-    /// There are too many.
+    /// There are too many; or the name stands in two scopes, and which of them the line means depends on where the controller takes the first
+    /// level of the program to be (URScript, "Scoping rules": variables there are global, whatever their qualifier).
     pub(in crate::urscript) fn assign(
         &mut self,
         scan: &Scan,
@@ -68,6 +69,23 @@ impl State {
         value: Value,
     ) -> Outcome {
         let last = self.locals.len().saturating_sub(1);
+        let of_others = self.locals[..last].iter().any(|locals| locals.contains_key(name));
+        let is_own = self.locals.get(last).is_some_and(|locals| locals.contains_key(name));
+        let is_doubtful = match scope {
+            Scope::Global => is_own || of_others,
+            // The program itself is the first function, or the one that stands outside of all calls.
+            Scope::Local => last <= 1 && self.globals.contains_key(name),
+            Scope::Found => !is_own && !self.globals.contains_key(name) && of_others,
+        };
+        if is_doubtful {
+            let message = format!(
+                "{name} stands in two scopes: which of them this line means, the first level of the program decides"
+            );
+            return Err(Box::new(
+                scan.since(0, Rule::Variable, message)
+                    .help("give the variables of functions names of their own"),
+            ));
+        }
         let Some(locals) = self.locals.get_mut(last) else { return Ok(()) };
         let is_global = match scope {
             Scope::Global => true,

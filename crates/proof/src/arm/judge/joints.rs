@@ -80,13 +80,45 @@ impl Judge<'_> {
         let step = word.map_or(1e-3 * most, |word| 0.5 * word.resolution());
         match self.running.joint_speed {
             Some(speed) if speed <= most + step => Ok(()),
-            Some(speed) => refused(
-                Rule::RapidFeed,
-                format!("the joints go at {speed:.1} %, `joint_speed` of the cell is {most} %"),
-            ),
-            None if word.is_none() => Ok(()),
-            None => refused(Rule::RapidFeed, "nothing states how fast the joints go"),
+            None if word.is_none() => self.tip_speed_of_joints(),
+            stated => {
+                let message = match stated {
+                    Some(speed) => format!(
+                        "the joints go at {speed:.1} %, `joint_speed` of the cell is {most} %"
+                    ),
+                    None => String::from("nothing states how fast the joints go"),
+                };
+                let help = "state the speed of the joints before they move, no faster than `joint_speed` below [cell] of the machine file";
+                Err(Diagnostic::error(Rule::RapidFeed, message).help(help).into())
+            }
         }
+    }
+
+    /// RAPID says how fast the tip goes and how fast the tool turns in motions of joints, too; the slower decides.
+    ///
+    /// # Errors
+    /// The tip goes faster than a rapid of the cell, or the tool turns faster than the slowest joint may.
+    fn tip_speed_of_joints(&self) -> Outcome {
+        let slowest =
+            self.arm.joints().iter().map(|joint| joint.speed).fold(f64::INFINITY, f64::min);
+        let turn = slowest.to_degrees() * self.cell.joint_speed / 100.0;
+        let (feed, [stated, _]) = (self.running.feed, self.running.turn_speed);
+        let is_slow = feed.is_some_and(|feed| feed <= self.cell.rapid + self.feed_step)
+            && stated.is_some_and(|stated| stated <= turn * 1.001);
+        if is_slow {
+            return Ok(());
+        }
+        let shown = |speed: Option<f64>| {
+            speed.map_or_else(|| String::from("nothing"), |speed| format!("{speed:.1}"))
+        };
+        let message = format!(
+            "a motion of joints states {} mm/min and {} degrees/s; `rapid` of the cell is {:.0}, and `joint_speed` leaves {turn:.1} to the slowest joint",
+            shown(feed),
+            shown(stated),
+            self.cell.rapid
+        );
+        let help = "state a slower speed in the motion, or others below [cell] of the machine file";
+        Err(Diagnostic::error(Rule::RapidFeed, message).help(help).into())
     }
 
     /// Whether the tool stands on the axis of a pose, above it by `most` mm at the most.

@@ -276,8 +276,8 @@ impl Judge<'_> {
             return Ok(());
         }
         let time = match self.running.turn_speed {
-            // One speed for the whole turn.
-            [Some(speed), Some(0.0)] => swing.hypot(roll).to_degrees() / speed,
+            // One speed for the whole turn, which no maker states (docs/controls/urscript.md): not compared with the feed.
+            [Some(_), Some(0.0)] => 0.0,
             [Some(of_swing), Some(of_roll)] => {
                 (swing.to_degrees() / of_swing).max(roll.to_degrees() / of_roll)
             }
