@@ -329,7 +329,7 @@ fn what_is_not_understood_is_refused_with_its_line() {
         ("DECL INT n", "declarations"),
         ("$BASE={X 1,Y 2,Z 3}", "needs each of X, Y, Z, A, B and C"),
         ("foo(1)", "called with arguments"),
-        ("HALT now", "`n` is not understood"),
+        ("HALT now", "`now` is not understood"),
         ("a_name_that_is_longer_than_24=1", "at most 24 letters"),
         ("DEF inner()", "begins within another"),
     ] {

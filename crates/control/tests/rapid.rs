@@ -249,7 +249,7 @@ fn data_are_declared_assigned_and_calculated() {
     refused("three:=3;", 4, "THREE is not declared");
     refused("VAR num four;\nVAR num four;", 5, "declared twice");
     refused("number:=number+1;", 4, "no statement has set NUMBER");
-    refused("number:=1/0;", 4, "no such result");
+    refused("number:=1/0;", 4, "has no result");
     refused("number:=TRUE;", 4, "TRUE or FALSE where a num is needed");
     refused("VAR speeddata v;\nv.v_tcp:=5;", 5, "the other parts");
     refused(&format!("number:={}1{};", "(".repeat(50), ")".repeat(50)), 4, "nest too deep");

@@ -1,6 +1,7 @@
 //! How far a program may run: loops, calls and jumps end, whatever is written.
 
 use crate::event::Action;
+use program::Rule;
 
 /// Most jumps and calls between two places that the tool goes to: a loop that goes nowhere for so long
 /// is taken as endless.
@@ -28,6 +29,17 @@ impl Budget {
     /// What to say of a program that jumps without end.
     pub fn jump(&mut self) -> Result<(), String> {
         self.spend(1)
+    }
+
+    /// A call within so many others.
+    ///
+    /// # Errors
+    /// They nest deeper than `most`, or as [`Budget::jump`].
+    pub(crate) fn call(&mut self, depth: usize, most: usize) -> Result<(), (Rule, String)> {
+        if depth >= most {
+            return Err((Rule::Nesting, format!("calls nest deeper than {most}")));
+        }
+        self.jump().map_err(|message| (Rule::Endless, message))
     }
 
     /// So many bytes are read, again or behind a call. Once alone that is never endless, however long.

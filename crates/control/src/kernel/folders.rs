@@ -1,6 +1,6 @@
 //! Programs that a program calls, from the folders that the operator has given.
 
-use program::encoding;
+use program::{Diagnostic, encoding};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read;
@@ -41,6 +41,20 @@ impl Folders {
         self.paths.iter().any(|folder| folder.join(name).is_file())
     }
 
+    /// The program `name`, in a file with that ending: as it is written, or else in small letters; `None` where no folder has it.
+    ///
+    /// # Errors
+    /// As [`Folders::open`].
+    pub(crate) fn called(&self, name: &str, ending: &str) -> Result<Option<CalledFile>, String> {
+        let file = format!("{name}.{ending}");
+        let Some(name) = [file.to_ascii_lowercase(), file].into_iter().rfind(|own| self.have(own))
+        else {
+            return Ok(None);
+        };
+        let text = self.open(&name)?;
+        Ok(Some(CalledFile { name, text }))
+    }
+
     /// Finds a called program, in the first folder that has it, and reads it.
     ///
     /// # Errors
@@ -49,6 +63,21 @@ impl Folders {
         let (path, text) = open(&self.paths, name)?;
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
         Ok(text)
+    }
+}
+
+/// A called program.
+pub(crate) struct CalledFile {
+    /// The name of the file.
+    pub(crate) name: String,
+    pub(crate) text: Vec<u8>,
+}
+
+impl CalledFile {
+    /// A finding in it, at the line of the call.
+    pub(crate) fn inside(&self, line: u32, found: Diagnostic) -> Box<Diagnostic> {
+        let message = format!("in {}, line {}: {}", self.name, found.line, found.message);
+        Box::new(Diagnostic { message, ..found }.line(line))
     }
 }
 

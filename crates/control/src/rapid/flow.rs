@@ -32,7 +32,7 @@ enum Ended {
 pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
     let mut state = State::new(&settings.tool_change, &settings.signals);
     let module = Module::of(text, None, &mut state)?;
-    let main = Name::of(b"MAIN").and_then(|name| module.routines.get(&name).copied());
+    let main = Name::of("MAIN").and_then(|name| module.routines.get(&name).copied());
     let Some(main) = main else {
         let message = "the module has no procedure main";
         return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
@@ -48,9 +48,9 @@ impl<'t> Module<'t> {
     /// # Errors
     /// What is not understood, but for what stands in procedures.
     fn of(text: &'t [u8], shown: Option<u32>, state: &mut State) -> Outcome<Module<'t>> {
-        let mut scan = Scan::new(text, BlockLocation { at: 0, line: 1 });
+        let mut scan = Scan::within(text, BlockLocation { at: 0, line: 1 });
         head(&mut scan)?;
-        if !scan.take_word("MODULE")? {
+        if !scan.take_word("MODULE") {
             return Err(scan.wrong("the file begins with MODULE and a name"));
         }
         let from = scan.at;
@@ -70,7 +70,7 @@ impl<'t> Module<'t> {
         loop {
             scan.peek();
             let from = scan.at;
-            scan.take_word("LOCAL")?;
+            scan.take_word("LOCAL");
             let word = scan.needed("a declaration, PROC or ENDMODULE")?;
             match word.as_str() {
                 "CONST" | "PERS" | "VAR" => {
@@ -152,7 +152,7 @@ struct Run<'r, 'c> {
 impl Run<'_, '_> {
     /// Runs a procedure from behind its head to its end.
     fn routine(&mut self, module: &Module, from: BlockLocation, depth: usize) -> Outcome<Ended> {
-        let mut scan = Scan::new(module.text, from);
+        let mut scan = Scan::within(module.text, from);
         let mut declared = Vec::new();
         let ended = loop {
             scan.blanks();
@@ -235,14 +235,11 @@ impl Run<'_, '_> {
         depth: usize,
     ) -> Outcome<Ended> {
         let refused = |rule: Rule, message: String| scan.since(from, rule, message);
-        if depth >= DEEPEST {
-            return Err(refused(Rule::Nesting, format!("calls nest deeper than {DEEPEST}")));
-        }
-        self.channel.budget.jump().map_err(|message| refused(Rule::Endless, message))?;
+        let counted = self.channel.budget.call(depth, DEEPEST);
+        counted.map_err(|(rule, message)| refused(rule, message))?;
         let own = module.routines.get(&name).copied();
-        let folders = &self.settings.setup.folders;
-        let lower = format!("{}.mod", name.as_str().to_ascii_lowercase());
-        let called = [format!("{name}.mod"), lower].into_iter().find(|file| folders.have(file));
+        let called = self.settings.setup.folders.called(name.as_str(), "mod");
+        let called = called.map_err(|message| refused(Rule::CalledProgram, message))?;
         if !plain && (own.is_some() || called.is_some()) {
             let message = format!("{name} is called with arguments, which is not followed");
             return Err(refused(Rule::Argument, message));
@@ -256,17 +253,12 @@ impl Run<'_, '_> {
             );
             return Err(refused(Rule::CalledProgram, message));
         };
-        let text = folders.open(&called);
-        let text = text.map_err(|message| refused(Rule::CalledProgram, message))?;
-        let inside = |found: Box<Diagnostic>| {
-            let message = format!("in {called}, line {}: {}", found.line, found.message);
-            Box::new(Diagnostic { message, ..*found }.line(line))
-        };
-        let other = Module::of(&text, Some(line), &mut self.state).map_err(inside)?;
+        let inside = |found: Box<Diagnostic>| called.inside(line, *found);
+        let other = Module::of(&called.text, Some(line), &mut self.state).map_err(inside)?;
         match other.routines.get(&name).copied() {
             Some(place) => self.routine(&other, place, depth + 1).map_err(inside),
             None => {
-                let message = format!("{called} has no procedure {name}");
+                let message = format!("{} has no procedure {name}", called.name);
                 Err(refused(Rule::CalledProgram, message))
             }
         }

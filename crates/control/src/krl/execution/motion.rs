@@ -1,17 +1,14 @@
 //! Motions.
 
 use super::state::{Standing, State};
-use crate::event::Action;
 use crate::kernel::Channel;
+use crate::kernel::arm::FARTHEST;
 use crate::krl::language::{AXES, Approximation, COORDINATES, Motion, OUTER, Scan, Value, frame};
-use crate::{ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
+use crate::{ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
 use program::{Outcome, Rule};
 
 /// Fields of a position that say the posture.
 const POSTURE: [&str; 2] = ["S", "T"];
-
-/// A coordinate or a joint beyond this, mm or degrees, is no arm's.
-const FARTHEST: f64 = 1e6;
 
 impl State {
     /// A motion.
@@ -54,7 +51,7 @@ impl State {
         self.standing = standing;
         let corner = self.corner(scan, approximation, &path)?;
         let motion = ArmMove { turning: self.turning_of(&path), path, corner, posture };
-        channel.report(scan.source.line, Action::Arm(ArmAction::Move(Box::new(motion))))
+        channel.motion(scan.line, motion)
     }
 
     /// How the tool turns on the way.

@@ -3,13 +3,12 @@
 use super::system;
 use crate::event::{Action, Risk};
 use crate::kernel::Channel;
+use crate::kernel::arm::{MOST_VARIABLES, tool_change};
+use crate::kernel::formula::Typed;
 use crate::krl::language::{Name, Readable, Scan, Target, Value, Waiting};
 use crate::{ArmAction, Turning};
-use program::{Diagnostic, Input, Outcome, Rule, Until};
+use program::{Diagnostic, Outcome, Rule};
 use std::collections::HashMap;
-
-/// Most variables that a program may set.
-const MOST_VARIABLES: usize = 100_000;
 
 /// Where the arm is, as far as the program says it.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +82,7 @@ impl State {
 
     /// What an element of an array holds.
     pub(super) fn element(&self, array: &str, number: i64) -> Option<&Value> {
-        self.variables.get(&(Name::of(array.as_bytes())?, Some(number), None))
+        self.variables.get(&(Name::of(array)?, Some(number), None))
     }
 
     /// A variable has this value from here on.
@@ -151,7 +150,7 @@ impl State {
         }
         if matches!(target.name.as_str(), "BASE_DATA" | "TOOL_DATA" | "LOAD_DATA") {
             let risk = Action::Risk(Box::new(Risk::OPERATOR_DATA));
-            channel.report(scan.source.line, risk)?;
+            channel.report(scan.line, risk)?;
         }
         self.set(scan, target, value)
     }
@@ -170,20 +169,11 @@ impl State {
         if self.tool_change.is_empty() || name.as_str() != self.tool_change {
             return Ok(false);
         }
-        let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
-        let number = match arguments {
-            [value] if value.number().as_ref().is_some_and(whole) => {
-                value.number().unwrap_or_default() as u32
-            }
-            _ => {
-                let message = "a tool change has the number of the tool as its one argument";
-                return Err(scan.since(0, Rule::Tool, message));
-            }
-        };
-        let tool = program::Tool { number, ..program::Tool::default() };
-        channel.report(scan.source.line, Action::Tool(Box::new(tool)))?;
+        let number = if let [value] = arguments { value.number() } else { None };
+        let tool = tool_change(number).map_err(|message| scan.since(0, Rule::Tool, message))?;
+        channel.report(scan.line, tool)?;
         // What the operator's program leaves behind, this one does not say.
-        self.forget(scan.source.line, channel)?;
+        self.forget(scan.line, channel)?;
         self.standing = Standing::Unknown;
         Ok(true)
     }
@@ -192,9 +182,9 @@ impl State {
     pub(super) fn forget(&mut self, line: u32, channel: &mut Channel) -> Outcome {
         (self.distance, self.turning, self.along_path) = (None, None, None);
         self.turn_speed = [None; 2];
-        channel.report(line, Action::Arm(ArmAction::TurnSpeed(self.turn_speed)))?;
+        channel.arm(line, ArmAction::TurnSpeed(self.turn_speed))?;
         self.joint_speeds = [None; 6];
-        channel.report(line, Action::Arm(ArmAction::JointSpeed(None)))?;
+        channel.arm(line, ArmAction::JointSpeed(None))?;
         self.frame(line, ArmAction::Base(None), channel)?;
         self.frame(line, ArmAction::Tool(None), channel)
     }
@@ -204,7 +194,7 @@ impl State {
         if matches!(self.standing, Standing::Pose(_)) {
             self.standing = Standing::Unknown;
         }
-        channel.report(line, Action::Arm(action))
+        channel.arm(line, action)
     }
 
     /// A wait.
@@ -214,7 +204,7 @@ impl State {
         waiting: Waiting,
         channel: &mut Channel,
     ) -> Outcome {
-        let line = scan.source.line;
+        let line = scan.line;
         match waiting {
             Waiting::Seconds(seconds) => channel.report(line, Action::Dwell(seconds)),
             Waiting::Message => Ok(()),
@@ -222,9 +212,7 @@ impl State {
                 let Ok(number) = u32::try_from(number) else {
                     return Err(scan.since(0, Rule::Index, "no input has this number"));
                 };
-                let until = if on { Until::High } else { Until::Low };
-                let input = Input { number, until, timeout: f64::INFINITY };
-                channel.report(line, Action::Input(Box::new(input)))
+                channel.input(line, number, on)
             }
         }
     }

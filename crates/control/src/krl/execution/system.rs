@@ -3,10 +3,11 @@
 use super::state::{State, unfit};
 use crate::event::Action;
 use crate::kernel::Channel;
+use crate::kernel::formula::Typed;
 use crate::krl::language::{Name, Scan, Target, Value, frame, whole_frame};
 use crate::{ArmAction, Turning};
 use geom::{Frame, Vec3};
-use program::{Feed, Outcome, Output, OutputValue, Rule};
+use program::{Feed, Outcome, OutputValue, Rule};
 
 /// mm/min in a m/s.
 const PER_MINUTE: f64 = 60_000.0;
@@ -22,7 +23,7 @@ pub(super) fn assign(
     value: Value,
     channel: &mut Channel,
 ) -> Outcome {
-    let line = scan.source.line;
+    let line = scan.line;
     match (name.as_str(), field.as_ref().map(Name::as_str)) {
         ("$OUT" | "$ANOUT", None) => output(scan, name, index, &value, channel),
         ("$BASE", None) => {
@@ -38,12 +39,10 @@ pub(super) fn assign(
         ("$VEL", Some(which @ ("ORI1" | "ORI2"))) => {
             let speed = positive(scan, name, &value)?;
             state.turn_speed[usize::from(which == "ORI2")] = Some(speed);
-            channel.report(line, Action::Arm(ArmAction::TurnSpeed(state.turn_speed)))
+            channel.arm(line, ArmAction::TurnSpeed(state.turn_speed))
         }
         ("$LOAD", None) => match load(&value) {
-            Some((mass, center)) => {
-                channel.report(line, Action::Arm(ArmAction::Load(mass, center)))
-            }
+            Some((mass, center)) => channel.arm(line, ArmAction::Load(mass, center)),
             None => Err(unfit(scan, name, &value, "{M .., CM {X ..,Y ..,Z ..,..}}")),
         },
         ("$LOOP_MSG", None) => match value {
@@ -52,11 +51,11 @@ pub(super) fn assign(
         },
         ("$IPO_MODE", None) => {
             let on_flange = chosen(scan, name, &value, &[("BASE", false), ("TCP", true)])?;
-            channel.report(line, Action::Arm(ArmAction::PartOnFlange(on_flange)))
+            channel.arm(line, ArmAction::PartOnFlange(on_flange))
         }
         ("$ACC", Some("CP" | "ORI1" | "ORI2")) | ("$ACC_AXIS", None) => {
             positive(scan, name, &value)?;
-            channel.report(line, Action::Arm(ArmAction::Acceleration))
+            channel.arm(line, ArmAction::Acceleration)
         }
         ("$VEL_AXIS", None) => joint_speed(state, scan, index, &value, channel),
         (_, field) => mode(state, scan, name, field, &value),
@@ -107,7 +106,7 @@ pub(super) fn bas(
     arguments: &[Value],
     channel: &mut Channel,
 ) -> Outcome {
-    let line = scan.source.line;
+    let line = scan.line;
     let command = match arguments {
         [Value::Entry(command), value] => value.number().map(|value| (command, value)),
         _ => None,
@@ -121,9 +120,9 @@ pub(super) fn bas(
         "INITMOV" => state.forget(line, channel),
         "VEL_PTP" if percent => {
             state.joint_speeds = [Some(value); 6];
-            channel.report(line, Action::Arm(ArmAction::JointSpeed(Some(value))))
+            channel.arm(line, ArmAction::JointSpeed(Some(value)))
         }
-        "ACC_PTP" if percent => channel.report(line, Action::Arm(ArmAction::Acceleration)),
+        "ACC_PTP" if percent => channel.arm(line, ArmAction::Acceleration),
         "VEL_CP" if value > 0.0 => {
             channel.report(line, Action::Feed(Feed::PerMinute(value * PER_MINUTE)))
         }
@@ -160,7 +159,7 @@ fn joint_speed(
     *speed = Some(percent);
     let all: Option<Vec<f64>> = state.joint_speeds.iter().copied().collect();
     let fastest = all.map(|all| all.into_iter().fold(0.0, f64::max));
-    channel.report(scan.source.line, Action::Arm(ArmAction::JointSpeed(fastest)))
+    channel.arm(scan.line, ArmAction::JointSpeed(fastest))
 }
 
 /// The frame of a number: 0 is that of the flange, or the world; `None` is one that the operator has measured.
@@ -193,8 +192,7 @@ fn output(
             None => return Err(unfit(scan, name, value, "a number from -1 to 1")),
         },
     };
-    let output = Output { number, value, with_motion: false };
-    channel.report(scan.source.line, Action::Output(output))
+    channel.output(scan.line, number, value)
 }
 
 /// A frame all of whose numbers are there; `None` is one of the operator.

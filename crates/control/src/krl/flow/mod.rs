@@ -115,7 +115,7 @@ impl Run<'_, '_> {
             let mut scan = Scan::new(Source { line: place.line, text });
             let statement = read(&mut scan, &self.state)?;
             let number = file.shown.unwrap_or(place.line);
-            scan.source.line = number;
+            scan.line = number;
             if matches!(statement, Statement::Declare(_, _, None)) && has_begun {
                 let message = "declarations stand before the first statement of a program";
                 return Err(scan.since(0, Rule::Definition, message));
@@ -143,7 +143,7 @@ impl Run<'_, '_> {
     }
 
     fn statement(&mut self, scan: &Scan, statement: Statement) -> Outcome {
-        let number = scan.source.line;
+        let number = scan.line;
         match statement {
             Statement::Comment(text) => self.channel.report(number, Action::Comment(text)),
             Statement::Motion(motion) => self.state.go(scan, &motion, self.channel),
@@ -175,37 +175,30 @@ impl Run<'_, '_> {
         (name, plain): (Name, bool),
         depth: usize,
     ) -> Outcome {
-        let refused = |rule: Rule, message: String| Err(scan.since(0, rule, message));
+        let refused = |rule: Rule, message: String| scan.since(0, rule, message);
         if !plain {
             let message = format!("{name} is called with arguments, which is not followed");
-            return refused(Rule::Argument, message);
+            return Err(refused(Rule::Argument, message));
         }
-        if depth >= DEEPEST {
-            return refused(Rule::Nesting, format!("calls nest deeper than {DEEPEST}"));
-        }
-        self.channel.budget.jump().or_else(|message| refused(Rule::Endless, message))?;
+        let counted = self.channel.budget.call(depth, DEEPEST);
+        counted.map_err(|(rule, message)| refused(rule, message))?;
         if let Some(place) = file.programs.get(&name) {
             return self.routine(file, *place, depth + 1).map(drop);
         }
-        let folders = &self.settings.setup.folders;
-        let lower = format!("{}.src", name.as_str().to_ascii_lowercase());
-        let called = [format!("{name}.src"), lower].into_iter().find(|file| folders.have(file));
-        let Some(called) = called else {
+        let called = self.settings.setup.folders.called(name.as_str(), "src");
+        let called = called.map_err(|message| refused(Rule::CalledProgram, message));
+        let Some(called) = called? else {
             let message = format!("the called program {name} is in no folder for called programs");
-            return refused(Rule::CalledProgram, message);
+            return Err(refused(Rule::CalledProgram, message));
         };
-        let text = folders.open(&called);
-        let text = text.map_err(|message| scan.since(0, Rule::CalledProgram, message))?;
-        let number = scan.source.line;
-        let inside = |found: Box<Diagnostic>| {
-            let message = format!("in {called}, line {}: {}", found.line, found.message);
-            Box::new(Diagnostic { message, ..*found }.line(number))
-        };
-        let other = File::of(&text, Some(number)).map_err(inside)?;
+        let inside = |found: Box<Diagnostic>| called.inside(scan.line, *found);
+        let other = File::of(&called.text, Some(scan.line)).map_err(inside)?;
         self.data(name)?;
         match other.programs.get(&name) {
             Some(place) => self.routine(&other, *place, depth + 1).map(drop).map_err(inside),
-            None => refused(Rule::CalledProgram, format!("{called} has no program {name}")),
+            None => {
+                Err(refused(Rule::CalledProgram, format!("{} has no program {name}", called.name)))
+            }
         }
     }
 

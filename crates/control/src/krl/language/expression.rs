@@ -1,13 +1,9 @@
-//! Expressions: operands, and operators by the ranks of KRL (KSS, "Priority of operators").
+//! Formulas: operands, and operators by the ranks of KRL (KSS, "Priority of operators").
 
-use super::scan::Scan;
+use super::scan::{Krl, Scan};
 use super::value::{COORDINATES, Name, Value, coordinates, frame};
-use crate::kernel::decimal;
-use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
-use program::{Diagnostic, Outcome, Rule};
-
-/// How deep brackets, signs and aggregates may nest.
-const DEEPEST: usize = 24;
+use crate::kernel::formula::{self, Operator, Sign, Terms};
+use program::{Outcome, Rule};
 
 /// What holds variables.
 pub(crate) trait Readable {
@@ -16,52 +12,24 @@ pub(crate) trait Readable {
     fn value(&self, name: Name, index: Option<i64>, field: Option<Name>) -> Option<Value>;
 }
 
-/// An operator.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Operator {
-    Chain,
-    Times,
-    Over,
-    Plus,
-    Minus,
-    And,
-    Exor,
-    Or,
-    Equal,
-    Unequal,
-    Less,
-    Greater,
-    LessOrEqual,
-    GreaterOrEqual,
-}
+/// What formulas are made of.
+#[derive(Clone, Copy)]
+struct Formulas<'v>(&'v dyn Readable);
 
-/// An expression in a line.
-pub(crate) struct Expression<'s, 't, 'v> {
-    pub(crate) scan: &'s mut Scan<'t>,
-    pub(crate) variables: &'v dyn Readable,
-}
-
-/// Takes an expression.
+/// Takes a formula.
 ///
 /// # Errors
 /// What is wrong in it.
 pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Value> {
-    evaluate(&mut Expression { scan, variables })
+    formula::read(scan, Formulas(variables))
 }
 
-/// Takes an expression that comes to a number.
+/// Takes a formula that comes to a number.
 ///
 /// # Errors
 /// What is wrong in it; it comes to something else, or to a number that is not finite.
 pub(crate) fn read_number(scan: &mut Scan, variables: &dyn Readable) -> Outcome<f64> {
-    scan.peek();
-    let from = scan.at;
-    let value = read(scan, variables)?;
-    match value.number() {
-        Some(number) if number.is_finite() => Ok(number),
-        Some(_) => Err(scan.since(from, Rule::Number, "a number beyond all numbers")),
-        None => Err(mistaken(scan, from, &value, "a number")),
-    }
+    formula::read_number(scan, Formulas(variables))
 }
 
 /// Takes an index in square brackets, or its empty form of a text (`[]`), where one comes next.
@@ -69,10 +37,7 @@ pub(crate) fn read_number(scan: &mut Scan, variables: &dyn Readable) -> Outcome<
 /// # Errors
 /// It is no whole number.
 pub(crate) fn read_index(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Option<i64>> {
-    if !scan.take(b'[') {
-        return Ok(None);
-    }
-    if scan.take(b']') {
+    if !scan.take(b'[') || scan.take(b']') {
         return Ok(None);
     }
     let from = scan.at;
@@ -80,312 +45,141 @@ pub(crate) fn read_index(scan: &mut Scan, variables: &dyn Readable) -> Outcome<O
     if number.fract() != 0.0 || number.abs() > 1e6 {
         return Err(scan.since(from, Rule::Index, "an index is a whole number"));
     }
-    scan.expect(b']')?;
+    scan.expect("]")?;
     Ok(Some(number as i64))
 }
 
-/// The error of a value of another type than is needed.
-pub(crate) fn mistaken(scan: &Scan, from: usize, value: &Value, needed: &str) -> Box<Diagnostic> {
-    let message = format!("{} where {needed} is needed", value.kind());
-    scan.since(from, Rule::Type, message)
+impl Terms for Formulas<'_> {
+    type Lexis = Krl;
+    type Value = Value;
+
+    const OPERATORS: &'static [Sign] = &[
+        (":", Operator::Chain, 6),
+        ("*", Operator::Times, 5),
+        ("/", Operator::Over, 5),
+        ("+", Operator::Plus, 4),
+        ("-", Operator::Minus, 4),
+        ("AND", Operator::And, 3),
+        ("EXOR", Operator::Xor, 2),
+        ("OR", Operator::Or, 1),
+        ("==", Operator::Equal, 0),
+        ("<>", Operator::Unequal, 0),
+        ("<=", Operator::LessOrEqual, 0),
+        (">=", Operator::GreaterOrEqual, 0),
+        ("<", Operator::Less, 0),
+        (">", Operator::Greater, 0),
+    ];
+    const TRUTH: [&'static [&'static str]; 3] = [&["TRUE"], &["FALSE"], &["NOT"]];
+
+    /// An INT where it has neither point nor exponent.
+    fn number(self, value: f64, written: &[u8]) -> Result<Value, &'static str> {
+        if !written.iter().all(u8::is_ascii_digit) {
+            return Ok(Value::Number(value));
+        }
+        let whole = std::str::from_utf8(written).ok().and_then(|digits| digits.parse().ok());
+        whole.map(Value::Integer).ok_or("a whole number is at most 2147483647")
+    }
+
+    fn operand(self, scan: &mut Scan) -> Outcome<Value> {
+        match scan.peek() {
+            Some(b'{') => self.aggregate(scan),
+            Some(b'#') => {
+                scan.at += 1;
+                Ok(Value::Entry(scan.needed("the name of an entry behind #")?))
+            }
+            Some(b'\'') => bits(scan),
+            _ => self.named(scan),
+        }
+    }
+
+    fn apply(
+        self,
+        operator: Operator,
+        [a, b]: [&Value; 2],
+    ) -> Result<Option<Value>, (Rule, String)> {
+        if operator == Operator::Chain {
+            return match (whole_frame(a), whole_frame(b)) {
+                (Some(a), Some(b)) => Ok(Some(fields(&(frame(a) * frame(b))))),
+                _ => Err((Rule::Type, String::from("`:` chains two frames of X, Y, Z, A, B, C"))),
+            };
+        }
+        let (Value::Integer(a), Value::Integer(b)) = (a, b) else { return Ok(None) };
+        // Of two INT the result is one: a division is cut off towards 0.
+        let whole = match operator {
+            Operator::Times => a.checked_mul(*b),
+            Operator::Over => a.checked_div(*b),
+            Operator::Plus => a.checked_add(*b),
+            Operator::Minus => a.checked_sub(*b),
+            _ => return Ok(None),
+        };
+        let message = "the operator has no result for these numbers";
+        whole.map(|whole| Some(Value::Integer(whole))).ok_or((Rule::Arithmetic, message.into()))
+    }
 }
 
-impl Expression<'_, '_, '_> {
-    /// An aggregate behind its brace: `{X 1,Y 2}`, `{FRAME: X 1}`.
-    fn aggregate(&mut self) -> Outcome<Value> {
-        let mut fields: Vec<(Name, Value)> = Vec::with_capacity(6);
-        let before = self.scan.at;
-        let typed = self.scan.name()?.is_some() && self.scan.take(b':');
+impl Formulas<'_> {
+    /// An aggregate: `{X 1,Y 2}`, `{FRAME: X 1}`.
+    fn aggregate(self, scan: &mut Scan) -> Outcome<Value> {
+        scan.expect("{")?;
+        let before = scan.at;
+        let typed = scan.word().is_some() && scan.take(b':');
         if !typed {
-            self.scan.at = before;
+            scan.at = before;
         }
+        let mut fields: Vec<(Name, Value)> = Vec::with_capacity(6);
         loop {
-            let from = self.scan.at;
-            let Some(name) = self.scan.name()? else {
-                return Err(self.scan.wrong("the name of a field is needed here"));
-            };
-            if self.scan.take(b'[') {
-                self.scan.expect(b']')?;
+            scan.peek();
+            let from = scan.at;
+            let name = scan.needed("the name of a field")?;
+            if scan.take(b'[') {
+                scan.expect("]")?;
             }
             if fields.iter().any(|(field, _)| *field == name) {
                 let message = format!("{name} stands twice in the aggregate");
-                return Err(self.scan.since(from, Rule::RepeatedWord, message));
+                return Err(scan.since(from, Rule::RepeatedWord, message));
             }
-            let value = self.nested(evaluate)?;
-            fields.push((name, value.in_field(name)));
-            if self.scan.take(b'}') {
+            fields.push((name, formula::read(scan, self)?.in_field(name)));
+            if scan.take(b'}') {
                 return Ok(Value::Fields(fields));
             }
-            self.scan.expect(b',')?;
+            scan.expect(",")?;
         }
-    }
-
-    /// `'B0110'`, `'HFF'`.
-    fn bits(&mut self) -> Outcome<Value> {
-        let from = self.scan.at;
-        self.scan.at += 1;
-        let rest = self.scan.rest();
-        let length = rest.iter().take_while(|byte| byte.is_ascii_alphanumeric()).count();
-        let digits = std::str::from_utf8(rest.get(1..length).unwrap_or_default()).unwrap_or("");
-        let radix = match rest.first().map(u8::to_ascii_uppercase) {
-            Some(b'B') => 2,
-            Some(b'H') => 16,
-            _ => 0,
-        };
-        self.scan.at += length;
-        let number = if radix == 0 { None } else { i32::from_str_radix(digits, radix).ok() };
-        let closed = self.scan.take(b'\'');
-        match number.filter(|_| closed) {
-            Some(number) => Ok(Value::Integer(number)),
-            None => Err(self.scan.since(
-                from,
-                Rule::Number,
-                "a number such as 'B0110' or 'HFF' is needed",
-            )),
-        }
-    }
-
-    fn text(&mut self) -> Outcome<Value> {
-        let from = self.scan.at;
-        let rest = self.scan.rest().get(1..).unwrap_or_default();
-        let Some(length) = rest.iter().position(|byte| *byte == b'"') else {
-            return Err(self.scan.since(from, Rule::Syntax, "the text has no end"));
-        };
-        self.scan.at += length + 2;
-        Ok(Value::Text(String::from_utf8_lossy(&rest[..length]).into()))
     }
 
     /// What a name stands for.
-    fn named(&mut self, from: usize, name: Name) -> Outcome<Value> {
-        match name.as_str() {
-            "TRUE" => return Ok(Value::Flag(true)),
-            "FALSE" => return Ok(Value::Flag(false)),
-            "NOT" => {
-                let value = self.nested(Self::operand)?;
-                let Value::Flag(flag) = value else {
-                    return Err(mistaken(self.scan, from, &value, "TRUE or FALSE"));
-                };
-                return Ok(Value::Flag(!flag));
-            }
-            _ => {}
-        }
-        if self.scan.peek() == Some(b'(') {
+    fn named(self, scan: &mut Scan) -> Outcome<Value> {
+        let from = scan.at;
+        let name = scan.needed("a value")?;
+        if scan.peek() == Some(b'(') {
             let message = format!("the function {name} is not followed");
-            return Err(self.scan.since(from, Rule::Unsupported, message));
+            return Err(scan.since(from, Rule::Unsupported, message));
         }
-        let index = read_index(self.scan, self.variables)?;
-        let field = if self.scan.take(b'.') { self.scan.name()? } else { None };
-        let value = self.variables.value(name, index, field);
-        value.ok_or_else(|| {
-            let message = format!("no block has set {name}");
-            self.scan.since(from, Rule::Variable, message)
-        })
+        let index = read_index(scan, self.0)?;
+        let field = if scan.take(b'.') { scan.name()? } else { None };
+        self.0
+            .value(name, index, field)
+            .ok_or_else(|| scan.since(from, Rule::Variable, format!("no block has set {name}")))
     }
 }
 
-impl Grammar for Expression<'_, '_, '_> {
-    type Value = Value;
-    type Operator = Operator;
-    type Error = Box<Diagnostic>;
-    const DEEPEST: usize = DEEPEST;
-
-    fn depth(&mut self) -> &mut usize {
-        &mut self.scan.depth
-    }
-
-    fn too_deep(&mut self) -> Box<Diagnostic> {
-        self.scan.wrong("brackets and signs nest too deep")
-    }
-
-    fn start(&mut self) -> usize {
-        self.scan.peek();
-        self.scan.at
-    }
-
-    fn end(&self) -> usize {
-        self.scan.at
-    }
-
-    fn operand(&mut self) -> Outcome<Value> {
-        let next = self.scan.peek();
-        let from = self.scan.at;
-        match next {
-            Some(b'0'..=b'9' | b'.') => number(self.scan),
-            Some(sign @ (b'-' | b'+')) => {
-                self.scan.at += 1;
-                let value = self.nested(Self::operand)?;
-                match value {
-                    Value::Number(number) if sign == b'-' => Ok(Value::Number(-number)),
-                    Value::Integer(number) if sign == b'-' => {
-                        Ok(Value::Integer(number.wrapping_neg()))
-                    }
-                    Value::Number(_) | Value::Integer(_) => Ok(value),
-                    other => Err(mistaken(self.scan, from, &other, "a number")),
-                }
-            }
-            Some(b'{') => {
-                self.scan.at += 1;
-                self.nested(Self::aggregate)
-            }
-            Some(b'(') => {
-                self.scan.at += 1;
-                let value = self.nested(evaluate)?;
-                self.scan.expect(b')')?;
-                Ok(value)
-            }
-            Some(b'#') => {
-                self.scan.at += 1;
-                match self.scan.name()? {
-                    Some(name) => Ok(Value::Entry(name)),
-                    None => Err(self.scan.wrong("the name of an entry is needed behind #")),
-                }
-            }
-            Some(b'\'') => self.bits(),
-            Some(b'"') => self.text(),
-            _ => match self.scan.name()? {
-                Some(name) => self.named(from, name),
-                None => Err(self.scan.wrong("a value is needed here")),
-            },
-        }
-    }
-
-    fn operator(&mut self) -> Option<Next<Operator>> {
-        let first = self.scan.peek()?;
-        let at = self.scan.at;
-        let second = self.scan.rest().get(1).copied();
-        let (operator, rank, length) = match (first, second) {
-            (b':', _) => (Operator::Chain, 6, 1),
-            (b'*', _) => (Operator::Times, 5, 1),
-            (b'/', _) => (Operator::Over, 5, 1),
-            (b'+', _) => (Operator::Plus, 4, 1),
-            (b'-', _) => (Operator::Minus, 4, 1),
-            (b'=', Some(b'=')) => (Operator::Equal, 0, 2),
-            (b'<', Some(b'>')) => (Operator::Unequal, 0, 2),
-            (b'<', Some(b'=')) => (Operator::LessOrEqual, 0, 2),
-            (b'>', Some(b'=')) => (Operator::GreaterOrEqual, 0, 2),
-            (b'<', _) => (Operator::Less, 0, 1),
-            (b'>', _) => (Operator::Greater, 0, 1),
-            _ => return self.logical(at),
-        };
-        self.scan.at += length;
-        Some(Next { operator, rank: Rank::Left(rank), at })
-    }
-
-    fn apply(&mut self, operator: Operator, [a, b]: [Value; 2], span: Span) -> Outcome<Value> {
-        let refused = |message: String| {
-            Err(self.scan.source.error(Rule::Type, span.start..span.end, message))
-        };
-        if operator == Operator::Chain {
-            return match (whole_frame(&a), whole_frame(&b)) {
-                (Some(a), Some(b)) => Ok(fields(&(frame(a) * frame(b)))),
-                _ => refused(String::from("`:` chains two frames of X, Y, Z, A, B, C")),
-            };
-        }
-        if let (Some(x), Some(y)) = (a.number(), b.number()) {
-            let value = match (&a, &b) {
-                (Value::Integer(a), Value::Integer(b)) => calculated_whole(operator, *a, *b),
-                _ => calculated(operator, x, y),
-            };
-            return value.ok_or_else(|| {
-                let message = "the operator has no result for these numbers";
-                self.scan.source.error(Rule::Arithmetic, span.start..span.end, message)
-            });
-        }
-        match (a, b) {
-            (Value::Flag(a), Value::Flag(b)) => match operator {
-                Operator::And => Ok(Value::Flag(a && b)),
-                Operator::Or => Ok(Value::Flag(a || b)),
-                Operator::Exor | Operator::Unequal => Ok(Value::Flag(a != b)),
-                Operator::Equal => Ok(Value::Flag(a == b)),
-                _ => refused(String::from("TRUE and FALSE have no such operator")),
-            },
-            (a, b) => refused(format!("{} and {} have no such operator", a.kind(), b.kind())),
-        }
-    }
-}
-
-impl Expression<'_, '_, '_> {
-    /// `AND`, `OR`, `EXOR`.
-    fn logical(&mut self, at: usize) -> Option<Next<Operator>> {
-        let name = self.scan.name().ok().flatten();
-        let found = name.and_then(|name| match name.as_str() {
-            "AND" => Some((Operator::And, 3)),
-            "EXOR" => Some((Operator::Exor, 2)),
-            "OR" => Some((Operator::Or, 1)),
-            _ => None,
-        });
-        if found.is_none() {
-            self.scan.at = at;
-        }
-        found.map(|(operator, rank)| Next { operator, rank: Rank::Left(rank), at })
-    }
-}
-
-/// A decimal, with the power of ten that KRL allows (`1.5E-3`).
-fn number(scan: &mut Scan) -> Outcome<Value> {
+/// `'B0110'`, `'HFF'`.
+fn bits(scan: &mut Scan) -> Outcome<Value> {
     let from = scan.at;
-    let Some(read) = decimal::parse(scan.rest()) else {
-        return Err(scan.wrong("a number is needed here"));
+    scan.at += 1;
+    let rest = scan.rest();
+    let length = rest.iter().take_while(|byte| byte.is_ascii_alphanumeric()).count();
+    let digits = std::str::from_utf8(rest.get(1..length).unwrap_or_default()).unwrap_or("");
+    let radix = match rest.first().map(u8::to_ascii_uppercase) {
+        Some(b'B') => Some(2),
+        Some(b'H') => Some(16),
+        _ => None,
     };
-    scan.at += read.len;
-    if !matches!(scan.rest().first(), Some(b'e' | b'E')) {
-        let digits = &scan.source.text[from..scan.at];
-        if digits.contains(&b'.') {
-            return Ok(Value::Number(read.value));
-        }
-        let whole = std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok());
-        return whole.map(Value::Integer).ok_or_else(|| {
-            let message = "a whole number is at most 2147483647";
-            scan.since(from, Rule::Number, message)
-        });
-    }
-    let rest = scan.rest().get(1..).unwrap_or_default();
-    let sign = usize::from(matches!(rest.first(), Some(b'+' | b'-')));
-    let digits = rest.iter().skip(sign).take_while(|byte| byte.is_ascii_digit()).count();
-    scan.at += 1 + sign + digits;
-    let text = std::str::from_utf8(&scan.source.text[from..scan.at]).unwrap_or_default();
-    match text.parse::<f64>().ok().filter(|number| digits > 0 && number.is_finite()) {
-        Some(number) => Ok(Value::Number(number)),
-        None => Err(scan.since(from, Rule::Number, "this is no number")),
-    }
-}
-
-/// Of two INT the result is one: a division is cut off towards 0.
-fn calculated_whole(operator: Operator, a: i32, b: i32) -> Option<Value> {
-    let whole = match operator {
-        Operator::Times => a.checked_mul(b),
-        Operator::Over => a.checked_div(b),
-        Operator::Plus => a.checked_add(b),
-        Operator::Minus => a.checked_sub(b),
-        Operator::Equal
-        | Operator::Unequal
-        | Operator::Less
-        | Operator::Greater
-        | Operator::LessOrEqual
-        | Operator::GreaterOrEqual
-        | Operator::Chain
-        | Operator::And
-        | Operator::Exor
-        | Operator::Or => return calculated(operator, f64::from(a), f64::from(b)),
-    };
-    whole.map(Value::Integer)
-}
-
-fn calculated(operator: Operator, a: f64, b: f64) -> Option<Value> {
-    let number = |value: f64| value.is_finite().then_some(Value::Number(value));
-    match operator {
-        Operator::Times => number(a * b),
-        Operator::Over => number(a / b),
-        Operator::Plus => number(a + b),
-        Operator::Minus => number(a - b),
-        Operator::Equal => Some(Value::Flag(a == b)),
-        Operator::Unequal => Some(Value::Flag(a != b)),
-        Operator::Less => Some(Value::Flag(a < b)),
-        Operator::Greater => Some(Value::Flag(a > b)),
-        Operator::LessOrEqual => Some(Value::Flag(a <= b)),
-        Operator::GreaterOrEqual => Some(Value::Flag(a >= b)),
-        Operator::Chain | Operator::And | Operator::Exor | Operator::Or => None,
-    }
+    scan.at += length;
+    let number = radix.and_then(|radix| i32::from_str_radix(digits, radix).ok());
+    let closed = scan.take(b'\'');
+    number.filter(|_| closed).map(Value::Integer).ok_or_else(|| {
+        scan.since(from, Rule::Number, "a number such as 'B0110' or 'HFF' is needed")
+    })
 }
 
 /// The six numbers of a frame all of which are there.
@@ -399,6 +193,6 @@ pub(crate) fn whole_frame(value: &Value) -> Option<[f64; 6]> {
 
 /// A frame as an aggregate.
 fn fields(frame: &geom::Frame) -> Value {
-    let named = COORDINATES.iter().filter_map(|name| Name::of(name.as_bytes()));
+    let named = COORDINATES.iter().filter_map(|name| Name::of(name));
     Value::Fields(named.zip(coordinates(frame).map(Value::Number)).collect())
 }

@@ -1,9 +1,10 @@
 //! What a line says.
 
-use super::expression::{Readable, mistaken, read as value, read_index, read_number};
+use super::expression::{Readable, read as value, read_index, read_number};
 use super::scan::Scan;
 use super::value::{Name, Value};
 use super::words::{REFUSED, STATEMENTS, TYPES};
+use crate::kernel::formula::mistaken;
 use program::{Outcome, Rule};
 
 /// Most arguments of a call that are read.
@@ -88,7 +89,7 @@ pub(crate) enum Waiting {
 /// # Errors
 /// What is not understood, at its place.
 pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
-    let text = scan.source.text.trim_ascii();
+    let text = scan.text.trim_ascii();
     if text.is_empty() || text.starts_with(b"&") {
         return Ok(Statement::Nothing);
     }
@@ -111,14 +112,14 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
         "DEF" => define(scan)?,
         "DEFDAT" => {
             scan.name()?;
-            scan.take_word("PUBLIC")?;
+            scan.take_word("PUBLIC");
             Statement::DefineData
         }
         "END" | "ENDDAT" => Statement::End,
         "RETURN" => Statement::Return,
         "EXT" | "GLOBAL" | "INTERRUPT" => external(scan, first)?,
         "DECL" => {
-            scan.take_word("GLOBAL")?;
+            scan.take_word("GLOBAL");
             match scan.name()? {
                 Some(kind) => declaration(scan, variables, kind)?,
                 None => return Err(scan.wrong("the type of the variable is needed here")),
@@ -156,7 +157,7 @@ fn comment_of(text: &[u8]) -> Statement {
 
 fn ptp(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
     for here in ["$AXIS_ACT", "$POS_ACT"] {
-        if scan.take_word(here)? {
+        if scan.take_word(here) {
             return Ok(Statement::Motion(Motion::Here));
         }
     }
@@ -165,7 +166,7 @@ fn ptp(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
 
 fn circ(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
     let via = value(scan, variables)?;
-    scan.expect(b',')?;
+    scan.expect(",")?;
     let end = value(scan, variables)?;
     if scan.take(b',') {
         let message =
@@ -195,7 +196,7 @@ fn approximation(scan: &mut Scan) -> Outcome<Approximation> {
 
 /// `WAIT SEC 2`, `WAIT FOR $IN[1]`, `WAIT FOR StrClear($LOOP_MSG[])`.
 fn wait(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
-    if scan.take_word("SEC")? {
+    if scan.take_word("SEC") {
         let from = scan.at;
         let seconds = read_number(scan, variables)?;
         if seconds < 0.0 {
@@ -208,14 +209,14 @@ fn wait(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
         }
         return Ok(Statement::Wait(Waiting::Seconds(seconds)));
     }
-    if !scan.take_word("FOR")? {
+    if !scan.take_word("FOR") {
         return Err(scan.wrong("SEC or FOR is needed behind WAIT"));
     }
-    if scan.take_word("STRCLEAR")? {
-        scan.expect(b'(')?;
+    if scan.take_word("STRCLEAR") {
+        scan.expect("(")?;
         let name = scan.name()?;
         read_index(scan, variables)?;
-        scan.expect(b')')?;
+        scan.expect(")")?;
         return match name.is_some_and(|name| name.as_str() == "$LOOP_MSG") {
             true => Ok(Statement::Wait(Waiting::Message)),
             false => Err(scan.wrong("of texts only $LOOP_MSG[] is waited for")),
@@ -227,15 +228,15 @@ fn wait(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
 /// An input: `$IN[1]`, `NOT $IN[1]`, `$IN[1]==FALSE`, also in brackets.
 fn condition(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
     let bracket = scan.take(b'(');
-    let mut on = !scan.take_word("NOT")?;
-    if !scan.take_word("$IN")? {
+    let mut on = !scan.take_word("NOT");
+    if !scan.take_word("$IN") {
         return Err(scan.wrong("only a wait for one input is followed: WAIT FOR $IN[1]"));
     }
     let Some(number) = read_index(scan, variables)? else {
         return Err(scan.wrong("the number of the input is needed: $IN[1]"));
     };
     if scan.take(b'=') {
-        scan.expect(b'=')?;
+        scan.expect("=")?;
         let from = scan.at;
         match value(scan, variables)? {
             Value::Flag(flag) => on = on == flag,
@@ -243,20 +244,18 @@ fn condition(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
         }
     }
     if bracket {
-        scan.expect(b')')?;
+        scan.expect(")")?;
     }
     Ok(Statement::Wait(Waiting::Input(number, on)))
 }
 
 /// `DEF name ( )`: without parameters.
 fn define(scan: &mut Scan) -> Outcome<Statement> {
-    let Some(name) = scan.name()? else {
-        return Err(scan.wrong("the name of the program is needed here"));
-    };
+    let name = scan.needed("the name of the program")?;
     if [STATEMENTS, REFUSED, TYPES].iter().any(|words| words.contains(&name.as_str())) {
         return Err(scan.wrong(format!("{name} is a word of the language, and names no program")));
     }
-    scan.expect(b'(')?;
+    scan.expect("(")?;
     if !scan.take(b')') {
         return Err(scan.wrong("programs with parameters are not followed"));
     }
@@ -283,7 +282,7 @@ fn external(scan: &mut Scan, first: Name) -> Outcome<Statement> {
             scan.wrong(message).help("leave it out, or write that of KUKA's standard head"),
         ));
     }
-    scan.at = scan.source.text.len();
+    scan.at = scan.text.len();
     Ok(Statement::Nothing)
 }
 
@@ -291,9 +290,7 @@ fn external(scan: &mut Scan, first: Name) -> Outcome<Statement> {
 fn declaration(scan: &mut Scan, variables: &dyn Readable, kind: Name) -> Outcome<Statement> {
     let mut names = Vec::new();
     loop {
-        let Some(name) = scan.name()? else {
-            return Err(scan.wrong("the name of the variable is needed here"));
-        };
+        let name = scan.needed("the name of the variable")?;
         read_index(scan, variables)?;
         names.push(name);
         if !scan.take(b',') {
@@ -308,17 +305,8 @@ fn declaration(scan: &mut Scan, variables: &dyn Readable, kind: Name) -> Outcome
 }
 
 fn call(scan: &mut Scan, variables: &dyn Readable, name: Name) -> Outcome<Statement> {
-    scan.expect(b'(')?;
-    let mut arguments = Vec::new();
-    while !scan.take(b')') {
-        if !arguments.is_empty() {
-            scan.expect(b',')?;
-        }
-        if arguments.len() == MOST_ARGUMENTS {
-            return Err(scan.wrong("more arguments than are read"));
-        }
-        arguments.push(value(scan, variables)?);
-    }
+    scan.expect("(")?;
+    let arguments = scan.list(")", MOST_ARGUMENTS, |scan| value(scan, variables))?;
     Ok(Statement::Call(name, arguments))
 }
 

@@ -1,47 +1,10 @@
-//! Names and values.
+//! Values.
 
+use crate::kernel::formula::Typed;
+pub(crate) use crate::kernel::scan::Name;
 use geom::{Euler, Frame, Vec3};
-use std::fmt;
 
-/// Most letters of a name (KSS, "Names in KRL").
-const LONGEST: usize = 24;
-
-/// A name in capitals: KRL makes no difference of letters.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Name {
-    letters: [u8; LONGEST],
-    length: u8,
-}
-
-impl Name {
-    /// The name of that text; `None` where it is longer than a name may be.
-    pub(crate) fn of(text: &[u8]) -> Option<Name> {
-        let mut letters = [0; LONGEST];
-        letters.get_mut(..text.len())?.copy_from_slice(text);
-        letters.make_ascii_uppercase();
-        Some(Name { letters, length: text.len() as u8 })
-    }
-
-    /// Its letters.
-    pub(crate) fn as_str(&self) -> &str {
-        let letters = self.letters.get(..usize::from(self.length)).unwrap_or_default();
-        std::str::from_utf8(letters).unwrap_or_default()
-    }
-}
-
-impl fmt::Debug for Name {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
-    }
-}
-
-impl fmt::Display for Name {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
-    }
-}
-
-/// What an expression comes to.
+/// What a formula comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     /// A REAL.
@@ -67,9 +30,12 @@ pub(crate) const AXES: [&str; 6] = ["A1", "A2", "A3", "A4", "A5", "A6"];
 /// The axes beyond it.
 pub(crate) const OUTER: [&str; 6] = ["E1", "E2", "E3", "E4", "E5", "E6"];
 
-impl Value {
-    /// What it is, for an error.
-    pub(crate) fn kind(&self) -> &'static str {
+impl Typed for Value {
+    const NUMBER: fn(f64) -> Value = Value::Number;
+    const FLAG: fn(bool) -> Value = Value::Flag;
+    const TEXT: fn(Box<str>) -> Value = Value::Text;
+
+    fn kind(&self) -> &'static str {
         match self {
             Value::Number(_) => "a number",
             Value::Integer(_) => "a whole number",
@@ -81,8 +47,7 @@ impl Value {
         }
     }
 
-    /// Its number.
-    pub(crate) fn number(&self) -> Option<f64> {
+    fn number(&self) -> Option<f64> {
         match self {
             Value::Number(number) => Some(*number),
             Value::Integer(number) => Some(f64::from(*number)),
@@ -90,6 +55,19 @@ impl Value {
         }
     }
 
+    fn flag(&self) -> Option<bool> {
+        if let Value::Flag(flag) = self { Some(*flag) } else { None }
+    }
+
+    fn negated(&self) -> Option<Value> {
+        match self {
+            Value::Integer(number) => Some(Value::Integer(number.wrapping_neg())),
+            other => other.number().map(|number| Value::Number(-number)),
+        }
+    }
+}
+
+impl Value {
     /// The same as a REAL, where it is an INT.
     pub(crate) fn real(self) -> Value {
         match self {

@@ -51,7 +51,7 @@ impl State {
             Termination::Continuous | Termination::Region(_) => Corner::Unbounded,
         };
         let motion = ArmMove { path, corner, turning, posture };
-        channel.report(scan.source.line, Action::Arm(ArmAction::Move(Box::new(motion))))
+        channel.motion(scan.line, motion)
     }
 
     /// # Errors
@@ -79,7 +79,7 @@ impl State {
     }
 
     fn speed(&mut self, scan: &Scan, speed: Speed, channel: &mut Channel) -> Outcome {
-        let line = scan.source.line;
+        let line = scan.line;
         let (value, factor) = match speed {
             Speed::Percent(value) => (self.value(scan, value)?, None),
             Speed::Tip(value, factor) => (self.value(scan, value)?, Some(factor)),
@@ -95,7 +95,7 @@ impl State {
             }
             None if self.joint_speed != Some(value) => {
                 self.joint_speed = Some(value);
-                channel.report(line, Action::Arm(ArmAction::JointSpeed(Some(value))))
+                channel.arm(line, ArmAction::JointSpeed(Some(value)))
             }
             Some(_) | None => Ok(()),
         }

@@ -2,10 +2,11 @@
 
 use crate::event::{Action, Risk};
 use crate::kernel::Channel;
+use crate::kernel::arm::tool_change;
 use crate::ls::language::{Frames, Scan, Statement, Sum, Value};
 use crate::{ArmAction, Settings};
 use geom::{Euler, Frame, Vec3};
-use program::{Input, Outcome, Output, OutputValue, Rule, Until};
+use program::{Outcome, OutputValue, Rule};
 use std::collections::HashMap;
 
 /// What is active. Nothing of it is known before the program says it.
@@ -45,7 +46,7 @@ impl State {
         self.active = [None; 2];
         for action in [ArmAction::PartOnFlange(false), ArmAction::Base(None), ArmAction::Tool(None)]
         {
-            channel.report(line, Action::Arm(action))?;
+            channel.arm(line, action)?;
         }
         Ok(())
     }
@@ -57,7 +58,7 @@ impl State {
         statement: &Statement,
         channel: &mut Channel,
     ) -> Outcome {
-        let line = scan.source.line;
+        let line = scan.line;
         match statement {
             Statement::Comment(text) => channel.report(line, Action::Comment(text.clone())),
             Statement::Select(which, number) => self.select(scan, *which, *number, channel),
@@ -88,11 +89,7 @@ impl State {
                     false => Err(scan.since(0, Rule::Dwell, "a wait is not below 0 s")),
                 }
             }
-            Statement::Input(number, on) => {
-                let until = if *on { Until::High } else { Until::Low };
-                let input = Input { number: *number, until, timeout: f64::INFINITY };
-                channel.report(line, Action::Input(Box::new(input)))
-            }
+            Statement::Input(number, on) => channel.input(line, *number, *on),
             Statement::Message(text) => channel.report(line, Action::Message(text.clone())),
             Statement::Pause => channel.report(line, Action::Stop),
             Statement::Nothing | Statement::Motion(_) | Statement::Call(..) | Statement::End => {
@@ -112,18 +109,13 @@ impl State {
         if self.tool_change.is_empty() || !name.eq_ignore_ascii_case(&self.tool_change) {
             return Ok(false);
         }
-        let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
         let number = match arguments {
-            [number] => Some(self.value(scan, *number)?).filter(whole),
+            [number] => Some(self.value(scan, *number)?),
             _ => None,
         };
-        let Some(number) = number else {
-            let message = "a tool change has the number of the tool as its one argument";
-            return Err(scan.since(0, Rule::Tool, message));
-        };
-        let line = scan.source.line;
-        let tool = program::Tool { number: number as u32, ..program::Tool::default() };
-        channel.report(line, Action::Tool(Box::new(tool)))?;
+        let tool = tool_change(number).map_err(|message| scan.since(0, Rule::Tool, message))?;
+        let line = scan.line;
+        channel.report(line, tool)?;
         // What the operator's program leaves behind, this one does not say.
         (self.feed, self.joint_speed) = (None, None);
         self.registers.clear();
@@ -196,7 +188,7 @@ impl State {
             Frames::User => ArmAction::Base(frame),
             Frames::Tool => ArmAction::Tool(frame),
         };
-        channel.report(scan.source.line, Action::Arm(action))
+        channel.arm(scan.line, action)
     }
 
     /// `UFRAME[9]=PR[9]`.
@@ -233,7 +225,7 @@ impl State {
         if self.own == Some(number) {
             return Ok(());
         }
-        channel.report(scan.source.line, Action::Risk(Box::new(Risk::OPERATOR_DATA)))
+        channel.report(scan.line, Action::Risk(Box::new(Risk::OPERATOR_DATA)))
     }
 }
 
@@ -241,6 +233,5 @@ fn output(scan: &Scan, number: u32, value: OutputValue, channel: &mut Channel) -
     if number == 0 {
         return Err(scan.since(0, Rule::Index, "outputs are numbered from 1"));
     }
-    let output = Output { number, value, with_motion: false };
-    channel.report(scan.source.line, Action::Output(output))
+    channel.output(scan.line, number, value)
 }

@@ -157,7 +157,7 @@ impl Run<'_, '_> {
             last = shown.unwrap_or(line);
             let mut scan = Scan::new(Source { line, text: &text });
             let statement = read(&mut scan)?;
-            scan.source.line = last;
+            scan.line = last;
             match &statement {
                 Statement::End => return Ok(last),
                 Statement::Motion(motion) => {
@@ -177,32 +177,25 @@ impl Run<'_, '_> {
 
     /// A call of the program of another file; whether it is called without arguments.
     fn call(&mut self, scan: &Scan, (name, plain): (&str, bool), depth: usize) -> Outcome {
-        let refused = |rule: Rule, message: String| Err(scan.since(0, rule, message));
+        let refused = |rule: Rule, message: String| scan.since(0, rule, message);
         if !plain {
             let message = format!("{name} is called with arguments, which is not followed");
-            return refused(Rule::Argument, message);
+            return Err(refused(Rule::Argument, message));
         }
-        if depth >= DEEPEST {
-            return refused(Rule::Nesting, format!("calls nest deeper than {DEEPEST}"));
-        }
-        self.channel.budget.jump().or_else(|message| refused(Rule::Endless, message))?;
-        let folders = &self.settings.setup.folders;
-        let names = [format!("{name}.LS"), format!("{}.ls", name.to_ascii_lowercase())];
-        let Some(called) = names.into_iter().find(|file| folders.have(file)) else {
+        let counted = self.channel.budget.call(depth, DEEPEST);
+        counted.map_err(|(rule, message)| refused(rule, message))?;
+        let called = self.settings.setup.folders.called(name, "LS");
+        let called = called.map_err(|message| refused(Rule::CalledProgram, message));
+        let Some(called) = called? else {
             let message = format!("the called program {name} is in no folder for called programs");
-            return refused(Rule::CalledProgram, message);
+            return Err(refused(Rule::CalledProgram, message));
         };
-        let text = folders.open(&called);
-        let text = text.map_err(|message| scan.since(0, Rule::CalledProgram, message))?;
-        let number = scan.source.line;
-        let inside = |found: Box<Diagnostic>| {
-            let message = format!("in {called}, line {}: {}", found.line, found.message);
-            Box::new(Diagnostic { message, ..*found }.line(number))
-        };
-        let file = File::of(&text).map_err(inside)?;
+        let inside = |found: Box<Diagnostic>| called.inside(scan.line, *found);
+        let file = File::of(&called.text).map_err(inside)?;
         if !file.name.eq_ignore_ascii_case(name) {
-            return refused(Rule::CalledProgram, format!("{called} has the program {}", file.name));
+            let message = format!("{} has the program {}", called.name, file.name);
+            return Err(refused(Rule::CalledProgram, message));
         }
-        self.routine(&file, Some(number), depth + 1).map(drop).map_err(inside)
+        self.routine(&file, Some(scan.line), depth + 1).map(drop).map_err(inside)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::scan::Scan;
 use crate::ArmPosture;
+use crate::kernel::arm::FARTHEST;
 use crate::kernel::source::Source;
 use geom::{Euler, Frame, Vec3};
 use program::{Outcome, Rule};
@@ -9,9 +10,6 @@ use std::collections::HashMap;
 
 /// Largest number of a position.
 const MOST: u32 = 32_767;
-
-/// A coordinate or a joint beyond this, mm or degrees, is no arm's.
-const FARTHEST: f64 = 1e6;
 
 /// Where a position is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,12 +42,12 @@ pub(crate) fn positions<'t>(
         while scan.peek().is_some() {
             match &mut open {
                 None => {
-                    if scan.word() != Some("P") {
+                    if scan.letters_alone() != Some("P") {
                         return Err(scan.wrong("a position P[1]{ is needed here"));
                     }
                     let number = scan.index(MOST)?;
-                    scan.expect(b']')?;
-                    scan.expect(b'{')?;
+                    scan.expect("]")?;
+                    scan.expect("{")?;
                     if all.contains_key(&number) {
                         let message = format!("the program has two positions P[{number}]");
                         return Err(scan.since(0, Rule::Twice, message));
@@ -94,13 +92,13 @@ impl Reading {
     fn entry(&mut self, scan: &mut Scan) -> Outcome {
         scan.peek();
         let from = scan.at;
-        let Some(name) = scan.name() else {
+        let Some(name) = scan.word() else {
             return Err(scan.wrong("an entry of a position is needed here"));
         };
         match name {
-            "GP1" => return scan.expect(b':'),
+            "GP1" => return scan.expect(":"),
             "UF" | "UT" => {
-                scan.expect(b':')?;
+                scan.expect(":")?;
                 let number = scan.decimal().filter(|number| (0.0..=10.0).contains(number));
                 let Some(number) = number.filter(|number| number.fract() == 0.0) else {
                     let message = "the number of a frame is needed here: the position must say in which it counts";
@@ -109,7 +107,7 @@ impl Reading {
                 self.frames[usize::from(name == "UT")] = Some(number as u32);
             }
             "CONFIG" => {
-                scan.expect(b':')?;
+                scan.expect(":")?;
                 self.posture = Some(config(scan)?);
             }
             _ => {
@@ -122,12 +120,12 @@ impl Reading {
                     let message = format!("{name} of a position is not followed");
                     return Err(scan.since(from, Rule::Unsupported, message));
                 };
-                scan.expect(b'=')?;
+                scan.expect("=")?;
                 let number = scan.decimal().filter(|number| number.abs() <= FARTHEST);
                 let Some(number) = number else {
                     return Err(scan.wrong(format!("{name} is a number in {unit}")));
                 };
-                if scan.word() != Some(unit) {
+                if scan.letters_alone() != Some(unit) {
                     return Err(scan.wrong(format!("{name} counts in {unit}")));
                 }
                 if value.replace(number).is_some() {
@@ -176,7 +174,7 @@ impl Reading {
 /// `'N U T, 0, 0, 0'`: wrist not flipped or flipped (F), elbow up or down (D), wrist in front of axis 1 or at the back (B), and the
 /// turns of joints 1, 4 and 6: 0 is from -180 to below 180 degrees.
 fn config(scan: &mut Scan) -> Outcome<ArmPosture> {
-    scan.expect(b'\'')?;
+    scan.expect("'")?;
     let mut letters = [false; 3];
     for (letter, pair) in letters.iter_mut().zip(["NF", "UD", "TB"]) {
         let Some(index) = scan.peek().and_then(|byte| pair.bytes().position(|own| own == byte))
@@ -190,14 +188,14 @@ fn config(scan: &mut Scan) -> Outcome<ArmPosture> {
     }
     let mut joints = [None; 6];
     for joint in [0, 3, 5] {
-        scan.expect(b',')?;
+        scan.expect(",")?;
         let turn = scan.decimal().filter(|turn| turn.fract() == 0.0 && turn.abs() <= 8.0);
         let Some(turn) = turn else {
             return Err(scan.wrong("the number of turns is a whole one from -8 to 8"));
         };
         joints[joint] = Some([360.0 * turn - 180.0, 360.0 * turn + 180.0]);
     }
-    scan.expect(b'\'')?;
+    scan.expect("'")?;
     let [flip, below, rear] = letters.map(Some);
     Ok(ArmPosture { rear, below, flip, joints })
 }

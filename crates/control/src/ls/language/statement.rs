@@ -110,19 +110,19 @@ pub(crate) fn read<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
         return Ok(Statement::Comment(text.into()));
     }
     let from = scan.at;
-    let Some(word) = scan.word() else {
+    let Some(word) = scan.letters_alone() else {
         return Err(scan.wrong("an instruction begins with a word"));
     };
     let statement = match word {
         "J" | "L" | "C" => Statement::Motion(motion(scan, word)?),
         "UFRAME_NUM" | "UTOOL_NUM" => {
-            scan.expect(b'=')?;
+            scan.expect("=")?;
             Statement::Select(frames(word), value(scan)?)
         }
         "UFRAME" | "UTOOL" => {
             let number = closed(scan, FRAMES)?;
-            scan.expect(b'=')?;
-            if scan.word() != Some("PR") {
+            scan.expect("=")?;
+            if scan.letters_alone() != Some("PR") {
                 return Err(scan.wrong("a frame is set to a position register: UFRAME[9]=PR[9]"));
             }
             Statement::Frame(frames(word), number, closed(scan, REGISTERS)?)
@@ -130,17 +130,17 @@ pub(crate) fn read<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
         "PR" => element(scan)?,
         "R" => {
             let number = closed(scan, REGISTERS)?;
-            scan.expect(b'=')?;
+            scan.expect("=")?;
             Statement::Register(number, sum(scan)?)
         }
         "DO" => {
             let number = closed(scan, SIGNALS)?;
-            scan.expect(b'=')?;
+            scan.expect("=")?;
             Statement::Digital(number, switched(scan)?)
         }
         "AO" => {
             let number = closed(scan, SIGNALS)?;
-            scan.expect(b'=')?;
+            scan.expect("=")?;
             Statement::Analog(number, value(scan)?)
         }
         "WAIT" => wait(scan)?,
@@ -174,7 +174,7 @@ fn frames(word: &str) -> Frames {
 /// A number in brackets.
 fn closed(scan: &mut Scan, most: u32) -> Outcome<u32> {
     let number = scan.index(most)?;
-    scan.expect(b']')?;
+    scan.expect("]")?;
     Ok(number)
 }
 
@@ -189,7 +189,7 @@ fn value(scan: &mut Scan) -> Outcome<Value> {
         return Err(scan.wrong("a number or a register R[1] is needed here"));
     };
     if bracket {
-        scan.expect(b')')?;
+        scan.expect(")")?;
     }
     Ok(Value::Number(number))
 }
@@ -222,13 +222,13 @@ fn element<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
     let Some(element) = element else {
         return Err(scan.wrong("the element is 1 to 6: X, Y, Z, W, P, R"));
     };
-    scan.expect(b']')?;
-    scan.expect(b'=')?;
+    scan.expect("]")?;
+    scan.expect("=")?;
     Ok(Statement::Element(register, element as u32, sum(scan)?))
 }
 
 fn switched(scan: &mut Scan) -> Outcome<bool> {
-    match scan.word() {
+    match scan.letters_alone() {
         Some("ON") => Ok(true),
         Some("OFF") => Ok(false),
         _ => Err(scan.wrong("ON or OFF is needed here")),
@@ -239,7 +239,7 @@ fn switched(scan: &mut Scan) -> Outcome<bool> {
 fn wait<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
     if scan.take_text("DI") {
         let number = closed(scan, SIGNALS)?;
-        scan.expect(b'=')?;
+        scan.expect("=")?;
         return Ok(Statement::Input(number, switched(scan)?));
     }
     let seconds = value(scan)?;
@@ -254,7 +254,7 @@ fn wait<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
 
 /// A text in square brackets.
 fn text(scan: &mut Scan) -> Outcome<Box<str>> {
-    scan.expect(b'[')?;
+    scan.expect("[")?;
     let rest = scan.rest();
     let Some(length) = rest.iter().position(|byte| *byte == b']') else {
         return Err(scan.wrong("the text has no end"));
@@ -265,20 +265,12 @@ fn text(scan: &mut Scan) -> Outcome<Box<str>> {
 
 /// `CALL NAME`, `CALL NAME(1,2)`.
 fn call<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
-    let Some(name) = scan.name() else {
+    let Some(name) = scan.word() else {
         return Err(scan.wrong("the name of a program is needed here"));
     };
     let mut arguments = Vec::new();
     if scan.take(b'(') {
-        while !scan.take(b')') {
-            if !arguments.is_empty() {
-                scan.expect(b',')?;
-            }
-            if arguments.len() == MOST_ARGUMENTS {
-                return Err(scan.wrong("more arguments than a call has"));
-            }
-            arguments.push(value(scan)?);
-        }
+        arguments = scan.list(")", MOST_ARGUMENTS, value)?;
     }
     Ok(Statement::Call(name, arguments))
 }
@@ -303,7 +295,7 @@ fn motion(scan: &mut Scan, word: &str) -> Outcome<Motion> {
 fn target(scan: &mut Scan) -> Outcome<u32> {
     scan.peek();
     let from = scan.at;
-    match scan.word() {
+    match scan.letters_alone() {
         Some("P") => closed(scan, POSITIONS),
         Some("PR") => {
             let message = "a motion to a position register is not followed: write a position P[1]";
@@ -338,7 +330,7 @@ fn termination(scan: &mut Scan) -> Outcome<Termination> {
             .filter(|number| (0.0..=most).contains(number))
             .ok_or_else(|| scan.wrong(format!("a number from 0 to {most} is needed here")))
     };
-    match scan.word() {
+    match scan.letters_alone() {
         Some("FINE") => Ok(Termination::Fine),
         Some("CNT") => number(scan, 100.0).map(|_| Termination::Continuous),
         Some("CR") => number(scan, 10_000.0).map(Termination::Region),
@@ -351,7 +343,7 @@ fn options(scan: &mut Scan) -> Outcome<bool> {
     let mut by_wrist = false;
     while scan.peek().is_some() {
         let from = scan.at;
-        match scan.word() {
+        match scan.letters_alone() {
             Some("ACC") if scan.decimal().is_some() => {}
             Some("Wjnt") => by_wrist = true,
             _ => return Err(unknown_option(scan, from)),

@@ -4,13 +4,12 @@ use super::state::State;
 use crate::event::Action;
 use crate::kernel::Channel;
 use crate::kernel::arc::through;
+use crate::kernel::arm::FARTHEST;
+use crate::kernel::formula::Typed;
 use crate::rapid::language::{Motion, MotionKind, Scan, Value, frame};
 use crate::{ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
 use geom::{Arc, Frame, Quat, Vec3};
 use program::{Feed, Outcome, Rule};
-
-/// A coordinate or a joint beyond this, mm or degrees, is no arm's.
-const FARTHEST: f64 = 1e6;
 
 /// An axis that is not there.
 const NO_AXIS: f64 = 9e9;
@@ -54,7 +53,7 @@ impl State {
             ArmPath::Point(end) | ArmPath::Line(end) | ArmPath::Arc { end, .. } => Some(end),
         };
         let motion = ArmMove { path, corner, turning, posture };
-        channel.report(line, Action::Arm(ArmAction::Move(Box::new(motion))))
+        channel.motion(line, motion)
     }
 
     fn path(&self, motion: &Motion) -> Result<(ArmPath, ArmPosture), (Rule, String)> {

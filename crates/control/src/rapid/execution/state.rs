@@ -2,14 +2,13 @@
 
 use crate::event::{Action, Risk};
 use crate::kernel::Channel;
+use crate::kernel::arm::{MOST_VARIABLES, tool_change};
+use crate::kernel::formula::Typed;
 use crate::rapid::language::{Declaration, Name, Readable, Scan, Target, Value};
 use crate::{ArmAction, Turning};
 use geom::Frame;
-use program::{Input, Outcome, Output, OutputValue, Rule, Tool, Until};
+use program::{Outcome, OutputValue, Rule};
 use std::collections::HashMap;
-
-/// Most data that a program may declare.
-const MOST_VARIABLES: usize = 100_000;
 
 /// Data of a program.
 struct Variable {
@@ -175,25 +174,18 @@ impl State {
         if self.tool_change.is_empty() || name.as_str() != self.tool_change {
             return Ok(false);
         }
-        let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
-        let number = match arguments {
-            [Value::Number(number)] if whole(number) => *number as u32,
-            _ => {
-                let message = "a tool change has the number of the tool as its one argument";
-                return Err(scan.since(from, Rule::Tool, message));
-            }
-        };
-        let tool = Tool { number, ..Tool::default() };
-        channel.report(line, Action::Tool(Box::new(tool)))?;
+        let number = if let [value] = arguments { value.number() } else { None };
+        let tool = tool_change(number).map_err(|message| scan.since(from, Rule::Tool, message))?;
+        channel.report(line, tool)?;
         // What the operator's procedure leaves behind, this program does not say.
         (self.turning, self.circles, self.is_nearest) = (None, None, false);
         (self.reported, self.standing) = (Reported::default(), None);
         for variable in self.variables.values_mut().filter(|variable| !variable.constant) {
             variable.value = None;
         }
-        channel.report(line, Action::Arm(ArmAction::TurnSpeed([None; 2])))?;
-        channel.report(line, Action::Arm(ArmAction::Base(None)))?;
-        channel.report(line, Action::Arm(ArmAction::Tool(None)))?;
+        channel.arm(line, ArmAction::TurnSpeed([None; 2]))?;
+        channel.arm(line, ArmAction::Base(None))?;
+        channel.arm(line, ArmAction::Tool(None))?;
         Ok(true)
     }
 
@@ -215,10 +207,7 @@ impl State {
     ) -> Outcome {
         let which = usize::from(matches!(value, OutputValue::Analog(_)));
         match self.signal(name, which) {
-            Some(number) => {
-                let output = Output { number, value, with_motion: false };
-                channel.report(line, Action::Output(output))
-            }
+            Some(number) => channel.output(line, number, value),
             None => channel.report(line, Action::Risk(Box::new(Risk::OPERATOR_SIGNAL))),
         }
     }
@@ -236,8 +225,6 @@ impl State {
         let Ok(number) = digits.parse() else {
             return channel.report(line, Action::Risk(Box::new(Risk::OPERATOR_SIGNAL)));
         };
-        let until = if on { Until::High } else { Until::Low };
-        let input = Input { number, until, timeout: f64::INFINITY };
-        channel.report(line, Action::Input(Box::new(input)))
+        channel.input(line, number, on)
     }
 }

@@ -97,7 +97,7 @@ impl Routine {
     /// `name ( )` behind `PROC`: without parameters.
     pub(crate) fn read(scan: &mut Scan) -> Outcome<Routine> {
         let name = own_name(scan, "the name of the procedure")?;
-        scan.expect(b'(')?;
+        scan.expect("(")?;
         match scan.take(b')') {
             true => Ok(Routine(name)),
             false => {
@@ -141,7 +141,7 @@ pub(crate) fn declaration(
         let message = "arrays are not followed";
         return Err(scan.since(from, Rule::Unsupported, message));
     }
-    let value = match scan.assigns() {
+    let value = match scan.take_text(":=") {
         true => Some(read_as(scan, variables, kind)?),
         false => None,
     };
@@ -149,7 +149,7 @@ pub(crate) fn declaration(
         let message = format!("{first} data have a value from their declaration on");
         return Err(scan.since(from, Rule::Definition, message));
     }
-    scan.expect(b';')?;
+    scan.expect(";")?;
     Ok(Declaration { name, kind, value, constant: first.as_str() == "CONST" })
 }
 
@@ -186,7 +186,7 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
         "ACCSET" => {
             for number in 0..2 {
                 if number > 0 {
-                    scan.expect(b',')?;
+                    scan.expect(",")?;
                 }
                 let percent = read_number(scan, variables)?;
                 if !(20.0..=100.0).contains(&percent) {
@@ -198,17 +198,17 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
         }
         "SETDO" => {
             let signal = scan.needed("the name of the signal")?;
-            scan.expect(b',')?;
+            scan.expect(",")?;
             Statement::Digital(signal, bit(scan, variables)?)
         }
         "SETAO" => {
             let signal = scan.needed("the name of the signal")?;
-            scan.expect(b',')?;
+            scan.expect(",")?;
             Statement::Analog(signal, read_number(scan, variables)?)
         }
         "WAITDI" => {
             let signal = scan.needed("the name of the signal")?;
-            scan.expect(b',')?;
+            scan.expect(",")?;
             Statement::Input(signal, bit(scan, variables)?)
         }
         "WAITTIME" => match read_number(scan, variables)? {
@@ -230,13 +230,13 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
         }
         _ => assignment_or_call(scan, variables, first, from)?,
     };
-    scan.expect(b';')?;
+    scan.expect(";")?;
     Ok(statement)
 }
 
 /// What an option such as `\On` means.
 fn chosen<T: Copy>(scan: &mut Scan, entries: &[(&str, T)]) -> Outcome<T> {
-    scan.expect(b'\\')?;
+    scan.expect("\\")?;
     let from = scan.at;
     let name = scan.needed("an option")?;
     let found = entries.iter().find(|(known, _)| *known == name.as_str());
@@ -268,9 +268,7 @@ fn assignment_or_call(
         return Err(scan.since(from, Rule::Variable, format!("{name} is not declared here")));
     };
     let (places, kind) = places(scan, kind)?;
-    if !scan.assigns() {
-        return Err(scan.wrong("`:=` is needed here"));
-    }
+    scan.expect(":=")?;
     Ok(Statement::Assign(Target { name, places }, read_as(scan, variables, kind)?))
 }
 
@@ -278,7 +276,7 @@ fn call(scan: &mut Scan, variables: &dyn Readable, name: Name) -> Outcome<Statem
     let mut arguments = Vec::new();
     while scan.peek().is_some_and(|byte| byte != b';') {
         if !arguments.is_empty() {
-            scan.expect(b',')?;
+            scan.expect(",")?;
         }
         if arguments.len() == MOST_ARGUMENTS {
             return Err(scan.wrong("more arguments than are read"));
@@ -294,33 +292,31 @@ fn motion(scan: &mut Scan, variables: &dyn Readable, kind: MotionKind) -> Outcom
     let via = match kind {
         MotionKind::Arc => {
             let via = read_as(scan, variables, target)?;
-            scan.expect(b',')?;
+            scan.expect(",")?;
             Some(via)
         }
         MotionKind::AbsoluteJoints | MotionKind::Joints | MotionKind::Line => None,
     };
     let to = read_as(scan, variables, target)?;
-    if kind == MotionKind::AbsoluteJoints && scan.take(b'\\') && !scan.take_word("NOEOFFS")? {
+    if kind == MotionKind::AbsoluteJoints && scan.take(b'\\') && !scan.take_word("NOEOFFS") {
         return Err(scan.wrong("of options only \\NoEOffs is followed here"));
     }
-    scan.expect(b',')?;
+    scan.expect(",")?;
     let mut speed = read_as(scan, variables, "SPEEDDATA")?;
     replaced(scan, variables, "V", (&mut speed, &[0]))?;
-    scan.expect(b',')?;
+    scan.expect(",")?;
     let mut zone = read_as(scan, variables, "ZONEDATA")?;
     replaced(scan, variables, "Z", (&mut zone, &[1, 2]))?;
-    scan.expect(b',')?;
+    scan.expect(",")?;
     let tool = persistent(scan, variables, "TOOLDATA")?;
     // Both `tool,\WObj:=` and `tool\WObj:=` occur.
     scan.take(b',');
     let object = match scan.take(b'\\') {
         true => {
-            if !scan.take_word("WOBJ")? {
+            if !scan.take_word("WOBJ") {
                 return Err(scan.wrong("of options only \\WObj is followed here"));
             }
-            if !scan.assigns() {
-                return Err(scan.wrong("`:=` is needed here"));
-            }
+            scan.expect(":=")?;
             Some(persistent(scan, variables, "WOBJDATA")?)
         }
         false => None,
@@ -338,12 +334,10 @@ fn replaced(
     if !scan.take(b'\\') {
         return Ok(());
     }
-    if !scan.take_word(word)? {
+    if !scan.take_word(word) {
         return Err(scan.wrong(format!("of options only \\{word} is followed here")));
     }
-    if !scan.assigns() {
-        return Err(scan.wrong("`:=` is needed here"));
-    }
+    scan.expect(":=")?;
     let number = read_number(scan, variables)?;
     if let Value::List(parts) = record {
         for place in places {

@@ -1,50 +1,13 @@
-//! Names and values.
+//! Values.
 
+use crate::kernel::formula::Typed;
+pub(crate) use crate::kernel::scan::Name;
 use geom::{Frame, Quat, Vec3};
-use std::fmt;
-
-/// Most letters of a name ("Identifiers" of the RAPID manual).
-const LONGEST: usize = 32;
 
 /// How far from 1 the length of a quaternion may be.
 const LENGTH: f64 = 1e-4;
 
-/// A name in capitals: RAPID makes no difference of letters.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Name {
-    letters: [u8; LONGEST],
-    length: u8,
-}
-
-impl Name {
-    /// The name of that text; `None` where it is longer than a name may be.
-    pub(crate) fn of(text: &[u8]) -> Option<Name> {
-        let mut letters = [0; LONGEST];
-        letters.get_mut(..text.len())?.copy_from_slice(text);
-        letters.make_ascii_uppercase();
-        Some(Name { letters, length: text.len() as u8 })
-    }
-
-    /// Its letters.
-    pub(crate) fn as_str(&self) -> &str {
-        let letters = self.letters.get(..usize::from(self.length)).unwrap_or_default();
-        std::str::from_utf8(letters).unwrap_or_default()
-    }
-}
-
-impl fmt::Debug for Name {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
-    }
-}
-
-impl fmt::Display for Name {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.as_str())
-    }
-}
-
-/// What an expression comes to.
+/// What a formula comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Number(f64),
@@ -54,9 +17,12 @@ pub(crate) enum Value {
     List(Vec<Value>),
 }
 
-impl Value {
-    /// What it is, for an error.
-    pub(crate) fn kind(&self) -> &'static str {
+impl Typed for Value {
+    const NUMBER: fn(f64) -> Value = Value::Number;
+    const FLAG: fn(bool) -> Value = Value::Flag;
+    const TEXT: fn(Box<str>) -> Value = Value::Text;
+
+    fn kind(&self) -> &'static str {
         match self {
             Value::Number(_) => "a number",
             Value::Flag(_) => "TRUE or FALSE",
@@ -65,19 +31,21 @@ impl Value {
         }
     }
 
+    fn number(&self) -> Option<f64> {
+        if let Value::Number(number) = self { Some(*number) } else { None }
+    }
+
+    fn flag(&self) -> Option<bool> {
+        if let Value::Flag(flag) = self { Some(*flag) } else { None }
+    }
+}
+
+impl Value {
     /// Its parts; none where it is no record.
     pub(crate) fn parts(&self) -> &[Value] {
         match self {
             Value::List(parts) => parts,
             Value::Number(_) | Value::Flag(_) | Value::Text(_) => &[],
-        }
-    }
-
-    /// Its number.
-    pub(crate) fn number(&self) -> Option<f64> {
-        match self {
-            Value::Number(number) => Some(*number),
-            Value::Flag(_) | Value::Text(_) | Value::List(_) => None,
         }
     }
 

@@ -5,8 +5,10 @@ use super::state::State;
 use crate::ArmAction;
 use crate::event::Action;
 use crate::kernel::Channel;
+use crate::kernel::arm::tool_change;
+use crate::kernel::formula::Typed;
 use crate::urscript::language::{Argument, Scan, Value};
-use program::{Outcome, Output, OutputValue, Rule};
+use program::{Outcome, OutputValue, Rule};
 
 /// Outputs of the controller: 0 to 7 digital, 0 and 1 analog.
 const DIGITAL: u32 = 8;
@@ -144,7 +146,7 @@ impl State {
             return self.change_tool(scan, arguments, channel).map(|()| true);
         }
         let Some(given) = Given::of(scan, name, arguments)? else { return Ok(false) };
-        let line = scan.source.line;
+        let line = scan.line;
         match name {
             "movej" => self.movej(scan, &given, channel)?,
             "movel" => self.movel(scan, &given, channel)?,
@@ -154,13 +156,13 @@ impl State {
                     return Err(scan.since(0, Rule::Type, "the tool is a pose: p[x,y,z,rx,ry,rz]"));
                 };
                 let tool = within_reach(scan, *pose)?;
-                channel.report(line, Action::Arm(ArmAction::Tool(Some(tool))))?;
+                channel.arm(line, ArmAction::Tool(Some(tool)))?;
             }
             "set_payload" | "set_target_payload" => load(scan, &given, channel)?,
             "set_standard_digital_out" | "set_digital_out" => {
                 given.needed(scan, "b")?;
                 let on = given.flag(scan, "b", false)?;
-                output(scan, given.output(scan, DIGITAL)?, OutputValue::Digital(on), channel)?;
+                channel.output(line, given.output(scan, DIGITAL)?, OutputValue::Digital(on))?;
             }
             "set_standard_analog_out" => {
                 given.needed(scan, "f")?;
@@ -170,7 +172,7 @@ impl State {
                         format!("an analog output is set to a part of it, 0 to 1, not {part}");
                     return Err(scan.since(0, Rule::Number, message));
                 }
-                output(scan, given.output(scan, ANALOG)?, OutputValue::Analog(part), channel)?;
+                channel.output(line, given.output(scan, ANALOG)?, OutputValue::Analog(part))?;
             }
             "sleep" => {
                 given.needed(scan, "t")?;
@@ -192,19 +194,13 @@ impl State {
         arguments: &[Argument],
         channel: &mut Channel,
     ) -> Outcome {
-        let whole = |number: &f64| number.fract() == 0.0 && (1.0..=1e6).contains(number);
         let number = match arguments {
-            [Argument { name: None, value: Value::Number(number) }] if whole(number) => {
-                *number as u32
-            }
-            _ => {
-                let message = "a tool change has the number of the tool as its one argument";
-                return Err(scan.since(0, Rule::Tool, message));
-            }
+            [Argument { name: None, value }] => value.number(),
+            _ => None,
         };
-        let line = scan.source.line;
-        let tool = program::Tool { number, ..program::Tool::default() };
-        channel.report(line, Action::Tool(Box::new(tool)))?;
+        let tool = tool_change(number).map_err(|message| scan.since(0, Rule::Tool, message))?;
+        let line = scan.line;
+        channel.report(line, tool)?;
         // What the operator's function leaves behind, this program does not say.
         (self.speed, self.joint_rate) = (None, None);
         self.begins(line, channel)
@@ -220,12 +216,7 @@ fn load(scan: &Scan, given: &Given, channel: &mut Channel) -> Outcome {
         return Err(scan.since(0, Rule::Type, message));
     };
     let center = geom::Vec3::from(center) * METRE;
-    channel.report(scan.source.line, Action::Arm(ArmAction::Load(mass, center)))
-}
-
-fn output(scan: &Scan, number: u32, value: OutputValue, channel: &mut Channel) -> Outcome {
-    let output = Output { number, value, with_motion: false };
-    channel.report(scan.source.line, Action::Output(output))
+    channel.arm(scan.line, ArmAction::Load(mass, center))
 }
 
 /// `textmsg` writes into the log; `popup` shows a text, and waits for the operator where it blocks.
@@ -239,7 +230,7 @@ fn message(scan: &Scan, given: &Given, channel: &mut Channel) -> Outcome {
             return Err(scan.since(0, Rule::Type, message));
         }
     };
-    let line = scan.source.line;
+    let line = scan.line;
     channel.report(line, Action::Message(text))?;
     match is_popup && given.flag(scan, "blocking", false)? {
         true => channel.report(line, Action::Stop),

@@ -4,6 +4,8 @@ use super::command::Given;
 use super::state::State;
 use crate::event::Action;
 use crate::kernel::Channel;
+use crate::kernel::arm::FARTHEST;
+use crate::kernel::formula::Typed;
 use crate::urscript::language::{Scan, Value, frame};
 use crate::{ArmAction, ArmMove, ArmPath, ArmPosture, Corner, Rounding, Turning};
 use geom::Frame;
@@ -17,9 +19,6 @@ const METRE: f64 = 1000.0;
 
 /// How fast the tool turns where a line turns it, radians/s for each m/s of its speed.
 const TURNS: f64 = 4.0;
-
-/// A position beyond this, mm, or degrees, is no arm's.
-const FARTHEST: f64 = 1e6;
 
 impl State {
     /// `movej(q,a=1.4,v=1.05,t=0,r=0)`: joints, or a pose in the posture in which the arm stands.
@@ -40,7 +39,7 @@ impl State {
         if self.joint_rate != Some(rate) {
             self.joint_rate = Some(rate);
             let action = ArmAction::JointRate(rate.to_degrees());
-            channel.report(scan.source.line, Action::Arm(action))?;
+            channel.arm(scan.line, action)?;
         }
         // The joints go evenly: by how much the tip leaves its path, they decide.
         let corner = match given.number(scan, "r", 0.0)? {
@@ -85,10 +84,10 @@ impl State {
             return Ok(());
         }
         self.speed = Some(speed);
-        let line = scan.source.line;
+        let line = scan.line;
         channel.report(line, Action::Feed(Feed::PerMinute(speed * PER_MINUTE)))?;
         let turn = [Some((TURNS * speed).to_degrees()), Some(0.0)];
-        channel.report(line, Action::Arm(ArmAction::TurnSpeed(turn)))
+        channel.arm(line, ArmAction::TurnSpeed(turn))
     }
 }
 
@@ -101,7 +100,7 @@ fn report(
     // No word says a posture.
     let posture = ArmPosture::default();
     let motion = ArmMove { path, corner, turning: Some(turning), posture };
-    channel.report(scan.source.line, Action::Arm(ArmAction::Move(Box::new(motion))))
+    channel.motion(scan.line, motion)
 }
 
 /// # Errors

@@ -1,15 +1,12 @@
 //! What a program has set.
 
 use crate::ArmAction;
-use crate::event::Action;
 use crate::kernel::Channel;
+use crate::kernel::arm::MOST_VARIABLES;
 use crate::urscript::language::{Readable, Scan, Scope, Value};
 use geom::Frame;
 use program::{Outcome, Rule};
 use std::collections::HashMap;
-
-/// Most variables that a program may set.
-const MOST_VARIABLES: usize = 100_000;
 
 /// What is active. The tool and the load are as the installation says them, before the program does.
 pub(in crate::urscript) struct State {
@@ -51,7 +48,7 @@ impl State {
             ArmAction::PartOnFlange(false),
             ArmAction::Tool(None),
         ] {
-            channel.report(line, Action::Arm(action))?;
+            channel.arm(line, action)?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use crate::event::Action;
 use crate::kernel::Channel;
 use crate::kernel::flow::{BlockLocation, Structures, line, lines};
 use crate::kernel::source::Source;
-use program::{Diagnostic, Input, Outcome, Rule, Until};
+use program::{Diagnostic, Outcome, Rule};
 use std::collections::HashMap;
 
 /// Most calls within calls: no manual states a number.
@@ -209,9 +209,7 @@ impl Run<'_, '_> {
             }
             place = after;
         }
-        let until = if on { Until::High } else { Until::Low };
-        let input = Input { number: input, until, timeout: f64::INFINITY };
-        self.channel.report(number, Action::Input(Box::new(input)))
+        self.channel.input(number, input, on)
     }
 
     /// A call of a function of this file; the line of its end.
@@ -231,11 +229,8 @@ impl Run<'_, '_> {
                 ),
             );
         };
-        if depth >= DEEPEST {
-            return refused(Rule::Nesting, format!("calls nest deeper than {DEEPEST}"));
-        }
-        let endless = |message: String| scan.since(0, Rule::Endless, message);
-        self.channel.budget.jump().map_err(endless)?;
+        let counted = self.channel.budget.call(depth, DEEPEST);
+        counted.map_err(|(rule, message)| scan.since(0, rule, message))?;
         let by_place = arguments.iter().all(|argument| argument.name.is_none());
         if !by_place || arguments.len() != function.parameters.len() {
             let message =

@@ -1,6 +1,6 @@
 //! Statements.
 
-use super::expression::{Arguments, Readable, arguments, read as value};
+use super::expression::{Argument, Readable, arguments, read as value};
 use super::scan::Scan;
 use super::value::Value;
 use super::words::{KEYWORDS, REFUSED};
@@ -32,14 +32,14 @@ pub(crate) enum Statement<'t> {
     End,
     Return,
     Assign(Scope, &'t str, Value),
-    Call(&'t str, Arguments<'t>),
+    Call(&'t str, Vec<Argument<'t>>),
     /// `while` that waits for an input, by its number, until it is on or off.
     While(u32, bool),
 }
 
 /// The first word of a line, where it begins with one.
 pub(crate) fn word_of<'t>(scan: &mut Scan<'t>) -> Option<&'t str> {
-    let word = scan.name();
+    let word = scan.word();
     scan.at = 0;
     word
 }
@@ -49,7 +49,7 @@ pub(crate) fn word_of<'t>(scan: &mut Scan<'t>) -> Option<&'t str> {
 /// # Errors
 /// What is not understood, at its place.
 pub(crate) fn read<'t>(scan: &mut Scan<'t>, variables: &dyn Readable) -> Outcome<Statement<'t>> {
-    let text = scan.source.text.trim_ascii();
+    let text = scan.text.trim_ascii();
     if text.is_empty() {
         return Ok(Statement::Nothing);
     }
@@ -62,7 +62,7 @@ pub(crate) fn read<'t>(scan: &mut Scan<'t>, variables: &dyn Readable) -> Outcome
     }
     scan.peek();
     let from = scan.at;
-    let Some(first) = scan.name() else {
+    let Some(first) = scan.word() else {
         return Err(scan.wrong("a statement begins with a word"));
     };
     let statement = match first {
@@ -72,7 +72,7 @@ pub(crate) fn read<'t>(scan: &mut Scan<'t>, variables: &dyn Readable) -> Outcome
         "global" | "local" => {
             let scope = if first == "global" { Scope::Global } else { Scope::Local };
             let from = scan.at;
-            match scan.name() {
+            match scan.word() {
                 Some(name) => assignment(scan, variables, scope, (name, from))?,
                 None => return Err(scan.wrong("the name of the variable is needed here")),
             }
@@ -97,25 +97,18 @@ fn refused(scan: &Scan, from: usize, word: &str) -> Box<program::Diagnostic> {
 fn define<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
     scan.peek();
     let from = scan.at;
-    let Some(name) = scan.name() else {
+    let Some(name) = scan.word() else {
         return Err(scan.wrong("the name of the function is needed here"));
     };
     if is_taken(name) {
         let message = format!("{name} is a word of the language: no function may have that name");
         return Err(scan.since(from, Rule::Definition, message));
     }
-    scan.expect(b'(')?;
-    let mut parameters = Vec::new();
-    while !scan.take(b')') {
-        if !parameters.is_empty() {
-            scan.expect(b',')?;
-        }
-        match scan.name().filter(|_| parameters.len() < MOST_PARAMETERS) {
-            Some(name) => parameters.push(name),
-            None => return Err(scan.wrong("the name of a parameter is needed here")),
-        }
-    }
-    scan.expect(b':')?;
+    scan.expect("(")?;
+    let parameters = scan.list(")", MOST_PARAMETERS, |scan| {
+        scan.word().ok_or_else(|| scan.wrong("the name of a parameter is needed here"))
+    })?;
+    scan.expect(":")?;
     Ok(Statement::Define(name, parameters))
 }
 
@@ -153,7 +146,7 @@ fn input(scan: &mut Scan) -> Option<(u32, bool)> {
         if !scan.take(b'=') {
             return None;
         }
-        let flag = match scan.name()? {
+        let flag = match scan.word()? {
             "True" => true,
             "False" => false,
             _ => return None,

@@ -1,11 +1,12 @@
 //! Values.
 
+use crate::kernel::formula::Typed;
 use geom::{Frame, Mat3, Quat, Vec3};
 
 /// mm in a metre, in which poses count.
 const METRE: f64 = 1000.0;
 
-/// What an expression comes to.
+/// What a formula comes to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Number(f64),
@@ -16,9 +17,12 @@ pub(crate) enum Value {
     Pose([f64; 6]),
 }
 
-impl Value {
-    /// What it is, for an error.
-    pub(crate) fn kind(&self) -> &'static str {
+impl Typed for Value {
+    const NUMBER: fn(f64) -> Value = Value::Number;
+    const FLAG: fn(bool) -> Value = Value::Flag;
+    const TEXT: fn(Box<str>) -> Value = Value::Text;
+
+    fn kind(&self) -> &'static str {
         match self {
             Value::Number(_) => "a number",
             Value::Flag(_) => "True or False",
@@ -28,14 +32,20 @@ impl Value {
         }
     }
 
+    fn number(&self) -> Option<f64> {
+        if let Value::Number(number) = self { Some(*number) } else { None }
+    }
+
+    fn flag(&self) -> Option<bool> {
+        if let Value::Flag(flag) = self { Some(*flag) } else { None }
+    }
+}
+
+impl Value {
     /// The numbers of a list of `N`.
     pub(crate) fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
         let Value::List(list) = self else { return None };
-        let number = |value: &Value| match value {
-            Value::Number(number) => Some(*number),
-            _ => None,
-        };
-        let all: Option<Vec<f64>> = list.iter().map(number).collect();
+        let all: Option<Vec<f64>> = list.iter().map(Value::number).collect();
         all?.try_into().ok()
     }
 }
