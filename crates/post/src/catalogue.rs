@@ -75,6 +75,7 @@ names! {
         Message Block "message", "", "For each message to the operator; `comment` where it is missing.";
         ToolPreselect Block "tool_preselect", "", "Where the source makes the next tool ready; nothing where it is missing.";
         ToolChange Block "tool_change", "", "At each tool change: to a safe place in machine coordinates, the tool, its length offset.";
+        ToolByHand Block "tool_by_hand", "", "On a robot whose cell names no `tool_change`, where another tool is put into the spindle by hand: a message to the operator in which {{T}} is the first number, and a stop.";
         SpindleCw Block "spindle_cw", "", "Before the first motion that needs the spindle clockwise at a new speed.";
         SpindleCcw Block "spindle_ccw", "", "The same, counter-clockwise.";
         SpindleOff Block "spindle_off", "", "Where the source stops the spindle.";

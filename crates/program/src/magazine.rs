@@ -1,12 +1,22 @@
 //! Which tools a program calls by which number.
 
-use crate::{Diagnostic, Op, Program, Rule, Tool};
+use crate::{Diagnostic, Op, Program, Record, Rule, Tool};
 use std::collections::HashMap;
 
 /// Two sizes of one tool that differ by less are one, mm.
 const SAME_SIZE: f64 = 1e-4;
 
 impl Program {
+    /// Whether it calls tools of more than one number.
+    pub fn calls_several_tools(&self) -> bool {
+        let number = |record: &Record| {
+            let Op::Tool(tool) = &record.op else { return None };
+            Some(tool.number)
+        };
+        let mut numbers = self.records.iter().filter_map(number);
+        numbers.next().is_some_and(|first| numbers.any(|number| number != first))
+    }
+
     /// Two different tools under one number: the change from the one to the other is a change of a number against itself, which
     /// a control skips, and the first of them goes on. An error, at the second of them, where a size that both have differs; a
     /// warning where they have no size in common and their names differ. One for each number.

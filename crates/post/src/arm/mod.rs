@@ -134,7 +134,10 @@ struct Walk<'a> {
     /// Positions that stand behind the instructions, and how many they are.
     table: Vec<u8>,
     points: u32,
-    tools: u32,
+    /// Whether the source calls tools of more than one number.
+    changes: bool,
+    /// Number of the tool that is in the spindle.
+    held: Option<u32>,
 }
 
 impl<'a> Walk<'a> {
@@ -199,7 +202,8 @@ impl<'a> Walk<'a> {
             vector: Vec3::ZERO,
             table: Vec::new(),
             points: 0,
-            tools: 0,
+            changes: program.calls_several_tools(),
+            held: None,
         })
     }
 
@@ -330,21 +334,26 @@ impl<'a> Walk<'a> {
     fn change_tool(&mut self, tool: &Tool, line: u32) -> Outcome {
         self.limits.tool(tool, line)?;
         (self.spindle, self.coolant) = (Spindle::Off, Coolant::Off);
-        self.tools += 1;
-        if self.cell.tool_change.is_empty() {
-            if self.tools > 1 {
-                let message = "the source calls another tool, and the machine file names no program that changes it";
-                let help = "`tool_change` below [cell], or one program for each tool";
-                return Err(Diagnostic::error(Rule::ToolChange, message).help(help).into());
-            }
+        let by_hand = self.cell.tool_change.is_empty();
+        let held = self.held.replace(tool.number);
+        if by_hand && !self.changes && held.is_none() {
             return self.load(tool);
         }
         self.begin()?;
         self.home()?;
         self.switch_off()?;
-        self.writer.set(WordName::T, f64::from(tool.number));
-        self.scope.tool = crate::template::tool_value(self.machine, tool, self.tools == 1, None);
-        self.required(BlockName::ToolChange)?;
+        if !by_hand || held != Some(tool.number) {
+            self.writer.set(WordName::T, f64::from(tool.number));
+            self.scope.tool = crate::template::tool_value(self.machine, tool, held.is_none(), None);
+            self.required(if by_hand { BlockName::ToolByHand } else { BlockName::ToolChange })?;
+        }
+        if by_hand && held != Some(tool.number) {
+            let message = "the program stops at home for each tool, which is put into the spindle by hand: the machine file names no program \
+                           that changes it";
+            let help = "`tool_change` below [cell], where a program changes tools";
+            self.findings
+                .warn(Diagnostic::warning(Rule::ToolByHand, message).help(help).line(line));
+        }
         self.load(tool)
     }
 

@@ -1835,6 +1835,10 @@ rules! {
         "The tool axis is missing or incomplete."
         "give all three values of the vector"
         "A GOTO with a tool axis of two values";
+    ToolByHand "tool-by-hand" []
+        "Tools are put into the spindle by hand, at a stop of the program; a program that stops for another tool than it says, or goes on without what a stop needs, is refused."
+        "name the program that changes tools (`tool_change` below [cell]), or correct the edited program"
+        "krl: `HALT` behind `$LOOP_MSG[]=\"Tool 3\"` where the source calls tool 2";
     ToolCenter "tool-center" []
         "Tool centre control is switched where the control does not take it."
         "switch tool centre control on with the tool called, on a machine with rotary axes"

@@ -43,6 +43,16 @@ struct Standing {
     exact: bool,
 }
 
+/// How tools are changed.
+struct Changes {
+    /// By hand, at a stop of the program: the source calls several, and the cell names no program for it.
+    by_hand: bool,
+    /// Number of the tool that is in the spindle.
+    held: Option<u32>,
+    /// The number that the last message to the operator names first.
+    asked: Option<u32>,
+}
+
 pub(super) struct Judge<'a> {
     machine: &'a Machine,
     arm: &'a Arm,
@@ -58,6 +68,7 @@ pub(super) struct Judge<'a> {
     /// The corner that the motion before has left open: the next one has to be a cut.
     open: Option<Rounding>,
     loaded: bool,
+    changes: Changes,
     ended: bool,
     failed: bool,
     report: Report,
@@ -101,6 +112,11 @@ impl<'a> Judge<'a> {
             is_home: false,
             open: None,
             loaded: false,
+            changes: Changes {
+                by_hand: cell.tool_change.is_empty() && source.calls_several_tools(),
+                held: None,
+                asked: None,
+            },
             ended: false,
             failed: false,
             report: Report { arm: Some(ArmChecked::default()), ..report },
@@ -175,14 +191,24 @@ impl<'a> Judge<'a> {
                     )
                     .map_err(|found| Box::new(found.help("switch both off before it")));
                 }
-                self.happens(Rule::Stop, "stops", |step| matches!(step, Step::Stop))
+                self.leave_out();
+                match self.expected.get(self.next).map(|expected| &expected.step) {
+                    Some(Step::Tool(tool)) if self.changes.by_hand => {
+                        self.tool_by_hand(tool.number)
+                    }
+                    _ => self.happens(Rule::Stop, "stops", |step| matches!(step, Step::Stop)),
+                }
             }
             Action::Tool(tool) => self.tool(tool.number),
             Action::Risk(risk) => {
                 let message = format!("the program {}", risk.what);
                 Err(Diagnostic::error(risk.rule, message).help(risk.help).into())
             }
-            Action::Comment(_) | Action::Message(_) => Ok(()),
+            Action::Message(text) => {
+                self.changes.asked = first_number(text);
+                Ok(())
+            }
+            Action::Comment(_) => Ok(()),
             Action::End => self.ends(),
             Action::Rapid(_)
             | Action::Line(_)
@@ -266,8 +292,13 @@ impl<'a> Judge<'a> {
     fn leave_out(&mut self) {
         while let Some(expected) = self.expected.get(self.next) {
             let is_none = match &expected.step {
-                Step::Tool(_) => {
-                    self.cell.tool_change.is_empty() && self.report.compared.tool_changes == 0 && {
+                // The one of the program, or the one before once more.
+                Step::Tool(tool) => {
+                    let in_place = match self.changes.by_hand {
+                        true => self.changes.held == Some(tool.number),
+                        false => self.cell.tool_change.is_empty(),
+                    };
+                    in_place && {
                         self.report.compared.tool_changes += 1;
                         true
                     }
@@ -384,6 +415,11 @@ impl<'a> Judge<'a> {
         self.report.deviations.axis_degrees.note(axis, source, line);
         Ok(())
     }
+}
+
+/// The first number of a text.
+fn first_number(text: &str) -> Option<u32> {
+    text.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty())?.parse().ok()
 }
 
 fn refused<T>(rule: Rule, message: impl Into<String>) -> Outcome<T> {

@@ -106,14 +106,21 @@ impl Judge<'_> {
         }
     }
 
-    /// A tool change by the operator's program.
-    pub(super) fn tool(&mut self, number: u32) -> Outcome {
-        self.exact()?;
-        let running = &mut self.running;
-        if running.is_on || running.coolant || !self.is_home {
+    /// # Errors
+    /// No tool is changed where the arm stands, or while something is on.
+    fn may_change(&self) -> Outcome {
+        if self.running.is_on || self.running.coolant || !self.is_home {
             let message = "the tool is changed where the arm is not home, or with the spindle or the coolant on";
             return refused(Rule::ToolChange, message);
         }
+        Ok(())
+    }
+
+    /// A tool change by the operator's program.
+    pub(super) fn tool(&mut self, number: u32) -> Outcome {
+        self.exact()?;
+        self.may_change()?;
+        let running = &mut self.running;
         running.turn_speed = [None; 2];
         running.joint_speed = None;
         running.on_flange = None;
@@ -123,9 +130,7 @@ impl Judge<'_> {
         let wanted = self.expected.get(self.next).map(|expected| &expected.step);
         match wanted {
             Some(Step::Tool(tool)) if tool.number == number => {
-                self.report.compared.tool_changes += 1;
-                self.report.program.tool(number.to_string());
-                self.next += 1;
+                self.changed(number);
                 Ok(())
             }
             _ => refused(
@@ -133,6 +138,28 @@ impl Judge<'_> {
                 format!("the program changes to tool {number}, the source does not"),
             ),
         }
+    }
+
+    /// A stop at which the operator puts another tool into the spindle.
+    pub(super) fn tool_by_hand(&mut self, number: u32) -> Outcome {
+        self.may_change()?;
+        if self.changes.asked.take() != Some(number) {
+            let message = format!(
+                "the program stops for tool {number}, and no message before it says that to the operator"
+            );
+            return refused(Rule::ToolByHand, message);
+        }
+        // Where the operator has led the arm is not known.
+        self.standing = None;
+        self.changed(number);
+        Ok(())
+    }
+
+    fn changed(&mut self, number: u32) {
+        self.changes.held = Some(number);
+        self.report.compared.tool_changes += 1;
+        self.report.program.tool(number.to_string());
+        self.next += 1;
     }
 
     pub(super) fn ends(&mut self) -> Outcome {

@@ -25,12 +25,14 @@ impl Judge<'_> {
         let at = base.inverse() * self.arm.flange(&joints) * tool;
         let exact = self.arm.unmeasured() == 0.0;
         let before = self.standing.replace(Standing { joints, tool: at, exact });
-        let was_home = std::mem::replace(&mut self.is_home, home);
+        self.is_home = home;
         let Some(before) = before else {
             return match home {
                 true => Ok(()),
-                false if was_home => Ok(()),
-                false => refused(Rule::Home, "the first motion does not bring the joints home"),
+                false => refused(
+                    Rule::Home,
+                    "the first motion, of the program or behind a tool change, does not bring the joints home",
+                ),
             };
         };
         let wanted = self.expected.get(self.next).map(|expected| expected.step.clone());
