@@ -2,11 +2,14 @@
 //!
 //! Nothing here knows how a control works the path out. Parallel to each element of the contour the centre has to run at the radius of
 //! the tool; between two of them it may take any way that does not come nearer to either, nor farther from the corner than any
-//! control goes; and what it leaves out of an element must be what the next one keeps the tool from.
+//! control goes; and what it leaves out of an element must be what the next one keeps the tool from. And nowhere does it come nearer
+//! than that radius to any other element of the contour (a neck, elements apart), unless that one lies higher, or is one that the contour
+//! itself comes to from the side of the material (a way in, a pass with stock).
 
 use super::trail::{CompensatedMoves, Piece};
 use crate::resolved_pose::Number;
 use geom::{Element, Turn, Vec2, Vec3};
+use std::collections::HashMap;
 
 /// How far from an outer corner the centre may be, in radii of the tool: where the parallels cross at a turn of 100° (SINUMERIK
 /// `G451`) it is 1.556, on FANUC's way around a sharper one 1.414.
@@ -16,7 +19,13 @@ const FARTHEST: f64 = 1.6;
 const SAMPLES: u32 = 32;
 
 /// A move shorter than this goes nowhere in the plane, mm.
-const NOWHERE: f64 = 1e-6;
+pub(crate) const NOWHERE: f64 = 1e-6;
+
+/// The most pairs of ways and elements near each other that are compared.
+const MOST_PAIRS: usize = 30_000_000;
+
+/// Moves whose coordinates in the plane differ by less are one, in steps of so many mm.
+const ONE: f64 = 1e-4;
 
 /// Where the path is wrong, by line of the program, and how.
 pub(super) type Fault = (u32, String);
@@ -26,8 +35,19 @@ pub(super) type Fault = (u32, String);
 struct PlaneMove {
     line: u32,
     element: Element,
-    /// Height above the plane at its end, mm.
-    height: f64,
+    /// Height above the plane at its start and its end, mm.
+    heights: [f64; 2],
+    /// Its number among the pieces that it is one of.
+    piece: usize,
+}
+
+/// By how much a path may be off, mm.
+#[derive(Clone, Copy)]
+pub(crate) struct Slack {
+    /// Along lines and arcs.
+    pub along: f64,
+    /// Along arcs that are written as chords, beyond that.
+    pub chord: f64,
 }
 
 /// Both paths in the plane.
@@ -38,54 +58,114 @@ struct PlanePaths {
     /// The path of the centre.
     ways: Vec<PlaneMove>,
     radius: f64,
+    /// 1 where the tool is on the left, -1 where it is on the right.
+    left: f64,
     /// How near is near enough, mm.
     slack: f64,
+    /// How far chords of arcs may leave them, beyond that, mm.
+    chord: f64,
+    /// By which ways, from and to, the centre runs along each element of the contour behind the first.
+    along: Vec<[usize; 2]>,
 }
 
-/// Compares the path of the centre with the contour of `stretch`, to which it has to run parallel at `radius` mm.
+/// Compares the path of the centre with the contour of `stretch`, to which it has to run parallel at `radius` mm; answers of each piece of
+/// the path to which piece of the stretch it belongs, the way out being one more.
 ///
 /// # Errors
 /// Where it cuts into the contour, or leaves something of it.
-pub(super) fn compare(
+pub(crate) fn compare(
     stretch: &CompensatedMoves,
     path: &[Piece],
     radius: f64,
     left: f64,
-    slack: f64,
-) -> Result<(), Fault> {
-    let Some(first) = stretch.pieces.first() else { return Ok(()) };
+    slack: Slack,
+) -> Result<Vec<usize>, Fault> {
+    let Some(first) = stretch.pieces.first() else { return Ok(vec![0; path.len()]) };
     let axis = first.to.axis;
     let ways = |pieces: &[Piece]| -> Result<Vec<PlaneMove>, Fault> {
-        let ways = pieces.iter().map(|piece| flat(piece, axis));
-        let ways: Vec<PlaneMove> = ways.collect::<Result<_, _>>()?;
-        Ok(ways.into_iter().filter(|way| way.element.length() > NOWHERE).collect())
+        let ways = pieces.iter().enumerate().map(|(i, piece)| flat(piece, axis, i));
+        ways.collect::<Result<_, _>>()
     };
-    let (contour, ways) = (ways(&stretch.pieces)?, ways(path)?);
+    let in_plane = |way: &PlaneMove| way.element.length() > NOWHERE;
+    // The first move leads to the contour, wherever it ends.
+    let contour = ways(&stretch.pieces)?;
+    let contour = contour.into_iter().filter(|way| way.piece == 0 || in_plane(way));
+    let contour: Vec<PlaneMove> = contour.collect();
+    let path = ways(path)?;
+    let ways: Vec<PlaneMove> = path.iter().copied().filter(in_plane).collect();
     let parallel = contour.iter().map(|way| parallel_of(way, left * radius));
     let parallel = parallel.collect::<Result<_, _>>()?;
-    PlanePaths { contour, parallel, ways, radius, slack }.compare()
+    let Slack { along: slack, chord } = slack;
+    let mut paths =
+        PlanePaths { contour, parallel, ways, radius, left, slack, chord, along: Vec::new() };
+    paths.compare()?;
+    paths.keeps_off()?;
+    paths.pieces(&path, stretch.pieces.len())
 }
 
 impl PlanePaths {
-    fn compare(&self) -> Result<(), Fault> {
+    fn compare(&mut self) -> Result<(), Fault> {
         // The first move only leads to the contour.
         let mut next = 0;
         let mut last: Option<(usize, [f64; 2])> = None;
         for k in 1..self.contour.len() {
             let found = (next..self.ways.len())
                 .find_map(|i| self.covered(k, &self.ways[i].element).map(|part| (i, part)));
-            let Some((i, part)) = found else {
+            let Some((i, mut part)) = found else {
                 let message = "nowhere leads the tool's centre along this block";
                 return Err((self.contour[k].line, message.into()));
             };
+            // An arc may be written in parts.
+            let mut j = i;
+            let length = self.parallel[k].length();
+            while self.contour[k].element.turn.is_some()
+                && let Some([from, to]) =
+                    self.ways.get(j + 1).and_then(|way| self.covered(k, &way.element))
+                && (from - part[1]).abs() <= self.slack
+                && to <= length + self.slack
+            {
+                (j, part[1]) = (j + 1, to);
+            }
             match last {
                 None => self.way_in(i, part)?,
                 Some((before, earlier)) => self.corner(k, [before, i], [earlier, part])?,
             }
-            self.same_height(k, i)?;
-            (last, next) = (Some((i, part)), i + 1);
+            self.same_height(k, j)?;
+            self.along.push([i, j]);
+            (last, next) = (Some((j, part)), j + 1);
         }
         last.map_or(Ok(()), |(i, part)| self.way_out(i, part))
+    }
+
+    /// To which piece of the stretch each piece of the path belongs: a way around a corner to the element behind it, a move along the tool
+    /// to that of the stretch which is there.
+    fn pieces(&self, path: &[PlaneMove], count: usize) -> Result<Vec<usize>, Fault> {
+        let mut at = vec![count; path.len()];
+        let mut from = 0;
+        for (way, element) in self.along.iter().zip(&self.contour[1..]) {
+            let [first, last] = way.map(|i| self.ways[i].piece);
+            at[from..=last].fill(element.piece);
+            if from == 0 {
+                at[..first].fill(0);
+            }
+            from = last + 1;
+        }
+        // Moves along the tool, in their order.
+        let mut free = 0;
+        for (i, way) in path.iter().enumerate() {
+            if way.element.length() > NOWHERE {
+                free = at[i] + 1;
+                continue;
+            }
+            let is_next = at.get(i + 1).is_none_or(|next| free < *next) && free < count;
+            if !is_next || self.contour.iter().any(|element| element.piece == free) {
+                let message = "the program moves along the tool where the contour does not";
+                return Err((way.line, message.into()));
+            }
+            at[i] = free;
+            free += 1;
+        }
+        Ok(at)
     }
 
     /// Along which part of element `k` the centre runs on `way`, as lengths along the parallel, mm.
@@ -113,7 +193,26 @@ impl PlanePaths {
                 let angle = spoke.angle_to(to) * turn.sweep.signum();
                 [angle * radius, (angle + other.sweep.abs()) * radius]
             }
-            (Some(_), None) | (None, Some(_)) => return None,
+            // A chord.
+            (Some(turn), None) => {
+                let radius = leg.start.distance(turn.center);
+                let off = |point: Vec2| (point.distance(turn.center) - radius).abs();
+                let sag = radius - turn.center.distance(way.at(0.5));
+                let ends = off(way.start).max(off(way.end));
+                if ends > self.slack || sag > self.slack + self.chord {
+                    return None;
+                }
+                let angle = |from: Vec2, to: Vec2| {
+                    (from - turn.center).angle_to(to - turn.center) * turn.sweep.signum()
+                };
+                let from = angle(leg.start, way.start);
+                let step = angle(way.start, way.end);
+                if step <= 0.0 {
+                    return None;
+                }
+                [from * radius, (from + step) * radius]
+            }
+            (None, Some(_)) => return None,
         };
         let shared = to.min(leg.length()) - from.max(0.0);
         (shared > self.slack.min(leg.length() / 4.0)).then_some([from, to])
@@ -130,12 +229,8 @@ impl PlanePaths {
         for way in &self.ways[i..=j] {
             for element in [&before.element, &after.element] {
                 let near = samples(&way.element).map(|point| element.nearest(point).1);
-                self.holds_off(
-                    near.fold(f64::INFINITY, f64::min),
-                    self.radius,
-                    way.line,
-                    after.line,
-                )?;
+                let near = near.fold(f64::INFINITY, f64::min);
+                self.holds_off(near, self.radius, way, after.line)?;
             }
         }
         let corner = after.element.start;
@@ -163,7 +258,7 @@ impl PlanePaths {
             // At its very start the tool comes as near as its way leads.
             let near = near.filter(|(t, _)| *t > 0.0).map(|(_, near)| near);
             let near = near.fold(f64::INFINITY, f64::min);
-            self.holds_off(near, self.radius.min(start), way.line, first.line)?;
+            self.holds_off(near, self.radius.min(start), way, first.line)?;
         }
         if part[0] < 0.0 {
             self.not_far(first.element.start, [self.ways[i].element.start], first.line)?;
@@ -196,18 +291,111 @@ impl PlanePaths {
             let near = samples(&way.element).map(|point| last.element.nearest(point));
             let near = near.filter(|(t, _)| *t < 1.0).map(|(_, near)| near);
             let near = near.fold(f64::INFINITY, f64::min);
-            self.holds_off(near, self.radius.min(end), way.line, last.line)?;
+            self.holds_off(near, self.radius.min(end), way, last.line)?;
         }
         Ok(())
     }
 
     /// The centre is no nearer to an element than this.
-    fn holds_off(&self, near: f64, least: f64, line: u32, of: u32) -> Result<(), Fault> {
-        if near >= least - self.slack {
+    fn holds_off(&self, near: f64, least: f64, way: &PlaneMove, of: u32) -> Result<(), Fault> {
+        if near >= least - self.slack_of(way) {
             return Ok(());
         }
         let deep = Number(least - near);
-        Err((line, format!("the tool cuts {deep} mm into the contour of the block in line {of}")))
+        Err((
+            way.line,
+            format!("the tool cuts {deep} mm into the contour of the block in line {of}"),
+        ))
+    }
+
+    /// How near to the contour is near enough on a way, mm.
+    fn slack_of(&self, way: &PlaneMove) -> f64 {
+        match way.element.turn {
+            None => self.slack + self.chord,
+            Some(_) => self.slack,
+        }
+    }
+
+    /// Between which elements way `i` runs, or along which it does: 0 is the way in, and the one behind the last the way out.
+    fn between(&self, i: usize) -> [usize; 2] {
+        let begun = self.along.partition_point(|[first, _]| *first <= i);
+        let ended = self.along.partition_point(|[_, last]| *last < i);
+        [begun, ended + 1]
+    }
+
+    /// Every way against every element but its own and their neighbours.
+    fn keeps_off(&self) -> Result<(), Fault> {
+        let (Some(last), Some(start), Some(end)) =
+            (self.along.last(), self.ways.first(), self.ways.last())
+        else {
+            return Ok(());
+        };
+        let (first, last) = (self.along[0][0], last[1]);
+        let (start, end) = (start.element.start, end.element.end);
+        // Passes at several depths are one: of an element the highest counts, of a way the lowest.
+        let (elements, number) = unique(&self.contour[1..], |a, b| high(a) > high(b));
+        let (ways, _) = unique(&self.ways, |a, b| low(a) < low(b));
+        let boxes = Boxes::of(&elements);
+        let (mut near, mut pairs) = (Vec::new(), 0);
+        for (i, way) in ways {
+            let [from, to] = self.between(i);
+            let count = self.contour.len() - 1;
+            let own = from.max(1)..=to.min(count);
+            let beside = (from.max(2) - 1)..=(to + 1).min(count);
+            let beside: Vec<usize> = beside.map(|k| number[k - 1]).collect();
+            let lead = match i {
+                i if i < first => Some(start),
+                i if i > last => Some(end),
+                _ => None,
+            };
+            boxes.near(&way.element, self.radius, &mut near);
+            pairs += near.len();
+            if pairs > MOST_PAIRS {
+                let message = "the contour lies over itself so often that it cannot be compared";
+                return Err((way.line, message.into()));
+            }
+            for other in near.iter().filter(|other| !beside.contains(other)) {
+                self.apart(&way, &elements[*other].1, &self.contour[own.clone()], lead)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A way against an element that is none of its `own`; a way in or out may come as near as its outer end is.
+    fn apart(
+        &self,
+        way: &PlaneMove,
+        other: &PlaneMove,
+        own: &[PlaneMove],
+        lead: Option<Vec2>,
+    ) -> Result<(), Fault> {
+        let least = lead.map_or(self.radius, |end| other.element.nearest(end).1.min(self.radius));
+        let enough = least - self.slack_of(way);
+        let is_above = low(way) > high(other) + self.slack;
+        if is_above || way.element.distance(&other.element, NOWHERE) >= enough {
+            return Ok(());
+        }
+        let nearest = way.element.closest(&other.element).0;
+        let points = samples(&way.element).chain([nearest]);
+        let points = points.chain(way.element.meets(&other.element, NOWHERE));
+        let near = points.filter_map(|point| {
+            let (t, near) = other.element.nearest(point);
+            (near < enough && self.faces(other, t, own, point)).then_some(near)
+        });
+        self.holds_off(near.fold(f64::INFINITY, f64::min), least, way, other.line)
+    }
+
+    /// Whether the contour, where the tool at `point` touches it, is on that side of an element on which the tool goes along it.
+    fn faces(&self, other: &PlaneMove, t: f64, own: &[PlaneMove], point: Vec2) -> bool {
+        let touched = own.iter().map(|way| {
+            let (t, distance) = way.element.nearest(point);
+            (distance, way.element.at(t))
+        });
+        let touched = touched.min_by(|a, b| a.0.total_cmp(&b.0));
+        let along = other.element.tangent(t);
+        touched.is_some_and(|(_, touched)| {
+            along.perp_dot(touched - other.element.at(t)) * self.left > NOWHERE
+        })
     }
 
     /// On its way around a corner the centre does not go far.
@@ -251,11 +439,109 @@ impl PlanePaths {
     }
 
     fn same_height(&self, k: usize, i: usize) -> Result<(), Fault> {
-        let (wanted, is) = (self.contour[k].height, self.ways[i].height);
+        let (wanted, is) = (self.contour[k].heights[1], self.ways[i].heights[1]);
         if (wanted - is).abs() <= self.slack {
             return Ok(());
         }
         Err((self.ways[i].line, format!("the tool ends {} mm too high", Number(is - wanted))))
+    }
+}
+
+/// The lower end of a move.
+fn low(way: &PlaneMove) -> f64 {
+    way.heights[0].min(way.heights[1])
+}
+
+/// Its higher end.
+fn high(way: &PlaneMove) -> f64 {
+    way.heights[0].max(way.heights[1])
+}
+
+/// Moves, of those that are one in the plane only that which `counts` before the others, each with its number; and where each of `ways` is
+/// among them.
+fn unique(
+    ways: &[PlaneMove],
+    counts: impl Fn(&PlaneMove, &PlaneMove) -> bool,
+) -> (Vec<(usize, PlaneMove)>, Vec<usize>) {
+    let mut found: Vec<(usize, PlaneMove)> = Vec::new();
+    let mut known: HashMap<[i64; 6], usize> = HashMap::new();
+    let number = ways.iter().enumerate().map(|(i, way)| {
+        let Element { start, end, turn } = way.element;
+        let middle = way.element.at(0.5);
+        let step = |mm: f64| (mm / ONE).round() as i64;
+        let key = [start.x, start.y, end.x, end.y, middle.x, middle.y].map(step);
+        // An arc of more than a turn is another one than the rest of it.
+        let many = turn.is_some_and(|turn| turn.sweep.abs() > std::f64::consts::TAU);
+        let at = match known.get(&key).filter(|_| !many) {
+            Some(&at) => {
+                if counts(way, &found[at].1) {
+                    found[at] = (i, *way);
+                }
+                at
+            }
+            None => {
+                found.push((i, *way));
+                found.len() - 1
+            }
+        };
+        known.insert(key, at);
+        at
+    });
+    let number = number.collect();
+    (found, number)
+}
+
+/// Boxes around elements, and around those, in their order.
+struct Boxes {
+    nodes: Vec<Node>,
+}
+
+struct Node {
+    low: Vec2,
+    high: Vec2,
+    /// The element that it is around, or where its two halves are.
+    holds: Result<usize, [usize; 2]>,
+}
+
+impl Boxes {
+    fn of(elements: &[(usize, PlaneMove)]) -> Boxes {
+        let node = |(i, (_, way)): (usize, &(usize, PlaneMove))| {
+            let (low, high) = way.element.extents();
+            Node { low, high, holds: Ok(i) }
+        };
+        let mut nodes: Vec<Node> = elements.iter().enumerate().map(node).collect();
+        // Pairs of neighbours, again and again, up to one.
+        let mut row = 0..nodes.len();
+        while row.len() > 1 {
+            let next = nodes.len();
+            for a in row.clone().step_by(2) {
+                let b = (a + 1).min(row.end - 1);
+                let (low, high) =
+                    (nodes[a].low.min(nodes[b].low), nodes[a].high.max(nodes[b].high));
+                nodes.push(Node { low, high, holds: Err([a, b]) });
+            }
+            row = next..nodes.len();
+        }
+        Boxes { nodes }
+    }
+
+    /// The numbers of the elements whose boxes are within `reach` mm of that of `element`.
+    fn near(&self, element: &Element, reach: f64, found: &mut Vec<usize>) {
+        found.clear();
+        let (low, high) = element.extents();
+        let (low, high) = (low - Vec2::splat(reach), high + Vec2::splat(reach));
+        let mut open: Vec<usize> = self.nodes.len().checked_sub(1).into_iter().collect();
+        while let Some(at) = open.pop() {
+            let node = &self.nodes[at];
+            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
+                continue;
+            }
+            match node.holds {
+                Ok(i) => found.push(i),
+                Err([a, b]) if a == b => open.push(a),
+                Err([a, b]) => open.extend([b, a]),
+            }
+        }
     }
 }
 
@@ -265,7 +551,7 @@ fn samples(element: &Element) -> impl Iterator<Item = Vec2> + '_ {
 }
 
 /// A move seen along the tool.
-fn flat(piece: &Piece, axis: Vec3) -> Result<PlaneMove, Fault> {
+fn flat(piece: &Piece, axis: Vec3, number: usize) -> Result<PlaneMove, Fault> {
     let x = axis.any_orthonormal_vector();
     let y = axis.cross(x);
     let flat = |point: Vec3| Vec2::new(point.dot(x), point.dot(y));
@@ -284,7 +570,8 @@ fn flat(piece: &Piece, axis: Vec3) -> Result<PlaneMove, Fault> {
         }
     };
     let element = Element { start, end, turn };
-    Ok(PlaneMove { line: piece.line, element, height: piece.to.tip.dot(axis) })
+    let heights = [piece.from, piece.to].map(|place| place.tip.dot(axis));
+    Ok(PlaneMove { line: piece.line, element, heights, piece: number })
 }
 
 /// The parallel of an element, so many mm to its left.
@@ -352,7 +639,8 @@ mod tests {
     ];
 
     fn judged(path: &[End]) -> Result<(), Fault> {
-        compare(&stretch(), &pieces([-20.0, 0.0], path), 5.0, 1.0, 0.003)
+        let slack = Slack { along: 0.003, chord: 0.0 };
+        compare(&stretch(), &pieces([-20.0, 0.0], path), 5.0, 1.0, slack).map(drop)
     }
 
     #[test]
@@ -427,5 +715,91 @@ mod tests {
                 .map(|end| (end, None))
                 .to_vec();
         });
+    }
+
+    /// A slot of two walls, open to the left, that the contour enters along the lower one and leaves along the upper one: 40 mm long, and
+    /// in the middle as wide as is said, behind a bulge that is no neighbour of the lower wall.
+    fn neck(width: f64) -> ([f64; 2], Vec<End>) {
+        let bulge = 20.0 - width;
+        let ends = [
+            ([0.0, 0.0], None),
+            ([40.0, 0.0], None),
+            ([40.0, 20.0], None),
+            ([25.0, 20.0], None),
+            ([25.0, 20.0 - bulge], None),
+            ([15.0, 20.0 - bulge], None),
+            ([15.0, 20.0], None),
+            ([0.0, 20.0], None),
+        ];
+        ([-20.0, 0.0], ends.to_vec())
+    }
+
+    /// The centre of a tool of radius 3 along it, by hand: arcs about the two corners of the bulge.
+    fn through_the_neck(width: f64) -> Vec<End> {
+        let floor = width - 3.0;
+        vec![
+            ([0.0, 3.0], None),
+            ([37.0, 3.0], None),
+            ([37.0, 17.0], None),
+            ([28.0, 17.0], None),
+            ([28.0, width], None),
+            ([25.0, floor], Some(([25.0, width], true))),
+            ([15.0, floor], None),
+            ([12.0, width], Some(([15.0, width], true))),
+            ([12.0, 17.0], None),
+            ([0.0, 17.0], None),
+            ([-20.0, 17.0], None),
+        ]
+    }
+
+    fn judged_neck(width: f64) -> Result<(), Fault> {
+        let (start, ends) = neck(width);
+        let side = Compensation::Left(None);
+        let terms = Terms { source_line: 1, side, radius: Some(3.0), tool_length: None };
+        let stretch =
+            CompensatedMoves { terms, before: 0, pieces: pieces(start, &ends), exit: None };
+        let slack = Slack { along: 0.003, chord: 0.0 };
+        let path = pieces(start, &through_the_neck(width));
+        compare(&stretch, &path, 3.0, 1.0, slack).map(drop)
+    }
+
+    #[test]
+    fn a_neck_between_elements_that_are_no_neighbours_is_as_wide_as_the_tool() {
+        assert_eq!(judged_neck(8.0), Ok(()));
+        assert_eq!(judged_neck(6.0), Ok(()));
+        // 0.1 mm too narrow: along the lower wall the tool cuts into the bulge.
+        let (line, how) = judged_neck(5.9).unwrap_err();
+        assert_eq!((line, how.contains("mm into the contour")), (2, true), "{how}");
+    }
+
+    /// A pocket with the corners (0, 0) and (40, 30), the tool inside: the first pass along its floor leaves 1 mm of stock, the last one, in
+    /// the same stretch, does not.
+    #[test]
+    fn a_pass_that_takes_the_stock_of_an_earlier_one_is_no_neck() {
+        let ends = [[20.0, 1.0], [40.0, 1.0], [40.0, 30.0], [0.0, 30.0], [0.0, 0.0], [30.0, 0.0]];
+        let path = [
+            [20.0, 4.0],
+            [37.0, 4.0],
+            [37.0, 27.0],
+            [3.0, 27.0],
+            [3.0, 3.0],
+            [30.0, 3.0],
+            [30.0, 15.0],
+        ];
+        let side = Compensation::Left(None);
+        let terms = Terms { source_line: 1, side, radius: Some(3.0), tool_length: None };
+        let pieces_of = |ends: &[[f64; 2]]| {
+            let ends: Vec<End> = ends.iter().map(|end| (*end, None)).collect();
+            pieces([20.0, 15.0], &ends)
+        };
+        let stretch = CompensatedMoves { terms, before: 0, pieces: pieces_of(&ends), exit: None };
+        let slack = Slack { along: 0.003, chord: 0.0 };
+        let judged = |path: &[[f64; 2]]| compare(&stretch, &pieces_of(path), 3.0, 1.0, slack);
+        // The way out is one more than the pieces.
+        assert_eq!(judged(&path), Ok(vec![0, 1, 2, 3, 4, 5, 6]));
+        // Out through the wall.
+        let mut damaged = path;
+        damaged[6] = [60.0, 15.0];
+        assert!(judged(&damaged).is_err());
     }
 }

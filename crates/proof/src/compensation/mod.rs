@@ -3,7 +3,7 @@
 //! A contour is compared twice: as the program says it, with the rest of the program, and as its control leads the centre of the
 //! source's tools along it ([`resolved`], [`centre`]).
 
-mod centre;
+pub(crate) mod centre;
 pub(crate) mod resolved;
 pub(crate) mod trail;
 

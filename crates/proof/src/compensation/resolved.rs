@@ -1,5 +1,6 @@
 //! The program on a control that knows the tools: where it leads their centres.
 
+use super::centre::Slack;
 use super::trail::{CompensatedMoves, Piece};
 use super::{Part, centre};
 use crate::gauge::Gauge;
@@ -150,9 +151,10 @@ impl Run<'_> {
         let Some(radius) = radius.filter(|_| !std::mem::take(&mut self.is_state)) else {
             return self.open(stretch, "the radius that the control takes is not known");
         };
-        let slack = ROUNDINGS * self.gauge.allowed.tip_mm + joints(self.gauge.machine);
+        let along = ROUNDINGS * self.gauge.allowed.tip_mm + joints(self.gauge.machine);
+        let slack = Slack { along, chord: 0.0 };
         match centre::compare(stretch, &path, radius, left, slack) {
-            Ok(()) => self.report.compared.contours += 1,
+            Ok(_) => self.report.compared.contours += 1,
             Err((line, how)) => {
                 let message = format!(
                     "source line {}: with a radius of {} mm {how}",
