@@ -107,8 +107,9 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
         let (percent, line) = (number(speed.value, 2), speed.program_line);
         rows.push(("tip speed", format!("off by {percent} % at most (line {line}){slowed}")));
     }
-    if machine.path_tolerance() > 0.0 {
-        let most = number(machine.path_tolerance(), 5);
+    let most = machine.path_tolerance().max(machine.roughing_tolerance());
+    if most > 0.0 {
+        let most = number(most, 5);
         let tool = machine.orientation_tolerance();
         let tool = match tool > 0.0 {
             true => format!(", the tool by up to {}°,", number(tool, 5)),

@@ -1328,6 +1328,27 @@ fn a_tolerance_of_the_orientation_is_what_the_machines_file_allows() {
     {
         assert_eq!(risks_within(Dialect::Sinumerik, 0.0, &format!("{harmless}\nM30\n")), none);
     }
+    // While the control keeps the tip, setting data say by how much where no word does (SINUMERIK ONE IM9, "CYCLE832": ten times the
+    // tolerance of the path as delivered).
+    let five = |words: &str| {
+        let text = format!(
+            "G54 G90 G94\nTRAORI\nG54 D1\nG0 X0 Y0 Z50 B0 C0\n{words}\nG1 X5 F500\nX10\nCYCLE832(0,_OFF,1)\nM30\n"
+        );
+        risks_within(Dialect::Sinumerik, 0.1, &text)
+    };
+    for unsaid in ["CYCLE832(0.05,_FINISH,1)", "CYCLE832(0.05,3,1)", "CYCLE832(0.05)"] {
+        assert_eq!(five(unsaid), ["orientation-tolerance"], "{unsaid}");
+        assert_eq!(five(&format!("TRAFOOF\n{unsaid}")), none, "{unsaid}");
+    }
+    for said in [
+        "CYCLE832(0.05,_ORI_FINISH,0.1)",
+        "CYCLE832(0.05,13,0.1)",
+        "CYCLE832(0.05,_FINISH,1)\nOTOL=0.1",
+        "CYCLE832(0.05,_FINISH,1)\nCYCLE832(0,_OFF,1)",
+        "CYCLE832(0.05,_FINISH,1)\nCYCLE832(0.05,_ORI_FINISH,0.1)",
+    ] {
+        assert_eq!(five(said), none, "{said}");
+    }
     // SD42674 to SD42678 say by how much, and nobody has said these.
     for loose in ["OSC", "OSS", "OSSE", "OSD", "OST", "ORISON"] {
         let program = format!("{loose}\nM30\n");

@@ -95,9 +95,9 @@ fn header_labels_skip_marks_and_comments_are_read() {
 
 #[test]
 fn words_that_do_not_move_leave_no_trace() {
-    let text = "G60 G601 SOFT FFWON COMPCAD G642 ADIS=0.1 DYNFINISH\nCYCLE832(0.01,_FINISH,1)\n\
+    let text = "G60 G601 SOFT FFWON COMPCAD G642 DYNFINISH\n\
                 FGROUP(X,Y,Z)\nM40\nM26 M28\nSTOPRE\nCYCLE832()\nORIWKS ORIAXES\nFNORM\nSETMS\n\
-                SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)\nADIS=0\nG64\nCOMPOF\nBRISK\nFFWOF\nDYNNORM";
+                SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)\nG64\nCOMPOF\nBRISK\nFFWOF\nDYNNORM";
     let text = text.replace("ORIWKS ORIAXES", "ORIWKS\nORIAXES");
     let text = text.replace("G60 G601", "G601");
     let functions = [26, 28].map(|number| Action::Auxiliary(program::Auxiliary::of(number)));

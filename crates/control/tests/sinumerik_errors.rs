@@ -298,15 +298,31 @@ fn a_feed_group_without_a_linear_axis_makes_another_feed() {
     assert_eq!(error("FGREF[C]=0").rule.name(), "feed-group");
 }
 
+/// What is too far, the proof says. `ADISPOS` is the distance of rapids.
 #[test]
-fn a_path_tolerance_beyond_what_the_machine_file_says_is_refused() {
-    for text in ["CYCLE832(0.11,_FINISH,1)", "CTOL=0.2", "G641 ADIS=1", "G70 CTOL=0.01"] {
-        let found = error(text);
-        assert_eq!(found.rule.name(), "path-tolerance", "{found}");
-        assert!(found.message.contains("allows 0.1 mm"), "{found}");
-    }
+fn how_far_the_path_may_be_left_is_reported() {
+    use program::PathMode::{AsSetUp, Blend};
+    let modes = |text: &str| {
+        let found = blocks(text).into_iter().filter_map(|action| match action {
+            Action::PathMode(mode) => Some(mode),
+            _ => None,
+        });
+        found.collect::<Vec<_>>()
+    };
     assert_eq!(
-        blocks("CYCLE832(0.1,_FINISH,1)\nCTOL=0.1\nCYCLE832(0,_OFF,1)\nCYCLE832()"),
-        [Action::End]
+        modes("CYCLE832(0.1,_FINISH,1)\nCTOL=0.1\nCTOL=0.05\nCYCLE832(0,_OFF,1)\nCYCLE832()"),
+        [Blend(0.1), Blend(0.05), AsSetUp]
     );
+    assert_eq!(modes("CYCLE832(5,_ROUGH,1)\nCYCLE832(0.01,_FINISH,1)"), [Blend(5.0), Blend(0.01)]);
+    assert_eq!(modes("G70 CTOL=0.01\nCTOL=-1"), [Blend(0.254), AsSetUp]);
+    // Both may act at one corner.
+    assert_eq!(
+        modes("G641 ADIS=1\nCTOL=0.5\nCTOL=2\nADIS=0\nCTOL=-1"),
+        [Blend(1.0), Blend(2.0), AsSetUp]
+    );
+    assert_eq!(modes("CTOL=0"), [Blend(0.0)]);
+    let found = error("G641 ADISPOS=0.2");
+    assert_eq!(found.rule.name(), "path-tolerance", "{found}");
+    assert!(found.message.contains("allows 0.1 mm"), "{found}");
+    assert_eq!(modes("G641 ADISPOS=0.1\nADISPOS=0"), [AsSetUp; 0]);
 }

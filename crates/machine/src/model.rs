@@ -749,6 +749,12 @@ impl Machine {
         self.number_of("path_tolerance")
     }
 
+    /// How far its control may leave the path in cuts for which the source itself says more than
+    /// [`path_tolerance`](Machine::path_tolerance), mm: `roughing_tolerance` of the options. 0 where no cut gets more.
+    pub fn roughing_tolerance(&self) -> f64 {
+        self.number_of("roughing_tolerance")
+    }
+
     /// By how much its control may turn the tool out of its orientation while it smooths the path, degrees:
     /// `orientation_tolerance` of the options, which the templates write. The proof does not see that deviation.
     pub fn orientation_tolerance(&self) -> f64 {

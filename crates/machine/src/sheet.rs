@@ -367,8 +367,11 @@ value! {
 }
 
 /// What the options that are no mere texts of the templates may be: the name, the most, the unit.
-const MEASURED_OPTIONS: [(&str, f64, &str); 2] =
-    [("path_tolerance", 10.0, "mm"), ("orientation_tolerance", 45.0, "degrees")];
+const MEASURED_OPTIONS: [(&str, f64, &str); 3] = [
+    ("path_tolerance", 10.0, "mm"),
+    ("roughing_tolerance", 10.0, "mm"),
+    ("orientation_tolerance", 45.0, "degrees"),
+];
 
 /// Why a number cannot be the value of that option.
 pub(crate) fn wrong_option(name: &str, value: f64) -> Option<String> {

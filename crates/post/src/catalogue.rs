@@ -221,7 +221,7 @@ names! {
         F Word "F", "mm/min", "Feed of the move.";
         FeedPerTurn Word "F_per_turn", "mm", "How {{F}} is written while the feed is per turn of the spindle.";
         FeedInverse Word "F_inverse_time", "1/min", "How {{F}} is written while the feed is inverse time.";
-        Tolerance Word "TOLERANCE", "mm", "How far the control may leave the path: as the source says for its cuts, at the most `path_tolerance`. `look_ahead_on` may place it; without `look_ahead_off` that is written only where it changes.";
+        Tolerance Word "TOLERANCE", "mm", "How far the control may leave the path: as the source says for its cuts, at the most `path_tolerance`, or `roughing_tolerance` where that is more. `look_ahead_on` may place it; without `look_ahead_off` that is written only where it changes.";
         S Word "S", "1/min", "Speed of the spindle.";
         T Word "T", "", "Number of the tool.";
         H Word "H", "", "Register of the tool length offset, 1 or the tool's as `length_offset` says: at the tool change, when tool center point control goes on, and with each straight move that says Z.";
@@ -380,6 +380,16 @@ pub(crate) const VARIABLES: &[Parameter] = &[
         "place.plane_off",
         "",
         "Whether `plane_tilt_off` has just been written: nothing has moved since.",
+    ),
+    variable(
+        "cut.exact",
+        "",
+        "In `look_ahead_on`: whether the cuts to come keep to the path. Where the block reads it and has no {{TOLERANCE}}, they do so whenever the source says less than `path_tolerance`.",
+    ),
+    variable(
+        "cut.rough",
+        "",
+        "In `look_ahead_on`: whether the cuts to come are roughing: the source says more than `path_tolerance` for them, and `roughing_tolerance` of the options allows more.",
     ),
     variable("text", "", "The text of a comment or a message."),
     variable("options", "", "The values of `[options]` of the machine: `{{ options.NAME }}`."),

@@ -164,8 +164,8 @@ enum Kind {
 type Shape = (Kind, usize);
 
 /// The values with members.
-const GROUPS: [&str; 8] =
-    ["coolant", "machine", "operation", "options", "place", "program", "spindle", "tool"];
+const GROUPS: [&str; 9] =
+    ["coolant", "cut", "machine", "operation", "options", "place", "program", "spindle", "tool"];
 
 struct Guard<'m> {
     machine: &'m Machine,

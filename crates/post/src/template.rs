@@ -176,6 +176,8 @@ pub(crate) struct Template<'a> {
     uses: Words,
     /// Whether it may read which tools the program calls.
     tools: bool,
+    /// Whether it may read that the cuts to come keep to the path.
+    exact: bool,
     /// `None`: the engine renders it.
     lines: Option<Lines>,
 }
@@ -193,6 +195,7 @@ pub(crate) struct Scope {
     pub(crate) spindle: Value,
     pub(crate) coolant: Value,
     pub(crate) place: Value,
+    pub(crate) cut: Value,
     pub(crate) text: Value,
 }
 
@@ -207,6 +210,7 @@ impl Object for Scope {
             "spindle" => &self.spindle,
             "coolant" => &self.coolant,
             "place" => &self.place,
+            "cut" => &self.cut,
             "text" => &self.text,
             name => {
                 let word = WordName::named(name)?;
@@ -268,6 +272,7 @@ impl Scope {
             spindle: spindle_value(first, first, !first),
             coolant: coolant_value(!first, !first),
             place: place_value(!first, first, !first, [!first; 2]),
+            cut: cut_value(!first, first),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -302,6 +307,7 @@ impl Scope {
             spindle: spindle_value(true, true, false),
             coolant: coolant_value(false, false),
             place: place_value(false, false, false, [false; 2]),
+            cut: cut_value(false, false),
             text: Value::from(""),
         }
     }
@@ -327,6 +333,11 @@ pub(crate) fn spindle_value(changed: bool, clockwise: bool, stopped: bool) -> Va
 /// The coolant as templates see it.
 pub(crate) fn coolant_value(stopped: bool, through: bool) -> Value {
     map([("stopped", Value::from(stopped)), ("through", Value::from(through))])
+}
+
+/// The cuts to come, as templates see them.
+pub(crate) fn cut_value(exact: bool, rough: bool) -> Value {
+    map([("exact", Value::from(exact)), ("rough", Value::from(rough))])
 }
 
 /// Where the tool is, as templates see it.
@@ -533,7 +544,7 @@ impl<'a> Templates<'a> {
     fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {
         if let Some((text, uses)) = plain(&block.text) {
             let lines = Lines::of(text, &self.machine.format, self.words);
-            return Ok(Template { block, uses, tools: false, lines: Some(lines) });
+            return Ok(Template { block, uses, tools: false, exact: false, lines: Some(lines) });
         }
         guard::check(&block.text, self.machine).map_err(|fault| match fault {
             Fault::Syntax(error) => {
@@ -557,14 +568,16 @@ impl<'a> Templates<'a> {
             }
         }
         let tools = names.iter().any(|name| name == "program" || name.starts_with("program.tools"));
-        Ok(Template { block, uses, tools, lines: None })
+        let exact = names.iter().any(|name| name == "cut" || name == "cut.exact");
+        Ok(Template { block, uses, tools, exact, lines: None })
     }
 
     fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
         let known = match name.split_once('.') {
             Some(("options", option)) => self.machine.options.contains_key(option),
             Some((
-                "tool" | "spindle" | "coolant" | "place" | "operation" | "program" | "machine",
+                "tool" | "spindle" | "coolant" | "place" | "cut" | "operation" | "program"
+                | "machine",
                 _,
             )) => VARIABLES.iter().any(|row| row.name == name),
             _ => {
@@ -603,6 +616,11 @@ impl<'a> Templates<'a> {
     /// Whether the machine has the block, and the block places the word.
     pub(crate) fn places(&self, name: BlockName, word: WordName) -> bool {
         self.blocks[name as usize].as_ref().is_some_and(|block| block.uses.has(word))
+    }
+
+    /// Whether the machine has the block, and the block may say that the cuts to come keep to the path.
+    pub(crate) fn says_exact(&self, name: BlockName) -> bool {
+        self.blocks[name as usize].as_ref().is_some_and(|block| block.exact)
     }
 
     /// Each word that some block places, and a block that does.

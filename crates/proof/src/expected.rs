@@ -5,8 +5,8 @@ use crate::resolved_pose::PartialPose;
 use geom::{Arc, Vec3};
 use machine::Machine;
 use program::{
-    Auxiliary, Compensation, Coolant, Cycle, Feed, Input, Op, Output, Pose, Probe, Program, Record,
-    Spindle, Tool, WorkOffset, WorkOffsetData,
+    Auxiliary, Compensation, Coolant, Cycle, Feed, Input, Op, Output, PathMode, Pose, Probe,
+    Program, Record, Spindle, Tool, WorkOffset, WorkOffsetData,
 };
 
 /// A motion of the source, from where the one before it ends.
@@ -76,6 +76,8 @@ pub(crate) struct ExpectedState<'a> {
     pub taper: f64,
     /// The work offset, where the source names one.
     pub work_offset: Option<WorkOffset>,
+    /// How closely its cuts are to be followed.
+    pub path: PathMode,
     cycle: Option<Cycle>,
 }
 
@@ -111,6 +113,7 @@ impl<'a> Cursor<'a> {
             compensation: Compensation::Off,
             taper: 0.0,
             work_offset: None,
+            path: PathMode::AsSetUp,
             cycle: None,
         };
         let mut cursor = Cursor {
@@ -267,6 +270,7 @@ impl<'a> Cursor<'a> {
             Op::Compensation(_) if !self.compensates => {}
             Op::Compensation(side) => wanted.compensation = *side,
             Op::Taper(degrees) => wanted.taper = *degrees,
+            Op::PathMode(mode) => wanted.path = *mode,
             Op::Cycle(cycle) => wanted.cycle = Some(**cycle),
             Op::CycleOff => wanted.cycle = None,
             Op::Tool(tool) => {
@@ -280,10 +284,9 @@ impl<'a> Cursor<'a> {
                 // How far the new frame is from the old is not known: the tool comes from above.
                 self.homed |= self.here.take().is_some();
             }
-            // Words for people, and what the control may do or leave. The surface is that of the trial. By how much a
-            // path may be left, the machine's file says; clamps follow the axes of this machine.
+            // Words for people, and what the control may do or leave. The surface is that of the trial; clamps follow the
+            // axes of this machine.
             Op::Preselect(_)
-            | Op::PathMode(_)
             | Op::Clamp(_)
             | Op::Surface(_)
             | Op::Operation(_)

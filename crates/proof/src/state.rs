@@ -235,18 +235,60 @@ pub(crate) fn wrong_spindle(wanted: Spindle, is: Spindle) -> Difference {
     (Rule::Spindle, format!("the spindle is {is}, but should be {should}"))
 }
 
-/// By how much the control may leave the path at corners of cuts.
-pub(crate) fn corners(machine: &Machine, running: &Running) -> Option<Difference> {
-    rounded(machine, running, machine.path_tolerance(), "`path_tolerance` in [options]")
+/// No source asks for less at corners, mm: most programs have no words for it.
+const CLOSEST: f64 = 0.001;
+
+/// By how much the control may leave the path at corners of cuts: as the source says, and no more than the machine's file.
+pub(crate) fn corners(
+    machine: &Machine,
+    wanted: &ExpectedState,
+    running: &Running,
+) -> Option<Difference> {
+    let (own, most) = (machine.path_tolerance(), most_at_corners(machine));
+    let asked = match wanted.path {
+        PathMode::AsSetUp => return rounded(machine, running, own, OWN),
+        PathMode::ExactStop | PathMode::ExactPath => 0.0,
+        PathMode::Blend(asked) => asked,
+    };
+    let asked = asked.max(CLOSEST);
+    match asked < most {
+        true => rounded(machine, running, asked, SOURCE),
+        false => rounded(machine, running, most, OWN),
+    }
 }
 
 /// The same at corners of rapids, which may be as far from their way as elsewhere.
 pub(crate) fn rapid_corners(machine: &Machine, running: &Running) -> Option<Difference> {
-    let allowed = machine.path_tolerance().max(machine.capabilities.rapid_corridor);
-    rounded(machine, running, allowed, "`rapid_corridor` in [capabilities], at rapids")
+    let (most, corridor) = (most_at_corners(machine), machine.capabilities.rapid_corridor);
+    match corridor > most {
+        true => rounded(machine, running, corridor, CORRIDOR),
+        false => rounded(machine, running, most, OWN),
+    }
 }
 
-fn rounded(machine: &Machine, running: &Running, allowed: f64, key: &str) -> Option<Difference> {
+/// By how much the control may leave the path at corners of a rapid that it goes by feed.
+pub(crate) fn fed_rapid_corners(machine: &Machine, running: &Running) -> Option<Difference> {
+    rounded(machine, running, most_at_corners(machine), OWN)
+}
+
+/// The most that a control may be let leave the path, mm.
+fn most_at_corners(machine: &Machine) -> f64 {
+    machine.path_tolerance().max(machine.roughing_tolerance())
+}
+
+/// Who says how far corners may be cut, and where.
+type Says = (&'static str, &'static str);
+
+const SOURCE: Says = ("the source", "for these cuts");
+const OWN: Says = ("the machine file", "`path_tolerance` in [options]");
+const CORRIDOR: Says = ("the machine file", "`rapid_corridor` in [capabilities], at rapids");
+
+fn rounded(
+    machine: &Machine,
+    running: &Running,
+    allowed: f64,
+    (who, place): Says,
+) -> Option<Difference> {
     let as_set_up = machine.path_tolerance();
     let most = match running.path {
         PathMode::ExactStop | PathMode::ExactPath => 0.0,
@@ -258,13 +300,13 @@ fn rounded(machine: &Machine, running: &Running, allowed: f64, key: &str) -> Opt
             Corners::AsSetUp | Corners::Unbounded => f64::INFINITY,
         },
     };
-    // Rounding of what the template writes.
-    if most <= allowed * (1.0 + 1e-9) {
+    // Programs write six decimals at the most.
+    if most <= allowed + 1e-6 {
         return None;
     }
     let by = if most.is_finite() { format!("{} mm", Number(most)) } else { "any amount".into() };
     let message = format!(
-        "the control may leave the path at corners by {by}, the machine file allows {} mm ({key})",
+        "the control may leave the path at corners by {by}, {who} allows {} mm ({place})",
         Number(allowed)
     );
     Some((Rule::PathTolerance, message))

@@ -19,6 +19,20 @@ C = { decimals = 3 }
 simultaneous = "tool-center-angles"
 "#;
 
+const MILL_AT_CORNERS: &str = r#"
+reader = "linuxcnc"
+[capabilities]
+length_offset = "tool-number"
+[settings]
+rapid_path = "linear"
+[words]
+X = { decimals = 3 }
+Y = { decimals = 3 }
+Z = { decimals = 3 }
+F = { decimals = 0 }
+[options]
+"#;
+
 fn cut() -> Vec<Op> {
     vec![
         Op::Rapid(at(0.0, 0.0, 5.0)),
@@ -183,6 +197,62 @@ fn a_wrong_offset_or_tool_is_refused() {
     start[1] = Action::Tool(tool(2));
     let nc = [start, cut_nc(), end()].concat();
     assert_eq!(rules(&run(&mill(), &source(cut()), nc)), ["tool"]);
+}
+
+/// The source says by how much the path of its cuts may be left, by operation; 0.02 mm are the most that this machine lets a control.
+#[test]
+fn corners_are_cut_no_further_than_the_source_says_for_the_operation() {
+    let machine = |options: &str| {
+        let text = format!("{MILL_AT_CORNERS}{options}");
+        machine::load_text("corners.toml", &text).unwrap()
+    };
+    let judged = |machine: &Machine, own: [PathMode; 2], nc: [PathMode; 2]| {
+        let operation = |x: f64| {
+            [Op::Rapid(at(x, 0.0, 5.0)), Op::Line(at(x, 0.0, -1.0)), Op::Rapid(at(x, 0.0, 5.0))]
+        };
+        let block_of = |x: f64| {
+            [
+                Action::Rapid(block(x, 0.0, 5.0)),
+                Action::Line(block(x, 0.0, -1.0)),
+                Action::Rapid(block(x, 0.0, 5.0)),
+            ]
+        };
+        let (mut ops, mut actions) = (Vec::new(), Vec::new());
+        for (i, x) in [0.0, 20.0].into_iter().enumerate() {
+            ops.push(Op::PathMode(own[i]));
+            ops.extend(operation(x));
+            actions.push(Action::PathMode(nc[i]));
+            actions.extend(block_of(x));
+        }
+        rules(&judge(machine, &source(ops), actions))
+    };
+    use PathMode::{AsSetUp, Blend, ExactPath, ExactStop};
+    let mill = machine("path_tolerance = 0.02\n");
+    let same = |mode| [mode; 2];
+    let refused = ["path-tolerance"];
+    // Finishing follows the path more closely, in the operation that asks for it alone.
+    let own = [Blend(0.02), Blend(0.005)];
+    assert!(judged(&mill, own, own).is_empty());
+    assert!(judged(&mill, own, same(Blend(0.005))).is_empty());
+    assert_eq!(judged(&mill, own, same(Blend(0.02))), refused);
+    assert_eq!(judged(&mill, own, [Blend(0.005), Blend(0.02)]), refused);
+    assert_eq!(judged(&mill, own, [Blend(0.02), Blend(0.0051)]), refused);
+    assert_eq!(judged(&mill, own, [Blend(0.02), AsSetUp]), refused);
+    assert!(judged(&mill, own, [Blend(0.02), ExactPath]).is_empty());
+    // What the source does not say, and what it says beyond the machine's figure, is the machine's.
+    assert!(judged(&mill, [Blend(0.005), AsSetUp], [Blend(0.005), Blend(0.02)]).is_empty());
+    assert!(judged(&mill, same(Blend(0.1)), same(Blend(0.02))).is_empty());
+    assert_eq!(judged(&mill, same(Blend(0.1)), same(Blend(0.03))), refused);
+    for exact in [ExactPath, ExactStop] {
+        assert!(judged(&mill, same(exact), same(Blend(0.001))).is_empty());
+        assert_eq!(judged(&mill, same(exact), same(Blend(0.002))), refused);
+    }
+    // Roughing may be further from the path, where the source says that it may.
+    let rough = machine("path_tolerance = 0.02\nroughing_tolerance = 0.05\n");
+    assert!(judged(&rough, [Blend(0.1), AsSetUp], [Blend(0.05), Blend(0.02)]).is_empty());
+    assert_eq!(judged(&rough, [Blend(0.1), AsSetUp], same(Blend(0.05))), refused);
+    assert_eq!(judged(&rough, [Blend(0.04), AsSetUp], [Blend(0.05), Blend(0.02)]), refused);
+    assert_eq!(judged(&rough, same(Blend(0.1)), same(Blend(0.06))), refused);
 }
 
 #[test]

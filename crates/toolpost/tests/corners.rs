@@ -166,6 +166,28 @@ fn a_tolerance_beyond_the_machines_file_is_refused_on_other_controls() {
         .map(|line| format!("{line}\n"))
         .collect();
     assert_eq!(proven(&heidenhain, &numbered(&without)), Err("path-tolerance"));
+    let sinumerik = load("generic-3axis-sinumerik").unwrap();
+    let text = posted(&sinumerik);
+    assert_eq!(proven(&sinumerik, &text), Ok(()));
+    let written = "CYCLE832(0.01,_FINISH,1)";
+    for (words, held) in [
+        ("CYCLE832(0.02,_FINISH,1)", false),
+        ("CYCLE832(0.01,_ROUGH,1)", true),
+        ("CTOL=0.02 G642", false),
+        ("CTOL=0.01 G642", true),
+        ("G641 ADIS=0.02", false),
+        ("G641 ADIS=0.01", true),
+        ("G641 ADISPOS=0.02", false),
+        // Without a word nobody says that the path is smoothed at all.
+        ("G64", true),
+        ("G642", false),
+    ] {
+        let damaged = text.replace(written, words);
+        assert_ne!(text, damaged);
+        let damaged = damaged.replace("CYCLE832(0,_OFF,1)", "G64 CTOL=-1 ADIS=0 ADISPOS=0");
+        let rule = proven(&sinumerik, &damaged).err();
+        assert_eq!(rule == Some("path-tolerance"), !held, "{words}: {rule:?}");
+    }
 }
 
 /// HEIDENHAIN numbers each block; a line that goes on has no number.
@@ -183,9 +205,103 @@ fn numbered(text: &str) -> String {
     text.lines().map(number).collect()
 }
 
+/// A slot for each of three tools: the source says 0.05 mm for roughing, 0.004 mm for finishing, and nothing at first.
+const BY_OPERATION: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,60\nCUTTER/10,0\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,20\n\
+    FEDRAT/300,MMPM\nGOTO/0,0,-1\nGOTO/20,0,-1\nRAPID\nGOTO/20,0,20\n\
+    LOADTL/2,LENGTH,60\nCUTTER/10,0\nINTOL/0.02\nOUTTOL/0.03\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,10,20\nFEDRAT/300,MMPM\n\
+    GOTO/0,10,-1\nGOTO/20,10,-1\nRAPID\nGOTO/20,10,20\n\
+    LOADTL/3,LENGTH,60\nCUTTER/10,0\nINTOL/0.001\nOUTTOL/0.003\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,20,20\nFEDRAT/300,MMPM\n\
+    GOTO/0,20,-1\nGOTO/20,20,-1\nRAPID\nGOTO/20,20,20\nFINI\n";
+
+/// Each control is given the tolerance of the operation before its first cut, and one that is looser there is refused.
+#[test]
+fn the_tolerance_of_each_operation_is_written_and_compared() {
+    let source = source::apt::read("job.cls", BY_OPERATION.as_bytes(), &Default::default());
+    let source = source.unwrap().program;
+    let rough = "roughing_tolerance = 0.04\n";
+    for (name, options, sign, expected) in [
+        // P is half of it: lines within P are made one besides.
+        ("linuxcnc-mill", "", "G64 ", &["P0.005 Q0.005", "P0.002"][..]),
+        ("linuxcnc-mill", rough, "G64 ", &["P0.005 Q0.005", "P0.02", "P0.002"]),
+        ("generic-3axis-haas", "", "G187 ", &["E0.01", "E0.004"]),
+        ("generic-3axis-haas", rough, "G187 ", &["E0.01", "P1 E0.04", "E0.004"]),
+        ("generic-3axis-heidenhain", "", "CYCL DEF 32.1 ", &["T0.01", "T0.004"]),
+        ("generic-3axis-heidenhain", rough, "CYCL DEF 32.1 ", &["T0.01", "T0.04", "T0.004"]),
+        (
+            "generic-3axis-heidenhain",
+            rough,
+            "CYCL DEF 32.2 ",
+            &["HSC-MODE:0 TA0", "HSC-MODE:1 TA0", "HSC-MODE:0 TA0"],
+        ),
+        // CYCLE832 ends before each tool.
+        (
+            "generic-3axis-sinumerik",
+            rough,
+            "CYCLE832(0.",
+            &["01,_FINISH,1)", "04,_ROUGH,1)", "004,_FINISH,1)"],
+        ),
+        ("mach3-mill", "path_tolerance = 0.02\n", "G6", &["4", "1"]),
+    ] {
+        let machine = format!("extends = \"{name}\"\n[options]\n{options}");
+        let machine = load_text("own.toml", &machine).unwrap();
+        let output = post::write(&source, &machine).unwrap_or_else(|found| panic!("{found:?}"));
+        assert!(!output.warnings.iter().any(|found| found.rule.name() == "path-mode"));
+        let text = String::from_utf8(output.text).unwrap();
+        let said: Vec<_> = text.lines().filter_map(|line| Some(line.split_once(sign)?.1)).collect();
+        assert_eq!(said, expected, "{name}\n{text}");
+        let first = |text: &str| {
+            let report = proof::prove(&source, &machine, "t", text.as_bytes(), &Default::default());
+            report.mismatches.first().map(|found| found.rule.name())
+        };
+        assert_eq!(first(&text), None, "{name}");
+        if sign.starts_with("CYCL DEF 32.2") {
+            continue;
+        }
+        // As loose as before, where the source asks for less.
+        let (before, last) = (&expected[expected.len() - 2], &expected[expected.len() - 1]);
+        let looser = text.replace(&format!("{sign}{last}"), &format!("{sign}{before}"));
+        assert_eq!(first(&looser), Some("path-tolerance"), "{name}\n{looser}");
+        if options == rough {
+            let [own, rough, ..] = expected else { unreachable!() };
+            let first_cuts = text.replacen(&format!("{sign}{own}"), &format!("{sign}{rough}"), 1);
+            assert_eq!(first(&first_cuts), Some("path-tolerance"), "{name}\n{first_cuts}");
+        }
+    }
+}
+
+/// `G61` of a source is `G61` where the control has it, else the least that its word says.
+#[test]
+fn a_source_that_keeps_to_the_path_is_followed() {
+    let linuxcnc = load("linuxcnc-mill").unwrap();
+    let text = "G21 G90 G17 G94 G54 G61\nT1 M6\nS1000 M3\nG43 H1\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX9\nG64 P0.1\nX18\nG0 Z50\nM30\n";
+    let source = nc::read(&linuxcnc, Default::default(), "s.ngc", text.as_bytes()).unwrap().program;
+    for (name, exact, loose) in [
+        ("linuxcnc-mill", "G61\n", "G64 P0.005\n"),
+        ("generic-3axis-haas", "G187 E0.001\n", "G187 E0.01\n"),
+        ("generic-3axis-heidenhain", "CYCL DEF 32.1 T0.001\n", "CYCL DEF 32.1 T0.01\n"),
+        ("generic-3axis-sinumerik", "CYCLE832(0,_OFF,1)\n", "CYCLE832(0.01,_FINISH,1)\n"),
+    ] {
+        let machine = load(name).unwrap();
+        let output = post::write(&source, &machine).unwrap_or_else(|found| panic!("{found:?}"));
+        assert!(!output.warnings.iter().any(|found| found.rule.name() == "path-mode"));
+        let text = String::from_utf8(output.text).unwrap();
+        let at = |what: &str| text.find(what).unwrap_or(usize::MAX);
+        let (exact_at, loose_at) = (at(exact), text.rfind(loose).unwrap_or(0));
+        let cut = at("X9").min(at("X+9"));
+        assert!(exact_at < cut && cut < loose_at && loose_at < text.len(), "{name}\n{text}");
+        let first = |text: &str| {
+            let report = proof::prove(&source, &machine, "t", text.as_bytes(), &Default::default());
+            report.mismatches.first().map(|found| found.rule.name())
+        };
+        assert_eq!(first(&text), None, "{name}\n{text}");
+        assert_eq!(first(&text.replacen(exact, loose, 1)), Some("path-tolerance"), "{name}");
+    }
+}
+
 #[test]
 fn what_a_source_asks_for_and_the_machine_does_not_give_is_told() {
-    let machine = load("linuxcnc-mill").unwrap();
+    let silent = "extends = \"linuxcnc-mill\"\n[blocks]\nlook_ahead_on = \"\"\n";
+    let machine = load_text("own.toml", silent).unwrap();
     let told = |mode: &str| {
         let text = format!(
             "G21 G90 G17 G94 G54 {mode}\nT1 M6\nS1000 M3\nG43 H1\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX9\nG0 Z50\nM30\n"

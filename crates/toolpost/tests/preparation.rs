@@ -179,8 +179,17 @@ fn the_tolerance_of_the_orientation_is_that_of_the_machine_file() {
     stands(&text, &["CYCLE832(0.01,_ORI_FINISH,0.05)"]);
     let wide = text.replace("_ORI_FINISH,0.05", "_ORI_FINISH,0.1");
     assert_eq!(found(&job, &sinumerik, &wide)[0].rule.name(), "orientation-tolerance");
-    let rough = "extends = \"sinumerik-840d-traori\"\n[options]\nmachining = \"ROUGH\"\norientation_tolerance = 0\n";
-    stands(&proven(&job, &machine(rough)), &["CYCLE832(0.01,_ROUGH,1)"]);
+    let rough = "extends = \"sinumerik-840d-traori\"\n[options]\nmachining = \"ROUGH\"\n";
+    stands(&proven(&job, &machine(rough)), &["CYCLE832(0.01,_ORI_ROUGH,0.05)"]);
+    // By how much the tool turns behind this, setting data say, which nobody knows.
+    let unsaid = text.replace("_ORI_FINISH,0.05", "_FINISH,1");
+    assert_eq!(found(&job, &sinumerik, &unsaid)[0].rule.name(), "orientation-tolerance");
+    let silent = "extends = \"sinumerik-840d-traori\"\n[options]\norientation_tolerance = 0\n";
+    let mut under_traori = false;
+    for block in blocks(&proven(&job, &machine(silent))) {
+        under_traori = (under_traori || block.starts_with("TRAORI")) && block != "TRAFOOF";
+        assert!(!(under_traori && block.starts_with("CYCLE832(0.")), "{block}");
+    }
 }
 
 /// TNC manuals, M140: back along the tool to the end of the travel; on a tilting table that is Z of the machine.
@@ -267,13 +276,22 @@ fn a_control_follows_the_path_as_closely_as_the_source_says() {
         haas.iter().filter(|block| block.starts_with("G187")).collect::<Vec<_>>(),
         ["G187 E0.01", "G187 E0.005"]
     );
-    // A control without a word for it says that it is not so close.
-    let linuxcnc = post::write(&finer, &load("generic-3axis-linuxcnc").unwrap()).unwrap();
-    assert!(
-        linuxcnc.warnings.iter().any(|found| found.rule.name() == "path-mode"),
-        "{:#?}",
-        linuxcnc.warnings
+    let linuxcnc = blocks(&proven(&finer, &load("generic-3axis-linuxcnc").unwrap()));
+    assert_eq!(
+        linuxcnc.iter().filter(|block| block.starts_with("G64")).collect::<Vec<_>>(),
+        ["G64 P0.005 Q0.005", "G64 P0.0025"]
     );
+    // A control without a word for it says that it is not so close, and its program is not that of the source.
+    let silent = "extends = \"generic-3axis-linuxcnc\"\n[blocks]\nlook_ahead_on = \"\"\n";
+    let silent = machine(silent);
+    let output = post::write(&finer, &silent).unwrap();
+    assert!(
+        output.warnings.iter().any(|found| found.rule.name() == "path-mode"),
+        "{:#?}",
+        output.warnings
+    );
+    let text = String::from_utf8(output.text).unwrap();
+    assert_eq!(found(&finer, &silent, &text)[0].rule.name(), "path-tolerance");
 }
 
 #[test]

@@ -159,8 +159,7 @@ fn the_table_of_records_is_that_of_the_documentation() {
 }
 
 /// What is compared with nothing changes neither where the tool goes nor what it does there: a cycle matters for its
-/// holes alone, a frame for the way in which poses are written, and every program has an end of its own. How far the
-/// path may be left the machine's file says, and every cut is held to that, whatever the source asks for. Clamps hold the axes
+/// holes alone, a frame for the way in which poses are written, and every program has an end of its own. Clamps hold the axes
 /// of the source's machine; those of this one are held to where its axes turn. Work offsets are the operator's, unless the
 /// machine's file declares that programs write them (`operator.rs`).
 #[test]
@@ -169,7 +168,6 @@ fn no_record_that_moves_or_switches_anything_is_proven_uncompared() {
         Kind::CycleOff,
         Kind::Preselect,
         Kind::Frame,
-        Kind::PathMode,
         Kind::Clamp,
         Kind::WorkOffsetData,
         Kind::Operation,

@@ -510,6 +510,7 @@ impl<'a> Walk<'a> {
                         self.sent.last_coolant() == Coolant::Through,
                     ),
                     place: self.place.value(self.sent.is_home()),
+                    cut: self.cut_value(),
                     ..self.scope.clone()
                 };
                 self.writer.block(&self.templates.render(name, scope)?)?;

@@ -2,10 +2,11 @@
 
 use super::{MOTION, Outcome, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
-use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, tool_value};
+use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, cut_value, tool_value};
 use crate::words::bit;
 use geom::Vec3;
 use machine::{LengthOffset, Machine, OptionValue};
+use minijinja::Value;
 use program::{Compensation, Coolant, Diagnostic, Feed, PathMode, Rule, Spindle, Tool, lowering};
 
 /// Entries of the code word `feed_mode`.
@@ -52,30 +53,50 @@ impl AxisPositions {
     }
 }
 
+/// No control is told to follow the path more closely than this, mm, but to keep to it.
+const CLOSEST: f64 = 0.001;
+
 /// A way of the tip below this, mm, is none: the tool turns about its tip, and F is the speed of its axes.
 const STANDS: f64 = 1e-6;
 
 impl Walk<'_> {
-    /// How the source wants corners to be taken. The machine's file says how far its control leaves them at the most; a control that
-    /// can be given less is given what the source asks for, and where it cannot, a warning says so.
+    /// How closely the source wants its path to be followed in the cuts to come. A control that can be given that is given it, and no
+    /// more than the machine's file allows; where it cannot, a warning says so.
     pub(crate) fn path_mode(&mut self, mode: PathMode) {
-        let most = self.machine.path_tolerance();
-        let asked = if let PathMode::Blend(asked) = mode { asked.min(most) } else { most };
-        let is_said = self.templates.places(BlockName::LookAheadOn, WordName::Tolerance)
-            && self.writer.rounded(WordName::Tolerance, asked) > 0.0;
-        let allowed = if is_said { asked } else { most };
+        let own = self.machine.path_tolerance();
+        let most = own.max(self.machine.roughing_tolerance());
+        let asked = match mode {
+            PathMode::AsSetUp => own,
+            PathMode::ExactStop | PathMode::ExactPath => 0.0,
+            PathMode::Blend(asked) => asked.min(most),
+        };
+        let says = self.templates.places(BlockName::LookAheadOn, WordName::Tolerance);
+        let says_exact = self.templates.says_exact(BlockName::LookAheadOn);
+        let allowed = match () {
+            () if says && asked >= CLOSEST => asked,
+            () if says_exact && asked < own => 0.0,
+            () if says => CLOSEST.min(own),
+            () => own,
+        };
         self.wanted.set_path_tolerance(allowed);
+        if allowed <= asked.max(CLOSEST) {
+            return;
+        }
         let less = match mode {
-            PathMode::AsSetUp => return,
             PathMode::ExactStop => "the source stops at each corner".to_owned(),
-            PathMode::ExactPath if allowed > 0.0 => "the source keeps to the path".to_owned(),
-            PathMode::Blend(most) if allowed > most => {
-                format!("the source leaves the path by {most} mm at corners")
+            PathMode::ExactPath => "the source keeps to the path".to_owned(),
+            PathMode::AsSetUp | PathMode::Blend(_) => {
+                format!("the source leaves the path by {asked} mm at corners")
             }
-            PathMode::ExactPath | PathMode::Blend(_) => return,
         };
         let message = format!("{less}: this control leaves it by {allowed} mm at the most there");
         self.findings.warn(Diagnostic::warning(Rule::PathMode, message).line(self.line));
+    }
+
+    /// The cuts to come, as templates see them.
+    pub(super) fn cut_value(&self) -> Value {
+        let tolerance = self.wanted.path_tolerance();
+        cut_value(tolerance == 0.0, tolerance > self.machine.path_tolerance())
     }
 
     pub(super) fn change_tool(&mut self, tool: &Tool) -> Outcome {
@@ -268,12 +289,15 @@ impl Walk<'_> {
         if !self.templates.has(BlockName::LookAheadOn) {
             return Ok(());
         }
-        if self.templates.places(BlockName::LookAheadOn, WordName::Tolerance) {
+        let places = self.templates.places(BlockName::LookAheadOn, WordName::Tolerance);
+        if places || self.templates.says_exact(BlockName::LookAheadOn) {
             // What `program_start` has said, or this block before, still holds where nothing takes it back.
             if !differs && !self.templates.has(BlockName::LookAheadOff) {
                 return Ok(());
             }
-            self.writer.set(WordName::Tolerance, tolerance);
+            if places {
+                self.writer.set(WordName::Tolerance, tolerance);
+            }
         }
         self.block(BlockName::LookAheadOn)
     }

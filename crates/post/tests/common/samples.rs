@@ -94,7 +94,7 @@ pub fn sample(kind: Kind) -> Sample {
         }
         Kind::Home => Sample { before: vec![up()], op: Op::Home, after: vec![up(), down()] },
         Kind::Feed => alone(Op::Feed(Feed::PerMinute(150.0))),
-        Kind::PathMode => alone(Op::PathMode(PathMode::Blend(0.1))),
+        Kind::PathMode => alone(Op::PathMode(PathMode::Blend(0.005))),
         Kind::Spindle => alone(Op::Spindle(Spindle::Clockwise(700.0))),
         Kind::SurfaceSpeed => alone(Op::SurfaceSpeed(Some(100.0))),
         Kind::Coolant => alone(Op::Coolant(Coolant::Flood)),

@@ -135,7 +135,7 @@ impl Prover<'_> {
             state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
             state::taper(allowed, wanted, running),
-            state::corners(machine, running),
+            state::corners(machine, wanted, running),
             feed,
         ];
         let in_plane = to.place.is_across(self.here.place.tip, rounding);

@@ -196,6 +196,8 @@ struct Reader {
     tolerances: [f64; 2],
     /// Whether the program says so already.
     says_tolerance: bool,
+    /// What it has said last, both together in mm; 0 for none.
+    said_tolerance: f64,
     feed: Option<Feed>,
     feed_unit: FeedUnit,
     spindle: Spindle,
@@ -267,6 +269,7 @@ impl Reader {
             circles: false,
             tolerances: [0.0; 2],
             says_tolerance: true,
+            said_tolerance: 0.0,
             feed: None,
             feed_unit: FeedUnit::PerMinute,
             spindle: Spindle::Off,

@@ -512,11 +512,15 @@ impl Reader {
         Ok(())
     }
 
-    /// Before the next motion: how far the path may be left. Nothing where both are 0: that is no tolerance to go by.
+    /// Before the next motion: how far the path may be left. Where both are 0 that is no tolerance to go by, and the machine's holds.
     pub(super) fn say_tolerance(&mut self, line: u32) {
+        if std::mem::replace(&mut self.says_tolerance, true) {
+            return;
+        }
         let tolerance = self.mm(self.tolerances.iter().sum());
-        if !std::mem::replace(&mut self.says_tolerance, true) && tolerance > 0.0 {
-            self.push(line, Op::PathMode(PathMode::Blend(tolerance)));
+        if std::mem::replace(&mut self.said_tolerance, tolerance) != tolerance {
+            let mode = if tolerance > 0.0 { PathMode::Blend(tolerance) } else { PathMode::AsSetUp };
+            self.push(line, Op::PathMode(mode));
         }
     }
 

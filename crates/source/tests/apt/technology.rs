@@ -324,3 +324,28 @@ fn a_function_of_the_builder_stays_where_it_stands() {
         assert_eq!(error(&format!("GOTO/0,0,5\n{wrong}")), "malformed", "{wrong}");
     }
 }
+
+/// ISO 4343, `INTOL`, `OUTTOL`, `TOLER`: modal. What is 0 is no tolerance, and ends the one before.
+#[test]
+fn a_tolerance_holds_until_another_one_or_none_is_said() {
+    use program::PathMode::{AsSetUp, Blend};
+    let modes = |text: &str| {
+        let modes = ops(text).into_iter().filter_map(|op| match op {
+            Op::PathMode(mode) => Some(mode),
+            _ => None,
+        });
+        modes.collect::<Vec<_>>()
+    };
+    let go = |x: u32| format!("\nGOTO/{x},0,0\n");
+    let after = |first: &str, then: &str| modes(&format!("{first}{}{then}{}", go(1), go(2)));
+    let tight = "INTOL/0.5\nOUTTOL/0.25";
+    assert_eq!(after(tight, "INTOL/0\nOUTTOL/0"), [Blend(0.75), AsSetUp]);
+    assert_eq!(after(tight, "TOLER/0"), [Blend(0.75), AsSetUp]);
+    assert_eq!(after(tight, "INTOL/0"), [Blend(0.75), Blend(0.25)]);
+    assert_eq!(after(tight, "OUTTOL/0.5"), [Blend(0.75), Blend(1.0)]);
+    // The same again is nothing new, and none before the first is none.
+    assert_eq!(after(tight, tight), [Blend(0.75)]);
+    assert_eq!(after("INTOL/0\nOUTTOL/0", tight), [Blend(0.75)]);
+    assert_eq!(after("TOLER/0", "TOLER/0"), [AsSetUp; 0]);
+    assert_eq!(after("TOLER/0.5,0.25", "TOLER/0.25"), [Blend(0.25)]);
+}

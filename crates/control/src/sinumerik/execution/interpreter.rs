@@ -219,6 +219,9 @@ impl<'a, 's> Interpreter<'a, 's> {
                 if self.state.smoothed.is_loose() {
                     self.hold_smoothing(source, block)?;
                 }
+                if self.state.smoothed.turns_unsaid() && self.state.tool_center {
+                    self.hold_unsaid_turn(source, block)?;
+                }
                 self.motion(source, block)?;
             }
         }
@@ -740,6 +743,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         };
         let tolerance = call.number(source, 0)?.unwrap_or(0.0);
         self.cycle_tolerance(source, call.name, tolerance * self.state.unit)?;
+        self.state.smoothed.turn_by_cycle(tolerance > 0.0, tolerates_orientation);
         if !tolerates_orientation {
             return Ok(());
         }
@@ -761,6 +765,17 @@ impl<'a, 's> Interpreter<'a, 's> {
         if !turns || degrees <= self.settings.orientation_tolerance {
             return Ok(());
         }
+        self.emit(source, Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))
+    }
+
+    /// Tells where the control keeps the tip, and setting data alone say by how much it may turn the tool: SD55441 to SD55443, ten
+    /// times the tolerance of the path as delivered (IM9, "CYCLE832", SINUMERIK ONE).
+    #[cold]
+    fn hold_unsaid_turn(&mut self, source: &Source, block: &Block) -> Outcome {
+        if !block.has_position() && !block.has_arc_word() {
+            return Ok(());
+        }
+        self.state.smoothed.note_unsaid_turn();
         self.emit(source, Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))
     }
 

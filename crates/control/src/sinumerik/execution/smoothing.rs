@@ -1,5 +1,5 @@
-//! By how much the control may leave the path: `CTOL=`, `ADIS=`, `ADISPOS=`, and the modes that smooth it (`G642` to `G645`,
-//! the compressors).
+//! By how much the control may leave the path: `CYCLE832`, `CTOL=`, `ADIS=`, `ADISPOS=`, and the modes that smooth it (`G642` to
+//! `G645`, the compressors).
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, Risk};
@@ -7,21 +7,23 @@ use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, TOLERANCES};
 use crate::sinumerik::language::commands::{Code, Smoothing};
-use program::Rule;
+use program::{PathMode, Rule};
 
 /// What a program has said of the smoothing of the path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Smoothed {
     /// G group 10: between blocks.
     rounding: Smoothing,
     /// G group 30: of the blocks themselves.
     compressor: Smoothing,
-    /// Whether the program says the tolerance (`CTOL`, `CYCLE832`).
-    is_bounded: bool,
-    /// Whether `ADIS` and `ADISPOS` are above 0.
-    is_rounded: [bool; 2],
+    /// The tolerance of the path, mm, where the program says it (`CTOL`, `CYCLE832`).
+    contour: Option<f64>,
+    /// `ADIS` and `ADISPOS`, mm.
+    distances: [f64; 2],
     /// Whether `OTOL` says by how much the control may turn the tool.
     is_turned: bool,
+    /// Whether `CYCLE832` has left that to setting data, which has not been reported.
+    turns_unsaid: bool,
     /// Whether it has been reported that the machine data say it.
     is_reported: bool,
 }
@@ -31,7 +33,7 @@ impl Smoothed {
     pub fn is_loose(&self) -> bool {
         let loose = |mode| match mode {
             Smoothing::Off => false,
-            Smoothing::Programmed => !self.is_bounded,
+            Smoothing::Programmed => self.contour.is_none(),
             Smoothing::MachineData => true,
         };
         !self.is_reported && (loose(self.rounding) || loose(self.compressor))
@@ -39,17 +41,43 @@ impl Smoothed {
 
     /// Whether a tolerance of the program holds (`CYCLE832`, `CTOL`, `OTOL`), or a distance (`ADIS`, `ADISPOS`).
     pub fn is_programmed(&self) -> bool {
-        self.is_bounded || self.is_turned || self.is_rounded.contains(&true)
+        self.contour.is_some() || self.is_turned || self.distances.iter().any(|mm| *mm > 0.0)
     }
 
     /// `OTOL=`, degrees; below 0 it takes back what was programmed.
     pub fn turn(&mut self, degrees: f64) {
         self.is_turned = degrees >= 0.0;
+        self.turns_unsaid &= !self.is_turned;
     }
 
-    /// The program says a tolerance, or takes it back.
-    fn bound(&mut self, is_bounded: bool) {
-        *self = Smoothed { is_bounded, is_reported: false, ..*self };
+    /// `CYCLE832` that smooths the path, or not, and says the tolerance of the orientation, or not.
+    pub fn turn_by_cycle(&mut self, smooths: bool, says: bool) {
+        self.turns_unsaid = smooths && !says;
+    }
+
+    /// Whether setting data say by how much the control may turn the tool, which has not been reported.
+    pub fn turns_unsaid(&self) -> bool {
+        self.turns_unsaid
+    }
+
+    /// That has been reported.
+    pub fn note_unsaid_turn(&mut self) {
+        self.turns_unsaid = false;
+    }
+
+    /// The program says a tolerance, mm, or takes it back.
+    fn bound(&mut self, contour: Option<f64>) {
+        *self = Smoothed { contour, is_reported: false, ..*self };
+    }
+
+    /// By how much the control may leave the path in cuts, where the program says it.
+    fn path(&self) -> PathMode {
+        let [distance, _] = self.distances;
+        match self.contour {
+            Some(tolerance) => PathMode::Blend(tolerance.max(distance)),
+            None if distance > 0.0 => PathMode::Blend(distance),
+            None => PathMode::AsSetUp,
+        }
     }
 
     /// The modes of a block.
@@ -90,21 +118,24 @@ impl Interpreter<'_, '_> {
     /// `CTOL=`, `ADIS=`, `ADISPOS=`: the tolerances of a block, mm. `CTOL` below 0 takes back what was programmed (B1,
     /// "Contour/Orientation tolerance").
     pub fn tolerances(&mut self, source: &Source, named: [Option<f64>; 3]) -> Outcome {
-        for (name, value) in TOLERANCES.into_iter().zip(named) {
+        let before = self.state.smoothed.path();
+        for (place, value) in named.into_iter().enumerate() {
             let Some(value) = value.map(|value| value * self.state.unit) else { continue };
-            let takes_back = value < 0.0 && name == TOLERANCES[CONTOUR];
+            let name = TOLERANCES[place];
+            let takes_back = value < 0.0 && place == CONTOUR;
             if value < 0.0 && !takes_back {
                 return Err(source.block_error(Rule::Number, format!("{name}= has no sign")));
             }
             let smoothed = &mut self.state.smoothed;
-            match name {
-                _ if name == TOLERANCES[CONTOUR] => smoothed.bound(!takes_back),
-                _ if name == TOLERANCES[CONTOUR + 1] => smoothed.is_rounded[0] = value > 0.0,
-                _ => smoothed.is_rounded[1] = value > 0.0,
+            match place {
+                CONTOUR => smoothed.bound((!takes_back).then_some(value)),
+                _ => smoothed.distances[place - 1] = value,
             }
-            self.path_tolerance(source, name, value)?;
+            if place == RAPIDS {
+                self.rapid_distance(source, name, value)?;
+            }
         }
-        Ok(())
+        self.report_path(source, before)
     }
 
     /// `CYCLE832` with that tolerance, mm: it switches the smoothing on and says by how much, or, with 0, off.
@@ -114,20 +145,27 @@ impl Interpreter<'_, '_> {
             let error = source.block_error(Rule::CycleParameter, message);
             return Err(error.help("write a tolerance above 0, or CYCLE832(0,_OFF,1)").into());
         }
-        self.path_tolerance(source, name, mm)?;
-        self.state.smoothed.bound(mm > 0.0);
-        Ok(())
+        let before = self.state.smoothed.path();
+        self.state.smoothed.bound((mm > 0.0).then_some(mm));
+        self.report_path(source, before)
     }
 
-    /// How far the control may leave the path, mm: what it then does is not seen here.
-    fn path_tolerance(&self, source: &Source, name: &str, tolerance: f64) -> Outcome {
+    fn report_path(&mut self, source: &Source, before: PathMode) -> Outcome {
+        match self.state.smoothed.path() {
+            path if path == before => Ok(()),
+            path => self.emit(source, Action::PathMode(path)),
+        }
+    }
+
+    /// How far from its ends the control may leave a rapid, mm.
+    fn rapid_distance(&self, source: &Source, name: &str, distance: f64) -> Outcome {
         let most = self.settings.path_tolerance;
-        if tolerance <= most {
+        if distance <= most {
             return Ok(());
         }
         let message = format!(
-            "{name} lets the control leave the path by {tolerance} mm, the machine file allows {most} \
-             mm"
+            "{name} lets the control leave the path of rapids by {distance} mm, the machine file allows \
+             {most} mm"
         );
         let mut error = source.block_error(Rule::PathTolerance, message);
         error.help = "path_tolerance in [options] of the machine file says how far".into();
@@ -137,3 +175,6 @@ impl Interpreter<'_, '_> {
 
 /// Index of `CTOL` among [`TOLERANCES`].
 const CONTOUR: usize = 0;
+
+/// Index of `ADISPOS` among [`TOLERANCES`].
+const RAPIDS: usize = 2;
