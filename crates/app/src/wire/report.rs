@@ -141,8 +141,8 @@ impl Cut {
         };
         let left_out = self.segments.len().saturating_sub(most);
         Summary {
-            ways: Ways { cut: self, most },
-            ways_left_out: (left_out > 0).then_some(left_out),
+            segments: Listed { cut: self, most },
+            segments_left_out: (left_out > 0).then_some(left_out),
             height_mm: self.height,
             memory: self.memory,
             points: self.points(),
@@ -254,9 +254,9 @@ impl Report<'_> {
 /// The numbers of a cut.
 #[derive(Serialize)]
 pub struct Summary<'a> {
-    ways: Ways<'a>,
+    segments: Listed<'a>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    ways_left_out: Option<usize>,
+    segments_left_out: Option<usize>,
     height_mm: Option<f64>,
     memory: Option<usize>,
     points: Option<usize>,
@@ -269,12 +269,12 @@ pub struct Summary<'a> {
 }
 
 /// The first segments of a cut.
-struct Ways<'a> {
+struct Listed<'a> {
     cut: &'a Cut,
     most: usize,
 }
 
-impl Serialize for Ways<'_> {
+impl Serialize for Listed<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let segments = self.cut.segments.iter().zip(&self.cut.accuracy).take(self.most);
         serializer.collect_seq(segments.map(|(segment, accuracy)| data(segment, accuracy)))

@@ -51,7 +51,7 @@ fn the_sector_has_the_points_errors_and_time_of_the_specification() {
         assert_eq!(folder.read("part.pts").lines().count(), points + 3);
         let report = report(&folder);
         let wire = &report["wire"];
-        let arc = &wire["ways"][0]["arcs"][0];
+        let arc = &wire["segments"][0]["arcs"][0];
         assert_eq!((&arc["line"], &arc["chord_error"]["points"]), (&7.into(), &points.into()));
         let largest = arc["chord_error"]["largest_mm"].as_f64().unwrap();
         assert!((largest / error - 1.0).abs() < 2e-4, "{largest}");
@@ -95,12 +95,12 @@ fn of_very_many_openings_the_answer_lists_the_first_thousand_and_the_report_all(
     let said = folder.run(&["wire", "comb.dxf", "-m", "fanuc-wire", "-o", "comb.nc", "--json"]);
     assert_eq!(said.code, 0, "{}", said.err);
     let answer: serde_json::Value = serde_json::from_str(&said.out).unwrap();
-    let listed = answer["wire"]["ways"].as_array().unwrap();
-    assert_eq!((listed.len(), &answer["wire"]["ways_left_out"]), (1000, &3.into()));
+    let listed = answer["wire"]["segments"].as_array().unwrap();
+    assert_eq!((listed.len(), &answer["wire"]["segments_left_out"]), (1000, &3.into()));
     let report: serde_json::Value =
         serde_json::from_str(&folder.read("comb.nc.report.json")).unwrap();
-    let all = report["wire"]["ways"].as_array().unwrap();
-    assert_eq!((all.len(), &report["wire"]["ways_left_out"]), (1003, &serde_json::Value::Null));
+    let all = report["wire"]["segments"].as_array().unwrap();
+    assert_eq!((all.len(), &report["wire"]["segments_left_out"]), (1003, &serde_json::Value::Null));
     assert_eq!((&all[..1000], &report["proof"]), (&listed[..], &answer["proof"]));
 }
 
