@@ -4,7 +4,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// A cut that every machine of the library can make.
@@ -96,6 +97,32 @@ impl Folder {
             code: output.status.code().expect("it ends by itself"),
             out: text(output.stdout),
             err: text(output.stderr),
+        }
+    }
+
+    /// Runs the program here, and answers its exit code and the most memory that it has held, MB.
+    #[cfg(target_os = "linux")]
+    pub fn most_memory(&self, arguments: &[&str]) -> (i32, f64) {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_toolpost"))
+            .args(arguments)
+            .current_dir(self.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let status = format!("/proc/{}/status", child.id());
+        let mut most = 0.0_f64;
+        loop {
+            // The system keeps the most itself, up to the end of the process.
+            let held = fs::read_to_string(&status).ok().and_then(|text| {
+                let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+                line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()
+            });
+            most = most.max(held.unwrap_or(0.0) / 1000.0);
+            if let Some(status) = child.try_wait().unwrap() {
+                return (status.code().expect("it ends by itself"), most);
+            }
+            std::thread::sleep(Duration::from_millis(1));
         }
     }
 
