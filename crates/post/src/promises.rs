@@ -32,7 +32,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         };
         let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
         let message = format!("no word is called `{name}`");
-        errors.push(at(Diagnostic::error(Rule::Word, message).help(help), &word.place));
+        errors.push(at(Diagnostic::error(Rule::MachineWord, message).help(help), &word.place));
     }
     for (word, block) in templates.words() {
         let name = word.name();
@@ -53,18 +53,18 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         }
         let Some(known) = machine.words.get(name) else {
             let message = format!("the block places `{name}`, and [words.{name}] is missing");
-            let error = Diagnostic::error(Rule::Word, message);
+            let error = Diagnostic::error(Rule::MachineWord, message);
             errors.push(error.file(block.file.clone()).line(block.line));
             continue;
         };
         let lacks = |code: &&str| !known.codes.contains_key(*code) && needs(machine, word, code);
         for code in word.codes().filter(lacks) {
             let message = format!("[words.{name}] has no text for `{code}` in its `codes`");
-            errors.push(at(Diagnostic::error(Rule::Word, message), &known.place));
+            errors.push(at(Diagnostic::error(Rule::MachineWord, message), &known.place));
         }
         for code in known.codes.keys().filter(|code| word.codes().all(|known| known != **code)) {
             let message = format!("[words.{name}] has no code called `{code}`");
-            errors.push(at(Diagnostic::error(Rule::Word, message), &known.place));
+            errors.push(at(Diagnostic::error(Rule::MachineWord, message), &known.place));
         }
     }
     let axes = [WordName::X, WordName::Y, WordName::Z];
@@ -73,7 +73,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
     for word in axes {
         if !machine.words.contains_key(word.name()) {
             let message = format!("[words.{}] is missing", word.name());
-            errors.push(file(Diagnostic::error(Rule::Word, message)));
+            errors.push(file(Diagnostic::error(Rule::MachineWord, message)));
         }
     }
     if let Some(word) = machine.words.get(WordName::Height.name()) {
@@ -87,7 +87,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
                 "`decimals = 0`, no `scale`, `first` from {FIRST_KEPT} to `max`: subroutines keep what they \
                  are called with below"
             );
-            errors.push(at(Diagnostic::error(Rule::Word, message).help(help), &word.place));
+            errors.push(at(Diagnostic::error(Rule::MachineWord, message).help(help), &word.place));
         }
     }
     if let Some(sign) =
@@ -146,7 +146,8 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
     for (name, word) in machine.words.iter().filter(|(name, _)| WordName::named(name).is_none()) {
         let near = nearest(name, WordName::TABLE.iter().map(|row| row.name));
         let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
-        let found = Diagnostic::error(Rule::Word, format!("no word is called `{name}`")).help(help);
+        let found =
+            Diagnostic::error(Rule::MachineWord, format!("no word is called `{name}`")).help(help);
         errors.push(found.file(word.place.file.clone()).line(word.place.line));
     }
     for (word, block) in templates.words() {
@@ -160,7 +161,9 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
                 "the block places `{name}`, and [words.{name}] is missing, or lacks a code"
             );
             errors.push(
-                Diagnostic::error(Rule::Word, message).file(block.file.clone()).line(block.line),
+                Diagnostic::error(Rule::MachineWord, message)
+                    .file(block.file.clone())
+                    .line(block.line),
             );
         }
     }

@@ -27,7 +27,7 @@ fn heights_are_kept_in_whole_parameters_of_the_program() {
     }
     for wrong in ["first = 30", "first = 5001", "max = 1000", "decimals = 1", "scale = 2"] {
         let said = kept(wrong).expect_err(wrong);
-        assert!(said.contains("error[word]") && said.starts_with("mine.toml:3:"), "{said}");
+        assert!(said.contains("error[machine-word]") && said.starts_with("mine.toml:3:"), "{said}");
     }
 }
 
@@ -222,10 +222,10 @@ fn a_promise_that_a_file_does_not_keep_is_told_where_the_file_makes_it() {
     );
     assert!(said.contains("lacks `F`"), "{said}");
     let said = found("[words]\nQQ = { decimals = 3 }\n");
-    assert!(said.contains("mine.toml:3: error[word]: no word is called `QQ`"), "{said}");
+    assert!(said.contains("mine.toml:3: error[machine-word]: no word is called `QQ`"), "{said}");
     let said = found("[words.motion]\ncodes = { rapid = \"G0\" }\n");
     assert!(
-        said.contains("mine.toml:2: error[word]: [words.motion] has no text for `linear`"),
+        said.contains("mine.toml:2: error[machine-word]: [words.motion] has no text for `linear`"),
         "{said}"
     );
 }

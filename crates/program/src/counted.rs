@@ -115,12 +115,13 @@ mod tests {
 
     #[test]
     fn of_many_like_findings_the_third_counts_the_others() {
-        let many = (1..=150_000).map(|i| found(Rule::Word, format!("no word is called `W{i}`"), i));
+        let many =
+            (1..=150_000).map(|i| found(Rule::MachineWord, format!("no word is called `W{i}`"), i));
         let kept = many.collect::<Findings>().finish();
         assert_eq!(counts(&kept), [(1, 1), (2, 1), (3, 149_998)]);
         assert_eq!(
             kept[2].to_string(),
-            "3: error[word]: no word is called `W3`\n    \
+            "3: error[machine-word]: no word is called `W3`\n    \
              … and 149,997 more like this, at lines 4, 5, 6, 7, 8 and on\n    = correct it"
         );
         // Once more it is the same.

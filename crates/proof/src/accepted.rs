@@ -46,7 +46,7 @@ impl Accepted {
     /// # Errors
     /// No rule of this name may be accepted.
     pub fn and(self, rule: &str) -> Result<Accepted, String> {
-        match ACCEPTABLE.iter().position(|(known, _)| Rule::named(rule) == Some(*known)) {
+        match ACCEPTABLE.iter().position(|(known, _)| Rule::named(rule).contains(known)) {
             Some(index) => Ok(Accepted(self.0 | 1 << index)),
             None => {
                 let all: Vec<&str> = ACCEPTABLE.iter().map(|(rule, _)| rule.name()).collect();

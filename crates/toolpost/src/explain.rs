@@ -43,7 +43,7 @@ impl Row {
 }
 
 /// Explains one name, or all of them. The last part of a key is enough: `min` is that of every table. A table is
-/// explained with its keys. A rule is also found by a former name.
+/// explained with its keys. Rules are also found by a former name.
 pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     let names = post::catalogue().iter();
     let names = names.map(|p| Row::new(p.name.to_owned(), p.unit, p.help, json!(p)));
@@ -54,9 +54,8 @@ pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
         [row] => written(&row.name)?,
         _ => Vec::new(),
     };
-    let rule = topic.and_then(Rule::named);
-    let rules = topic.map_or(Rule::ALL, |_| rule.as_slice());
-    found.extend(rules.iter().map(|rule| Row::rule(*rule)));
+    let named = topic.map(Rule::named);
+    found.extend(named.as_deref().unwrap_or(Rule::ALL).iter().map(|rule| Row::rule(*rule)));
     if let (true, Some(topic)) = (found.is_empty(), topic) {
         let message = format!("`{topic}` is no name of machine and control files, and no rule");
         return Err(Diagnostic::error(Rule::Topic, message)
@@ -66,7 +65,8 @@ pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     let lines: Vec<_> = found.iter().map(|row| (row.name.as_str(), row.text.clone())).collect();
     let data: Vec<_> = found.iter().map(|row| &row.data).collect();
     let mut text = summary::rows(&lines);
-    text.extend(rule.iter().map(about));
+    let split = named.as_ref().is_some_and(|rules| rules.len() > 1);
+    text.extend(named.iter().flatten().map(|rule| about(rule, split)));
     for (control, block) in &written {
         text.push_str(&format!("\n{control}\n"));
         text.extend(block.trim().lines().map(|line| format!("    {line}\n")));
@@ -76,10 +76,13 @@ pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     Ok(Answer::product(text, json!({ "names": data, "written": written })))
 }
 
-/// What is said of a rule below its meaning.
-fn about(rule: &Rule) -> String {
+/// What is said of a rule below its meaning; with its name where it is one of those that a rule was split into.
+fn about(rule: &Rule, split: bool) -> String {
     let (way_out, example) = (rule.way_out().to_owned(), rule.example().to_owned());
     let mut lines = vec![("way out", way_out), ("example", example)];
+    if split {
+        lines.insert(0, ("rule", rule.name().to_owned()));
+    }
     if !rule.former_names().is_empty() {
         lines.push(("former names", rule.former_names().join(", ")));
     }

@@ -175,7 +175,7 @@ fn ways_out_name_the_option_that_helps() {
         ("no-tool", "--vee"),
         ("narrow-gap", "--narrow"),
     ] {
-        let rule = Rule::named(rule).unwrap();
+        let [rule] = Rule::named(rule)[..] else { panic!("{rule}") };
         assert!(named_options(rule.way_out()).any(|named| named == option), "{rule}: {option}");
     }
 }

@@ -101,9 +101,11 @@ fn text(bytes: &[u8]) -> Result<Mesh, Fault> {
             Some("solid" | "facet" | "outer" | "endloop") | None => {}
             Some(word) => {
                 let word: String = word.chars().take(40).collect();
-                return Err(
-                    Fault::new(Rule::Word, format!("`{word}` is no word of an STL file")).line(at)
-                );
+                return Err(Fault::new(
+                    Rule::DataWord,
+                    format!("`{word}` is no word of an STL file"),
+                )
+                .line(at));
             }
         }
     }

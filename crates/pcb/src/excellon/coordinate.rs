@@ -114,7 +114,7 @@ impl Notation {
 #[cold]
 fn malformed(text: &[u8]) -> crate::report::Fault {
     let shown = String::from_utf8_lossy(&text[..text.len().min(30)]).into_owned();
-    fault(Rule::Word, format!("{shown:?} is no number"), "correct it")
+    fault(Rule::DataWord, format!("{shown:?} is no number"), "correct it")
 }
 
 #[cfg(test)]
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(rule(Notation::default(), b"1.5"), "no-unit");
         assert_eq!(rule(metric, b"1234"), "no-zeros");
         assert_eq!(rule(metric, b"1234567"), "format");
-        assert_eq!(rule(metric, b"1.2.3"), "word");
+        assert_eq!(rule(metric, b"1.2.3"), "data-word");
         assert_eq!(rule(metric, b"9999999.0"), "not-a-place");
         // All six digits are there, whichever zeros would have been left out.
         assert_eq!(metric.coordinate(b"123456").unwrap(), 123.456);

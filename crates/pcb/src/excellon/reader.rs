@@ -202,7 +202,7 @@ impl Reader<'_> {
                 letter => {
                     let message = format!("there is no word {}", char::from(letter));
                     return Err(fault(
-                        Rule::Word,
+                        Rule::DataWord,
                         message,
                         "see docs/sources/excellon.md for what is read",
                     ));
@@ -229,7 +229,7 @@ impl Reader<'_> {
     fn tool(&mut self, number: &[u8], parameters: &[Word]) -> Outcome {
         let number = whole(number).ok_or_else(|| {
             fault(
-                Rule::Word,
+                Rule::DataWord,
                 "no number of a tool",
                 "a tool is such as T1, or T1C0.5 in the header",
             )

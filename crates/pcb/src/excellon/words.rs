@@ -26,7 +26,7 @@ pub(super) fn words(line: &[u8]) -> Outcome<Vec<Word<'_>>> {
         if !letter.is_ascii_alphabetic() {
             let message = format!("{} is no word", char::from(*letter).escape_default());
             return Err(fault(
-                Rule::Word,
+                Rule::DataWord,
                 message,
                 "see docs/sources/excellon.md for what is read",
             ));
@@ -62,6 +62,6 @@ mod tests {
             .map(|w| format!("{}{}", char::from(w.letter), String::from_utf8_lossy(w.number)))
             .collect();
         assert_eq!(shown, ["X-0010", "Y.5", "G85", "X+1.", "M47"]);
-        assert_eq!(words(b"X1#").unwrap_err().rule, "word");
+        assert_eq!(words(b"X1#").unwrap_err().rule, "data-word");
     }
 }

@@ -66,7 +66,7 @@ impl Reader<'_> {
                 letter => {
                     let message = format!("there is no word {}", char::from(letter));
                     return Err(fault(
-                        Rule::Word,
+                        Rule::DataWord,
                         message,
                         "see chapter 4 of the Gerber specification",
                     ));
@@ -98,7 +98,11 @@ impl Reader<'_> {
     fn select(&mut self, number: i64) -> Outcome {
         let number = u32::try_from(number).ok().filter(|number| *number >= 10);
         let number = number.ok_or_else(|| {
-            fault(Rule::Word, "D codes are D01, D02, D03, and apertures from D10 on", "correct it")
+            fault(
+                Rule::DataWord,
+                "D codes are D01, D02, D03, and apertures from D10 on",
+                "correct it",
+            )
         })?;
         if !self.entries.contains_key(&number) {
             self.current = None;
@@ -154,7 +158,7 @@ impl Reader<'_> {
             }
             code => {
                 let help = "see chapters 4 and 8 of the Gerber specification";
-                return Err(fault(Rule::Word, format!("there is no G{code:02}"), help));
+                return Err(fault(Rule::DataWord, format!("there is no G{code:02}"), help));
             }
         }
         Ok(())
@@ -170,7 +174,7 @@ impl Reader<'_> {
             2 => {}
             code => {
                 let message = format!("there is no M{code:02}");
-                return Err(fault(Rule::Word, message, "the end of a file is M02"));
+                return Err(fault(Rule::DataWord, message, "the end of a file is M02"));
             }
         }
         self.ended = true;

@@ -75,7 +75,7 @@ impl<'a> Words<'a> {
 fn odd(letter: u8, what: &str) -> crate::report::Fault {
     let letter = char::from(letter).escape_default();
     fault(
-        Rule::Word,
+        Rule::DataWord,
         format!("{letter} {what}"),
         "coordinates are whole numbers in the format of %FS",
     )

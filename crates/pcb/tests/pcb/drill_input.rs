@@ -19,9 +19,9 @@ fn each_fault_has_its_rule_and_its_line() {
         ("T0\nX1.0Y1.0", "no-tool", 7),
         ("X1.0Y1.0\nT3C-1.0", "diameter", 7),
         ("T1C2.0", "diameter", 6),
-        ("X1.0Y1.0Q5", "word", 6),
-        ("X1.0.0Y1.0", "word", 6),
-        ("X#", "word", 6),
+        ("X1.0Y1.0Q5", "data-word", 6),
+        ("X1.0.0Y1.0", "data-word", 6),
+        ("X#", "data-word", 6),
         ("X1234567Y1.0", "format", 6),
         ("X1234Y1.0", "no-zeros", 6),
         ("X9999999.0Y1.0", "not-a-place", 6),
@@ -56,7 +56,7 @@ fn what_a_file_has_to_say_first() {
     assert_eq!(first("M48\nMETRIC,QZ\n%\nM30"), "unit");
     assert_eq!(first("M48\nMETRIC\nVER,5\n%\nM30"), "axes");
     assert_eq!(first("M48\nMETRIC\nT1C1.0\n%\nT1\nX1.0Y1.0\n"), "no-end");
-    assert_eq!(first("G04 a Gerber file*\n%FSLAX36Y36*%\n"), "word");
+    assert_eq!(first("G04 a Gerber file*\n%FSLAX36Y36*%\n"), "data-word");
 }
 
 #[test]

@@ -415,6 +415,10 @@ rules! {
         "Data of the control are written in a form that is not read."
         "write offsets and tool data by the forms that docs/controls names, or set them at the control"
         "fanuc: `G10 L99 P1 X0`";
+    DataWord "data-word" ["word"]
+        "A word of a Gerber, drill or STL file is not known, or its number is malformed."
+        "write the file again, or correct the word; docs/sources lists what is read"
+        "`X1#` in a drill file";
     DecimalPoint "decimal-point" ["nc-decimal-point"]
         "A number has no decimal point, and how the control counts it is not known."
         "write the decimal point, or say what numbers without it count: `--whole-numbers units` or `--whole-numbers increments`"
@@ -963,6 +967,10 @@ rules! {
         "A machine file cannot be read."
         "check the name of the file and the right to read it"
         "`--machine missing.toml`";
+    MachineWord "machine-word" ["word"]
+        "A word of a machine file is not known, or lacks its table or a code."
+        "add the word or its code below [words] of the control's file; `toolpost explain` lists them"
+        "A block that places `{{DEPTH}}`, and no `DEPTH` below [words]";
     Macro "macro" ["nc-macro"]
         "A macro is not written as the control takes it."
         "correct the macro: each DO has its END, and each GOTO its block"
@@ -2063,10 +2071,6 @@ rules! {
         "Two positions of the wire cross each other."
         "lean less, or synchronise the contours by points (`--pair`)"
         "A short upper contour over a long lower one with 20°";
-    Word "word" []
-        "A word is wrong, or not in the control's file."
-        "add the word or its code below [words] of the control's file; `toolpost explain` lists them"
-        "`X1#` in a drill file";
     WorkOffset "work-offset" ["nc-work-offset"]
         "The work offset is not one of the control, or not that of the source."
         "use the work offset of the toolpath, one that the control has"

@@ -72,11 +72,15 @@ impl Rule {
         self.entry().example
     }
 
-    /// The rule of that name, or of that former name where no rule has it today.
-    pub fn named(name: &str) -> Option<Rule> {
-        let today = Rule::ALL.binary_search_by_key(&name, |rule| rule.name());
-        let formerly = || Rule::ALL.iter().find(|rule| rule.former_names().contains(&name));
-        today.ok().map(|index| &Rule::ALL[index]).or_else(formerly).copied()
+    /// The rule of that name; where no rule has it today, those that had it: more than one where a rule was split.
+    pub fn named(name: &str) -> Vec<Rule> {
+        match Rule::ALL.binary_search_by_key(&name, |rule| rule.name()) {
+            Ok(index) => vec![Rule::ALL[index]],
+            Err(_) => {
+                let formerly = |rule: &&Rule| rule.former_names().contains(&name);
+                Rule::ALL.iter().filter(formerly).copied().collect()
+            }
+        }
     }
 
     /// Writes `rule`, and `former_rules` where it has had other names, as fields of a finding.
@@ -145,14 +149,21 @@ mod tests {
     }
 
     #[test]
-    fn a_former_name_leads_to_one_rule() {
+    fn a_former_name_leads_to_one_rule_or_to_those_that_it_was_split_into() {
         let former: Vec<&str> =
             Rule::ALL.iter().flat_map(|rule| rule.former_names()).copied().collect();
+        let split = [("word", [Rule::DataWord, Rule::MachineWord])];
         for name in &former {
-            assert_eq!(former.iter().filter(|other| *other == name).count(), 1, "{name}");
+            match split.iter().find(|(was, _)| was == name) {
+                Some((_, rules)) => assert_eq!(Rule::named(name), rules, "{name}"),
+                None => {
+                    let count = former.iter().filter(|other| *other == name).count();
+                    assert_eq!(count, 1, "{name}");
+                }
+            }
         }
-        assert_eq!(Rule::named("nc-arc"), Some(Rule::Arc));
-        assert_eq!(Rule::named("output"), Some(Rule::Output), "the name of today goes first");
-        assert_eq!(Rule::named("no-such-rule"), None);
+        assert_eq!(Rule::named("nc-arc"), [Rule::Arc]);
+        assert_eq!(Rule::named("output"), [Rule::Output], "the name of today goes first");
+        assert_eq!(Rule::named("no-such-rule"), []);
     }
 }
