@@ -1,7 +1,7 @@
 //! What the source says before and behind the record at hand. Records come in their order, and each answer is kept for as long as it
 //! holds: however often somebody asks, each record is looked at a few times altogether.
 
-use program::{Op, Pose, Record, Spindle};
+use program::{Op, Pose, Record, Spindle, Tool};
 
 /// What is known of the records around the one at hand, whose index never becomes less.
 #[derive(Debug, Default)]
@@ -18,8 +18,8 @@ pub(crate) struct Around {
     next: Option<usize>,
     /// The next record that cuts or starts the spindle; how many there are where none does.
     start: Option<usize>,
-    /// A tool, the record up to which the answer holds, and the other tool that is called behind it.
-    other: Option<(u32, usize, Option<u32>)>,
+    /// A tool, the record up to which the answer holds, and the record that calls the other tool.
+    other: Option<(u32, usize, Option<usize>)>,
 }
 
 impl Around {
@@ -93,24 +93,28 @@ impl Around {
     }
 
     /// The tool that is called next and is not `number`; behind the last one the first.
-    pub(crate) fn other_tool(
+    pub(crate) fn other_tool<'r>(
         &mut self,
-        records: &[Record],
+        records: &'r [Record],
         index: usize,
         number: u32,
-    ) -> Option<u32> {
-        if let Some((asked, until, answer)) = self.other
-            && asked == number
-            && index <= until
-        {
-            return answer;
+    ) -> Option<&'r Tool> {
+        let known = self.other.filter(|(asked, until, _)| *asked == number && index <= *until);
+        let at = known.map_or_else(
+            || {
+                let calls = |op: &Op| tool(op).is_some_and(|other| other != number);
+                let until = position(records, index, calls);
+                let first = || records.iter().take(index).position(|record| calls(&record.op));
+                let at = if until < records.len() { Some(until) } else { first() };
+                self.other = Some((number, until, at));
+                at
+            },
+            |(_, _, at)| at,
+        )?;
+        match &records.get(at)?.op {
+            Op::Tool(tool) => Some(tool),
+            _ => None,
         }
-        let called = |op: &Op| tool(op).filter(|other| *other != number);
-        let until = position(records, index, |op| called(op).is_some());
-        let first = || records.iter().take(index).find_map(|record| called(&record.op));
-        let answer = records.get(until).and_then(|record| called(&record.op)).or_else(first);
-        self.other = Some((number, until, answer));
-        answer
     }
 }
 
@@ -133,7 +137,7 @@ fn tool(op: &Op) -> Option<u32> {
 mod tests {
     use super::*;
     use geom::Vec3;
-    use program::{Program, Tool, WorkOffset};
+    use program::{Program, WorkOffset};
     use proptest::prelude::*;
 
     fn op(kind: u8, number: u8) -> Op {
@@ -172,7 +176,8 @@ mod tests {
                 let (behind, coming) = records.split_at(index);
                 let called = |record: &Record| tool(&record.op).filter(|other| *other != number);
                 let other = coming.iter().find_map(called).or_else(|| behind.iter().find_map(called));
-                prop_assert_eq!(around.other_tool(records, index, number), other);
+                let found = around.other_tool(records, index, number).map(|tool| tool.number);
+                prop_assert_eq!(found, other);
                 let mut still = coming.iter().take_while(|record| record.op.pose().is_none());
                 let next = still.find_map(|record| tool(&record.op));
                 prop_assert_eq!(around.tool_before_motion(records, index), next);

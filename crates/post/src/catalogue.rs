@@ -345,6 +345,11 @@ pub(crate) const VARIABLES: &[Parameter] = &[
         "",
         "In `tool_change`: the number of the tool that is called next, behind the last that of the first; undefined where the program has one tool.",
     ),
+    variable(
+        "tool.next_identifier",
+        "",
+        "Name of that tool where it can call the tool, as `tool.identifier`; otherwise undefined.",
+    ),
     variable("tool.diameter", "mm", "Cutting diameter; undefined where the source is silent."),
     variable("tool.corner_radius", "mm", "Corner radius; undefined where the source is silent."),
     variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),

@@ -268,7 +268,7 @@ impl Scope {
                 blank,
             ),
             operation: map([("name", Value::from(operation))]),
-            tool: tool_value(machine, &tool, first, first.then_some(2)),
+            tool: tool_value(machine, &tool, first, first.then_some(&tool)),
             spindle: spindle_value(first, first, !first),
             coolant: coolant_value(!first, !first),
             place: place_value(!first, first, !first, [!first; 2]),
@@ -358,7 +358,12 @@ pub(crate) fn place_value(
 }
 
 /// A tool as templates see it; `first` where none has been called before, `next` the one that is called behind it.
-pub(crate) fn tool_value(machine: &Machine, tool: &Tool, first: bool, next: Option<u32>) -> Value {
+pub(crate) fn tool_value(
+    machine: &Machine,
+    tool: &Tool,
+    first: bool,
+    next: Option<&Tool>,
+) -> Value {
     let sizes = [
         ("diameter", tool.diameter),
         ("corner_radius", tool.corner_radius),
@@ -370,9 +375,12 @@ pub(crate) fn tool_value(machine: &Machine, tool: &Tool, first: bool, next: Opti
         ("name", Value::from(printed(machine, &tool.name))),
         ("first", Value::from(first)),
     ];
-    let identifier = identifies(&tool.name).then(|| ("identifier", Value::from(&tool.name)));
-    let next = next.map(|number| ("next", Value::from(number)));
-    map(named.into_iter().chain(identifier).chain(sizes).chain(next))
+    let identifier =
+        |key, tool: &Tool| identifies(&tool.name).then(|| (key, Value::from(tool.name.as_str())));
+    let by_name = identifier("identifier", tool);
+    let next_by_name = next.and_then(|next| identifier("next_identifier", next));
+    let next = next.map(|next| ("next", Value::from(next.number)));
+    map(named.into_iter().chain(by_name).chain(sizes).chain(next).chain(next_by_name))
 }
 
 /// Whether a control can call a tool by this name: what is longer (SINUMERIK: 32 characters) or has

@@ -298,16 +298,56 @@ fn a_machine_may_make_the_next_tool_ready_behind_each_change() {
         ("haas-umc-750", "T1 M6\nT2\n", "T2 M6\nT1\n", "T2"),
         ("generic-3axis-linuxcnc", "T1 M6\nT2\n", "T2 M6\nT1\n", "T2"),
         ("generic-3axis-heidenhain", "TOOL DEF 2\n", "TOOL DEF 1\n", "TOOL DEF 2"),
+        ("generic-3axis-sinumerik", "M6\nD1\nT2\n", "M6\nD1\nT1\n", "T2"),
     ] {
         let ready = format!("extends = \"{name}\"\n[options]\npreselect_tools = true\n");
         let text = written(&sample("three-axes"), &machine(&ready));
         assert!(text.contains(one) && text.contains(two), "{name}: {text}");
         let plain = written(&sample("three-axes"), &machine(&format!("extends = \"{name}\"\n")));
-        assert!(
-            !plain.lines().any(|line| line.ends_with(block) && line.len() < 16),
-            "{name}: {plain}"
-        );
+        let count = |text: &str| {
+            text.lines().filter(|line| line.ends_with(block) && line.len() < 16).count()
+        };
+        assert_eq!(count(&text), count(&plain) + 1, "{name}: {plain}");
     }
+}
+
+/// On a SINUMERIK a `T` alone moves nothing and takes no length, whichever tool it names; `M6` takes the tool of the last `T`.
+#[test]
+fn another_tool_made_ready_is_in_vain_and_a_change_that_takes_it_is_refused() {
+    let machine =
+        machine("extends = \"generic-3axis-sinumerik\"\n[options]\npreselect_tools = true\n");
+    let source = sample("three-axes");
+    let text = String::from_utf8(post::write(&source, &machine).unwrap().text).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let calls = |tool: &str| {
+        let named = lines.iter().enumerate().filter(|(_, line)| line.ends_with(tool));
+        named.map(|(at, _)| at).collect::<Vec<_>>()
+    };
+    let [ready, called] = calls(" T2")[..] else { panic!("{text}") };
+    let mut changed = lines.clone();
+    changed[ready] = "N1 T7";
+    assert_eq!(rules(&source, &machine, &(changed.join("\n") + "\n")), [""; 0]);
+    // Nothing names the tool of the change any more but the T that made one ready.
+    changed.remove(called);
+    assert_eq!(rules(&source, &machine, &(changed.join("\n") + "\n"))[0], "tool");
+    changed[ready] = lines[ready];
+    assert_eq!(rules(&source, &machine, &(changed.join("\n") + "\n")), [""; 0]);
+}
+
+/// The portal mill calls tools by name where the source names them so; it makes them ready in the same way.
+#[test]
+fn a_tool_that_is_called_by_name_is_made_ready_by_name() {
+    let machine =
+        machine("extends = \"sinumerik-840d-traori\"\n[options]\npreselect_tools = true\n");
+    let mut source = sample("three-axes");
+    for record in &mut source.records {
+        if let Op::Tool(tool) = &mut record.op {
+            tool.name = if tool.number == 1 { "MILL_10".into() } else { "two words".into() };
+        }
+    }
+    let text = written(&source, &machine);
+    assert!(text.contains("T=\"MILL_10\"\nM6\nD1\nT2\n"), "{text}");
+    assert!(text.contains("T2\nM6\nD1\nT=\"MILL_10\"\n"), "{text}");
 }
 
 #[test]
