@@ -6,13 +6,11 @@ use crate::machine::Machine;
 use crate::posting::{reported, tolerances};
 use ::wire::cutting::{Cutting, Side};
 use ::wire::plan::Trims;
-use ::wire::points::Step;
 use ::wire::taper::Rounding;
 use ::wire::{Lead, LeadShape};
 use app::wire::{Settings, Sync, make};
 use app::{Origin, Source, Verdict};
 use geom::Vec2;
-use program::{Diagnostic, Rule};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::{Path, PathBuf};
@@ -155,16 +153,7 @@ pub fn wire<'py>(
         round_corners,
         feeds: feed,
     };
-    let step = match (step, chord_error, fit) {
-        (None, None, false) => None,
-        (Some(mm), None, false) => Some(Step::Length(mm)),
-        (None, Some(mm), false) => Some(Step::ChordError(mm)),
-        (None, None, true) => Some(Step::Fit),
-        _ => {
-            let message = "more than one of `step`, `chord_error` and `fit` is given";
-            return Err(refused(py, Diagnostic::error(Rule::Argument, message).help("give one")));
-        }
-    };
+    let step = app::wire::step(step, chord_error, fit).map_err(|found| refused(py, *found))?;
     let settings = Settings {
         layers,
         close,

@@ -106,13 +106,8 @@ pub fn read(
     if encoding::is_utf_16(&bytes) || !Job::begins(text) {
         return read_by(source, bytes, strict, origin, purpose, |machine| machine);
     }
-    if origin.csys.is_some() {
-        return Err(without_csys(&file).into());
-    }
-    if origin.cutcom.is_some() {
-        return Err(without_cutcom(&file).into());
-    }
-    if origin.has_set_up() {
+    origin.is_of_no_record(&file)?;
+    if origin.set_up().is_some() {
         let message = "a job of FreeCAD's runs on no control that somebody has set up";
         let help = "leave out the tool table, units and the like: the job says them itself";
         return Err(Diagnostic::error(Rule::Origin, message).help(help).file(file).into());
@@ -180,6 +175,7 @@ fn read_by(
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = source.name();
+    origin.goes_with(&file)?;
     let digest = Some(Digest::of([&bytes[..]]));
     let bytes = files::text_of(source.path(), bytes)?;
     let mut read_with = Vec::new();
@@ -311,18 +307,6 @@ pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagno
     Err(Stop { verdict: Verdict::Invalid, findings })
 }
 
-/// What refuses `--csys` for a source that cannot have the record.
-pub(crate) fn without_csys(file: &str) -> Diagnostic {
-    let message = "--csys is for cutter-location data with CSYS records, which this is not";
-    Diagnostic::error(Rule::Origin, message).help("leave it out").file(file)
-}
-
-/// What refuses `--cutcom` for a source that cannot have the record.
-pub(crate) fn without_cutcom(file: &str) -> Diagnostic {
-    let message = "--cutcom is for cutter-location data with CUTCOM records, which this is not";
-    Diagnostic::error(Rule::Origin, message).help("leave it out").file(file)
-}
-
 /// Which path the coordinates behind `CUTCOM` are, and what says so.
 fn compensated(cutcom: &Cutcom) -> String {
     match (cutcom.path, cutcom.evidence) {
@@ -384,8 +368,8 @@ fn without_origin(file: &str) -> Stop {
 }
 
 impl Origin {
-    /// Whether it says more than what the source was written for.
-    fn has_set_up(&self) -> bool {
+    /// The option that says more than what the source was written for, where one does.
+    fn set_up(&self) -> Option<&'static str> {
         let Origin {
             from: _,
             reach: _,
@@ -399,13 +383,46 @@ impl Origin {
             csys: _,
             cutcom: _,
         } = self;
-        *block_delete
-            || !folders.is_empty()
-            || tools.is_some()
-            || *whole_numbers != WholeNumbers::Unknown
-            || units.is_some()
-            || aside.is_some()
-            || start.is_some()
+        let given = [
+            ("--tools", tools.is_some()),
+            ("--folder", !folders.is_empty()),
+            ("--whole-numbers", *whole_numbers != WholeNumbers::Unknown),
+            ("--units", units.is_some()),
+            ("--aside", aside.is_some()),
+            ("--block-delete", *block_delete),
+            ("--start", start.is_some()),
+        ];
+        given.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+    }
+
+    /// Checks that what it says goes together for the source `file`.
+    ///
+    /// # Errors
+    /// It says how a control is set up and names none, or names one and says how records of cutter-location data are meant.
+    pub(crate) fn goes_with(&self, file: &str) -> Result<(), Stop> {
+        if self.from.is_some() {
+            return self.is_of_no_record(file);
+        }
+        let Some(name) = self.set_up() else { return Ok(()) };
+        let message =
+            format!("{name} is for an NC program, and no control is named for this source");
+        let help = format!(
+            "name its control or machine by --from (`control` in Python), or leave {name} out"
+        );
+        Err(Diagnostic::error(Rule::Origin, message).help(help).file(file).into())
+    }
+
+    /// Refuses what is said of records for a source that cannot have them.
+    pub(crate) fn is_of_no_record(&self, file: &str) -> Result<(), Stop> {
+        let given =
+            [("csys", "CSYS", self.csys.is_some()), ("cutcom", "CUTCOM", self.cutcom.is_some())];
+        let Some((name, record, _)) = given.into_iter().find(|(.., given)| *given) else {
+            return Ok(());
+        };
+        let message = format!(
+            "--{name} is for cutter-location data with {record} records, which this is not"
+        );
+        Err(Diagnostic::error(Rule::Origin, message).help("leave it out").file(file).into())
     }
 
     /// What the operator has set up at the control of `from`, for a program that is read for `purpose`.

@@ -254,6 +254,32 @@ pub fn within(name: &str, value: f64, low: f64, high: f64) -> Result<(), Box<Dia
     Err(Diagnostic::error(Rule::Setting, format!("`{name}` is {value}")).help(help).into())
 }
 
+/// Checks that of two settings that exclude each other not both are given.
+///
+/// # Errors
+/// `setting`, with both names.
+pub fn not_both(name: &str, other: &str, both: bool) -> Result<(), Box<Diagnostic>> {
+    if !both {
+        return Ok(());
+    }
+    let message =
+        format!("`{name}` and `{other}` are given, of which one leaves the other no meaning");
+    Err(Diagnostic::error(Rule::Setting, message).help("leave one of them out").into())
+}
+
+/// Checks that a setting is not given without the one on which its meaning depends.
+///
+/// # Errors
+/// `setting`, with both names.
+pub fn needs(name: &str, other: &str, missing: bool) -> Result<(), Box<Diagnostic>> {
+    if !missing {
+        return Ok(());
+    }
+    let message = format!("`{name}` is given, which has no meaning without `{other}`");
+    let help = format!("give `{other}`, or leave `{name}` out");
+    Err(Diagnostic::error(Rule::Setting, message).help(help).into())
+}
+
 /// One finding where there may be several.
 impl From<Box<Diagnostic>> for Vec<Diagnostic> {
     fn from(finding: Box<Diagnostic>) -> Vec<Diagnostic> {

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Writes the program, proves it, and only then saves it with its report and its picture.
 pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
-    let path = &args.source.path;
+    let (path, settings) = (&args.source.path, args.settings()?);
     let mut inputs = vec![path.as_path(), Path::new(&args.machine)];
     inputs.extend(args.ends.upper.as_deref());
     let report_path = files::report_of(&args.output);
@@ -28,7 +28,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
         args.source.strict,
         &args.source.origin.origin(),
         machine.clone(),
-        &args.settings(),
+        &settings,
         &files::name(&args.output),
         &args.closeness.tolerances(),
         &progress,

@@ -7,7 +7,7 @@ use crate::taper::Rounding;
 use crate::{Contour, Lead, LeadShape, OffsetContour, Path};
 use geom::Vec2;
 use program::Rule;
-use program::{Compensation, Diagnostic, LEAST_SETTING, MOST_SETTING, within};
+use program::{Compensation, Diagnostic, LEAST_SETTING, MOST_SETTING, needs, not_both, within};
 
 /// How contours are cut.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Cutting {
     /// Checks that every number is one that makes sense by itself.
     ///
     /// # Errors
-    /// `setting`, with the name of the first that does not; a setting of the wire's side where no side is given.
+    /// `setting`, with the name of the first that does not; a setting that has no meaning without another, such as the side.
     pub fn check(&self) -> Result<(), Box<Diagnostic>> {
         let above = |name, values: &[f64]| {
             values.iter().try_for_each(|value| within(name, *value, LEAST_SETTING, MOST_SETTING))
@@ -71,14 +71,10 @@ impl Cutting {
             let message = "how the wire runs next to the contours is given, and not on which side";
             return Err(Diagnostic::error(Rule::Setting, message).help("give `side`").into());
         }
-        if self.by_control && self.tab.is_some() {
-            let message =
-                "`by_control` and `tab` are both given: a tab needs a path that is offset here";
-            return Err(Diagnostic::error(Rule::Setting, message)
-                .help("leave one of them out")
-                .into());
-        }
-        Ok(())
+        let rounding = self.rounding != Rounding::default();
+        needs("rounding", "taper", rounding && self.taper.is_none())?;
+        // A tab needs a path that is offset here.
+        not_both("by_control", "tab", self.by_control && self.tab.is_some())
     }
 }
 

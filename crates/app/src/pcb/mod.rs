@@ -19,7 +19,7 @@ use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
 use machine::{Machine, OptionValue};
 use program::heights::HeightMap;
-use program::{Diagnostic, Op, Record, Rule};
+use program::{Diagnostic, Op, Record, Rule, not_both};
 use proof::Tolerances;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -84,8 +84,10 @@ impl<'a> Job<'a> {
     /// What is wrong with the board; where none of its programs can be made, or one cannot and the job is strict, why. A program
     /// that cannot be made is left out otherwise, and all others are made.
     pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
-        watch.begin("reading")?;
         let Job { machine, settings, .. } = *self;
+        let measured = settings.running.on_control && self.surface.is_some();
+        not_both("on_control", "heights", measured)?;
+        watch.begin("reading")?;
         let source = source::read(board, &self.named, settings)?;
         let parts = plan::parts(&source.artwork, settings)?;
         let surface = surface(&parts, settings, self.surface.as_ref())?;

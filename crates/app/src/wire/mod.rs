@@ -17,7 +17,7 @@ use ::wire::cutting::{self, Cutting};
 use ::wire::points::{Refusal, Step, points};
 use ::wire::segment::Segment;
 use machine::{Machine, Wire};
-use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, within};
+use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, needs, not_both, within};
 use report::{Cut, Report};
 use serde_json::json;
 use source::Source;
@@ -55,7 +55,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Checks that every number is one that makes sense by itself.
+    /// Checks that every number is one that makes sense by itself, and that settings go together.
     ///
     /// # Errors
     /// `setting`, with the name of the first that does not.
@@ -63,7 +63,11 @@ impl Settings {
         self.cutting.check()?;
         within("close", self.close, LEAST_SETTING, MOST_SETTING)?;
         within("height", self.height.unwrap_or(LEAST_SETTING), LEAST_SETTING, MOST_SETTING)?;
-        within("uv_height", self.uv_height.unwrap_or(LEAST_SETTING), LEAST_SETTING, MOST_SETTING)
+        within("uv_height", self.uv_height.unwrap_or(LEAST_SETTING), LEAST_SETTING, MOST_SETTING)?;
+        let (alone, by_length) = (self.upper.is_none(), self.sync != Sync::Block);
+        needs("sync", "upper", alone && by_length)?;
+        needs("pair", "upper", alone && !self.pairs.is_empty())?;
+        not_both("pair", "sync", by_length && !self.pairs.is_empty())
     }
 }
 
@@ -83,6 +87,23 @@ impl Default for Settings {
             select: None,
         }
     }
+}
+
+/// Into how many points arcs are divided: one every so many mm of arc, as many as keep a chord error in mm, or as many as
+/// the memory of the control holds.
+///
+/// # Errors
+/// More than one is asked for.
+pub fn step(
+    length: Option<f64>,
+    chord_error: Option<f64>,
+    fit: bool,
+) -> Result<Option<Step>, Box<Diagnostic>> {
+    not_both("step", "chord_error", length.is_some() && chord_error.is_some())?;
+    not_both("step", "fit", length.is_some() && fit)?;
+    not_both("chord_error", "fit", chord_error.is_some() && fit)?;
+    let length = length.map(Step::Length);
+    Ok(length.or(chord_error.map(Step::ChordError)).or(fit.then_some(Step::Fit)))
 }
 
 /// Which point above belongs to which below.

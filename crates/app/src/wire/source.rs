@@ -39,6 +39,9 @@ impl Source {
         origin: &Origin,
         settings: &Settings,
     ) -> Result<Source, Stop> {
+        if !is_drawing(source) && !settings.upper.as_ref().is_some_and(is_drawing) {
+            of_no_drawing(settings).map_err(|found| found.file(source.name()))?;
+        }
         let height = height(origin, settings)?;
         let start = origin.start.map(|start| start.truncate());
         let lower = File::read(source, strict, origin, settings)?;
@@ -93,6 +96,23 @@ impl Source {
     }
 }
 
+/// Whether a file is a drawing.
+fn is_drawing(source: &input::Source) -> bool {
+    source.path().extension().unwrap_or_default().eq_ignore_ascii_case("dxf")
+}
+
+/// Refuses settings of a drawing where there is none.
+fn of_no_drawing(settings: &Settings) -> Result<(), Diagnostic> {
+    let default = Settings::default();
+    let given = [
+        ("--layer", settings.layers != default.layers),
+        ("--close", settings.close != default.close),
+    ];
+    let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    let message = format!("{name} is for a drawing (.dxf), which this is not");
+    Err(Diagnostic::error(Rule::Origin, message).help("leave it out"))
+}
+
 impl File {
     fn read(
         source: &input::Source,
@@ -100,8 +120,7 @@ impl File {
         origin: &Origin,
         settings: &Settings,
     ) -> Result<File, Stop> {
-        let ending = source.path().extension().unwrap_or_default();
-        if !ending.eq_ignore_ascii_case("dxf") {
+        if !is_drawing(source) {
             let toolpath = toolpath::read_wire(source, strict, origin, settings.height);
             let toolpath = toolpath.map_err(without_height)?;
             let mut warnings = left_out(&toolpath.program);
@@ -109,12 +128,8 @@ impl File {
             warnings.splice(0..0, toolpath.warnings.clone());
             return Ok(File::Program(toolpath.warned(warnings, strict)?));
         }
-        if origin.csys.is_some() {
-            return Err(toolpath::without_csys(&source.name()).into());
-        }
-        if origin.cutcom.is_some() {
-            return Err(toolpath::without_cutcom(&source.name()).into());
-        }
+        origin.goes_with(&source.name())?;
+        origin.is_of_no_record(&source.name())?;
         let text = source.text()?;
         let options = dxf::Options {
             layers: settings.layers.clone(),

@@ -3,7 +3,7 @@
 use crate::board::Face;
 use crate::isolation::{Direction, Narrow};
 use geom::Vec2;
-use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, within};
+use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, needs, not_both, within};
 
 /// How a board is made. The default has no tool that cuts around copper.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,7 +43,7 @@ impl Settings {
     /// Checks that every number is one that makes sense by itself.
     ///
     /// # Errors
-    /// `setting`, with the name of the first that does not; two settings of which one leaves the other no meaning.
+    /// `setting`, with the name of the first that does not; two settings that exclude each other, or one that has no meaning without another.
     pub fn check(&self) -> Result<(), Box<Diagnostic>> {
         let Settings { only: _, isolation, clearing, drilling, outline, placing, running } = self;
         let given = |name, value: Option<f64>, low| (name, value.unwrap_or(low), low, MOST_SETTING);
@@ -94,18 +94,16 @@ impl Settings {
         for (name, value, low, high) in all.into_iter().chain(widths).chain(drills).chain(grids) {
             within(name, value, low, high)?;
         }
-        let contradictions = [
-            (isolation.tool.is_some() && isolation.vee.is_some(), "`tool` and `vee`"),
-            (placing.corner.is_some() && placing.as_drawn, "`corner` and `as_drawn`"),
-        ];
-        match contradictions.iter().find(|(both, _)| *both) {
-            None => Ok(()),
-            Some((_, names)) => {
-                let message =
-                    format!("{names} are given, of which one leaves the other no meaning");
-                Err(Diagnostic::error(Rule::Setting, message).help("leave one of them out").into())
-            }
-        }
+        let default = Settings::default();
+        not_both("tool", "vee", isolation.tool.is_some() && isolation.vee.is_some())?;
+        not_both("corner", "as_drawn", placing.corner.is_some() && placing.as_drawn)?;
+        let tip = isolation.tip != default.isolation.tip;
+        needs("tip", "vee", tip && isolation.vee.is_none())?;
+        let margin = clearing.margin != default.clearing.margin;
+        needs("margin", "clear", margin && clearing.clear.is_empty())?;
+        let spacing = placing.spacing != default.placing.spacing;
+        needs("spacing", "panel", spacing && placing.panel.is_none())?;
+        needs("on_control", "probe", running.on_control && running.probe.is_none())
     }
 }
 

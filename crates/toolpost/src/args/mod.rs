@@ -3,6 +3,7 @@
 pub mod glass;
 pub mod pcb;
 
+use app::Stop;
 use app::toolpath::Frame;
 use app::wire::Sync;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -16,7 +17,6 @@ use source::apt::Csys;
 use std::path::PathBuf;
 use wire::cutting::Side;
 use wire::plan::Trims;
-use wire::points::Step;
 use wire::taper::Rounding;
 use wire::{Lead, LeadShape};
 
@@ -97,32 +97,31 @@ pub struct Origin {
     pub from: Option<String>,
     /// Tool table (LinuxCNC's format): with it cutter radius compensation becomes the path of the
     /// tool's centre.
-    #[arg(long, value_name = "FILE", requires = "from")]
+    #[arg(long, value_name = "FILE")]
     pub tools: Option<PathBuf>,
     /// Folder in which called programs are looked for; may be given several times.
-    #[arg(long, value_name = "FOLDER", requires = "from")]
+    #[arg(long, value_name = "FOLDER")]
     pub folder: Vec<PathBuf>,
     /// What a length without a decimal point counts on a control that can be set either way.
-    #[arg(long, value_name = "WHAT", requires = "from", value_parser = choice(&WHOLE_NUMBERS))]
+    #[arg(long, value_name = "WHAT", value_parser = choice(&WHOLE_NUMBERS))]
     pub whole_numbers: Option<WholeNumbers>,
     /// What lengths count before the program says it by G20 or G21.
-    #[arg(long, value_name = "UNIT", requires = "from", value_parser = choice(&UNITS))]
+    #[arg(long, value_name = "UNIT", value_parser = choice(&UNITS))]
     pub units: Option<Units>,
     /// Which way a boring bar goes from the wall of a hole, where the machine is set to it (G76, G87).
-    #[arg(long, value_name = "WAY", requires = "from", allow_hyphen_values = true, value_parser = choice(&ASIDE))]
+    #[arg(long, value_name = "WAY", allow_hyphen_values = true, value_parser = choice(&ASIDE))]
     pub aside: Option<Vec3>,
     /// Skip the blocks that begin with `/`.
-    #[arg(long, requires = "from")]
+    #[arg(long)]
     pub block_delete: bool,
     /// Where the tool stands when the program starts, mm.
-    #[arg(long, value_name = "X,Y,Z", requires = "from", value_parser = point, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub start: Option<[f64; 3]>,
     /// Where the coordinates behind a CSYS of SolidWorks CAM stand [default: world, where the file says TRNTYP/WORLD].
     #[arg(
         long,
         value_name = "FRAME",
         value_parser = choice(&CSYS),
-        conflicts_with = "from",
         help_heading = "SolidWorks CAM as the source"
     )]
     pub csys: Option<Csys>,
@@ -131,7 +130,6 @@ pub struct Origin {
         long,
         value_name = "PATH",
         value_parser = choice(&CUTCOM),
-        conflicts_with = "from",
         help_heading = "Cutter-location data as the source"
     )]
     pub cutcom: Option<CompensatedPath>,
@@ -326,9 +324,13 @@ pub struct Wire {
 
 impl Wire {
     /// As the wire is planned.
-    pub fn settings(&self) -> app::wire::Settings {
+    ///
+    /// # Errors
+    /// Points are asked for in two ways.
+    pub fn settings(&self) -> Result<app::wire::Settings, Stop> {
         let Ends { upper, sync, pair, height, uv_height } = &self.ends;
-        app::wire::Settings {
+        let Division { step, chord_error, fit, memory } = self.division;
+        Ok(app::wire::Settings {
             layers: self.drawing.layer.clone(),
             close: self.drawing.close,
             upper: upper.clone().map(app::Source::File),
@@ -337,15 +339,10 @@ impl Wire {
             height: *height,
             uv_height: *uv_height,
             cutting: self.cutting.cutting(),
-            step: match &self.division {
-                Division { step: Some(step), .. } => Some(Step::Length(*step)),
-                Division { chord_error: Some(error), .. } => Some(Step::ChordError(*error)),
-                Division { fit: true, .. } => Some(Step::Fit),
-                _ => None,
-            },
-            memory: self.division.memory,
+            step: app::wire::step(step, chord_error, fit)?,
+            memory,
             select: self.select,
-        }
+        })
     }
 }
 
@@ -354,10 +351,10 @@ impl Wire {
 #[command(next_help_heading = "Drawing (.dxf) as the source")]
 pub struct Drawing {
     /// Read this layer only; may be given several times.
-    #[arg(long, value_name = "NAME", conflicts_with = "from")]
+    #[arg(long, value_name = "NAME")]
     pub layer: Vec<String>,
     /// How far ends that belong together may be apart.
-    #[arg(long, value_name = "MM", value_parser = length, conflicts_with = "from", default_value = "0.01")]
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.01")]
     pub close: f64,
 }
 
@@ -369,44 +366,44 @@ pub struct Cutting {
     #[arg(long, value_parser = choice(&SIDES))]
     pub side: Option<Side>,
     /// Diameter of the wire.
-    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    #[arg(long, value_name = "MM", value_parser = length)]
     pub wire: Option<f64>,
     /// Spark gap of the last pass.
-    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    #[arg(long, value_name = "MM", value_parser = length)]
     pub gap: Option<f64>,
     /// What each pass but the last leaves for those after it, such as 0.1,0.02 for three passes.
-    #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',', requires = "side")]
+    #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',')]
     pub leave: Vec<f64>,
     /// Which way round the passes after the first go.
-    #[arg(long, value_name = "HOW", default_value = "alternate", value_parser = choice(&TRIMS), requires = "side")]
+    #[arg(long, value_name = "HOW", default_value = "alternate", value_parser = choice(&TRIMS))]
     pub trims: Trims,
     /// Where the wire is threaded; once for each contour, in their order.
-    #[arg(long, value_name = "X,Y", value_parser = place, requires = "side", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pub thread: Vec<[f64; 2]>,
     /// How far beside a contour the wire is threaded where --thread does not say where.
-    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    #[arg(long, value_name = "MM", value_parser = length)]
     pub lead: Option<f64>,
     /// Radius of the quarter circle by which the wire comes to the contour [default: straight].
-    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    #[arg(long, value_name = "MM", value_parser = length)]
     pub lead_arc: Option<f64>,
     /// Where the cut of a closed contour begins: the place nearest to this point.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pub begin: Option<[f64; 2]>,
     /// How much of each closed contour holds the part until all else is cut.
-    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    #[arg(long, value_name = "MM", value_parser = length)]
     pub tab: Option<f64>,
     /// How far the wire leans: the part larger at the top, or smaller where negative; over --height.
-    #[arg(long, value_name = "DEGREES", requires = "side", allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true)]
     pub taper: Option<f64>,
     /// What becomes of rounded corners on the way up.
-    #[arg(long, value_name = "HOW", default_value = "conical", value_parser = choice(&ROUNDING), requires = "taper")]
+    #[arg(long, value_name = "HOW", default_value = "conical", value_parser = choice(&ROUNDING))]
     pub rounding: Rounding,
     /// Let the control offset and lean the wire, each pass by the register of its number: the program is
     /// then that of the contour itself.
-    #[arg(long, requires = "side", conflicts_with = "tab")]
+    #[arg(long)]
     pub by_control: bool,
     /// Let inner corners that the wire is too thick for become as round as the wire.
-    #[arg(long, requires = "side")]
+    #[arg(long)]
     pub round_corners: bool,
     /// Feed in mm/s, for the cutting time and the program: one for all passes, or one for each.
     #[arg(long, value_name = "MM/S,...", value_parser = length, value_delimiter = ',')]
@@ -446,11 +443,11 @@ pub struct Ends {
     #[arg(long, value_name = "FILE")]
     pub upper: Option<PathBuf>,
     /// Which point above belongs to which below.
-    #[arg(long, value_name = "HOW", default_value = "block", value_parser = choice(&SYNC), requires = "upper")]
+    #[arg(long, value_name = "HOW", default_value = "block", value_parser = choice(&SYNC))]
     pub sync: Sync,
     /// A point below and the one above that belongs to it, instead of --sync; several times in the order
     /// of travel, between which both ends cover the same part of their length.
-    #[arg(long, value_name = "X,Y,X,Y", value_parser = pair, requires = "upper", conflicts_with = "sync", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,X,Y", value_parser = pair, allow_hyphen_values = true)]
     pub pair: Vec<[f64; 4]>,
     /// Height of the part: of the upper contour over the lower [default: of a source with U and V, that of its plane].
     #[arg(long, value_name = "MM", value_parser = length)]
@@ -465,13 +462,13 @@ pub struct Ends {
 #[command(next_help_heading = "Points, for a control without arcs")]
 pub struct Division {
     /// One point every so many mm of arc.
-    #[arg(long, value_name = "MM", group = "how", value_parser = number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", value_parser = number, allow_hyphen_values = true)]
     pub step: Option<f64>,
     /// As many points as keep this chord error [default: lowering_tolerance of the machine file].
-    #[arg(long, value_name = "MM", group = "how", value_parser = number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "MM", value_parser = number, allow_hyphen_values = true)]
     pub chord_error: Option<f64>,
     /// As many points as the memory of the control holds.
-    #[arg(long, group = "how")]
+    #[arg(long)]
     pub fit: bool,
     /// How many points the control holds [default: that of the machine file].
     #[arg(long, value_name = "POINTS")]

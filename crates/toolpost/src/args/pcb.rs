@@ -210,13 +210,13 @@ impl Files {
 #[command(next_help_heading = "Copper")]
 pub struct Isolation {
     /// Width of the end mill that cuts around copper.
-    #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true, group = "bit")]
+    #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true)]
     pub tool: Option<f64>,
     /// Angle between the edges of a V-bit that does it; its width follows from --tip and --depth.
-    #[arg(long, value_name = "DEGREES", value_parser = angle, group = "bit")]
+    #[arg(long, value_name = "DEGREES", value_parser = angle)]
     pub vee: Option<f64>,
     /// Width of the tip of the V-bit.
-    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.1", requires = "vee")]
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.1")]
     pub tip: f64,
     /// How deep below the surface.
     #[arg(long, value_name = "MM", value_parser = length, default_value = "0.1")]
@@ -249,7 +249,7 @@ pub struct Clearing {
     #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',')]
     pub clear: Vec<f64>,
     /// How far they stay from nets [default: not at all].
-    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0", requires = "clear")]
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0")]
     pub margin: f64,
     /// Width of the end mill that opens the solder mask over pads.
     #[arg(long, value_name = "MM", value_parser = length)]
@@ -321,7 +321,7 @@ pub struct Placing {
     #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.2")]
     pub through: f64,
     /// Where the lower left corner of the board is put [default: 0,0].
-    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with = "as_drawn")]
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pub corner: Option<[f64; 2]>,
     /// Leave the board where its files have it.
     #[arg(long)]
@@ -336,7 +336,7 @@ pub struct Placing {
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = grid)]
     pub panel: Option<[u32; 2]>,
     /// How far the boards of a panel are apart.
-    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "4", requires = "panel")]
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "4")]
     pub spacing: f64,
 }
 
@@ -371,7 +371,7 @@ pub struct Running {
     /// The programs that cut copper measure these heights themselves, with the tool that cuts, and follow them: the
     /// control does it, which needs one that keeps numbers (LinuxCNC). Z 0 is set on the copper, from which holes and
     /// edge count. Replaces probe.nc and --heights.
-    #[arg(long, requires = "probe", conflicts_with = "heights")]
+    #[arg(long)]
     pub on_control: bool,
     /// Write a program for each tool (drill-1-0.8mm.nc), so that none changes tools: Z 0 is set anew with each.
     #[arg(long)]
@@ -443,7 +443,7 @@ mod tests {
         }
         match parsed("toolpost wire part.nc -m bp-95d -o part.pts") {
             Command::Wire(args) => {
-                let (typed, default) = (args.settings(), app::wire::Settings::default());
+                let (typed, default) = (args.settings().unwrap(), app::wire::Settings::default());
                 assert_eq!(typed.cutting, default.cutting);
                 assert_eq!((typed.close, typed.sync), (default.close, default.sync));
             }
