@@ -1,9 +1,14 @@
 //! What every front end relies on: sources in memory, reach, steps, cancelling, wires and boards without a command line.
 
+use ::wire::cutting::{Cutting, Side};
+use ::wire::taper::Rounding;
+use control::{Units, WholeNumbers};
+use geom::Vec3;
 use machine::Reach;
 use pcb::plan::Settings;
-use program::Purpose;
+use program::{CompensatedPath, Purpose};
 use proof::Tolerances;
+use source::apt::Csys;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -207,4 +212,116 @@ fn a_setting_that_makes_no_sense_is_refused_by_its_name() {
         refused(&|s| (s.placing.corner, s.placing.as_drawn) = (Some(geom::Vec2::ONE), true))
             .starts_with("`corner` and `as_drawn`")
     );
+}
+
+/// What the command line and Python say alike: a setting without the one that gives it a meaning, and two that exclude each
+/// other.
+#[test]
+fn settings_that_do_not_go_together_are_refused_whoever_gives_them() {
+    let read = |name: &str, origin: Origin| {
+        let source = Source::File(example(name));
+        let read = toolpath::read(&source, false, &origin, None, Purpose::Program);
+        read.map(|_| ()).unwrap_err().findings.remove(0)
+    };
+    let nothing = Origin::default;
+    let fanuc = Origin { from: Some("fanuc-31i".into()), ..nothing() };
+    let alone = [
+        ("--tools", Origin { tools: Some(Source::File(example("flange.tbl"))), ..nothing() }),
+        ("--folder", Origin { folders: vec![example("")], ..nothing() }),
+        ("--whole-numbers", Origin { whole_numbers: WholeNumbers::Units, ..nothing() }),
+        ("--units", Origin { units: Some(Units::Inches), ..nothing() }),
+        ("--aside", Origin { aside: Some(Vec3::X), ..nothing() }),
+        ("--block-delete", Origin { block_delete: true, ..nothing() }),
+        ("--start", Origin { start: Some(Vec3::ZERO), ..nothing() }),
+    ];
+    for (name, origin) in alone {
+        let found = read("plate.cls", origin);
+        assert!(found.rule == "origin" && found.message.starts_with(name), "{found}");
+        assert!(found.help.contains("--from"), "{found}");
+    }
+    let frame = Origin { csys: Some(Csys::Local), ..fanuc.clone() };
+    let path = Origin { cutcom: Some(CompensatedPath::Center), ..fanuc.clone() };
+    for (name, origin) in [("--csys", frame), ("--cutcom", path)] {
+        let found = read("flange.nc", origin);
+        assert!(found.rule == "origin" && found.message.starts_with(name), "{found}");
+    }
+
+    let machine = toolpath::machine("bp-95d").unwrap();
+    let tolerances = Tolerances::default();
+    let wire_of = |settings: wire::Settings| {
+        let source = Source::File(example("sector.nc"));
+        let (machine, file) = (machine.clone(), "sector.pts");
+        let made = wire::make(&source, false, &fanuc, machine, &settings, file, &tolerances, &());
+        made.map(|_| ()).unwrap_err().findings.remove(0)
+    };
+    let inside = Cutting { side: Some(Side::Inside), ..Cutting::default() };
+    let upper = || Some(Source::File(example("sector.nc")));
+    let pairs = || vec![[0.0; 4]];
+    let of = |cutting: Cutting| wire::Settings { cutting, ..Default::default() };
+    let settings = [
+        (["layer", "drawing"], wire::Settings { layers: vec!["0".into()], ..Default::default() }),
+        (["close", "drawing"], wire::Settings { close: 0.1, ..Default::default() }),
+        (["sync", "upper"], wire::Settings { sync: wire::Sync::Length, ..Default::default() }),
+        (["pair", "upper"], wire::Settings { pairs: pairs(), ..Default::default() }),
+        (
+            ["pair", "sync"],
+            wire::Settings {
+                upper: upper(),
+                sync: wire::Sync::Length,
+                pairs: pairs(),
+                ..Default::default()
+            },
+        ),
+        (["rounding", "taper"], of(Cutting { rounding: Rounding::Constant, ..inside.clone() })),
+        (["by_control", "tab"], of(Cutting { by_control: true, tab: Some(2.0), ..inside.clone() })),
+        (["next to the contours", "side"], of(Cutting { wire: 0.25, ..Cutting::default() })),
+    ];
+    for ([name, other], settings) in settings {
+        let found = wire_of(settings);
+        let said = format!("{found}");
+        assert!(["setting", "origin"].contains(&found.rule.name()), "{said}");
+        assert!(said.contains(name) && said.contains(other), "{said}");
+    }
+    for (length, chord, fit) in
+        [(Some(1.0), Some(0.1), false), (Some(1.0), None, true), (None, Some(0.1), true)]
+    {
+        assert_eq!(wire::step(length, chord, fit).unwrap_err().rule, "setting");
+    }
+
+    let mill = toolpath::machine("grbl-3018").unwrap();
+    let plain = Settings::default();
+    let of_running = |change: &dyn Fn(&mut Settings)| {
+        let mut settings = plain.clone();
+        change(&mut settings);
+        settings
+    };
+    let boards = [
+        (["tip", "vee"], of_running(&|s| s.isolation.tip = 0.2)),
+        (["margin", "clear"], of_running(&|s| s.clearing.margin = 1.0)),
+        (["spacing", "panel"], of_running(&|s| s.placing.spacing = 5.0)),
+        (["on_control", "probe"], of_running(&|s| s.running.on_control = true)),
+        (
+            ["tool", "vee"],
+            of_running(&|s| (s.isolation.tool, s.isolation.vee) = (Some(1.0), Some(30.0))),
+        ),
+        (
+            ["corner", "as_drawn"],
+            of_running(&|s| {
+                (s.placing.corner, s.placing.as_drawn) = (Some(Default::default()), true)
+            }),
+        ),
+    ];
+    for ([name, other], settings) in boards {
+        let Err(stop) = board::Job::new(&mill, &settings, &tolerances) else { panic!("{name}") };
+        let message = &stop.findings[0].message;
+        assert!(stop.findings[0].rule == "setting", "{message}");
+        assert!(message.contains(name) && message.contains(other), "{message}");
+    }
+    let measuring = of_running(&|s| {
+        (s.running.on_control, s.running.probe) = (true, Some([2, 2]));
+    });
+    let mut job = board::Job::new(&mill, &measuring, &tolerances).unwrap();
+    job.surface = Some(Source::memory("z.txt", *b"0 0 0"));
+    let Err(stop) = job.make(&[Source::File(example("lamp.toml"))], &()) else { panic!() };
+    assert!(stop.findings[0].message.contains("heights"), "{:?}", stop.findings);
 }
