@@ -263,7 +263,7 @@ fn given_points_say_what_belongs_together() {
     assert!(folder.read("part.pts").contains("\n10.000 10.000 2.000 -5.000\n"));
     let off = ["--pair", "10,9,12,5", "--pair", "10,8,12,6"];
     refused(&folder, &[&call[..4], &off].concat(), 2, &["error[sync-point]", "Y8.0000"]);
-    refused(&folder, &[&call[..], &["--sync", "length"]].concat(), 2, &["--pair", "--sync"]);
+    refused(&folder, &[&call[..], &["--sync", "length"]].concat(), 2, &["`pair`", "`sync`"]);
 }
 
 #[test]

@@ -225,8 +225,8 @@ fn tools_that_are_none() {
         let angle = format!("--vee={angle}");
         refused(&folder, &[&none[..], &[&angle]].concat(), 2, &["--vee", "below 180 degrees"]);
     }
-    refused(&folder, &[&none[..], &["--tip", "0.1"]].concat(), 2, &["--vee"]);
-    bad_call(&folder, &["--vee", "30"], &["--tool", "--vee"]);
+    refused(&folder, &[&none[..], &["--tip", "0.2"]].concat(), 2, &["`tip`", "`vee`"]);
+    bad_call(&folder, &["--vee", "30"], &["`tool`", "`vee`"]);
 }
 
 #[test]
@@ -312,8 +312,8 @@ fn heights_that_nothing_measures() {
     let folder = small();
     let on_control = ["--probe", "3x3", "--on-control"];
     bad_call(&folder, &on_control, &["error[on-control]", "`grbl-3018`", "--heights"]);
-    bad_call(&folder, &["--on-control"], &["--probe"]);
-    bad_call(&folder, &[&on_control[..], &["--heights", "h.txt"]].concat(), &["--heights"]);
+    bad_call(&folder, &["--on-control"], &["`probe`"]);
+    bad_call(&folder, &[&on_control[..], &["--heights", "h.txt"]].concat(), &["`heights`"]);
     folder.write("board/mask.gbr", gerber("Soldermask,Top", FRONT));
     for (more, word) in [
         (&["--only", "drill,outline"][..], "no program cuts copper"),
