@@ -58,8 +58,8 @@ impl Given<'_> {
 /// tool, vee : float, optional
 ///     Width of the end mill that cuts around copper, or the angle of a V-bit in degrees.
 /// tip, depth, step, passes, overlap, direction, narrow, isolate
-///     How copper is isolated; ``direction`` is ``climb`` or ``conventional``, ``narrow`` is ``leave-out`` or
-///     ``middle``, ``isolate`` is ``contours`` or ``middle``.
+///     How copper is isolated; ``direction`` is ``climb`` or ``conventional``, ``narrow`` is ``bite``,
+///     ``leave-out`` or ``middle``, ``isolate`` is ``contours`` or ``middle``.
 /// clear, margin, mask_tool, legend_tool, engrave
 ///     What else is cut of copper, mask and legend.
 /// drills, drill_tolerance, hole_mill, peck, from_side
@@ -97,7 +97,7 @@ impl Given<'_> {
 ///     Where there are no programs; or one is not proven, with its :attr:`~toolpost.Error.report`.
 #[pyfunction]
 #[pyo3(signature = (board, machine, *, only=Vec::new(), tool=None, vee=None, tip=0.1, depth=0.1, step=None, passes=1,
-                    overlap=0.25, direction="climb", narrow="leave-out", isolate="contours", clear=Vec::new(), margin=0.0,
+                    overlap=0.25, direction="climb", narrow="bite", isolate="contours", clear=Vec::new(), margin=0.0,
                     mask_tool=None, legend_tool=None, engrave=0.05, drills=Vec::new(), drill_tolerance=0.05,
                     hole_mill=None, peck=None, from_side="front", outline_tool=2.0, outline_step=0.5, tabs=4,
                     tab_width=2.0, tab_height=0.6, close_gaps=0.3, board_margin=None, thickness=1.6, through=0.2, corner=None,
@@ -165,7 +165,8 @@ pub fn pcb<'py>(
     let parts = Part::ALL.map(|part| (part.name(), part));
     let only = only.iter().map(|given| word(py, "only", given, &parts)).collect::<PyResult<_>>()?;
     let directions = [("climb", Direction::Climb), ("conventional", Direction::Conventional)];
-    let gaps = [("leave-out", Narrow::LeaveOut), ("middle", Narrow::Middle)];
+    let gaps =
+        [("bite", Narrow::Bite), ("leave-out", Narrow::LeaveOut), ("middle", Narrow::Middle)];
     let cuts = [("contours", Isolate::Contours), ("middle", Isolate::Middle)];
     let settings = Settings {
         only,

@@ -318,7 +318,7 @@ def pcb(
     passes: int = 1,
     overlap: float = 0.25,
     direction: Literal["climb", "conventional"] = "climb",
-    narrow: Literal["leave-out", "middle"] = "leave-out",
+    narrow: Literal["bite", "leave-out", "middle"] = "bite",
     isolate: Literal["contours", "middle"] = "contours",
     clear: Sequence[float] = ...,
     margin: float = 0.0,

@@ -9,6 +9,7 @@ use geom::region::{Region, Ring};
 use geom::{Element, Vec2, Vec3};
 use glam::DVec2;
 use pcb::board::Axis;
+use pcb::plan::Place;
 use pcb::{Copper, Hole, HoleShape};
 use program::Program;
 use std::collections::BTreeMap;
@@ -26,9 +27,6 @@ const MAX_POINTS: usize = 500_000;
 
 /// The most lines of the legend that name tools, and problems.
 const LEGEND: (usize, usize) = (8, 10);
-
-/// The most places with a problem that are marked.
-const MAX_MARKS: usize = 2_000;
 
 /// The most holes that are drawn.
 const MAX_HOLES: usize = 50_000;
@@ -60,8 +58,10 @@ pub struct BoardPicture<'a> {
     pub program: &'a Program,
     /// How wide each tool cuts, mm, in the order of their calls.
     pub widths: &'a [f64],
-    /// Where something is not as it should be (mm), and what.
-    pub problems: &'a [(Vec2, String)],
+    /// Where something is not as it should be, the worst first.
+    pub problems: &'a [Place],
+    /// What stays that should not; it is shaded.
+    pub rest: &'a [Region],
     /// The line about which the board is turned over, where it is.
     pub turning: Option<Axis>,
 }
@@ -117,6 +117,8 @@ struct Drawn {
     /// By tool.
     cuts: BTreeMap<usize, Trace>,
     rapids: Trace,
+    /// What stays that should not.
+    rest: Trace,
     tools: Vec<String>,
     /// Cutting length of each tool, mm.
     cutting: BTreeMap<usize, f64>,
@@ -133,6 +135,7 @@ impl Drawn {
             copper: BTreeMap::new(),
             cuts: BTreeMap::new(),
             rapids: pen(),
+            rest: pen(),
             tools: Vec::new(),
             cutting: BTreeMap::new(),
             rapid: 0.0,
@@ -140,6 +143,9 @@ impl Drawn {
         };
         for ring in picture.outline.into_iter().flat_map(Region::rings) {
             trace(&mut drawn.outline, ring, view, chord);
+        }
+        for ring in picture.rest.iter().flat_map(Region::rings) {
+            trace(&mut drawn.rest, ring, view, chord);
         }
         if let Some(copper) = picture.copper {
             // Islands of one net have one colour; one without a net has its own.
@@ -174,7 +180,8 @@ impl Drawn {
     fn points(&self) -> usize {
         let many =
             |traces: &BTreeMap<usize, Trace>| traces.values().map(Trace::points).sum::<usize>();
-        self.outline.points() + self.rapids.points() + many(&self.copper) + many(&self.cuts)
+        let single = [&self.outline, &self.rapids, &self.rest].map(Trace::points);
+        single.into_iter().sum::<usize>() + many(&self.copper) + many(&self.cuts)
     }
 
     fn write(self, out: &mut String, title: &str, picture: &BoardPicture, view: &View) {
@@ -202,8 +209,9 @@ impl Drawn {
         }
         lines(out, self.rapids, RAPID, 0.7, "stroke-dasharray=\"50 35\"");
         turning(out, picture, view);
-        for (place, _) in picture.problems.iter().take(MAX_MARKS) {
-            let at = view.at(place.extend(0.0));
+        area(out, self.rest, PROBLEM, PROBLEM);
+        for place in picture.problems.iter().take(LEGEND.1) {
+            let at = view.at(place.at.extend(0.0));
             let _ = writeln!(
                 out,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{MARK}\" stroke=\"{PROBLEM}\" stroke-width=\"1.6\"/>",
@@ -345,7 +353,7 @@ fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2
     if !picture.problems.is_empty() {
         let text = format!("{} PLACES TO LOOK AT", picture.problems.len());
         entry(out, &format!("stroke=\"{PROBLEM}\" stroke-width=\"2\""), &text, "");
-        for (place, what) in picture.problems.iter().take(LEGEND.1) {
+        for Place { at: place, what, .. } in picture.problems.iter().take(LEGEND.1) {
             let where_ = format!("X{:.2} Y{:.2}", place.x, place.y);
             entry(out, "stroke=\"none\"", &where_, what);
         }
@@ -357,6 +365,7 @@ mod tests {
     use super::*;
     use geom::region::Fill;
     use pcb::job::{Heights, program};
+    use pcb::plan::PlaceKind;
     use pcb::{Cut, Cutter, Operation, Segment, Tool};
 
     #[test]
@@ -381,7 +390,12 @@ mod tests {
             holes: &[hole],
             program: &program,
             widths: &[1.0],
-            problems: &[(Vec2::splat(12.0), "too narrow".into())],
+            problems: &[Place {
+                at: Vec2::splat(12.0),
+                kind: PlaceKind::Joined,
+                what: "too narrow".into(),
+            }],
+            rest: &[],
             turning: Some(Axis::X(10.0)),
         };
         let svg = board("disc", &picture);

@@ -470,6 +470,7 @@ impl Shop<'_> {
             program: &toolpath.program,
             widths: &widths,
             problems: &work.places,
+            rest: &work.rest,
             turning: self.is_turned.then_some(*axis),
         };
         let (posted, picture) = rayon::join(

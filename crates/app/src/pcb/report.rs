@@ -5,12 +5,12 @@ use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
 use pcb::board::{Axis, Face};
-use pcb::plan::{Part, Settings};
+use pcb::plan::{Part, Place, Settings};
 use program::Diagnostic;
 use serde_json::{Value, json};
 
 /// The most places that a summary lists.
-const MOST_PLACES: usize = 12;
+const MOST_PLACES: usize = 10;
 
 /// What is reported: in rows for a person, in JSON for a machine.
 pub struct Report {
@@ -56,11 +56,11 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         let why = left.findings().next().map_or_else(String::new, |found| found.message);
         ("left out", format!("{}.nc: {why}", left.part.name()))
     }));
-    let places = programs.iter().flat_map(|made| {
-        made.work.places.iter().map(|(place, what)| (made.name.as_str(), *place, what))
-    });
-    let shown = |(name, place, what): (&str, geom::Vec2, &String)| {
-        format!("{name}, X{:.3} Y{:.3}: {what}", place.x, place.y)
+    let places = programs
+        .iter()
+        .flat_map(|made| made.work.places.iter().map(|place| (made.name.as_str(), place)));
+    let shown = |(name, Place { at, what, .. }): (&str, &Place)| {
+        format!("{name}, X{:.3} Y{:.3}: {what}", at.x, at.y)
     };
     rows.extend(places.clone().take(MOST_PLACES).map(|place| ("look at", shown(place))));
     let more = places.clone().count().saturating_sub(MOST_PLACES);
@@ -157,7 +157,7 @@ impl Program {
     }
 
     fn describe(&self) -> Value {
-        let place = |(place, what): &(geom::Vec2, String)| json!({ "x": place.x, "y": place.y, "what": what });
+        let place = |Place { at, kind, what }: &Place| json!({ "x": at.x, "y": at.y, "kind": kind.name(), "what": what });
         let account = &self.posted.account;
         let mut data = account.data.clone();
         if let Some(data) = data.as_object_mut() {

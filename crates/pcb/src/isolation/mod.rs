@@ -7,19 +7,26 @@
 //! Where two conductors are nearer to each other than the cut is wide, the passes run around both, and what
 //! is between them stays. Such a gap is found by the line in its middle: a [`NarrowGap`], which is left
 //! out or cut along that line, as the user says. What that does to thin copper is reported: a conductor that it
-//! leaves in pieces is [`Severed`].
+//! leaves in pieces is [`Severed`]. A [`Slot`] within one conductor that the cut does not enter is reported too.
 
+mod bite;
 mod field;
 mod gap;
 mod lines;
 mod middle;
 mod severed;
+mod slot;
+mod swept;
 
-pub use gap::{FITS, NarrowGap};
+pub use bite::MOST_BITE;
+pub use gap::{FITS, Fate, NarrowGap};
 pub use severed::{Severed, severed};
+pub use slot::Slot;
+
+pub(crate) use bite::Bite;
+pub(crate) use gap::{cuts, decide};
 
 use crate::{Copper, Cutter, Path};
-use field::Field;
 use geom::region::{Index, Region, RegionError};
 use program::{Diagnostic, Rule};
 
@@ -55,6 +62,9 @@ pub enum Direction {
 /// What is done in gaps that are narrower than the cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Narrow {
+    /// A cut down the middle where it takes no more than [`MOST_BITE`] mm, and a tenth of the copper behind the edge, from
+    /// either side; else nothing.
+    Bite,
     /// Nothing: the conductors stay joined there.
     LeaveOut,
     /// A cut down the middle, which takes as much from the one as from the other.
@@ -69,6 +79,12 @@ pub struct Isolated {
     pub paths: Vec<Path>,
     /// Where the cut is too wide, whether it is made or not; the narrowest first.
     pub narrow: Vec<NarrowGap>,
+    /// Slots within conductors which the tool does not enter; the longest first.
+    pub slots: Vec<Slot>,
+    /// Copper that stays between conductors, and in slots.
+    pub unreached: Region,
+    /// Whether the paths go around all copper together, and none is between conductors.
+    pub is_around_all: bool,
     /// Which conductors the cuts down the middle of gaps leave in pieces.
     pub severed: Vec<Severed>,
 }
@@ -89,15 +105,22 @@ impl Isolation {
         copper: &Copper,
         area: Option<&Region>,
     ) -> Result<Isolated, Box<Diagnostic>> {
-        let (paths, gaps) =
-            rayon::join(|| self.passes(copper), || gap::gaps(&Field::new(copper), self.width()));
-        let mut paths = paths.map_err(too_large)?;
-        let mut gaps = gaps.map_err(|_| too_wide(self.width()))?;
-        let mut middles = match self.narrow {
-            Narrow::LeaveOut => Vec::new(),
-            Narrow::Middle => gaps.narrow.iter().filter_map(|gap| gap.middle.clone()).collect(),
-        };
-        paths.append(&mut gaps.fitting);
+        let width = self.width();
+        let (passes, gaps) = rayon::join(
+            || self.passes(copper),
+            || gap::gaps(&Bite::new(copper, width, self.narrow), width),
+        );
+        let (around, mut paths) = passes.map_err(too_large)?;
+        let mut gaps = gaps.map_err(|_| too_wide(width))?;
+        let is_around_all = around.rings().count() == 1 && gaps.fitting.is_empty();
+        paths.append(&mut gaps.fitting.clone());
+        decide(&mut gaps.narrow, &paths, width);
+        let mut middles: Vec<Path> = cuts(&gaps.narrow).cloned().collect();
+        let is_around_all = is_around_all && middles.is_empty();
+        gaps.fitting.extend(middles.iter().cloned());
+        let unreached =
+            slot::unreached(copper, &around, &gaps.fitting, width).map_err(too_large)?;
+        let slot::Unreached { mut slots, region: unreached } = unreached;
         if let Some(area) = area.map(Index::new) {
             let within = |path: &Path| path.within(&area);
             (paths, middles) = (
@@ -105,15 +128,17 @@ impl Isolation {
                 middles.iter().flat_map(within).collect(),
             );
             gaps.narrow.retain(|gap| area.island_at(gap.at).is_some());
+            slots.retain(|slot| area.island_at(slot.at).is_some());
         }
-        let severed = severed(copper, &middles, self.width())?;
+        let severed = severed(copper, &middles, width)?;
         paths.append(&mut middles);
-        Ok(Isolated { paths, narrow: gaps.narrow, severed })
+        Ok(Isolated { paths, narrow: gaps.narrow, slots, unreached, is_around_all, severed })
     }
 
-    /// All passes around the copper.
-    fn passes(&self, copper: &Copper) -> Result<Vec<Path>, RegionError> {
+    /// What the middle of the tool stays out of, and all passes around the copper.
+    fn passes(&self, copper: &Copper) -> Result<(Region, Vec<Path>), RegionError> {
         let mut paths = Vec::new();
+        let mut first = None;
         for pass in 0..self.passes {
             let apart = self.width() * (0.5 + pass as f64 * (1.0 - self.overlap));
             let around = copper.region.offset(apart)?;
@@ -124,8 +149,9 @@ impl Isolation {
                     Direction::Conventional | Direction::Either => path,
                 },
             ));
+            first.get_or_insert(around);
         }
-        Ok(paths)
+        Ok((first.unwrap_or_default(), paths))
     }
 }
 

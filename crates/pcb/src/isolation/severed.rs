@@ -1,10 +1,11 @@
 //! Conductors that cuts down the middle of gaps leave in pieces.
 
+use super::slot::strokes;
 use super::too_large;
 use crate::report::Outcome;
 use crate::{Copper, Path};
 use geom::Vec2;
-use geom::region::{Cap, Index, Island, Region, RegionError};
+use geom::region::{Index, Island};
 
 /// How far inside a boundary it is certain to which island a place belongs, mm.
 const INSIDE: f64 = 0.001;
@@ -28,7 +29,8 @@ pub fn severed(copper: &Copper, paths: &[Path], width: f64) -> Outcome<Vec<Sever
     if paths.is_empty() {
         return Ok(Vec::new());
     }
-    let left = left(copper, paths, width).map_err(too_large)?;
+    let cut = strokes(paths, width).map_err(too_large)?;
+    let left = copper.region.difference(&cut).map_err(too_large)?;
     let index = Index::new(&copper.region);
     let islands = copper.region.islands();
     // Of each island how many pieces there are, and the smallest.
@@ -49,14 +51,6 @@ pub fn severed(copper: &Copper, paths: &[Path], width: f64) -> Outcome<Vec<Sever
             Some(Severed { island, pieces, at: at.or_else(|| place_in(copper))? })
         })
         .collect())
-}
-
-/// The copper that a tool of `width` mm along `paths` does not take.
-fn left(copper: &Copper, paths: &[Path], width: f64) -> Result<Region, RegionError> {
-    let elements = paths.iter().flat_map(Path::elements);
-    let strokes: Result<Vec<Region>, _> =
-        elements.map(|element| Region::stroke(element, width, Cap::Round)).collect();
-    copper.region.difference(&Region::union_of(&strokes?)?)
 }
 
 /// A point in an island; none where the island is only a sliver.

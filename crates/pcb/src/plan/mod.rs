@@ -7,7 +7,7 @@ mod work;
 
 pub use settings::*;
 pub use setup::Setup;
-pub use work::Work;
+pub use work::{Place, PlaceKind, Work};
 
 use crate::Board;
 use crate::board::{Artwork, Face, Layer};

@@ -220,7 +220,7 @@ impl Default for Isolation {
             passes: 1,
             overlap: 0.25,
             direction: Direction::Climb,
-            narrow: Narrow::LeaveOut,
+            narrow: Narrow::Bite,
             isolate: Isolate::Contours,
         }
     }

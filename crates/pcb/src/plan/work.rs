@@ -3,7 +3,9 @@
 use super::{Isolate, Part, Settings, Setup};
 use crate::drilling::{Drilling, Mill, Slots};
 use crate::gerber::Image;
-use crate::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
+use crate::isolation::{
+    Direction, Fate, Isolated, Isolation, Narrow, NarrowGap, Severed, Slot, severed,
+};
 use crate::outline::{Outline, Tabs};
 use crate::setting::shown;
 use crate::tour::Tour;
@@ -33,10 +35,51 @@ const RINGS_OVERLAP: f64 = 0.4;
 pub struct Work {
     /// Tool by tool.
     pub operations: Vec<Operation>,
-    /// Places to look at, and why.
-    pub places: Vec<(Vec2, String)>,
+    /// Places to look at; of each kind the worst first.
+    pub places: Vec<Place>,
+    /// What stays that should not.
+    pub rest: Vec<Region>,
     /// What is odd about it.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// A place to look at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Where, mm.
+    pub at: Vec2,
+    /// Why.
+    pub kind: PlaceKind,
+    /// What is there.
+    pub what: String,
+}
+
+/// Why a place is to be looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaceKind {
+    /// Two nets stay joined.
+    Joined,
+    /// A slot within a net is not cut.
+    Slot,
+    /// A cut down the middle of a gap takes copper from both nets.
+    Bitten,
+    /// A cut leaves a net in pieces.
+    Severed,
+    /// Something is not made, since the tool is too wide.
+    NotMade,
+}
+
+impl PlaceKind {
+    /// What it is called in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            PlaceKind::Joined => "joined",
+            PlaceKind::Slot => "slot",
+            PlaceKind::Bitten => "bitten",
+            PlaceKind::Severed => "severed",
+            PlaceKind::NotMade => "not-made",
+        }
+    }
 }
 
 impl Work {
@@ -137,56 +180,140 @@ impl Worker<'_> {
             narrow: settings.narrow,
         };
         let isolated = isolation.isolate(copper, None)?;
-        tell_severed(work, copper, &isolated.severed);
-        self.narrow(work, copper, &isolated.narrow, isolation.width())?;
-        Ok(isolated.paths)
+        let Isolated { paths, narrow, slots, unreached, is_around_all, severed } = isolated;
+        let width = isolation.width();
+        self.narrow(work, copper, &narrow, width, is_around_all)?;
+        self.slots(work, copper, &slots, width);
+        tell_severed(work, copper, &severed);
+        work.rest.push(unreached);
+        Ok(paths)
     }
 
-    /// Tells of gaps that are too narrow; refuses where nothing would be apart.
+    /// Tells of gaps that are too narrow; refuses where nothing would be apart: all nets stay joined, and no path is
+    /// between any two.
     fn narrow(
         &self,
         work: &mut Work,
         copper: &Copper,
         gaps: &[NarrowGap],
         width: f64,
+        is_around_all: bool,
     ) -> Result<(), Vec<Diagnostic>> {
-        let Some(widest) = gaps.first().map(NarrowGap::widest_cut) else { return Ok(()) };
-        let middle = self.asked.isolation.narrow == Narrow::Middle;
-        for gap in gaps {
-            let done = match middle && gap.can_be_cut() {
-                true => format!("cut all the same: {:.3} mm thinner each", gap.thinned(width)),
-                false => String::from("left out: the cut does not part them here"),
-            };
-            let [a, b] = gap.islands.map(|island| net(copper, island));
-            work.places.push((
-                gap.at,
-                format!(
-                    "{a} and {b} are {:.3} mm apart over {:.2} mm, {done}",
-                    gap.width, gap.length
-                ),
-            ));
-        }
-        let help = match (widest > 0.0, middle) {
-            (true, true) => format!("a tool of {widest:.3} mm fits everywhere"),
-            (true, false) => {
-                format!("a tool of {widest:.3} mm fits everywhere; or cut them by --narrow middle")
-            }
-            (false, _) => String::from("where copper touches no tool fits: look at the board"),
+        let of = |fate: Fate| gaps.iter().filter(move |gap| gap.fate == fate);
+        let sum = |fate: Fate| -> f64 { of(fate).map(|gap| gap.length).sum() };
+        let nets = |gap: &NarrowGap| gap.islands.map(|island| net(copper, island)).join(" and ");
+        let too_narrow = |fate: Fate| {
+            let gaps = counted(of(fate).count(), "gap");
+            format!("{gaps} narrower than the cut of {width:.3} mm")
         };
-        let left: Vec<&NarrowGap> =
-            gaps.iter().filter(|gap| !middle || !gap.can_be_cut()).collect();
-        if all_joined(copper, &left) {
-            let message = format!(
-                "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
-                 nothing would be isolated"
+        let joined: Vec<&NarrowGap> = of(Fate::Joined).collect();
+        for gap in &joined {
+            let NarrowGap { width, length, .. } = gap;
+            let what = format!(
+                "{} are {width:.3} mm apart over {length:.2} mm, left out: they stay joined here",
+                nets(gap)
             );
-            return Err(vec![Diagnostic::error(Rule::ToolTooWide, message).help(help)]);
+            work.places.push(Place { at: gap.at, kind: PlaceKind::Joined, what });
         }
-        let done = if middle { "cut down the middle" } else { "left out" };
-        let gaps = counted(gaps.len(), "gap");
-        let message = format!("{gaps} narrower than the cut of {width:.3} mm: {done}");
+        if let Some(widest) = joined.first().map(|gap| gap.widest_cut()) {
+            let mut help = self.fitting(widest);
+            if widest > 0.0 && self.asked.isolation.narrow != Narrow::Middle {
+                help += "; or cut them by --narrow middle, whatever it takes of the copper";
+            }
+            let is_nothing_apart = all_joined(copper, &joined);
+            if is_nothing_apart && is_around_all {
+                let message = format!(
+                    "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
+                     nothing would be isolated"
+                );
+                return Err(vec![Diagnostic::error(Rule::ToolTooWide, message).help(help)]);
+            }
+            let all = if is_nothing_apart { "; all nets are joined by them" } else { "" };
+            let message = format!(
+                "{}: left out, {:.2} mm in all{all}",
+                too_narrow(Fate::Joined),
+                sum(Fate::Joined)
+            );
+            work.warnings.push(Diagnostic::warning(Rule::NarrowGap, message).help(help));
+        }
+        let cut: Vec<&NarrowGap> = of(Fate::Cut).collect();
+        let Some(worst) = cut.first() else { return Ok(()) };
+        // Of bites, none of which is deep, the deepest stands for all.
+        let many = if self.asked.isolation.narrow == Narrow::Bite { 1 } else { cut.len() };
+        for gap in cut.iter().take(many) {
+            let what = format!(
+                "{} are {:.3} mm apart over {:.2} mm, cut all the same: {:.3} mm thinner each",
+                nets(gap),
+                gap.width,
+                gap.length,
+                gap.thinned(width)
+            );
+            work.places.push(Place { at: gap.at, kind: PlaceKind::Bitten, what });
+        }
+        let message = format!(
+            "{}: cut down the middle, {:.2} mm in all, which takes at most {:.3} mm from either side, at X {:.3} Y {:.3}",
+            too_narrow(Fate::Cut),
+            sum(Fate::Cut),
+            worst.thinned(width),
+            worst.at.x,
+            worst.at.y
+        );
+        let help = format!(
+            "nothing to do, if the copper may be so much thinner; {}",
+            self.fitting(worst.widest_cut())
+        );
         work.warnings.push(Diagnostic::warning(Rule::NarrowGap, message).help(help));
         Ok(())
+    }
+
+    /// Tells of slots within nets which the tool does not enter.
+    fn slots(&self, work: &mut Work, copper: &Copper, slots: &[Slot], width: f64) {
+        for Slot { at, island, width, length } in slots {
+            let net = net(copper, *island);
+            let what = format!(
+                "a slot of {net} is {width:.3} mm wide over {length:.2} mm: the tool does not go in"
+            );
+            work.places.push(Place { at: *at, kind: PlaceKind::Slot, what });
+        }
+        let Some(longest) = slots.first() else { return };
+        let message = format!(
+            "{} within nets narrower than the cut of {width:.3} mm: copper stays in them, over {:.2} mm in all; the longest \
+             is {:.3} mm wide, at X {:.3} Y {:.3}",
+            counted(slots.len(), "slot"),
+            slots.iter().map(|slot| slot.length).sum::<f64>(),
+            longest.width,
+            longest.at.x,
+            longest.at.y
+        );
+        let narrowest = slots.iter().map(|slot| slot.width).fold(f64::INFINITY, f64::min);
+        let help = format!(
+            "nothing to do, if they only part a net from itself; {}",
+            self.fitting(narrowest)
+        );
+        work.warnings.push(Diagnostic::warning(Rule::NarrowSlot, message).help(help));
+    }
+
+    /// Advice on a tool that cuts no wider than `widest` mm.
+    fn fitting(&self, widest: f64) -> String {
+        let depth = self.asked.isolation.depth;
+        if widest <= 0.0 {
+            return String::from("where copper touches no tool fits: look at the board");
+        }
+        let fits = format!("a cut of {widest:.3} mm fits everywhere");
+        if let Some(mill) = MILLS.iter().chain(&FINE_MILLS).find(|mill| **mill <= widest) {
+            return format!("{fits}, such as that of an end mill of {mill} mm (--tool {mill})");
+        }
+        let width =
+            |degrees: f64| Cutter::Vee { tip: VEE_TIP, angle: degrees.to_radians() }.width(depth);
+        match VEES.iter().find(|degrees| width(**degrees) <= widest) {
+            Some(degrees) => format!(
+                "{fits}, such as that of a V-bit, {:.3} mm (--vee {degrees} --tip {VEE_TIP} --depth {depth})",
+                width(*degrees)
+            ),
+            None => format!(
+                "{fits}, and no usual tool is so thin: part the nets there by hand, or change the board"
+            ),
+        }
     }
 
     /// The paths in the middle between conductors.
@@ -202,13 +329,13 @@ impl Worker<'_> {
             let help = "leave out --passes, or --isolate middle";
             return Err(vec![Diagnostic::error(Rule::Passes, message).help(help)]);
         }
-        let Division { mut paths, narrow } = crate::divided(copper, &area(board)?, width)?;
-        self.narrow(work, copper, &narrow, width)?;
-        if self.asked.isolation.narrow == Narrow::Middle {
-            let middles: Vec<Path> = narrow.into_iter().filter_map(|gap| gap.middle).collect();
-            tell_severed(work, copper, &severed(copper, &middles, width)?);
-            paths.extend(middles);
-        }
+        let asked = self.asked.isolation.narrow;
+        let Division { paths, narrow } = crate::divided(copper, &area(board)?, width, asked)?;
+        self.narrow(work, copper, &narrow, width, paths.is_empty())?;
+        let is_cut = |gap: &NarrowGap| gap.fate == Fate::Cut;
+        let middles: Vec<Path> =
+            narrow.into_iter().filter(is_cut).filter_map(|gap| gap.middle).collect();
+        tell_severed(work, copper, &severed(copper, &middles, width)?);
         Ok(paths)
     }
 
@@ -307,7 +434,7 @@ impl Worker<'_> {
         for (low, high) in &missing {
             let what =
                 format!("a cut-out of {} is not cut: the tool is too wide", size((*low, *high)));
-            work.places.push((low.midpoint(*high), what));
+            work.places.push(Place { at: low.midpoint(*high), kind: PlaceKind::NotMade, what });
         }
         let at = low.midpoint(high);
         let message = format!(
@@ -366,8 +493,10 @@ impl Worker<'_> {
     fn missing(&self, work: &mut Work, rest: &Region, what: &str) {
         for island in rest.islands() {
             let (low, high) = island.outer().extents();
-            work.places.push((low.midpoint(high), what.to_owned()));
+            let (at, what) = (low.midpoint(high), what.to_owned());
+            work.places.push(Place { at, kind: PlaceKind::NotMade, what });
         }
+        work.rest.push(rest.clone());
         if !rest.is_empty() {
             let places = counted(rest.islands().len(), "place");
             let message = format!("{places}, {:.3} mm², {what}", rest.area());
@@ -440,6 +569,15 @@ impl Worker<'_> {
 /// Widths of end mills that one can buy, mm, the widest first.
 const MILLS: [f64; 9] = [3.0, 2.0, 1.5, 1.0, 0.8, 0.6, 0.5, 0.4, 0.3];
 
+/// Widths of end mills for copper alone, mm.
+const FINE_MILLS: [f64; 1] = [0.2];
+
+/// Angles of V-bits that one can buy with a tip of [`VEE_TIP`] mm, degrees, the widest first.
+const VEES: [f64; 6] = [60.0, 45.0, 30.0, 20.0, 15.0, 10.0];
+
+/// mm.
+const VEE_TIP: f64 = 0.1;
+
 /// The board with the cut-outs that a tool of `width` mm goes into, and the others.
 fn by_size(board: &Region, width: f64) -> Result<(Region, Vec<Ring>), RegionError> {
     let (mut rings, mut small) = (Vec::new(), Vec::new());
@@ -469,7 +607,7 @@ fn tell_severed(work: &mut Work, copper: &Copper, severed: &[Severed]) {
             0 => format!("nothing is left of {net}, by a cut down the middle of a gap"),
             _ => format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
         };
-        work.places.push((*at, what));
+        work.places.push(Place { at: *at, kind: PlaceKind::Severed, what });
     }
     if let Some(first) = severed.first() {
         let message = format!(

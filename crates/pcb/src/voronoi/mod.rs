@@ -14,7 +14,7 @@ mod diagram;
 mod samples;
 mod straight;
 
-use crate::isolation::{FITS, NarrowGap};
+use crate::isolation::{Bite, FITS, Fate, Narrow, NarrowGap, cuts, decide};
 use crate::report::{Outcome, fault};
 use crate::{Copper, Path};
 use diagram::DiagramPoint;
@@ -31,17 +31,18 @@ struct TooMany;
 /// How a board is divided among its conductors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Division {
-    /// The paths of the centre of the tool.
+    /// The paths of the centre of the tool, those down the middle of gaps too.
     pub paths: Vec<Path>,
-    /// Where it would cut into copper, each with its path; the narrowest first.
+    /// Where it cuts into copper, or would, each with its path; the narrowest first.
     pub narrow: Vec<NarrowGap>,
 }
 
-/// The paths of a tool of `width` mm that divide `area` among the [conductors](Copper::conductors) of `copper`.
+/// The paths of a tool of `width` mm that divide `area` among the [conductors](Copper::conductors) of `copper`. What is done
+/// where it is wider than the gap, `narrow` says.
 ///
 /// # Errors
 /// `tool-width` where the width makes no sense; `too-much` where there are too many gaps.
-pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> {
+pub fn divided(copper: &Copper, area: &Region, width: f64, narrow: Narrow) -> Outcome<Division> {
     if !(width > 0.0 && width.is_finite()) {
         let message = format!("a tool {width} mm wide cannot divide copper");
         return Err(fault(Rule::ToolWidth, message, "give the width of the cut in mm, above 0"));
@@ -61,15 +62,24 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
     })?;
     let mut division = Division::default();
     let area = Index::new(area);
-    let fits = |ends: &[DiagramPoint]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);
+    let bite = Bite::new(copper, width, narrow);
+    let is_wide = |end: &DiagramPoint| 2.0 * end.clearance >= width - FITS;
+    let fits = |ends: &[DiagramPoint]| ends.iter().all(is_wide);
+    // Whether a piece fits, and whether it is cut all the same.
+    let kind = |ends: &[DiagramPoint]| {
+        let fits = fits(ends);
+        (fits, !fits && ends.iter().all(|end| is_wide(end) || bite.may_cut(end.at)))
+    };
     for chain in &chains {
-        for run in runs(chain, fits) {
+        for run in runs(chain, kind) {
             let path = straight::path(run.iter().map(|place| place.at));
             let paths = path.map(|path| path.within(&area)).unwrap_or_default();
             if fits(run) {
                 division.paths.extend(paths);
                 continue;
             }
+            let is_cut = run.get(..2).is_some_and(|piece| kind(piece).1);
+            let fate = if is_cut { Fate::Cut } else { Fate::Joined };
             // The narrowest place of those that are in the area, if any is.
             let outside = |place: &DiagramPoint| area.island_at(place.at).is_none();
             let narrowest = run.iter().min_by(|a, b| {
@@ -82,19 +92,25 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
                     width: 2.0 * place.clearance,
                     length: path.length(),
                     middle: Some(path.clone()),
+                    fate,
                 })
             }));
         }
     }
     division.narrow.sort_by(|a, b| a.width.total_cmp(&b.width));
+    decide(&mut division.narrow, &division.paths, width);
+    division.paths.extend(cuts(&division.narrow).cloned());
     Ok(division)
 }
 
-/// The runs of a chain along which the tool fits everywhere, or nowhere; each ends where the next begins.
-fn runs(chain: &[DiagramPoint], fits: impl Fn(&[DiagramPoint]) -> bool) -> Vec<&[DiagramPoint]> {
-    let pieces: Vec<bool> = chain.windows(2).map(fits).collect();
+/// The runs of a chain whose pieces are of one kind; each ends where the next begins.
+fn runs<Kind: PartialEq>(
+    chain: &[DiagramPoint],
+    kind: impl Fn(&[DiagramPoint]) -> Kind,
+) -> Vec<&[DiagramPoint]> {
+    let pieces: Vec<Kind> = chain.windows(2).map(kind).collect();
     let mut from = 0;
-    let run = |alike: &[bool]| {
+    let run = |alike: &[Kind]| {
         let to = from + alike.len();
         let run = chain.get(from..=to);
         from = to;

@@ -7,7 +7,9 @@ use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use toolpost_pcb::board::covered;
-use toolpost_pcb::isolation::{Direction, Isolated, Isolation, Narrow, NarrowGap, severed};
+use toolpost_pcb::isolation::{
+    Direction, Fate, Isolated, Isolation, MOST_BITE, Narrow, NarrowGap, severed,
+};
 use toolpost_pcb::{Copper, Cutter, Path, gerber};
 
 /// A cut 0.2 mm wide.
@@ -175,9 +177,7 @@ fn pads_that_touch_have_a_gap_of_nothing() {
     near(gap.width, 0.0, 1e-5);
     assert!(gap.at.distance(Vec2::X) < 1e-5);
     assert_eq!((gap.length, gap.middle.is_none(), gap.widest_cut()), (0.0, true, 0.0));
-    assert!(!gap.can_be_cut());
-    let apart = narrow(&copper(&[disc(0.0, 0.0, 1.0), disc(2.1, 0.0, 1.0)]), 0.2);
-    assert!(apart[0].can_be_cut());
+    assert_eq!(gap.fate, Fate::Joined);
 }
 
 #[test]
@@ -207,6 +207,94 @@ fn ways_across_a_track_sever_it_and_one_along_it_leaves_nothing() {
     assert_eq!(severed(&copper, &[], 0.4).unwrap(), []);
 }
 
+/// What becomes of copper with a cut of `width`.
+fn isolated(copper: &Copper, width: f64, narrow: Narrow) -> Isolated {
+    let cutter = Cutter::Cylinder { diameter: width };
+    Isolation { cutter, narrow, ..ISOLATION }.isolate(copper, None).unwrap()
+}
+
+/// Two tracks of 10 mm, one `wide` and one 1 mm wide, with a gap of 0.2 mm.
+fn pair(wide: f64) -> Copper {
+    copper(&[
+        track((0.0, 0.0), (10.0, 0.0), wide),
+        track((0.0, wide / 2.0 + 0.7), (10.0, wide / 2.0 + 0.7), 1.0),
+    ])
+}
+
+#[test]
+fn a_bite_takes_no_more_than_is_said_and_no_more_than_a_tenth_of_the_copper() {
+    // A cut of 0.25 mm takes 0.025 mm: a tenth of 0.25 mm.
+    for (wide, width, fate) in [
+        (0.3, 0.25, Fate::Cut),
+        (0.26, 0.25, Fate::Cut),
+        (0.24, 0.25, Fate::Joined),
+        // 0.03 mm and a little less, and more.
+        (1.0, 0.259, Fate::Cut),
+        (1.0, 0.262, Fate::Joined),
+    ] {
+        let Isolated { narrow, paths, severed, .. } = isolated(&pair(wide), width, Narrow::Bite);
+        let fates: Vec<Fate> = narrow.iter().map(|gap| gap.fate).collect();
+        let length: f64 = narrow.iter().filter(|gap| gap.fate == fate).map(|gap| gap.length).sum();
+        // The ends are round: there the gap grows, and a little of it may be cut in any case.
+        assert!(
+            fates.contains(&fate) && (9.9..10.6).contains(&length),
+            "{wide} {width}: {narrow:?}"
+        );
+        let along = paths.iter().filter(|path| !path.is_closed()).map(Path::length).sum::<f64>();
+        assert_eq!(along > 9.9, fate == Fate::Cut, "{wide} {width}: {along}");
+        assert_eq!(severed, []);
+    }
+}
+
+#[test]
+fn a_gap_that_grows_narrower_is_cut_as_far_as_it_may_be() {
+    // Between a track and one that leans, 0.2 mm apart at 0 and 0.1 mm at 10.
+    let lean = Element::line(Vec2::new(0.0, 1.2), Vec2::new(10.0, 1.1));
+    let copper = copper(&[
+        track((0.0, 0.0), (10.0, 0.0), 1.0),
+        Region::stroke(&lean, 1.0, Cap::Round).unwrap(),
+    ]);
+    let gaps = isolated(&copper, 0.2, Narrow::Bite).narrow;
+    let length = |fate: Fate| -> f64 {
+        gaps.iter().filter(|gap| gap.fate == fate).map(|gap| gap.length).sum()
+    };
+    // From 0.198 mm, where it is too narrow, to 0.14 mm.
+    near(length(Fate::Cut), 5.8, 0.1);
+    near(length(Fate::Joined), 4.3, 0.4);
+}
+
+#[test]
+fn a_gap_that_is_shorter_than_the_cut_is_wide_is_parted_from_its_ends() {
+    // Pads of 0.2 mm radius, 0.18 mm apart: the tool is in the middle 0.2 mm above and below of it and less.
+    let pads = |gap: f64| copper(&[disc(0.0, 0.0, 0.2), disc(0.4 + gap, 0.0, 0.2)]);
+    for (gap, fate) in [(0.19, Fate::Parted), (0.1, Fate::Joined)] {
+        // The middle of the tool stays 0.3 mm from the middles of the pads.
+        let end = (0.09f64 - (0.2 + gap / 2.0) * (0.2 + gap / 2.0)).sqrt();
+        assert_eq!(end < 0.094, fate == Fate::Parted, "{end}");
+        let [one] = &isolated(&pads(gap), 0.2, Narrow::LeaveOut).narrow[..] else { panic!() };
+        assert_eq!(one.fate, fate, "{gap}");
+    }
+}
+
+#[test]
+fn a_slot_within_a_conductor_is_found_and_a_corner_is_none() {
+    let plane = |width: f64| {
+        let slot = track((2.0, 0.0), (8.0, 0.0), width);
+        let plane = track((0.0, 0.0), (10.0, 0.0), 6.0).difference(&slot).unwrap();
+        // With a right angle.
+        copper(&[plane.union(&track((0.0, 0.0), (0.0, 9.0), 1.0)).unwrap()])
+    };
+    let Isolated { slots, unreached, narrow, .. } = isolated(&plane(0.15), 0.2, Narrow::Bite);
+    let [slot] = &slots[..] else { panic!("{slots:?}") };
+    near(slot.width, 0.15, 0.01);
+    near(slot.length, 6.0 + 0.075 * PI, 0.02);
+    assert!(slot.at.y.abs() < 0.1 && (1.9..8.1).contains(&slot.at.x), "{slot:?}");
+    near(unreached.area(), 0.15 * 6.0 + PI * 0.075 * 0.075, 0.02);
+    assert_eq!(narrow, []);
+    let Isolated { slots, unreached, .. } = isolated(&plane(0.25), 0.2, Narrow::Bite);
+    assert!(slots.is_empty() && unreached.is_empty(), "{slots:?}");
+}
+
 /// What a tool of `width` takes away along `paths`.
 fn swept(paths: &[Path], width: f64) -> Region {
     let strokes: Vec<Region> = paths
@@ -233,12 +321,13 @@ fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
         }
     }
     let cut = swept(&isolated.paths, width);
-    let most = match narrow {
-        Narrow::LeaveOut => 0.0,
-        Narrow::Middle => {
-            isolated.narrow.iter().map(|gap| (gap.length + width) * 2.0 * gap.thinned(width)).sum()
-        }
-    };
+    let made = isolated.narrow.iter().filter(|gap| gap.fate == Fate::Cut);
+    let most: f64 = made.map(|gap| (gap.length + width) * 2.0 * gap.thinned(width)).sum();
+    assert!(narrow != Narrow::LeaveOut || most == 0.0);
+    if narrow == Narrow::Bite {
+        let deep = copper.region.offset(-MOST_BITE - 0.003).unwrap().intersection(&cut).unwrap();
+        assert!(deep.area() < 1e-6, "{name}: {} mm² too deep, {:?}", deep.area(), deep.extents());
+    }
     let lost = copper.region.intersection(&cut).unwrap().area();
     // The boundary of the cut may be 2 µm off.
     let length = isolated.paths.iter().map(Path::length).sum::<f64>();
@@ -269,9 +358,10 @@ fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
     for mut together in conductors.into_values() {
         let mut reached: Vec<usize> = together.pop_first().into_iter().collect();
         while let Some(one) = reached.pop() {
-            let touching = isolated.narrow.iter().filter(|gap| {
-                gap.islands.contains(&one) && (narrow == Narrow::LeaveOut || gap.width < 1e-5)
-            });
+            let touching = isolated
+                .narrow
+                .iter()
+                .filter(|gap| gap.islands.contains(&one) && gap.fate == Fate::Joined);
             for other in touching.flat_map(|gap| gap.islands) {
                 if together.remove(&other) {
                     reached.push(other);
@@ -288,6 +378,10 @@ fn on_real_boards_nothing_is_lost_and_conductors_are_apart() {
     let coldfire = "kicad/kit-dev-coldfire-xilinx_5213/kit-dev-coldfire-xilinx_5213-F_Cu.gbr";
     for (name, width, narrow) in [
         ("kicad/StickHub/StickHub-F_Cu.gbr", 0.3, Narrow::Middle),
+        ("kicad/StickHub/StickHub-F_Cu.gbr", 0.2, Narrow::Bite),
+        (coldfire, 0.2, Narrow::Bite),
+        ("kicad/microwave/microwave-F_Cu.gbr", 0.3, Narrow::Bite),
+        ("a64/A64-OlinuXino_Rev_D-F.Cu.gbr", 0.15, Narrow::Bite),
         ("kicad/StickHub/StickHub-B_Cu.gbr", 0.3, Narrow::LeaveOut),
         ("kicad/carte_test/carte_test-F_Cu.gbr", 0.3, Narrow::Middle),
         ("kicad/ecc83-pp/ecc83-pp-B_Cu.gbr", 0.5, Narrow::Middle),
@@ -323,9 +417,9 @@ proptest! {
 
     #[test]
     fn on_any_board_nothing_is_lost_and_conductors_are_apart(
-        shapes in proptest::collection::vec(shape(), 2..12), width in 1..12u32, middle: bool
+        shapes in proptest::collection::vec(shape(), 2..12), width in 1..12u32, how in 0..3usize
     ) {
-        let narrow = if middle { Narrow::Middle } else { Narrow::LeaveOut };
+        let narrow = [Narrow::Bite, Narrow::LeaveOut, Narrow::Middle][how];
         judge("random", &copper(&shapes), f64::from(width) * 0.1, narrow);
     }
 

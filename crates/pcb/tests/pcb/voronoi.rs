@@ -5,6 +5,7 @@ use geom::Vec2;
 use geom::region::{Cap, Fill, Index, Region, Ring};
 use proptest::prelude::*;
 use toolpost_pcb::board::covered;
+use toolpost_pcb::isolation::Narrow;
 use toolpost_pcb::{Copper, Division, Path, divided, gerber};
 
 fn rectangle(low: (f64, f64), high: (f64, f64)) -> Region {
@@ -33,7 +34,7 @@ fn swept<'a>(paths: impl IntoIterator<Item = &'a Path>, width: f64) -> Region {
 /// Asserts that no path is in the copper, that all conductors are apart on the board, and that paths are in the
 /// middle.
 fn check(copper: &Copper, board: &Region, width: f64) -> Division {
-    let division = divided(copper, board, width).unwrap();
+    let division = divided(copper, board, width, Narrow::LeaveOut).unwrap();
     let cut = swept(&division.paths, width);
     // A gap that is just as wide as the tool is met to a fiftieth of it.
     let near = (width / 45.0).max(0.005);
@@ -110,7 +111,7 @@ fn islands_of_one_net_are_not_parted() {
     let mut copper = copper(&[disc(-5.0, 0.0, 2.0), disc(5.0, 0.0, 2.0)]);
     copper.nets = vec![Some("GND".into()), Some("GND".into())];
     let board = rectangle((-10.0, -4.0), (10.0, 4.0));
-    assert_eq!(divided(&copper, &board, 0.4).unwrap(), Division::default());
+    assert_eq!(divided(&copper, &board, 0.4, Narrow::LeaveOut).unwrap(), Division::default());
 }
 
 #[test]
@@ -144,7 +145,10 @@ fn widths_that_are_none_are_refused() {
     let copper = copper(&[disc(-5.0, 0.0, 2.0), disc(5.0, 0.0, 2.0)]);
     let board = rectangle((-10.0, -4.0), (10.0, 4.0));
     for width in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(divided(&copper, &board, width).unwrap_err().rule, "tool-width");
+        assert_eq!(
+            divided(&copper, &board, width, Narrow::LeaveOut).unwrap_err().rule,
+            "tool-width"
+        );
     }
 }
 

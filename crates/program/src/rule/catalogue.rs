@@ -1059,6 +1059,10 @@ rules! {
         "Gaps between conductors are narrower than the cut."
         "use a narrower tool, or cut the gaps all the same by `--narrow middle`"
         "A gap of 0.15 mm with a cut of 0.2 mm";
+    NarrowSlot "narrow-slot" []
+        "Slots within a conductor are narrower than the cut: copper stays in them."
+        "nothing to do, if they only part a net from itself; else use a narrower tool"
+        "A slot of 0.3 mm in a plane with a cut of 0.4 mm";
     Nesting "nesting" ["call-depth"]
         "Calls, loops or brackets lie too deep within each other."
         "use fewer levels within each other"
@@ -1888,7 +1892,7 @@ rules! {
         "a line is like `T1 P1 Z25 D6 ;end mill`, lengths in mm"
         "`T1 P1 Z`";
     ToolTooWide "tool-too-wide" []
-        "A tool is too wide for every gap between conductors."
+        "A tool is too wide for every gap between conductors: nothing would be isolated."
         "use a narrower `--tool`, or cut gaps down the middle by `--narrow middle`"
         "A tool of 3 mm for a board with gaps of 0.2 mm";
     ToolTwice "tool-twice" []

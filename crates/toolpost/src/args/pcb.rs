@@ -149,7 +149,12 @@ const DIRECTIONS: [Choice<Direction>; 2] = [
 ];
 
 /// Values of `--narrow`.
-const NARROW: [Choice<Narrow>; 2] = [
+const NARROW: [Choice<Narrow>; 3] = [
+    (
+        "bite",
+        "A cut down the middle where it takes no more than 0.03 mm, and a tenth of the copper there, from either side; else nothing",
+        Narrow::Bite,
+    ),
     ("leave-out", "Nothing: the nets stay joined there", Narrow::LeaveOut),
     ("middle", "A cut down the middle, which takes some copper from both", Narrow::Middle),
 ];
@@ -234,7 +239,7 @@ pub struct Isolation {
     #[arg(long, value_name = "HOW", default_value = "climb", value_parser = choice(&DIRECTIONS))]
     pub direction: Direction,
     /// What is done between nets where the tool is wider than the gap.
-    #[arg(long, value_name = "HOW", default_value = "leave-out", value_parser = choice(&NARROW))]
+    #[arg(long, value_name = "HOW", default_value = "bite", value_parser = choice(&NARROW))]
     pub narrow: Narrow,
     /// Where the cuts are.
     #[arg(long, value_name = "HOW", default_value = "contours", value_parser = choice(&ISOLATE))]

@@ -328,6 +328,45 @@ fn a_narrow_gap_is_left_out_or_cut_down_its_middle() {
         reported["places"][0]["what"].as_str().unwrap().contains("0.050 mm thinner"),
         "{reported}"
     );
+    // A tenth of 2 mm is more than 0.03 mm; a cut of 0.35 mm takes 0.025 mm from both.
+    let bite = Made::of(&folder, "board", "grbl-3018", &["--tool", "0.35", "--only", "front"]);
+    // As long as the squares, and at both ends to where it fits or is cut from there.
+    assert!((2.0..2.2).contains(&between(&bite)), "{}", between(&bite));
+    assert!(
+        bite.said.err.contains(
+            "warning[narrow-gap]: 1 gap narrower than the cut of 0.350 mm: cut down the middle, 2."
+        ) && bite.said.err.contains("which takes at most 0.025 mm from either side")
+            && !bite.said.err.contains("left out"),
+        "{}",
+        bite.said.err
+    );
+    let reported = bite.report_of("front");
+    assert_eq!(reported["places"][0]["kind"], "bitten");
+    let left = ["--tool", "0.35", "--narrow", "leave-out", "--only", "front"];
+    // But for where the paths around both come together.
+    assert!(between(&Made::of(&folder, "board", "grbl-3018", &left)) < 0.1);
+}
+
+#[test]
+fn slots_within_a_net_and_a_tool_that_one_can_buy_are_named() {
+    let folder = small();
+    // A plane of 8 x 6 mm with a slot of 0.3 mm, 5 mm long, and a pad far away.
+    let plane = "G36*\nX1000Y1000D02*\nX9000D01*\nY7000D01*\nX5150D01*\nY2000D01*\nX4850D01*\nY7000D01*\nX1000D01*\nY1000D01*\n\
+                 G37*\nD10*\nX14000Y5000D03*\n";
+    front(&folder, plane);
+    let made = made(&folder, &["--only", "front"]);
+    let said = &made.said.err;
+    assert!(
+        said.contains("warning[narrow-slot]: 1 slot within nets narrower than the cut"),
+        "{said}"
+    );
+    assert!(said.contains("is 0.300 mm wide"), "{said}");
+    assert!(said.contains("an end mill of 0.3 mm (--tool 0.3)"), "{said}");
+    let reported = made.report_of("front");
+    let place = &reported["places"][0];
+    assert_eq!(place["kind"], "slot");
+    let (x, y) = (place["x"].as_f64().unwrap(), place["y"].as_f64().unwrap());
+    assert!((x - 5.0).abs() <= 0.151 && (1.9..7.1).contains(&y), "{x} {y}");
 }
 
 #[test]
