@@ -28,7 +28,7 @@
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what has been output to the control; `coordinate_mode` brings the tool into its
 //! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire is inclined,
-//! `contour` finds out whether a tool can follow a contour that the control offsets,
+//! `contour` finds out whether a tool can follow a contour that the control offsets, `center` offsets it for a machine that cannot,
 //! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
 //! its way.
 
@@ -39,6 +39,11 @@ mod arm;
 mod around;
 mod away;
 mod catalogue;
+#[expect(
+    clippy::wildcard_enum_match_arm,
+    reason = "what is not named is refused, or moves nothing"
+)]
+mod center;
 mod contour;
 mod coordinate_mode;
 mod cycles;
@@ -96,7 +101,13 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
         return Err(errors);
     }
     let mut output = match robot(machine) {
-        Some(robot) => arm::write(program, machine, robot)?,
+        Some(robot) => {
+            let centered = center::centered(program).map_err(|found| vec![*found])?;
+            let (centered, warning) = centered.unzip();
+            let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot)?;
+            output.warnings.extend(warning);
+            output
+        }
         None => write_moves(program, machine)?,
     };
     let warnings: Vec<Diagnostic> = warnings;

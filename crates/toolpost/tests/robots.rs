@@ -297,17 +297,152 @@ fn a_path_of_the_centre_with_compensation_is_posted_as_it_is_and_no_other_is() {
     let warnings = post::write(&center, &machine).unwrap().warnings;
     let warned: Vec<_> = warnings.iter().map(|found| (found.rule.name(), found.line)).collect();
     assert_eq!(warned, [("compensated-path", 10)]);
-    for (path, rule) in
-        [(None, "compensated-path"), (Some(CompensatedPath::Contour), "compensation-unsupported")]
-    {
-        let source = compensated(path);
-        let found = post::write(&source, &machine).unwrap_err();
-        assert_eq!((found[0].rule.name(), found[0].line), (rule, 10));
-        // The centre on the contour would cut 3 mm too deep: the judge refuses the same text.
-        let report = proof_of(&source, &machine, &text);
-        assert!(!report.proven, "{path:?}");
-        assert_eq!(report.mismatches[0].rule.name(), "compensated-path");
+    let unknown = compensated(None);
+    let found = post::write(&unknown, &machine).unwrap_err();
+    assert_eq!((found[0].rule.name(), found[0].line), ("compensated-path", 10));
+    let report = proof_of(&unknown, &machine, &text);
+    assert!(!report.proven);
+    assert_eq!(report.mismatches[0].rule.name(), "compensated-path");
+    // The centre on the contour would cut 3 mm too deep: the judge refuses the same text.
+    let contour = compensated(Some(CompensatedPath::Contour));
+    let report = proof_of(&contour, &machine, &text);
+    assert!(!report.proven);
+    assert_eq!(report.mismatches[0].rule.name(), "compensation");
+}
+
+fn contour(text: &str) -> Program {
+    Program { compensated_path: Some(CompensatedPath::Contour), ..source(text) }
+}
+
+/// Where lines and arcs end.
+fn ends(machine: &Machine, text: &str) -> Vec<Vec3> {
+    let dialect = Dialect::named(&machine.reader).unwrap();
+    let cell = machine.cell.as_ref().unwrap();
+    let mut base = geom::Frame::IDENTITY;
+    let of = |event: Event| match event.action {
+        Action::Arm(ArmAction::Base(Some(frame))) => {
+            base = frame;
+            None
+        }
+        Action::Arm(ArmAction::Move(motion)) => match motion.path {
+            ArmPath::Line(end) | ArmPath::Arc { end, .. } => {
+                Some((cell.part.inverse() * base * end).translation)
+            }
+            ArmPath::Joints(_) | ArmPath::Point(_) => None,
+        },
+        _ => None,
+    };
+    robot::events(dialect, text).into_iter().filter_map(of).collect()
+}
+
+/// Whether the points come one behind the other, within 2 µm.
+fn passes(ends: &[Vec3], points: &[[f64; 3]]) -> bool {
+    let points: Vec<Vec3> = points.iter().map(|point| Vec3::from_array(*point)).collect();
+    ends.windows(points.len())
+        .any(|ends| ends.iter().zip(&points).all(|(end, point)| end.distance(*point) < 2e-3))
+}
+
+/// Each robot of another language.
+const LANGUAGES: [&str; 4] =
+    ["kuka-kr6-r900", "universal-ur5e", "fanuc-lrmate-200id-mill", "abb-irb120-mill"];
+
+#[test]
+fn a_contour_is_offset_by_the_radius_of_the_tool_and_the_way_of_its_centre_is_judged() {
+    let source = contour(COMPENSATED);
+    for name in LANGUAGES {
+        let machine = machine::load(name).unwrap();
+        let text = proven(&source, &machine);
+        // By hand: 3 mm to the left, the inner corner at X60 Y0 at the crossing, out to X60 Y60.
+        let points = [[10.0, 3.0, -2.0], [57.0, 3.0, -2.0], [57.0, 40.0, -2.0], [60.0, 60.0, -2.0]];
+        assert!(passes(&ends(&machine, &text), &points), "{text}");
     }
+    let machine = kuka();
+    let text = proven(&source, &machine);
+    let report = proof_of(&source, &machine, &text);
+    assert_eq!(report.compared.contours, 1);
+    let warnings = post::write(&source, &machine).unwrap().warnings;
+    assert!(warnings.iter().any(|found| found.rule.name() == "compensated-path"
+        && found.line == 10
+        && found.message.contains("radius of 3 mm")));
+    // 0.1 mm too near, an inner corner that is overrun, a way out too early, and a feed of another element.
+    for (from, to, rule) in [
+        ("Y 3.000", "Y 2.900", "compensation"),
+        ("LIN {X 57.000,Y 3.000", "LIN {X 58.000,Y 3.000", "compensation"),
+        ("X 57.000,Y 40.000", "X 57.000,Y 39.000", "compensation"),
+        ("$VEL.CP=0.020000", "$VEL.CP=0.030000", "feed"),
+    ] {
+        assert!(text.contains(from), "{from}: {text}");
+        let report = proof_of(&source, &machine, &text.replace(from, to));
+        let found = report.mismatches.first().map(|found| found.rule.name());
+        assert_eq!(found, Some(rule), "{from}");
+    }
+}
+
+#[test]
+fn around_outer_corners_the_centre_goes_by_an_arc_in_two_depths_and_up_from_where_it_is() {
+    // Around a square of 40 mm on its outside, clockwise, with a tool of 10: down, around, deeper, around once more; then straight up.
+    let text = "PARTNO/JOB\nUNITS/MM\nCUTTER/10\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/-20,20,50\nFEDRAT/MMPM,300\n\
+GOTO/-20,20,-2\nCUTCOM/LEFT\nFEDRAT/MMPM,1200\nGOTO/0,20,-2\nGOTO/0,40,-2\nGOTO/40,40,-2\nGOTO/40,0,-2\nGOTO/0,0,-2\nGOTO/0,20,-2\n\
+FEDRAT/MMPM,300\nGOTO/0,20,-4\nFEDRAT/MMPM,1200\nGOTO/0,40,-4\nGOTO/40,40,-4\nGOTO/40,0,-4\nGOTO/0,0,-4\nGOTO/0,20,-4\nCUTCOM/OFF\n\
+RAPID\nGOTO/0,20,50\nFINI\n";
+    let source = contour(text);
+    for name in LANGUAGES {
+        let machine = machine::load(name).unwrap();
+        let text = proven(&source, &machine);
+        let ends = ends(&machine, &text);
+        for depth in [-2.0, -4.0] {
+            let around = [
+                [-5.0, 20.0, depth],
+                [-5.0, 40.0, depth],
+                [0.0, 45.0, depth],
+                [40.0, 45.0, depth],
+                [45.0, 40.0, depth],
+                [45.0, 0.0, depth],
+                [40.0, -5.0, depth],
+                [0.0, -5.0, depth],
+                [-5.0, 0.0, depth],
+                [-5.0, 20.0, depth],
+            ];
+            assert!(passes(&ends, &around), "{name} {ends:?}\n{text}");
+        }
+        let report = proof_of(&source, &machine, &text);
+        assert!(report.proven);
+    }
+}
+
+#[test]
+fn a_contour_into_which_the_tool_does_not_fit_is_refused_with_its_line() {
+    let machine = kuka();
+    let refused = |from: &str, to: &str, line: u32, what: &str| {
+        assert!(COMPENSATED.contains(from), "{from}");
+        let found = post::write(&contour(&COMPENSATED.replace(from, to)), &machine).expect_err(to);
+        assert!(found[0].message.contains(what), "{}", found[0]);
+        assert_eq!((found[0].rule.name(), found[0].line), ("compensation", line), "{}", found[0]);
+    };
+    refused("CUTTER/6\n", "", 9, "no radius of the tool");
+    // A bulge of 5.9 mm over the first side, three elements on: the tool has 6.
+    let bulge = "GOTO/60,20,-2\nGOTO/40,20,-2\nGOTO/40,5.9,-2\nGOTO/30,5.9,-2\nGOTO/30,20,-2\nGOTO/0,20,-2\nCUTCOM/OFF\nGOTO/-20,20,-2\n";
+    refused(
+        "GOTO/60,40,-2\nCUTCOM/OFF\nGOTO/60,60,-2\n",
+        bulge,
+        13,
+        "between this element and that of line 1",
+    );
+    let wide = COMPENSATED
+        .replace("GOTO/60,40,-2\nCUTCOM/OFF\nGOTO/60,60,-2\n", &bulge.replace("5.9", "6.1"))
+        .replace("60,60,50", "-20,20,50");
+    proven(&contour(&wide), &machine);
+    // A step in of 2 mm between two inner corners, and an arc of radius 2 around the inside.
+    refused("GOTO/60,40,-2\n", "GOTO/60,2,-2\nGOTO/50,2,-2\n", 14, "does not fit");
+    refused(
+        "GOTO/60,40,-2\n",
+        "CIRCLE/60,2,-2,0,0,1,2\nGOTO/62,2,-2\nGOTO/62,40,-2\n",
+        15,
+        "an arc of radius 2",
+    );
+    let rapid = COMPENSATED.replace("GOTO/60,0,-2\n", "RAPID\nGOTO/60,0,-2\n");
+    let found = post::write(&contour(&rapid), &machine).unwrap_err();
+    assert_eq!((found[0].rule.name(), found[0].line), ("compensation-active", 14));
 }
 
 #[test]

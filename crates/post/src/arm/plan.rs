@@ -231,24 +231,16 @@ struct Walk<'a, 'm> {
 }
 
 /// # Errors
-/// No robot has cutter compensation: the path of the tool's centre alone goes without, and what the source gives has to be known to be one.
+/// No robot has cutter compensation: which path the coordinates are has to be known. A contour has been offset before (`crate::center`).
 fn check_path(path: Option<CompensatedPath>) -> Outcome {
-    let (rule, message, help) = match path {
-        Some(CompensatedPath::Center) => return Ok(()),
-        Some(CompensatedPath::Contour) => (
-            Rule::CompensationUnsupported,
-            "the source gives the contour with cutter compensation, and a robot has none",
-            "have the CAM system write the path of the tool's centre (of an NC program: its tool table, `--tools`)",
-        ),
-        None => (
-            Rule::CompensatedPath,
-            "nothing in the source shows whether its coordinates with compensation are the path of the tool's centre, which a robot \
-             follows, or the contour",
-            "`--cutcom centre` or `--cutcom contour` (in Python `cutcom`): look at the setting of the CAM system, or compare with the \
-             drawing",
-        ),
-    };
-    Err(Diagnostic::error(rule, message).help(help).into())
+    if path.is_some() {
+        return Ok(());
+    }
+    let message = "nothing in the source shows whether its coordinates with compensation are the path of the tool's centre, which a robot \
+                   follows, or the contour";
+    let help = "`--cutcom centre` or `--cutcom contour` (in Python `cutcom`): look at the setting of the CAM system, or compare with the \
+                drawing";
+    Err(Diagnostic::error(Rule::CompensatedPath, message).help(help).into())
 }
 
 impl<'a> Walk<'a, '_> {

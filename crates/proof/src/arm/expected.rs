@@ -1,11 +1,14 @@
 //! What the source wants, step by step.
 
-use geom::Arc;
+use crate::compensation::centre::NOWHERE;
+use crate::compensation::trail::{CompensatedMoves, Piece, Terms};
+use crate::resolved_pose::PartialPose;
+use geom::{Arc, Vec3};
 use machine::Machine;
 use program::lowering::feed_per_minute;
 use program::{
-    Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Outcome, Output, PathMode, Pose,
-    Program, Rule, Spindle, Tool,
+    CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Outcome,
+    Output, PathMode, Pose, Program, Rule, Spindle, Tool,
 };
 
 /// How far the radii at the ends of a source's arc may differ, as a part of them.
@@ -34,6 +37,8 @@ pub(super) enum Step {
     /// From where, and to where.
     Line(Pose, Pose),
     Arc(Box<Arc>, Pose),
+    /// The tool's centre along a contour, from the way in to the way out.
+    Contour(Box<Contour>),
     /// By rapid to a place on the axis of the hole whose last depth is this pose: above it, by no more than [`REENTRY`].
     Above(Pose),
     Home,
@@ -42,6 +47,31 @@ pub(super) enum Step {
     Stop,
     Output(Output),
     Input(Input),
+}
+
+/// A contour along which the program leads the tool's centre.
+#[derive(Clone, Debug)]
+pub(super) struct Contour {
+    pub(super) moves: CompensatedMoves,
+    pub(super) radius: f64,
+    /// 1 where the tool is on the left, -1 where it is on the right.
+    pub(super) left: f64,
+    /// Line of the source and what is on, of each piece and of the way out.
+    pub(super) states: Vec<(u32, State)>,
+    /// Where the centre is at its end.
+    pub(super) end: Pose,
+}
+
+/// A contour that is not at its end.
+struct Open {
+    line: u32,
+    side: Compensation,
+    radius: f64,
+    left: f64,
+    pieces: Vec<Piece>,
+    states: Vec<(u32, State)>,
+    /// Whether compensation is off, from the next move in the plane on.
+    leaves: bool,
 }
 
 /// What the source has switched on.
@@ -69,6 +99,10 @@ impl Expected {
             here: None,
             feed: None,
             cycle: None,
+            radius: None,
+            // A path of the centre is followed as it is.
+            offsets: source.compensated_path == Some(CompensatedPath::Contour),
+            open: None,
             state: State {
                 feed: 0.0,
                 spindle: Spindle::Off,
@@ -91,6 +125,11 @@ struct Walk<'a> {
     here: Option<Pose>,
     feed: Option<Feed>,
     cycle: Option<Cycle>,
+    /// Radius of the tool, mm, where it is known.
+    radius: Option<f64>,
+    /// Whether compensation offsets the coordinates.
+    offsets: bool,
+    open: Option<Open>,
     state: State,
 }
 
@@ -100,6 +139,9 @@ impl Walk<'_> {
     }
 
     fn record(&mut self, line: u32, op: &Op) -> Outcome {
+        if self.open.is_some() && self.along(line, op)? {
+            return Ok(());
+        }
         match op {
             Op::Rapid(to) => self.rapid(line, *to),
             Op::Line(to) => {
@@ -127,6 +169,7 @@ impl Walk<'_> {
                 // The way to the change is still one with the tool before.
                 self.push(line, Step::Tool(tool.clone()));
                 self.state.tool_length = tool.length;
+                self.radius = tool.cutting_radius();
                 (self.state.spindle, self.state.coolant) = (Spindle::Off, Coolant::Off);
                 self.here = None;
             }
@@ -148,7 +191,7 @@ impl Walk<'_> {
             Op::CycleOff => self.cycle = None,
             Op::Hole(pose) => self.hole(line, pose)?,
             Op::OptionalStop if self.machine.leaves_out("optional_stop") => {}
-            // Where it is on, the path is that of the tool's centre: see `compensation::unsettled_for_arm`.
+            Op::Compensation(side) if self.offsets => self.switch(line, *side)?,
             Op::Compensation(_)
             | Op::SurfaceSpeed(None)
             | Op::End
@@ -182,6 +225,141 @@ impl Walk<'_> {
                 return Err(Diagnostic::error(Rule::Unproven, message).into());
             }
         }
+        Ok(())
+    }
+
+    /// Compensation is switched; it holds from the next move in the plane on.
+    fn switch(&mut self, line: u32, side: Compensation) -> Outcome {
+        let left = match (side, &mut self.open) {
+            (Compensation::Off, Some(open)) => {
+                open.leaves = true;
+                return Ok(());
+            }
+            (Compensation::Off, None) => return Ok(()),
+            (Compensation::Left(_), _) => 1.0,
+            (Compensation::Right(_), _) => -1.0,
+        };
+        if let Some(open) = &self.open {
+            return match open.left == left && !open.leaves {
+                true => Ok(()),
+                false => unproven("compensation changes while it is on"),
+            };
+        }
+        let Some(radius) = self.radius else {
+            return unproven("a contour is offset, and the radius of the tool is not known");
+        };
+        let (pieces, states) = (Vec::new(), Vec::new());
+        self.open = Some(Open { line, side, radius, left, pieces, states, leaves: false });
+        Ok(())
+    }
+
+    /// A record while compensation is on, or on its way out; whether that is all of it.
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "what is not named has no place on a contour"
+    )]
+    fn along(&mut self, line: u32, op: &Op) -> Outcome<bool> {
+        let Some(open) = &self.open else { return Ok(false) };
+        let (begun, leaves) = (!open.pieces.is_empty(), open.leaves);
+        let aside = |from: Pose, to: &Pose| {
+            (to.point() - from.point()).reject_from_normalized(from.axis()).length() > NOWHERE
+        };
+        match op {
+            Op::Line(to) => {
+                let from = self.start()?;
+                let aside = aside(from, to);
+                if !begun && (leaves || !aside) {
+                    return Ok(false);
+                }
+                self.cut(from.point().distance(to.point()))?;
+                self.piece(line, (from, *to), None);
+                self.here = Some(*to);
+                if leaves && aside {
+                    self.close(Some(*to))?;
+                }
+                Ok(true)
+            }
+            Op::Arc(to) if begun && !leaves => {
+                let from = self.start()?;
+                let radius = from.point().distance(to.circle.center());
+                let arc = to.circle.arc(from.point(), to.end.point(), radius * RADII);
+                let arc = arc.map_err(|_| {
+                    Diagnostic::error(Rule::Arc, "the ends of the arc are not on its circle")
+                })?;
+                self.cut(arc.length())?;
+                self.piece(line, (from, to.end), Some(arc));
+                self.here = Some(to.end);
+                Ok(true)
+            }
+            Op::Rapid(to) if begun && leaves => {
+                let from = self.start()?;
+                let (aside, up) = (aside(from, to), (to.point() - from.point()).dot(from.axis()));
+                self.close(None)?;
+                let Some(end) = self.here.filter(|_| !aside) else { return Ok(false) };
+                self.rapid(line, end.lifted(up)?);
+                Ok(true)
+            }
+            Op::Rapid(to) if !begun => match self.here.is_some_and(|from| aside(from, to)) {
+                true => unproven("a rapid while compensation is on"),
+                false => Ok(false),
+            },
+            Op::Compensation(_)
+            | Op::Feed(_)
+            | Op::PathMode(_)
+            | Op::Spindle(_)
+            | Op::Coolant(_)
+            | Op::Frame(_)
+            | Op::Preselect(_)
+            | Op::Comment(_)
+            | Op::Message(_)
+            | Op::Operation(_)
+            | Op::EndOfOperation => Ok(false),
+            _ if !begun => Ok(false),
+            _ if leaves => {
+                self.close(None)?;
+                Ok(false)
+            }
+            _ => unproven("something else than lines and arcs while compensation is on"),
+        }
+    }
+
+    fn piece(&mut self, line: u32, (from, to): (Pose, Pose), arc: Option<Arc>) {
+        let place = |pose: Pose| PartialPose { tip: pose.point(), axis: pose.axis() };
+        let piece = Piece { line, from: place(from), to: place(to), arc };
+        let state = self.state;
+        if let Some(open) = &mut self.open {
+            open.pieces.push(piece);
+            open.states.push((line, state));
+        }
+    }
+
+    /// The contour ends: on its way out, whose end is a pose of the source, or where its last element does.
+    fn close(&mut self, exit: Option<Pose>) -> Outcome {
+        let (Some(open), Some(here)) = (self.open.take(), self.here) else { return Ok(()) };
+        let Open { line, side, radius, left, mut pieces, mut states, .. } = open;
+        let state = self.state;
+        let exit = exit.and_then(|to| Some((to, pieces.pop()?)));
+        let end = match &exit {
+            Some((to, _)) => *to,
+            None => {
+                states.push((line, state));
+                let last = pieces.iter().rev().find(|piece| {
+                    let way = piece.to.tip - piece.from.tip;
+                    way.reject_from_normalized(here.axis()).length() > NOWHERE
+                        || piece.arc.is_some()
+                });
+                let Some(last) = last.filter(|_| pieces.len() > 1) else {
+                    return unproven("compensation is on and off again with no contour between");
+                };
+                here.at(here.point() + left * radius * beside(last, here.axis()))?
+            }
+        };
+        let terms = Terms { source_line: line, side, radius: Some(radius), tool_length: None };
+        let moves =
+            CompensatedMoves { terms, before: 0, pieces, exit: exit.map(|(_, piece)| piece) };
+        let contour = Contour { moves, radius, left, states, end };
+        self.push(line, Step::Contour(Box::new(contour)));
+        self.here = Some(end);
         Ok(())
     }
 
@@ -251,6 +429,19 @@ impl Walk<'_> {
         self.state.feed = feed_per_minute(feed, length, speed);
         Ok(())
     }
+}
+
+/// To the left of the way at the end of a piece, across the tool.
+fn beside(piece: &Piece, axis: Vec3) -> Vec3 {
+    let along = match piece.arc {
+        Some(arc) => arc.normal.cross(arc.end - arc.center),
+        None => piece.to.tip - piece.from.tip,
+    };
+    axis.cross(along).normalize_or_zero()
+}
+
+fn unproven<T>(what: &str) -> Outcome<T> {
+    Err(Diagnostic::error(Rule::Unproven, format!("in the source {what}")).into())
 }
 
 /// The depths to which a cycle feeds, mm below the point of the hole.

@@ -1,6 +1,7 @@
 //! The events of a control against the steps of the source.
 
 mod between;
+mod contour;
 mod cut;
 mod joints;
 mod path;
@@ -67,6 +68,8 @@ pub(super) struct Judge<'a> {
     is_home: bool,
     /// The corner that the motion before has left open: the next one has to be a cut.
     open: Option<Rounding>,
+    /// What a contour is compared with at its end.
+    gathered: Option<contour::Gathered>,
     loaded: bool,
     changes: Changes,
     ended: bool,
@@ -111,6 +114,7 @@ impl<'a> Judge<'a> {
             standing: None,
             is_home: false,
             open: None,
+            gathered: None,
             loaded: false,
             changes: Changes {
                 by_hand: cell.tool_change.is_empty() && source.calls_several_tools(),
@@ -127,7 +131,7 @@ impl<'a> Judge<'a> {
 
     /// The report. `run` is what the control has answered.
     pub(super) fn finish(mut self, run: Outcome) -> Report {
-        if let Err(found) = run {
+        if let Err(found) = run.and_then(|()| self.ends_on_contour()) {
             self.differs(*found);
         }
         if !self.failed {
@@ -155,12 +159,18 @@ impl<'a> Judge<'a> {
     /// What differs: the run ends there.
     pub(super) fn event(&mut self, event: &Event) -> Outcome {
         let source = self.expected.get(self.next).map_or(0, |expected| expected.line);
-        self.take(event).map_err(|found| {
+        let done = match self.gather(event) {
+            Ok(true) => Ok(()),
+            Ok(false) => self.take(event),
+            Err(found) => Err(found),
+        };
+        done.map_err(|found| {
             let message = match source {
                 0 => found.message.clone(),
                 line => format!("source line {line}: {}", found.message),
             };
-            Box::new(Diagnostic { message, ..*found }.line(event.line))
+            let line = if found.line == 0 { event.line } else { found.line };
+            Box::new(Diagnostic { message, ..*found }.line(line))
         })
     }
 
@@ -308,6 +318,7 @@ impl<'a> Judge<'a> {
                 Step::Rapid(None, _)
                 | Step::Above(_)
                 | Step::Arc(..)
+                | Step::Contour(_)
                 | Step::Dwell(_)
                 | Step::Stop
                 | Step::Output(_)

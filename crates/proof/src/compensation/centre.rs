@@ -28,7 +28,7 @@ const MOST_PAIRS: usize = 30_000_000;
 const ONE: f64 = 1e-4;
 
 /// Where the path is wrong, by line of the program, and how.
-pub(super) type Fault = (u32, String);
+pub(crate) type Fault = (u32, String);
 
 /// A move in the plane.
 #[derive(Clone, Copy)]
@@ -375,9 +375,18 @@ impl PlanePaths {
         if is_above || way.element.distance(&other.element, NOWHERE) >= enough {
             return Ok(());
         }
+        // Where they are nearest or cross, and how far on both sides of that the way is too near.
         let nearest = way.element.closest(&other.element).0;
-        let points = samples(&way.element).chain([nearest]);
-        let points = points.chain(way.element.meets(&other.element, NOWHERE));
+        let meets = way.element.meets(&other.element, NOWHERE).chain([nearest]);
+        let reach = |point: Vec2| {
+            let t = way.element.nearest(point).0;
+            [0.0, 1.0]
+                .map(|end| edge(t, end, |t| other.element.nearest(way.element.at(t)).1 < enough))
+        };
+        let ends: Vec<f64> = meets
+            .flat_map(|point| reach(point).into_iter().chain([way.element.nearest(point).0]))
+            .collect();
+        let points = samples(&way.element).chain(ends.into_iter().map(|t| way.element.at(t)));
         let near = points.filter_map(|point| {
             let (t, near) = other.element.nearest(point);
             (near < enough && self.faces(other, t, own, point)).then_some(near)
@@ -543,6 +552,19 @@ impl Boxes {
             }
         }
     }
+}
+
+/// The last place from `t` towards `end` where `holds` does, which does at `t`.
+fn edge(t: f64, end: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    if holds(end) {
+        return end;
+    }
+    let (mut yes, mut no) = (t, end);
+    while (no - yes).abs() > 1e-9 {
+        let middle = (yes + no) / 2.0;
+        if holds(middle) { yes = middle } else { no = middle }
+    }
+    yes
 }
 
 /// Points of an element, both ends among them.

@@ -44,21 +44,14 @@ pub(crate) fn unsettled(source: &Program, machine: &Machine) -> Option<Diagnosti
     Some(Diagnostic::error(Rule::CompensatedPath, message).help(help))
 }
 
-/// Why no program of an arm can be compared with `source`: no robot offsets a path, so that it has to be that of the tool's centre.
+/// Why no program of an arm can be compared with `source`: which path it gives is not known. A contour is compared with where the program
+/// leads the tool's centre, since no robot offsets it.
 pub(crate) fn unsettled_for_arm(source: &Program) -> Option<Diagnostic> {
-    let line = source.compensates()?;
-    let (message, help) = match source.compensated_path {
-        Some(CompensatedPath::Center) => return None,
-        Some(CompensatedPath::Contour) => (
-            "the source gives the contour, and no robot offsets it by the tool",
-            "the path of the tool's centre from the CAM system",
-        ),
-        None => (
-            "whether the coordinates with compensation are the path of the tool's centre or the contour is not known",
-            "`--cutcom centre` or `--cutcom contour`",
-        ),
-    };
-    let message = format!("source line {line}: {message}");
+    let line = source.compensates().filter(|_| source.compensated_path.is_none())?;
+    let message = format!(
+        "source line {line}: whether the coordinates with compensation are the path of the tool's centre or the contour is not known"
+    );
+    let help = "`--cutcom centre` or `--cutcom contour`";
     Some(Diagnostic::error(Rule::CompensatedPath, message).help(help))
 }
 

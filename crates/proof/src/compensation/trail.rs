@@ -5,7 +5,7 @@ use geom::Arc;
 use program::Compensation;
 
 /// A move of the program.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     /// Line of the program.
     pub line: u32,
@@ -15,7 +15,7 @@ pub(crate) struct Piece {
 }
 
 /// What holds in a stretch.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
     /// Line of the source.
     pub source_line: u32,
@@ -28,6 +28,7 @@ pub(crate) struct Terms {
 }
 
 /// The moves from the one that switches compensation on to the one that switches it off.
+#[derive(Clone, Debug)]
 pub(crate) struct CompensatedMoves {
     pub terms: Terms,
     /// How many moves the program makes between the stretch before and this one.

@@ -77,6 +77,7 @@ impl Judge<'_> {
             }
             Step::Home
             | Step::Tool(_)
+            | Step::Contour(_)
             | Step::Dwell(_)
             | Step::Stop
             | Step::Output(_)
@@ -336,6 +337,7 @@ impl Judge<'_> {
             Step::Arc(_, to) => (to, Some(&mut self.report.compared.arcs)),
             Step::Home
             | Step::Tool(_)
+            | Step::Contour(_)
             | Step::Dwell(_)
             | Step::Stop
             | Step::Output(_)
