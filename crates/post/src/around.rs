@@ -111,10 +111,7 @@ impl Around {
             },
             |(_, _, at)| at,
         )?;
-        match &records.get(at)?.op {
-            Op::Tool(tool) => Some(tool),
-            _ => None,
-        }
+        called(&records.get(at)?.op)
     }
 }
 
@@ -129,8 +126,12 @@ fn started(op: &Op) -> Option<Spindle> {
         .filter(|spindle| *spindle != Spindle::Off)
 }
 
+fn called(op: &Op) -> Option<&Tool> {
+    if let Op::Tool(tool) = op { Some(tool) } else { None }
+}
+
 fn tool(op: &Op) -> Option<u32> {
-    if let Op::Tool(tool) = op { Some(tool.number) } else { None }
+    called(op).map(|tool| tool.number)
 }
 
 #[cfg(test)]
