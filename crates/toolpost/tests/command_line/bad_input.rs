@@ -3,6 +3,7 @@
 use crate::folder::{Folder, MACHINE, SOURCE, Said};
 use std::fs::File;
 use std::io::Write;
+use std::time::{Duration, Instant};
 
 /// Posts `source` with `machine` and expects an error of `rule` on `line` of it (0 for the whole file).
 fn refused(source: impl AsRef<[u8]>, machine: &str, code: i32, line: u32, rule: &str) -> Said {
@@ -242,6 +243,30 @@ fn a_machine_file_that_is_a_pipe_or_a_device_is_refused() {
         let said = folder.run(&["post", "part.cls", "-m", machine, "-o", "out.mpf"]);
         assert_eq!(said.code, 2, "{said:?}");
         assert!(said.err.contains("it is not a file"), "{said:?}");
+    }
+}
+
+/// Each would take minutes if every key were compared with every other.
+#[test]
+fn a_machine_file_with_very_many_unknown_names_is_refused_in_linear_time() {
+    let folder = Folder::new();
+    let lines = |count: usize, line: &str| -> String {
+        (0..count).map(|i| line.replace('#', &i.to_string())).collect()
+    };
+    for (table, line, count, rule) in [
+        ("", "k#=1\n", 300_000, "machine-file"),
+        ("[words]\n", "w#={decimals=3}\n", 50_000, "machine-word"),
+        ("[blocks]\n", "b#=\"\"\n", 50_000, "template-block"),
+    ] {
+        let text = format!("extends = \"generic-3axis-fanuc\"\n{table}{}", lines(count, line));
+        folder.write("own.toml", text);
+        let begun = Instant::now();
+        let said = folder.run(&["machines", "check", "own.toml"]);
+        assert!(
+            said.code == 2 && said.err.contains(&format!("error[{rule}]")),
+            "{table}: {said:?}"
+        );
+        assert!(begun.elapsed() < Duration::from_secs(60), "{table}: {:?}", begun.elapsed());
     }
 }
 
