@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// So many pairs of edges are looked at, and so many places taken, at most: some seconds.
-const MOST: usize = 1 << 24;
+const MOST: usize = 1 << 23;
 
 /// What is farther than the nearest by no more than this is as far, mm; corners nearer to each other than
 /// this are one.
