@@ -114,3 +114,26 @@ fn a_second_coolant_that_may_cancel_the_first_is_refused() {
         assert_eq!(coolants(dialect, CoolantFunctions::default(), &blocks), Err("coolant"));
     }
 }
+
+/// TNC 155, table of the M functions: the outputs of M13 and M14 are those of M3 and M4, and "Coolant on", that of M8.
+#[test]
+fn m13_and_m14_of_a_heidenhain_switch_the_coolant_of_m8() {
+    let own = |functions, blocks: &str| {
+        let blocks = format!("TOOL CALL 1 Z S100\n{blocks}\nM30");
+        coolants(Dialect::Klartext, functions, &blocks)
+    };
+    let usual = CoolantFunctions::default();
+    for code in ["M13", "M14"] {
+        assert_eq!(own(usual, code), Ok(vec![Coolant::Flood, Coolant::Off]));
+        // Flood is M70 on this machine, and what M8 does there, its file does not say.
+        assert_eq!(own(BUILDERS, code), Err("m-function"));
+        let mist = CoolantFunctions { mist: Some(8), ..BUILDERS };
+        assert_eq!(own(mist, code), Ok(vec![Coolant::Mist, Coolant::Off]));
+        assert_eq!(own(mist, &format!("M70\n{code}")), Err("coolant"));
+        let eight = CoolantFunctions { flood: Some(8), ..usual };
+        assert_eq!(own(eight, code), Ok(vec![Coolant::Flood, Coolant::Off]));
+        let through = CoolantFunctions { through: Some(13), ..usual };
+        let expected = if code == "M13" { Coolant::Through } else { Coolant::Flood };
+        assert_eq!(own(through, code), Ok(vec![expected, Coolant::Off]));
+    }
+}

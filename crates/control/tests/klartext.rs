@@ -154,7 +154,7 @@ const DRILLING: &str = "CYCL DEF 200 DRILLING ~
 #[test]
 fn drilling_starts_at_the_surface_and_ends_at_the_second_clearance() {
     let ops = run(&format!(
-        "{START}{DRILLING}L X+30 Y+20 FMAX M3\nCYCL CALL\nL X+80 Y+50 FMAX M99\nL Z+200 FMAX"
+        "{START}{DRILLING}L X+30 Y+20 FMAX M3\nCYCL CALL\nL X+80 Y+50 FMAX M99\nL Z+200 FMAX M30"
     ));
     let cycle = Cycle {
         kind: CycleKind::Deep,
@@ -332,7 +332,7 @@ fn the_datum_shift_is_absolute_or_incremental_and_moves_the_count() {
 fn a_dwell_is_in_seconds_and_a_tolerance_says_how_far_the_path_may_be_left() {
     let ops = run(&format!(
         "{START}CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1.5
-CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05\nCYCL DEF 32.2 HSC-MODE:1 TA5"
+CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05\nCYCL DEF 32.2 HSC-MODE:1 TA5\nM30"
     ));
     assert_eq!(ops[4], Action::Dwell(1.5));
     assert_eq!(ops[5], Action::PathMode(PathMode::Blend(0.05)));
@@ -558,6 +558,18 @@ fn nothing_happens_after_the_end() {
     assert_eq!(refused("L X+1 FMAX M30 M9").rule.name(), "program-frame");
     let error = refused(&format!("{START}{DRILLING}L X+1 FMAX M89\nL X+2 FMAX M30"));
     assert_eq!(error.rule.name(), "cycle");
+}
+
+/// TNC 155, 360: M2 and M30 stop spindle and coolant. Of END PGM no manual says so.
+#[test]
+fn end_pgm_alone_stops_neither_spindle_nor_coolant() {
+    let off = [Action::Spindle(Spindle::Off), Action::Coolant(Coolant::Off), Action::End];
+    for end in ["M30", "M2"] {
+        assert!(run(&format!("TOOL CALL 1 Z S100\nM13\n{end}")).ends_with(&off));
+    }
+    let ops = run("TOOL CALL 1 Z S100\nM13\nM90");
+    assert_eq!(ops[ops.len() - 2..], [Action::Coolant(Coolant::Flood), Action::End]);
+    assert!(run("TOOL CALL 1 Z S100\nM13\nM5\nM9").ends_with(&off));
 }
 
 #[test]

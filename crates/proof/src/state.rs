@@ -257,7 +257,26 @@ pub(crate) fn corners(
     }
 }
 
-/// The same at corners of rapids, which may be as far from their way as elsewhere.
+/// A control that is told to follow the path of cuts more closely than the source asks for: that is slower, and right.
+pub(crate) fn closer_than_asked(
+    machine: &Machine,
+    wanted: &ExpectedState,
+    running: &Running,
+) -> Option<String> {
+    let (PathMode::Blend(asked), PathMode::Blend(is)) = (wanted.path, running.path) else {
+        return None;
+    };
+    let asked = asked.max(CLOSEST).min(most_at_corners(machine));
+    (is + 1e-6 < asked).then(|| {
+        format!(
+            "the control keeps to the path within {} mm, the source asks for {} mm: the cuts are slower",
+            Number(is),
+            Number(asked)
+        )
+    })
+}
+
+/// By how much the control may leave the path at corners of rapids, which may be as far from their way as elsewhere.
 pub(crate) fn rapid_corners(machine: &Machine, running: &Running) -> Option<Difference> {
     let (most, corridor) = (most_at_corners(machine), machine.capabilities.rapid_corridor);
     match corridor > most {

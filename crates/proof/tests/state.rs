@@ -239,6 +239,34 @@ fn corners_are_cut_no_further_than_the_source_says_for_the_operation() {
     assert_eq!(judged(&mill, own, [Blend(0.02), Blend(0.0051)]), refused);
     assert_eq!(judged(&mill, own, [Blend(0.02), AsSetUp]), refused);
     assert!(judged(&mill, own, [Blend(0.02), ExactPath]).is_empty());
+    // Closer than it asks for is slower.
+    let closer = |nc: [PathMode; 2]| {
+        let ops = vec![
+            Op::PathMode(Blend(0.015)),
+            Op::Rapid(at(0.0, 0.0, 5.0)),
+            Op::Line(at(0.0, 0.0, -1.0)),
+            Op::PathMode(Blend(0.05)),
+            Op::Line(at(9.0, 0.0, -1.0)),
+            Op::Rapid(at(9.0, 0.0, 5.0)),
+        ];
+        let [first, second] = nc.map(Action::PathMode);
+        let actions = vec![
+            Action::Rapid(block(0.0, 0.0, 5.0)),
+            first,
+            Action::Line(block(0.0, 0.0, -1.0)),
+            second,
+            Action::Line(block(9.0, 0.0, -1.0)),
+            Action::Rapid(block(9.0, 0.0, 5.0)),
+        ];
+        let report = judge(&mill, &source(ops), actions);
+        proven(&report);
+        let slow = report.warnings.iter().filter(|found| found.rule == Rule::PathMode);
+        slow.map(|found| found.count).collect::<Vec<_>>()
+    };
+    assert_eq!(closer([Blend(0.015), Blend(0.02)]), [0; 0]);
+    assert_eq!(closer([Blend(0.014), Blend(0.02)]), [1]);
+    assert_eq!(closer([Blend(0.005), Blend(0.005)]), [2]);
+    assert_eq!(closer([ExactPath, ExactPath]), [0; 0]);
     // What the source does not say, and what it says beyond the machine's figure, is the machine's.
     assert!(judged(&mill, [Blend(0.005), AsSetUp], [Blend(0.005), Blend(0.02)]).is_empty());
     assert!(judged(&mill, same(Blend(0.1)), same(Blend(0.02))).is_empty());

@@ -298,6 +298,22 @@ fn a_source_that_keeps_to_the_path_is_followed() {
     }
 }
 
+/// A FANUC rounds corners as its parameters say, and no word of a program says how far; a GRBL goes through each corner, `$11` says
+/// how fast.
+#[test]
+fn a_tolerance_for_which_a_control_has_no_word_is_told() {
+    let source = source::apt::read("job.cls", BY_OPERATION.as_bytes(), &Default::default());
+    let source = source.unwrap().program;
+    for (name, is_told) in [("generic-3axis-fanuc", true), ("generic-3axis-grbl", false)] {
+        let machine = load(name).unwrap();
+        let output = post::write(&source, &machine).unwrap_or_else(|found| panic!("{found:?}"));
+        let told: Vec<_> =
+            output.warnings.iter().filter(|found| found.rule.name() == "path-mode").collect();
+        assert_eq!(!told.is_empty(), is_told, "{name}: {told:#?}");
+        assert!(told.len() <= 1, "{told:#?}");
+    }
+}
+
 #[test]
 fn what_a_source_asks_for_and_the_machine_does_not_give_is_told() {
     let silent = "extends = \"linuxcnc-mill\"\n[blocks]\nlook_ahead_on = \"\"\n";

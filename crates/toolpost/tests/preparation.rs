@@ -318,6 +318,25 @@ fn a_sinumerik_cuts_under_cycle832_and_drills_without_it() {
     assert!(!proven(&read(UPRIGHT), &unsaid).contains("CYCLE832"));
 }
 
+/// `END PGM` ends a program without `M30`, which then has to stop spindle and coolant itself.
+#[test]
+fn a_heidenhain_without_m30_leaves_on_what_it_has_not_stopped() {
+    let heidenhain = load("generic-3axis-heidenhain").unwrap();
+    let job = read(&UPRIGHT.replacen("RAPID\n", "COOLNT/FLOOD\nRAPID\n", 1));
+    let text = proven(&job, &heidenhain);
+    let last = |text: &str, function: &str| {
+        let (before, behind) = text.rsplit_once(&format!(" {function}\n")).unwrap();
+        format!("{before} M90\n{behind}")
+    };
+    let without = last(&text, "M30");
+    assert_eq!(found(&job, &heidenhain, &without), []);
+    assert_eq!(found(&job, &heidenhain, &last(&text, "M5")), [], "M30 stops the spindle");
+    for function in ["M5", "M9"] {
+        let on = last(&without, function);
+        assert_eq!(found(&job, &heidenhain, &on)[0].rule.name(), "left-on", "{function}\n{on}");
+    }
+}
+
 #[test]
 fn a_machine_may_activate_the_preset_of_its_work_offset() {
     let datum = machine("extends = \"generic-3axis-heidenhain\"\n[options]\ndatum = true\n");

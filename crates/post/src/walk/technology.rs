@@ -79,6 +79,13 @@ impl Walk<'_> {
             () => own,
         };
         self.wanted.set_path_tolerance(allowed);
+        let has_no_word = self.templates.has(BlockName::LookAheadOn) && !says && !says_exact;
+        if has_no_word && allowed == 0.0 && mode != PathMode::AsSetUp {
+            let message = "the source says how closely its path is followed: this control has no word for \
+                           it, its parameters say how far it leaves corners";
+            let message = Diagnostic::warning(Rule::PathMode, message.to_owned());
+            self.findings.warn(message.line(self.line));
+        }
         if allowed <= asked.max(CLOSEST) {
             return;
         }

@@ -138,7 +138,12 @@ impl Prover<'_> {
             state::corners(machine, wanted, running),
             feed,
         ];
+        let closer = state::closer_than_asked(machine, wanted, running);
         let in_plane = to.place.is_across(self.here.place.tip, rounding);
+        if let Some(message) = closer {
+            let message = format!("source line {}: {message}", self.cursor.line);
+            self.report.warn(Diagnostic::warning(Rule::PathMode, message).line(to.line));
+        }
         for difference in found {
             self.check(to.line, difference);
         }

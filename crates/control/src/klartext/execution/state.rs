@@ -359,6 +359,15 @@ impl<'a, 's> Control<'a, 's> {
         self.channel.switch(self.line, side, terms)
     }
 
+    fn start_coolant(&mut self, s: &Scanner, coolant: Coolant) -> Outcome {
+        let both = self.coolant != Coolant::Off && self.coolant != coolant;
+        if both {
+            let message = "one coolant runs already: whether both then run is up to the machine; write M9 first";
+            return Err(s.error_block(Rule::Coolant, message));
+        }
+        self.set_coolant(coolant)
+    }
+
     /// Does the M functions of a block that act at that moment.
     pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Outcome {
         if all.is_empty() {
@@ -380,12 +389,12 @@ impl<'a, 's> Control<'a, 's> {
             Function::Clockwise { coolant } => {
                 let speed = self.needs_speed(s)?;
                 self.set_spindle(Spindle::Clockwise(speed))?;
-                if coolant { self.set_coolant(Coolant::Flood) } else { Ok(()) }
+                coolant.map_or(Ok(()), |coolant| self.start_coolant(s, coolant))
             }
             Function::CounterClockwise { coolant } => {
                 let speed = self.needs_speed(s)?;
                 self.set_spindle(Spindle::CounterClockwise(speed))?;
-                if coolant { self.set_coolant(Coolant::Flood) } else { Ok(()) }
+                coolant.map_or(Ok(()), |coolant| self.start_coolant(s, coolant))
             }
             Function::SpindleStop => self.set_spindle(Spindle::Off),
             Function::ToolChange if !self.tool_is_due => {
@@ -394,14 +403,7 @@ impl<'a, 's> Control<'a, 's> {
                 Err(s.error_block(Rule::MFunction, message).help(help).into())
             }
             Function::ToolChange => self.set_spindle(Spindle::Off),
-            Function::Coolant(coolant) => {
-                let both = self.coolant != Coolant::Off && self.coolant != coolant;
-                if both {
-                    let message = "one coolant runs already: whether both then run is up to the machine; write M9 first";
-                    return Err(s.error_block(Rule::Coolant, message));
-                }
-                self.set_coolant(coolant)
-            }
+            Function::Coolant(coolant) => self.start_coolant(s, coolant),
             Function::CoolantOff => self.set_coolant(Coolant::Off),
             Function::Stop => {
                 // On every TNC it stops the spindle; the coolant on the older ones (TNC 360, 640: "M0").
@@ -422,7 +424,11 @@ impl<'a, 's> Control<'a, 's> {
                 let message = "a called program ends with END PGM: M2 and M30 would end all";
                 Err(s.error_block(Rule::ProgramFrame, message))
             }
-            Function::End => self.end(),
+            Function::End => {
+                self.report_left_on()?;
+                self.stop_all()?;
+                self.finish()
+            }
             Function::KeepTip => {
                 self.great_circle = false;
                 self.keep_tip(s, Tip::Kept)
@@ -516,10 +522,14 @@ impl<'a, 's> Control<'a, 's> {
         path.map_or(Ok(()), |feed| self.emit(Action::Feed(feed)))
     }
 
-    /// The end of the program.
+    /// `END PGM` of a program without `M2` and `M30`. No manual says that it stops the spindle and the coolant.
     pub(crate) fn end(&mut self) -> Outcome {
         self.report_left_on()?;
-        self.stop_all()?;
+        self.finish()
+    }
+
+    /// The end of the program.
+    fn finish(&mut self) -> Outcome {
         self.ended = true;
         self.emit(Action::End)
     }

@@ -3,7 +3,7 @@
 use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
 use crate::kernel::Outcome;
-use program::{Coolant, CoolantSwitch, Rule};
+use program::{Coolant, CoolantFunctions, CoolantSwitch, Rule};
 
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,9 +17,9 @@ pub(crate) enum Function {
     /// End of the program: `M2`, `M30`.
     End,
     /// Spindle clockwise, and coolant where `M13` says so.
-    Clockwise { coolant: bool },
+    Clockwise { coolant: Option<Coolant> },
     /// Spindle counter-clockwise, and coolant where `M14` says so.
-    CounterClockwise { coolant: bool },
+    CounterClockwise { coolant: Option<Coolant> },
     /// Spindle stop: `M5`.
     SpindleStop,
     /// `M6`: the tool call before it has made the tool change, and the spindle stands.
@@ -62,14 +62,14 @@ const FUNCTIONS: [(u16, Function); 26] = [
     (0, Function::Stop),
     (1, Function::OptionalStop),
     (2, Function::End),
-    (3, Function::Clockwise { coolant: false }),
-    (4, Function::CounterClockwise { coolant: false }),
+    (3, Function::Clockwise { coolant: None }),
+    (4, Function::CounterClockwise { coolant: None }),
     (5, Function::SpindleStop),
     (6, Function::ToolChange),
     (8, Function::Coolant(Coolant::Flood)),
     (9, Function::CoolantOff),
-    (13, Function::Clockwise { coolant: true }),
-    (14, Function::CounterClockwise { coolant: true }),
+    (13, Function::Clockwise { coolant: Some(Coolant::Flood) }),
+    (14, Function::CounterClockwise { coolant: Some(Coolant::Flood) }),
     (30, Function::End),
     (89, Function::CallCyclesModally),
     (91, Function::MachineCoordinates { builders: false }),
@@ -159,7 +159,17 @@ impl Function {
             if *function == Function::ReplacesTool {
                 delay(s, control)?;
             }
-            return Ok(*function);
+            return match function {
+                Function::Clockwise { coolant: Some(_) } => {
+                    let coolant = Some(coolant_of_m8(s, word, stated)?);
+                    Ok(Function::Clockwise { coolant })
+                }
+                Function::CounterClockwise { coolant: Some(_) } => {
+                    let coolant = Some(coolant_of_m8(s, word, stated)?);
+                    Ok(Function::CounterClockwise { coolant })
+                }
+                function => Ok(*function),
+            };
         }
         let added = control.auxiliary().iter().find(|n| f64::from(**n) == number);
         if let Some(number) = added {
@@ -199,6 +209,22 @@ impl Function {
             | Function::CallCycle
             | Function::ReleaseTip => When::End,
             _ => When::Start,
+        }
+    }
+}
+
+/// The coolant of `M13` and `M14`: the control switches on what `M8` does (TNC 155, table of the M functions: their outputs are "Spindle
+/// clockwise" and "Coolant on").
+fn coolant_of_m8(s: &Scanner, word: &Word, stated: CoolantFunctions) -> Outcome<Coolant> {
+    match stated.switch(8) {
+        Some(CoolantSwitch::Flood) => Ok(Coolant::Flood),
+        Some(CoolantSwitch::Mist) => Ok(Coolant::Mist),
+        Some(CoolantSwitch::Through) => Ok(Coolant::Through),
+        None if !stated.is_stated(CoolantSwitch::Flood) => Ok(Coolant::Flood),
+        Some(CoolantSwitch::Off | CoolantSwitch::ThroughOff) | None => {
+            let message = "M13 and M14 switch the coolant of M8, and [coolant] of the machine file names another M function";
+            let help = "write M3 or M4, and the M function of the coolant in a block of its own";
+            Err(s.error(Rule::MFunction, word.span, message).help(help).into())
         }
     }
 }
