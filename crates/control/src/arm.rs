@@ -10,9 +10,9 @@ use geom::{Frame, Vec3};
 #[derive(Clone, Debug, PartialEq)]
 pub enum ArmAction {
     /// The frame of the tool in that of the flange; `None` is data of the operator that the program does not state.
-    Tool(Option<Frame>),
+    Tool(Option<Box<Frame>>),
     /// The base in the world; `None` as for the tool.
-    Base(Option<Frame>),
+    Base(Option<Box<Frame>>),
     /// Whether the base is on the flange and the tool stands (a part on the robot).
     PartOnFlange(bool),
     /// Speed of moves of joints, percent of the fastest; `None` is as the control is set up.

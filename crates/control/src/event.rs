@@ -689,3 +689,14 @@ impl Action {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each event is copied some times on its way to the proof, and thousands wait on the way.
+    #[test]
+    fn an_event_takes_at_most_72_bytes() {
+        assert!(size_of::<Event>() <= 72, "{}", size_of::<Event>());
+    }
+}

@@ -95,7 +95,12 @@ fn the_job_of_the_specification_makes_its_motion() {
         assert!(events.contains(&Event { line, action: action.clone() }), "{line} {action:?}");
     }
     let tool = Frame::from_translation(Vec3::new(0.0, 0.0, 150.0));
-    assert!(events.contains(&Event { line: 6, action: Action::Arm(ArmAction::Tool(Some(tool))) }));
+    assert!(
+        events.contains(&Event {
+            line: 6,
+            action: Action::Arm(ArmAction::Tool(Some(Box::new(tool))))
+        })
+    );
 }
 
 #[test]
@@ -129,7 +134,7 @@ fn a_frame_turns_about_z_then_the_new_y_then_the_new_x() {
     let turns = [30.0_f64, 20.0, 10.0].map(f64::to_radians);
     let rotation = Euler::FixedXyz.matrix(turns);
     let base = Frame::from_mat3_translation(rotation, Vec3::new(1.0, 2.0, 3.0));
-    assert_eq!(events[0].action, Action::Arm(ArmAction::Base(Some(base))));
+    assert_eq!(events[0].action, Action::Arm(ArmAction::Base(Some(Box::new(base)))));
 }
 
 #[test]
@@ -207,8 +212,11 @@ fn how_the_tool_turns_is_not_known_before_a_block_says_it() {
 #[test]
 fn frames_by_number_are_those_of_the_operator_unless_the_program_sets_them() {
     let events = body("$BASE=BASE_DATA[2]\nBAS (#TOOL,3)\nBAS (#BASE,0)").unwrap();
-    let expected =
-        [ArmAction::Base(None), ArmAction::Tool(None), ArmAction::Base(Some(Frame::IDENTITY))];
+    let expected = [
+        ArmAction::Base(None),
+        ArmAction::Tool(None),
+        ArmAction::Base(Some(Box::new(Frame::IDENTITY))),
+    ];
     let frames: Vec<ArmAction> = events
         .iter()
         .filter_map(|event| match &event.action {
@@ -220,7 +228,7 @@ fn frames_by_number_are_those_of_the_operator_unless_the_program_sets_them() {
     let events = body("BASE_DATA[2]={X 1,Y 0,Z 0,A 0,B 0,C 0}\n$BASE=BASE_DATA[2]").unwrap();
     assert!(matches!(events[0].action, Action::Risk(_)));
     let moved = Frame::from_translation(Vec3::X);
-    assert_eq!(events[1].action, Action::Arm(ArmAction::Base(Some(moved))));
+    assert_eq!(events[1].action, Action::Arm(ArmAction::Base(Some(Box::new(moved)))));
 }
 
 #[test]

@@ -164,7 +164,7 @@ fn the_program_of_robodk_is_read_with_its_frames_and_its_call() {
     });
     assert!(waits);
     // Tool 9 is what its registers say: -30, 0, 40, turned by -60° about Y.
-    let tool = events.iter().find_map(|event| match event.action {
+    let tool = events.iter().find_map(|event| match &event.action {
         Action::Arm(ArmAction::Tool(Some(tool))) => Some(tool),
         _ => None,
     });
@@ -186,8 +186,8 @@ fn frames_are_those_of_the_operator_unless_the_program_sets_them() {
     let events = body(&lines).unwrap();
     let bases: Vec<Option<Frame>> = events
         .iter()
-        .filter_map(|event| match event.action {
-            Action::Arm(ArmAction::Base(base)) => Some(base),
+        .filter_map(|event| match &event.action {
+            Action::Arm(ArmAction::Base(base)) => Some(base.as_deref().copied()),
             _ => None,
         })
         .collect();
@@ -207,7 +207,8 @@ fn frames_are_those_of_the_operator_unless_the_program_sets_them() {
     assert!(
         events
             .iter()
-            .any(|event| event.action == Action::Arm(ArmAction::Base(Some(Frame::IDENTITY))))
+            .any(|event| event.action
+                == Action::Arm(ArmAction::Base(Some(Box::new(Frame::IDENTITY)))))
     );
     refused("  UFRAME[9]=PR[8]", "no instruction has set PR[8,1]");
     refused("  UFRAME_NUM=11", "no frame has the number 11");

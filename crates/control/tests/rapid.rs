@@ -102,7 +102,7 @@ fn the_job_of_the_specification_makes_its_motion() {
     assert_eq!(feeds, [3000.0, 300.0, 1200.0, 6000.0].map(Feed::PerMinute));
     let base = Frame::from_translation(Vec3::new(450.0, 0.0, 150.0));
     for action in [
-        Action::Arm(ArmAction::Base(Some(base))),
+        Action::Arm(ArmAction::Base(Some(Box::new(base)))),
         Action::Arm(ArmAction::Load(1.5, Vec3::new(0.0, 0.0, 75.0))),
         Action::Arm(ArmAction::PartOnFlange(false)),
         Action::Arm(ArmAction::TurnSpeed([Some(500.0); 2])),
@@ -266,7 +266,7 @@ fn tool_and_work_object_are_compared_with_who_holds_them() {
         )
     };
     let events = run_with(&settings(), &text("TRUE", "FALSE")).unwrap();
-    let base = events.iter().find_map(|event| match event.action {
+    let base = events.iter().find_map(|event| match &event.action {
         Action::Arm(ArmAction::Base(Some(base))) => Some(base),
         _ => None,
     });

@@ -95,9 +95,9 @@ fn the_job_of_the_specification_makes_its_motion() {
     let tool = Frame::from_translation(Vec3::new(0.0, 0.0, 150.0));
     let spindle = |on| Output { number: 0, value: OutputValue::Digital(on), with_motion: false };
     for (line, action) in [
-        (1, Action::Arm(ArmAction::Base(Some(Frame::IDENTITY)))),
+        (1, Action::Arm(ArmAction::Base(Some(Box::new(Frame::IDENTITY))))),
         (1, Action::Arm(ArmAction::Tool(None))),
-        (2, Action::Arm(ArmAction::Tool(Some(tool)))),
+        (2, Action::Arm(ArmAction::Tool(Some(Box::new(tool))))),
         (3, Action::Arm(ArmAction::Load(1.5, Vec3::new(0.0, 0.0, 75.0)))),
         (6, Action::Output(spindle(true))),
         (7, Action::Dwell(2.0)),

@@ -321,7 +321,7 @@ fn ends(machine: &Machine, text: &str) -> Vec<Vec3> {
     let mut base = geom::Frame::IDENTITY;
     let of = |event: Event| match event.action {
         Action::Arm(ArmAction::Base(Some(frame))) => {
-            base = frame;
+            base = *frame;
             None
         }
         Action::Arm(ArmAction::Move(motion)) => match motion.path {

@@ -270,9 +270,9 @@ impl<'a> Judge<'a> {
 
     fn of_arm(&mut self, line: u32, action: &ArmAction) -> Outcome {
         match action {
-            ArmAction::Tool(frame) => self.running.tool = *frame,
+            ArmAction::Tool(frame) => self.running.tool = frame.as_deref().copied(),
             ArmAction::Base(frame) => {
-                self.running.base = *frame;
+                self.running.base = frame.as_deref().copied();
                 if frame.is_none() {
                     // Another program, or the configuration of the machine, has set the speed.
                     self.running.feed = None;

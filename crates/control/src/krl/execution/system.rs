@@ -27,10 +27,10 @@ pub(super) fn assign(
     match (name.as_str(), field.as_ref().map(Name::as_str)) {
         ("$OUT" | "$ANOUT", None) => output(scan, name, index, &value, channel),
         ("$BASE", None) => {
-            state.frame(line, ArmAction::Base(frame_of(scan, name, &value)?), channel)
+            state.frame(line, ArmAction::Base(frame_of(scan, name, &value)?.map(Box::new)), channel)
         }
         ("$TOOL", None) => {
-            state.frame(line, ArmAction::Tool(frame_of(scan, name, &value)?), channel)
+            state.frame(line, ArmAction::Tool(frame_of(scan, name, &value)?.map(Box::new)), channel)
         }
         ("$VEL", Some("CP")) => {
             let speed = positive(scan, name, &value)?;
@@ -128,11 +128,11 @@ pub(super) fn bas(
         }
         "TOOL" => {
             let frame = numbered(state, scan, "TOOL_DATA", value)?;
-            state.frame(line, ArmAction::Tool(frame), channel)
+            state.frame(line, ArmAction::Tool(frame.map(Box::new)), channel)
         }
         "BASE" => {
             let frame = numbered(state, scan, "BASE_DATA", value)?;
-            state.frame(line, ArmAction::Base(frame), channel)
+            state.frame(line, ArmAction::Base(frame.map(Box::new)), channel)
         }
         _ => {
             let message = format!("BAS (#{command},{value}) is not understood");

@@ -183,7 +183,8 @@ impl State {
         let frame = match number {
             0 => Some(Frame::IDENTITY),
             _ => self.frames.get(&(which == Frames::Tool, number)).copied(),
-        };
+        }
+        .map(Box::new);
         let action = match which {
             Frames::User => ArmAction::Base(frame),
             Frames::Tool => ArmAction::Tool(frame),

@@ -179,8 +179,8 @@ impl State {
             false => Ok(()),
         };
         let arm = Action::Arm;
-        report(reported.tool != Some(tool), arm(ArmAction::Tool(Some(tool))))?;
-        report(reported.base != Some(base), arm(ArmAction::Base(Some(base))))?;
+        report(reported.tool != Some(tool), arm(ArmAction::Tool(Some(Box::new(tool)))))?;
+        report(reported.base != Some(base), arm(ArmAction::Base(Some(Box::new(base)))))?;
         let on_flange = object_held;
         report(reported.on_flange != Some(on_flange), arm(ArmAction::PartOnFlange(on_flange)))?;
         let [mass, x, y, z] = load;

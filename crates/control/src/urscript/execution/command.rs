@@ -156,7 +156,7 @@ impl State {
                     return Err(scan.since(0, Rule::Type, "the tool is a pose: p[x,y,z,rx,ry,rz]"));
                 };
                 let tool = within_reach(scan, *pose)?;
-                channel.arm(line, ArmAction::Tool(Some(tool)))?;
+                channel.arm(line, ArmAction::Tool(Some(Box::new(tool))))?;
             }
             "set_payload" | "set_target_payload" => load(scan, &given, channel)?,
             "set_standard_digital_out" | "set_digital_out" => {

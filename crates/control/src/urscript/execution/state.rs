@@ -44,7 +44,7 @@ impl State {
     /// What holds before the first line: poses count in the base of the robot, and the tool is that of the installation.
     pub(in crate::urscript) fn begins(&mut self, line: u32, channel: &mut Channel) -> Outcome {
         for action in [
-            ArmAction::Base(Some(Frame::IDENTITY)),
+            ArmAction::Base(Some(Box::new(Frame::IDENTITY))),
             ArmAction::PartOnFlange(false),
             ArmAction::Tool(None),
         ] {
