@@ -69,7 +69,7 @@ def test_what_is_saved_is_the_text(tmp_path):
     assert (tmp_path / "one.json").read_text() == board.text
 
 
-def test_warnings_are_told():
+def test_warnings_are_reported():
     outside = Board.builder().edge([(0, 0), (9, 0), (9, 9)]).hole((50, 1), 1).hole((5, 1), 1)
     assert [found.rule for found in outside.build().warnings] == ["layers-shifted", "hole-outside"]
 

@@ -101,7 +101,7 @@ def test_what_makes_no_pose_is_refused_with_its_row(rule, points, axes, said):
     assert caught.value.rule == rule
 
 
-def test_an_orientation_out_of_reach_is_told_with_its_distance():
+def test_an_orientation_out_of_reach_is_reported_with_its_distance():
     with pytest.raises(toolpost.Error, match=r"row 0.*45\.0000 degrees") as caught:
         toolpost.machine("generic-3axis-iso").inverse([[0, 0, 0]], [[0, 1, 1]])
     assert caught.value.rule == "unreachable-orientation"

@@ -119,7 +119,7 @@ def test_a_wire_machine_has_a_command_of_its_own(slot):
     assert caught.value.rule == "machine-kind"
 
 
-def test_a_wrong_machine_is_told_with_those_there_are():
+def test_a_wrong_machine_is_refused_with_those_there_are():
     with pytest.raises(toolpost.Error, match="generic-3axis-linuxcnc") as caught:
         toolpost.machine("generic-linuxcnc")
     assert caught.value.rule == "machine-unknown"
@@ -134,7 +134,7 @@ def test_errors_of_a_machine_file_have_line_and_column(tmp_path):
     assert (caught.value.line, caught.value.column) == (3, 12)
 
 
-def test_every_error_of_a_file_is_told(tmp_path):
+def test_every_error_of_a_file_is_reported(tmp_path):
     file = tmp_path / "bad.cls"
     file.write_text("UNITS/MM\nGOTO/1,2\nRAPID\nGOTO/1,2,3\nGOTO/1,2,3,0,0,0\n")
     with pytest.raises(toolpost.Error) as caught:

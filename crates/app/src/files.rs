@@ -429,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_replaced_with_its_permissions_kept_and_nothing_left_beside_it() {
+    fn a_file_is_replaced_with_its_permissions_kept_and_no_other_file_left() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.mpf");
         fs::write(&path, "old").unwrap();

@@ -161,7 +161,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
-    fn times_are_told_in_the_units_of_a_watch() {
+    fn times_are_printed_in_the_units_of_a_watch() {
         let printed = [0.4, 59.6, 3599.0, 3661.0].map(duration);
         assert_eq!(printed, ["0 s", "1 min 00 s", "59 min 59 s", "1 h 01 min"]);
     }

@@ -116,7 +116,7 @@ impl Watch for Patience {
 }
 
 #[test]
-fn who_watches_is_told_each_step_and_ends_the_work_between_two_and_within_a_proof() {
+fn who_watches_hears_of_each_step_and_ends_the_work_between_two_and_within_a_proof() {
     let mut text = String::from(
         "PPRINT/LONG\nUNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n",
     );

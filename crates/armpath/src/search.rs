@@ -211,13 +211,13 @@ fn layer(
         let (step, posture) = (at / POSTURES, at % POSTURES);
         for turn in turns {
             let source = neighbour(step, *turn, steps) * POSTURES + posture;
-            let (label, beside) = (&labels[source], &row[source]);
+            let (label, earlier) = (&labels[source], &row[source]);
             // In an interval in which the tool turns, both of the steps have to be passed.
-            let dead = label.cost.is_infinite() || before[source].is_dead() || beside.is_dead();
+            let dead = label.cost.is_infinite() || before[source].is_dead() || earlier.is_dead();
             if dead || forbidden.contains(&(knot, at, -turn)) {
                 continue;
             }
-            if let Some(label) = extend(job, label, beside, node, *turn, time)
+            if let Some(label) = extend(job, label, earlier, node, *turn, time)
                 && label.cost < next[at].cost
             {
                 (next[at], from[at]) = (label, *turn as i8);
@@ -227,30 +227,30 @@ fn layer(
     (next, from)
 }
 
-/// The label behind an interval that begins with the step of `beside` and ends with that of `node`.
+/// The label behind an interval that begins with the step of `earlier` and ends with that of `node`.
 fn extend(
     job: &Job,
     label: &Label,
-    beside: &Node,
+    earlier: &Node,
     node: &Node,
     turn: i32,
     time: f64,
 ) -> Option<Label> {
-    let mut next = Label { cost: label.cost + beside.cost.max(node.cost), ..*label };
+    let mut next = Label { cost: label.cost + earlier.cost.max(node.cost), ..*label };
     if turn != 0 {
         next.cost += TURNING;
     }
     for i in 0..6 {
-        let turned = wrap32(node.end[i] - beside.end[i]);
+        let turned = wrap32(node.end[i] - earlier.end[i]);
         // The turn comes on top of the motion along the path.
-        let used = f64::from(beside.speed.max(node.speed))
+        let used = f64::from(earlier.speed.max(node.speed))
             + grid::share(job.arm, i, f64::from(turned), time);
         if turn != 0 && used > job.settings.speed {
             return None;
         }
-        next.low[i] = next.low[i].min(label.joints[i] + beside.low[i]);
-        next.high[i] = next.high[i].max(label.joints[i] + beside.high[i]);
-        next.joints[i] += beside.net[i] + turned;
+        next.low[i] = next.low[i].min(label.joints[i] + earlier.low[i]);
+        next.high[i] = next.high[i].max(label.joints[i] + earlier.high[i]);
+        next.joints[i] += earlier.net[i] + turned;
         next.low[i] = next.low[i].min(next.joints[i]);
         next.high[i] = next.high[i].max(next.joints[i]);
         follow::fitting(job, i, f64::from(next.low[i]), f64::from(next.high[i]))?;

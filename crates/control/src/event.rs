@@ -448,7 +448,7 @@ impl Risk {
     pub(crate) const TABLE_FRAME: Risk = Risk {
         rule: Rule::TableFrame,
         what: "switches G43.4 on with a turned table, and in which frame X, Y and Z count then the machine file does not say",
-        help: "turn the table to 0 before G43.4; or try a place beside the centre of the table on the machine, and write \
+        help: "turn the table to 0 before G43.4; or try a place away from the centre of the table on the machine, and write \
                `table_frame_at_zero = true` below [settings] where it is that of the part",
         refused: true,
     };
@@ -516,11 +516,11 @@ impl Risk {
         refused: true,
     };
 
-    /// DTS of CYCLE83 (PGZ: with VARI 1, seconds or, below 0, turns), and DTB beside a `_DTD` that differs: dwells that the
+    /// DTS of CYCLE83 (PGZ: with VARI 1, seconds or, below 0, turns), and DTB with a `_DTD` that differs: dwells that the
     /// source does not have.
     pub(crate) const PECK_DWELL: Risk = Risk {
         rule: Rule::Dwell,
-        what: "dwells between the pecks of CYCLE83 (DTS, or DTB beside another _DTD)",
+        what: "dwells between the pecks of CYCLE83 (DTS, or DTB with another _DTD)",
         help: "write DTS as 0, and leave _DTD out",
         refused: true,
     };

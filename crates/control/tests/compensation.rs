@@ -6,14 +6,14 @@ use program::Compensation;
 use toolpost_control::{Action, Dialect, Settings, ToolData, read};
 
 /// The moves of a program, one a line: what, the end, of an arc the way it turns and its centre. What
-/// else happens is told by name.
+/// else happens is named.
 fn path(dialect: Dialect, program: &str) -> Result<String, (&'static str, u32)> {
     let mut settings = Settings::new(dialect, [false; 3]);
     let tool = |number, radius| ToolData { number, name: "MILL".into(), radius, length: 50.0 };
     settings.setup.tools = vec![tool(1, 5.0), ToolData { name: String::new(), ..tool(2, -5.0) }];
-    let mut told = String::new();
+    let mut found = String::new();
     read(&settings, "p.nc", program.as_bytes(), &mut |record| {
-        told += &match record.action {
+        found += &match record.action {
             Action::Rapid(pose) => format!("rapid {}\n", shown(pose.point)),
             Action::Line(pose) => format!("line {}\n", shown(pose.point)),
             Action::Arc(arc) => {
@@ -33,7 +33,7 @@ fn path(dialect: Dialect, program: &str) -> Result<String, (&'static str, u32)> 
         assert!(error.column > 0, "{error}");
         (error.rule.name(), error.line)
     })?;
-    Ok(told)
+    Ok(found)
 }
 
 /// Three decimals, as short as they go.
@@ -88,7 +88,7 @@ fn fanuc_goes_to_the_corners_of_the_parallels() {
 
 #[test]
 fn fanuc_goes_around_an_acute_corner_on_two_extended_sides() {
-    // At (0, 50) the way turns by 135°. On by 5 mm to (-5, 55); the next side runs beside from
+    // At (0, 50) the way turns by 135°. On by 5 mm to (-5, 55); the parallel of the next side goes from
     // (3.536, 53.536), and 5 mm before that is (0, 57.071).
     same(
         fanuc("G1 G41 D1 X0 Y0\nY50.\nX50. Y0\nG40 X60."),
@@ -175,7 +175,7 @@ fn what_lies_between_two_elements_happens_at_the_end_of_the_first() {
         "line -5 0 0\ndwell\nline -5 50 0\nline -5 50 -3\ncw 0 55 -3 about 0 50 -3\nline 50 55 -3\n\
          line 50 60 -3",
     );
-    // Before the contour begins the tool is not beside it yet.
+    // Before the contour begins the tool is not offset yet.
     same(
         fanuc("G1 G41 D1\nZ-3.\nX0 Y0\nY50.\nG40\nZ9.\nX-20."),
         "line -20 0 -3\nline -5 0 -3\nline -5 50 -3\nline -5 50 9\nline -20 50 9",
@@ -296,7 +296,7 @@ fn what_would_spoil_the_part_is_refused() {
     }
     let unknown = path(Dialect::Fanuc, "G21 G90\nG0 Z0 F100\nG41 D1 G1 X0 Y0\nY9.\n");
     assert_eq!(unknown, Err(("compensation-unknown-position", 3)));
-    // R0 beside a move out of the plane: does the tool go to the contour?
+    // R0 in the block of a move out of the plane: does the tool go to the contour?
     assert_eq!(
         klartext("L X+0 Y+0 RL F100\nL Y+50\nL Z+9 R0\nL X-9"),
         Err(("compensation-exit", 6))

@@ -191,7 +191,7 @@ impl Stretch {
         (0..=steps as usize).map(|i| at(i as f64 / steps)).collect()
     }
 
-    /// Whether it runs beside `element`, and backwards.
+    /// Whether it is parallel to `element`, and backwards.
     fn is_back_along(&self, element: &Stretch) -> bool {
         match (self.arc, element.arc) {
             (None, None) => {

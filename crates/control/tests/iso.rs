@@ -24,7 +24,7 @@ fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Action>, B
     let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));
     let text = if says_unit { text.to_owned() } else { format!("G21\n{text}") };
     let mut actions = common::ops(&settings, "p.nc", text)?;
-    // What is only told of has tests of its own (`side_effects.rs`).
+    // What is only reported has tests of its own (`side_effects.rs`).
     actions.retain(|action| !matches!(action, Action::Risk(risk) if !risk.refused));
     Ok(actions)
 }
@@ -333,10 +333,10 @@ fn a_cycle_that_lacks_something_is_refused() {
 
 /// LinuxCNC, "G96, G97 Spindle Control Mode": S is metres or feet a minute, D the most speed.
 #[test]
-fn constant_surface_speed_is_a_state_beside_the_most_speed() {
+fn constant_surface_speed_is_a_state_apart_from_the_most_speed() {
     let spindle = |text: &str| -> Vec<Action> {
-        let told = |op: &Action| matches!(op, Action::Spindle(_) | Action::SurfaceSpeed(_));
-        ops_3(LINUXCNC, text).into_iter().filter(told).collect()
+        let speeds = |op: &Action| matches!(op, Action::Spindle(_) | Action::SurfaceSpeed(_));
+        ops_3(LINUXCNC, text).into_iter().filter(speeds).collect()
     };
     let clockwise = |speed| Action::Spindle(Spindle::Clockwise(speed));
     let constant = |speed| Action::SurfaceSpeed(Some(speed));
@@ -489,7 +489,7 @@ fn inches_are_25_4_mm() {
 }
 
 #[test]
-fn a_feed_beside_the_units_is_in_those_that_the_control_takes_first() {
+fn a_feed_in_a_block_with_the_units_is_in_those_that_the_control_takes_first() {
     let feed = |per_minute| [Action::Feed(Feed::PerMinute(per_minute))];
     for dialect in [FANUC, Dialect::Haas, GRBL] {
         assert_eq!(ops(dialect, "G20 G90 F10.\n"), feed(254.0));
@@ -729,7 +729,7 @@ fn nothing_follows_the_end_of_a_program() {
 }
 
 #[test]
-fn comments_are_told_and_messages_too() {
+fn comments_are_reported_and_messages_too() {
     let got = ops(LINUXCNC, "(first) G0 (MSG, look) ; last\n");
     let expected = [
         Action::Comment("first".into()),

@@ -73,7 +73,7 @@ fn g92_says_where_the_tool_stands() {
         let lost = "G0 X1. Y1. Z1.\nG28 X1.\nG92 X0\n";
         assert_eq!(rule(dialect, lost), "unknown-shift");
     }
-    // In an offset of its own, what it alone has told is said with the next cut, though one went before.
+    // In an offset of its own, what it alone has reported is said with the next cut, though one went before.
     let cuts = "G0 X0 Y0 Z0\nG1 X1. F100.\nT1 M6\nG55\nG92 X5. Y5. Z5.\nF100.\nG1 X6.\n";
     let way = [[0.0; 3], [1.0, 0.0, 0.0], [5.0; 3], [6.0, 5.0, 5.0]];
     goes_to(Dialect::Mach3, cuts, &way);

@@ -1,4 +1,4 @@
-//! Random programs that move, turn and mirror their coordinates, beside a model of a few lines in
+//! Random programs that move, turn and mirror their coordinates, and a model of a few lines in
 //! complex numbers that goes forwards only: from what a block says to where the tool is.
 
 mod common;

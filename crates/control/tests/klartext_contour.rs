@@ -186,7 +186,7 @@ fn a_line_in_the_direction_of_the_contour_leads_to_it() {
     // Rapid to the auxiliary point, as the positioning before.
     assert!(matches!(ops[1], Action::Rapid(_)));
     assert_eq!(ops[2], Action::Feed(Feed::PerMinute(100.0)));
-    // With a tool that is not in the table the contour is told, and that it is compensated.
+    // With a tool that is not in the table the contour is reported, and that it is compensated.
     let ops = run("TOOL CALL 5 Z S3000 F500\nL X+40 Y+10 Z-5 R0 FMAX\n\
                    APPR LT X+20 Y+20 Z-10 LEN15 RR F100\nL X+35 Y+35");
     let side = ops.iter().position(|op| *op == Action::Compensation(Compensation::Right(None)));
@@ -197,14 +197,14 @@ fn a_line_in_the_direction_of_the_contour_leads_to_it() {
 fn a_line_at_right_angles_leads_to_the_contour() {
     // Manual, APPR LN: LEN 15 and the radius of the tool, 5, to the side of RR; compensated from PH on.
     let ops = path("L X+40 Y+10 FMAX\nAPPR LN X+10 Y+20 Z-10 LEN15 RR F100\nL X+20 Y+35");
-    let beside = |x: f64, y: f64, z: f64, by: f64| (v(x, y, z) + right() * by).to_array();
+    let offset = |x: f64, y: f64, z: f64, by: f64| (v(x, y, z) + right() * by).to_array();
     assert_near(
         &points(&ops)[1..],
         &[
-            beside(10.0, 20.0, -5.0, 20.0),
-            beside(10.0, 20.0, -10.0, 20.0),
-            beside(10.0, 20.0, -10.0, 5.0),
-            beside(20.0, 35.0, -10.0, 5.0),
+            offset(10.0, 20.0, -5.0, 20.0),
+            offset(10.0, 20.0, -10.0, 20.0),
+            offset(10.0, 20.0, -10.0, 5.0),
+            offset(20.0, 35.0, -10.0, 5.0),
         ],
     );
 }
@@ -220,8 +220,8 @@ fn an_arc_leads_to_the_contour() {
         // The tool of radius 5 runs inside the one and outside the other.
         let contour = v(10.0, 20.0, -10.0);
         let before = contour + right() * (20.0 * side - 5.0);
-        let beside = contour + right() * 5.0;
-        assert_near(&points(&ops)[2..4], &[before.to_array(), beside.to_array()]);
+        let offset = contour + right() * 5.0;
+        assert_near(&points(&ops)[2..4], &[before.to_array(), offset.to_array()]);
         let arc = arcs(&ops)[0];
         assert!(arc.center.distance(contour + right() * (10.0 * side)) < 1e-9);
         assert_eq!(arc.normal, normal);

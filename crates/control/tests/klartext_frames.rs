@@ -172,7 +172,7 @@ fn three_points_give_a_plane_with_x_from_the_first_to_the_second() {
 }
 
 /// Cycle 19 is PLANE SPATIAL where its entries are spatial angles (iTNC 530 340 422 p. 460), and of one
-/// angle where they are positions of the axes, too. Where the axes stand then is told by Q120 to Q122.
+/// angle where they are positions of the axes, too. Where the axes stand then is in Q120 to Q122.
 #[test]
 fn cycle_19_tilts_the_plane_about_one_axis() {
     let tilt = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+30 C+0\n";

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 const PLACES: [&str; 3] =
     ["/usr/share/linuxcnc/ncfiles", "/usr/share/doc/linuxcnc/examples", "/usr/share/axis"];
 
-/// Where called programs are looked for beside the folder of the program.
+/// Where called programs are looked for in addition to the folder of the program.
 const LIBRARIES: [&str; 5] = [
     "ngcgui_lib",
     "ngcgui_lib/utilitysubs",
@@ -20,7 +20,7 @@ const LIBRARIES: [&str; 5] = [
     "remap_lib/common_nc_subs",
 ];
 
-/// What both controls have been told: a unit, and to which level cycles return.
+/// What both controls have been sent: a unit, and to which level cycles return.
 const BEFORE: &str = "G21 G98\n";
 
 /// The programs, sorted.

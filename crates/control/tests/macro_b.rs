@@ -245,7 +245,7 @@ fn subprograms_are_repeated_and_return_to_a_block() {
         xs("#1=#1+1\nN3 #1=#1+1\nX#1\nIF[#1 GE 4]GOTO 9\nM99 P3\nN9 M30\n"),
         [2.0, 3.0, 4.0]
     );
-    // A move beside the call comes first.
+    // A move in the block of the call comes first.
     assert_eq!(xs("X3. M98 P1\nM30\nO1\nX4.\nM99\n"), [3.0, 4.0]);
     assert_eq!(xs("M98 P1\nM30\n:1\nX4.\nM99\n"), [4.0]);
     assert_eq!(xs("M98 P1\nM30\nO1 (SUB)\nX4.\nX5. M99\n"), [4.0, 5.0]);

@@ -212,7 +212,7 @@ fn modes_are_kept_and_brought_back() {
 }
 
 #[test]
-fn a_feed_beside_another_unit_is_in_the_old_one() {
+fn a_feed_in_a_block_with_another_unit_is_in_the_old_one() {
     agrees("G1 X1 F254\nX[#<_feed>]\nG20 F25.4 X1\nX[#<_feed>]\nG21 X1\nX[#<_feed>]");
 }
 

@@ -30,7 +30,7 @@ fn what_the_probe_finds_can_be_calculated_with() {
 
 /// Words of two decimals are off by up to 0.005 mm, each way.
 #[test]
-fn a_probe_touches_the_nearest_point_beside_it() {
+fn a_probe_touches_the_nearest_point_across_its_way() {
     let surface = [0.125, 0.134]
         .map(|x| Vec3::new(x, 2.005, x))
         .into_iter()
@@ -51,7 +51,7 @@ fn it_is_in_the_unit_and_the_zero_of_the_program() {
     assert!((z[0] - 0.5).abs() < 1e-9 && (z[1] - 0.5 / 25.4).abs() < 1e-9, "{z:?}");
     let text =
         "G21 G90 G92.1\nG0 X1 Y2 Z1\nG92 X11 Z3\nG38.2 Z1 F5\nG0 Z3\nG1 X#5061 Z[#5063-1]\nM2\n";
-    // The surface is at Z1.75 of the shifted coordinates; told in those of the work.
+    // The surface is at Z1.75 of the shifted coordinates; reported in those of the work.
     let [cut] = cuts(text, &SURFACE).unwrap()[..] else { panic!() };
     assert!(cut.distance(Vec3::new(1.0, 2.0, -1.25)) < 1e-9, "{cut}");
 }
@@ -65,7 +65,7 @@ fn what_only_the_machine_knows_stays_unknown() {
     let unknown = "the result of probing is known only at the machine";
     refused("G1 Z#5063", &SURFACE, unknown);
     refused("G38.2 Z-1\nG0 Z1\nG1 Z#5063", &[], unknown);
-    // Beside the points that are known, aslant, and back from the part.
+    // Away from the points that are known, aslant, and back from the part.
     refused("G0 X1.01\nG38.2 Z-1\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);
     refused("G0 X2\nG38.2 X1 Z-1\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);
     refused("G38.2 Z-1\nG38.4 Z1\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);

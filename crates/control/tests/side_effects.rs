@@ -1,5 +1,5 @@
 //! What a control does besides its words: lengths that end or change, home positions that cancel, stops that switch off,
-//! feeds that count otherwise on arcs. Each fact is from the manual that stands beside it.
+//! feeds that count otherwise on arcs. Each fact is from the manual that is named with it.
 
 mod common;
 
@@ -82,13 +82,13 @@ fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
     }
     // By so much, from where it was: with 5006#6 = 0 the length is added to that. Z of a cycle is the bottom of its hole.
     let known = "G10 L10 P1 R30.\nG10 L10 P2 R40.\nG43 H1 Z50.";
-    for (block, told) in [
+    for (block, reported) in [
         ("G91 G43 H2 Z-10.\nG90", true),
         ("G43 H2 G98 G81 X5. Y5. Z-5. R2. F100.\nG80", true),
         ("G43 H2 Z40.", false),
     ] {
         let found = risks(Dialect::Fanuc, &format!("{START}{known}\n{block}\nM30\n"));
-        assert_eq!(found.contains(&"length-change"), told, "{block}");
+        assert_eq!(found.contains(&"length-change"), reported, "{block}");
     }
 }
 
@@ -184,8 +184,8 @@ fn look_ahead_goes_on_and_off_by_its_number_in_a_block_of_its_own() {
 /// iTNC 530 (60642x-04) p. 202: M101 changes to a replacement tool by itself, between two blocks, when the life of the tool is over;
 /// TNC 320 (77185x-01) p. 355: M148 takes the tool off the contour by up to 2 mm at a stop.
 #[test]
-fn a_heidenhain_that_changes_a_worn_tool_or_lifts_it_off_by_itself_is_told() {
-    let told = |function: &str| {
+fn a_heidenhain_that_changes_a_worn_tool_or_lifts_it_off_by_itself_is_reported() {
+    let reported = |function: &str| {
         let program = format!(
             "BEGIN PGM T MM\nTOOL CALL 5 Z S100\nL X+0 Y+0 Z+9 B+0 C+0 R0 FMAX {function}\nL X+5 F100\nEND PGM T MM\n"
         );
@@ -195,11 +195,11 @@ fn a_heidenhain_that_changes_a_worn_tool_or_lifts_it_off_by_itself_is_told() {
         };
         actions(Dialect::Klartext, &program).iter().filter_map(risk).collect::<Vec<_>>()
     };
-    assert_eq!(told("M101"), [("replacement-tool", true)]);
-    assert_eq!(told("M101 BT10"), [("replacement-tool", true)]);
-    assert_eq!(told("M102"), []);
-    assert_eq!(told("M148"), [("stop-retract", false)]);
-    assert_eq!(told("M149"), []);
+    assert_eq!(reported("M101"), [("replacement-tool", true)]);
+    assert_eq!(reported("M101 BT10"), [("replacement-tool", true)]);
+    assert_eq!(reported("M102"), []);
+    assert_eq!(reported("M148"), [("stop-retract", false)]);
+    assert_eq!(reported("M149"), []);
 }
 
 /// PM p. 678: `_TC` names the swivel data set; the name may be left out where the machine has one only. Another set is
@@ -305,12 +305,12 @@ fn how_long_a_fanuc_dwells_hangs_on_its_parameters() {
     assert_eq!(dwell(None, "G95\nG94 G4 X0.5"), (known, 0.5));
 }
 
-/// B-64484EN-2, "Inch/metric conversion": in a block of its own. What moves is the same, so that it is told and not refused.
+/// B-64484EN-2, "Inch/metric conversion": in a block of its own. What moves is the same, so that it is reported and not refused.
 #[test]
 fn fanuc_wants_the_unit_in_a_block_of_its_own() {
     for (block, found) in [("G21", 0), ("N10 G21", 0), ("G21 G17 G40", 1), ("G20 G90", 1)] {
         let text = format!("{block}\nM30\n");
-        let told: Vec<_> = actions(Dialect::Fanuc, &text)
+        let reported: Vec<_> = actions(Dialect::Fanuc, &text)
             .into_iter()
             .filter_map(|a| {
                 if let Action::Risk(risk) = a {
@@ -320,7 +320,7 @@ fn fanuc_wants_the_unit_in_a_block_of_its_own() {
                 }
             })
             .collect();
-        assert_eq!(told, vec![("unit-block", false); found], "{block}");
+        assert_eq!(reported, vec![("unit-block", false); found], "{block}");
         assert_eq!(risks(Dialect::Haas, &text), [""; 0]);
     }
 }
@@ -361,7 +361,7 @@ fn a_stop_of_haas_stops_the_spindle_and_the_coolant() {
 /// of the spindle of a HEIDENHAIN at `M0` (TNC 640, "M0": spindle STOP; `M1`: as the machine's builder has it). GRBL's `M0` is a feed
 /// hold, which leaves both on (wiki, "Grbl v1.1 Commands"); LinuxCNC's pauses the program ("M0, M1"). `M1` of GRBL does nothing.
 #[test]
-fn a_stop_with_spindle_or_coolant_running_is_told_where_the_control_need_not_stop_them() {
+fn a_stop_with_spindle_or_coolant_running_is_reported_where_the_control_need_not_stop_them() {
     use Dialect as D;
     for (dialect, stops, running) in [
         (D::Fanuc, ["M0", "M1"], [true; 3]),
@@ -633,7 +633,7 @@ fn how_the_tool_turns_under_traori_is_said_by_two_words_that_agree() {
 /// that the program itself has stored is known.
 #[test]
 fn a_stored_position_is_no_reference_position() {
-    for (dialect, block, told) in [
+    for (dialect, block, reported) in [
         (Dialect::Fanuc, "G91 G28 Z0.", false),
         (Dialect::Fanuc, "G91 G30 Z0.", true),
         (Dialect::Fanuc, "G91 G30 P4 Z0.", true),
@@ -649,7 +649,7 @@ fn a_stored_position_is_no_reference_position() {
         let settings = Settings::new(dialect, [false; 3]);
         let text = format!("G21 G90 G94 G17 G54\nG0 X0. Y0. Z50.\n{block}\nM30\n");
         let found = common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-        let expected: &[&str] = if told { &["stored-position"] } else { &[] };
+        let expected: &[&str] = if reported { &["stored-position"] } else { &[] };
         assert_eq!(rules(&found), expected, "{dialect:?} {block}");
     }
 }
@@ -786,7 +786,7 @@ fn a_further_fixed_point_of_a_sinumerik_is_a_stored_position() {
 /// "Compressor": MD33100 and MD33120 say how far, CTOL where it is written (Basic Functions 09/2011 p. 204: not for G644; below 0 it
 /// takes back what was programmed).
 #[test]
-fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
+fn lengths_switches_and_smoothing_that_nobody_states_are_reported() {
     let risks_within = |dialect, path_tolerance, block: &str| {
         let settings = Settings { path_tolerance, ..Settings::new(dialect, [false; 3]) };
         let text = format!("G90\nG17\nG54\nG0 X0 Y0 Z50\n{block}\nG0 X5\n");
@@ -901,7 +901,7 @@ fn a_length_alone_moves_nothing_and_leaves_z_unknown_until_it_is_named() {
 
 /// Data and keys of the operator: what is written stays when the program has ended.
 #[test]
-fn data_and_keys_of_the_operator_are_told() {
+fn data_and_keys_of_the_operator_are_reported() {
     for (dialect, block, rule) in [
         (Dialect::Fanuc, "G10 L2 P1 X0. Y0. Z-5.", "operator-data"),
         (Dialect::Fanuc, "G92 X0.", "operator-data"),
@@ -1014,9 +1014,9 @@ fn rtlion_and_rtliof_say_how_the_axes_go_in_a_rapid() {
     assert_eq!(said, [&Action::RapidsTogether(Some(false)), &Action::RapidsTogether(None)]);
 }
 
-/// PGZ 2-86 and the cycles of the TNC 640 ([cycles](../../../docs/controls/cycles.md)): what a call asks for beside the hole.
+/// PGZ 2-86 and the cycles of the TNC 640 ([cycles](../../../docs/controls/cycles.md)): what a call asks for in addition to the hole.
 #[test]
-fn what_a_cycle_does_beside_its_hole_is_told() {
+fn what_a_cycle_does_in_addition_to_its_hole_is_reported() {
     let sinumerik = |call: &str| {
         let text = format!("G90 G94 F100 S1000 M3\nG0 X5 Y6\n{call}\nM30\n");
         risks(Dialect::Sinumerik, &text)
@@ -1070,7 +1070,7 @@ fn what_a_cycle_does_beside_its_hole_is_told() {
 
 /// PM 2.13 and "Percentage acceleration override"; S1, "Minimum / maximum speed of the gear stage".
 #[test]
-fn gears_and_axes_beyond_their_machine_data_are_told() {
+fn gears_and_axes_beyond_their_machine_data_are_reported() {
     let on_machine = |auxiliary: &[u32], block: &str| {
         let auxiliary = auxiliary.to_vec();
         let settings = Settings { auxiliary, ..Settings::new(Dialect::Sinumerik, [false; 3]) };

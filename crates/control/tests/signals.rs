@@ -3,7 +3,7 @@
 use program::{Auxiliary, Input, Output, OutputValue, Until};
 use toolpost_control::{Action, Dialect, Settings, read};
 
-/// What the control does beside its motions, which are counted instead; or the rule by which it refuses.
+/// What the control does in addition to its motions, which are counted instead; or the rule by which it refuses.
 fn signals(dialect: Dialect, text: &str) -> Result<Vec<(usize, Action)>, &'static str> {
     let settings = Settings { auxiliary: vec![21, 22, 101], ..Settings::new(dialect, [false; 3]) };
     let (mut moves, mut found) = (0, Vec::new());
@@ -84,7 +84,7 @@ fn functions_of_the_builder_stand_between_the_motions_where_they_are_called() {
     let text = "0 BEGIN PGM P MM\n1 L X+0 Y+0 Z+5 FMAX\n2 M21\n3 L X+1 F100\n4 M22\n5 M30\n6 END PGM P MM\n";
     assert_eq!(signals(Dialect::Klartext, text).unwrap(), two);
     // In a block with a motion it comes before that; M functions come out before the axes move (H2).
-    let beside = [(1, function(21, none))];
+    let after = [(1, function(21, none))];
     let text = "G17 G90 G94 G54 G0 X0 Y0 Z5\nG1 X1 F100 M21\nM30\n";
-    assert_eq!(signals(Dialect::Sinumerik, text).unwrap(), beside);
+    assert_eq!(signals(Dialect::Sinumerik, text).unwrap(), after);
 }

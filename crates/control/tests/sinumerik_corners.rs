@@ -50,7 +50,7 @@ fn a_corner_between_lines_is_rounded_on_its_inner_side() {
 }
 
 #[test]
-fn a_corner_beside_an_arc_touches_it() {
+fn a_corner_next_to_an_arc_touches_it() {
     // Along X to (20, 0), then clockwise about (20, -10) would go straight on; counter-clockwise about
     // (10, 0) turns left by a right angle. The arc of radius 2 inside lies at 8 from that centre and at 2
     // above the line: (10 + sqrt(60), 2).

@@ -77,7 +77,7 @@ fn an_operation_has_its_name_its_tool_and_its_moves() {
 }
 
 #[test]
-fn f_beside_a_rapid_is_not_the_feed() {
+fn f_in_the_block_of_a_rapid_is_not_the_feed() {
     let text =
         format!("{START}G0 F0.000000 Z5.000000\nG1 F1.5 Z0.000000\nG0 F50.0 Z5.0\nG1 Z1.0\n");
     let feeds: Vec<Op> =
@@ -166,7 +166,7 @@ fn a_way_that_is_not_that_of_the_cycle_stays() {
 
 /// FreeCAD's tapping writes the pitch as F (`Generator/tapping.py`).
 #[test]
-fn beside_a_tap_f_is_the_pitch() {
+fn with_a_tap_f_is_the_pitch() {
     let tap = format!("{START}G0 Z5.0\nG84 F1.25 R5.0 S300.0 X1.0 Y2.0 Z-8.0\nG80\nG0 Z20.0\n");
     let ops = ops(&operation(&tap));
     assert!(ops.contains(&Op::Spindle(Spindle::Clockwise(300.0))));
@@ -298,7 +298,7 @@ fn an_empty_job_is_refused() {
 }
 
 #[test]
-fn what_an_operation_lacks_is_told_with_the_operation_and_its_command() {
+fn what_an_operation_lacks_is_reported_with_the_operation_and_its_command() {
     let place = |command: u32| format!("part.json: operation `Profile`:{command}");
     // Feed.
     let zero = operation(&format!("{START}G1 F0.000000 Z0.0\n"));

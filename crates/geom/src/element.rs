@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_line_and_an_arc() {
+    fn next_to_a_line_and_an_arc() {
         let line = Element::line(Vec2::ZERO, Vec2::new(10.0, 0.0));
         let left = Element::line(Vec2::new(0.0, 3.0), Vec2::new(10.0, 3.0));
         assert_eq!(line.parallel(3.0), Some(left));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn how_far_away_a_point_is_is_told_with_angles_and_without() {
+    fn how_far_away_a_point_is_is_reported_with_angles_and_without() {
         for sweep in [0.1, 1.5, PI, 3.5, 6.0, TAU, -0.5, -PI, -5.0, -TAU] {
             let (start, center) = (Vec2::new(3.0, 1.0), Vec2::new(1.0, 2.0));
             let end = center + Vec2::from_angle(sweep).rotate(start - center);

@@ -85,7 +85,7 @@ fn a_disc_that_was_cut_is_one_circle_again() {
 }
 
 #[test]
-fn an_island_in_a_hole_is_told_apart() {
+fn an_island_in_a_hole_is_distinguished() {
     let ring = disc(0.0, 0.0, 3.0).difference(&disc(0.0, 0.0, 2.0)).unwrap();
     let both = ring.union(&disc(0.0, 0.0, 1.0)).unwrap();
     let mut areas: Vec<(f64, usize)> =
@@ -103,7 +103,7 @@ fn an_island_in_a_hole_is_told_apart() {
 }
 
 #[test]
-fn what_a_ring_that_crosses_itself_encloses_is_told_by_the_fill() {
+fn what_a_ring_that_crosses_itself_encloses_is_decided_by_the_fill() {
     // A figure of eight: one triangle to the left, one to the right; each of area 1.
     let eight = [(-1.0, -1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)].map(Vec2::from);
     // Twice around the same square.

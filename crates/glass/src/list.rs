@@ -14,7 +14,7 @@ impl Default for Columns {
     }
 }
 
-/// Whether commas cannot be told from decimal ones: with semicolons in the line, or where blanks alone part words of it.
+/// Whether commas cannot be distinguished from decimal ones: with semicolons in the line, or where blanks alone part words of it.
 fn may_hold_decimal_commas(line: &str) -> bool {
     let words: Vec<&str> = line.split_whitespace().collect();
     let parts_alone = |pair: &[&str]| !pair[0].ends_with(',') && !pair[1].starts_with(',');

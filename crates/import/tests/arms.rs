@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use toolpost_import::{Import, import_calibration, import_urdf};
 
-/// An arm in order: shoulder, elbow, wrist, one right angle of 3.1416 radians, a lever beside.
+/// An arm in order: shoulder, elbow, wrist, one right angle of 3.1416 radians, a lever next to it.
 const ARM: &str = r#"<robot name="small arm">
   <link name="foot"/><link name="base"/><link name="tool0"/>
   <joint name="j1" type="revolute"><origin xyz="0 0 0.4"/><parent link="foot"/><child link="l1"/>

@@ -219,7 +219,7 @@ fn a_tool_with_a_name_gets_a_number_and_a_warning_says_so() {
 }
 
 #[test]
-fn axes_are_not_sent_home_beside_the_part() {
+fn axes_are_not_sent_home_next_to_the_part() {
     let found = refused("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 X0 Y0\nM30\n");
     assert_eq!((found.rule.name(), found.line), ("home", 3));
     fanuc("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 Z0\nG28 X0 Y0\nM30\n");

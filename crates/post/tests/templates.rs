@@ -105,7 +105,7 @@ fn what_a_machinist_needs_of_jinja_is_there() {
 }
 
 #[test]
-fn a_name_that_the_engine_does_not_know_is_told_with_those_that_it_knows() {
+fn a_name_that_the_engine_does_not_know_is_refused_with_those_that_it_knows() {
     let said = checked("{{ program.name|uper }}").unwrap_err();
     assert!(said.contains("there is no filter `uper`") && said.contains("`upper`"), "{said}");
     let said = checked("{% if tool is definde %}{% endif %}").unwrap_err();
@@ -208,7 +208,7 @@ fn a_rapid_that_goes_at_an_f_needs_the_speed_of_an_axis() {
 }
 
 #[test]
-fn a_promise_that_a_file_does_not_keep_is_told_where_the_file_makes_it() {
+fn a_promise_that_a_file_does_not_keep_is_reported_where_the_file_makes_it() {
     let found = |text: &str| {
         let text = format!("extends = \"generic-3axis-linuxcnc\"\n{text}");
         let machine = machine::load_text("mine.toml", &text).unwrap();

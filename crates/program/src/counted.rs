@@ -12,7 +12,7 @@ const FEW: usize = 3;
 /// The lines of so many others are named.
 const LINES: usize = 5;
 
-/// So many kinds of messages of a rule are told apart.
+/// So many kinds of messages of a rule are distinguished.
 const KINDS: usize = 20;
 
 /// Findings as they are collected. Like ones, which differ in names and numbers alone, are kept up to nineteen; of

@@ -1,4 +1,4 @@
-//! What motions need beside the pose where they end.
+//! What motions need in addition to the pose where they end.
 
 use crate::pose::is_unit;
 use crate::{Axes, Diagnostic, FullPose, NoPose, Pose, Rule};

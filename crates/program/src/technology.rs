@@ -1,4 +1,4 @@
-//! Feed, spindle, coolant, tool, compensation, and what else the machine is told beside its motion.
+//! Feed, spindle, coolant, tool, compensation, and what else the machine is sent in addition to its motion.
 
 /// How fast the tool moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_are_told_by_their_letters() {
+    fn axes_are_named_by_their_letters() {
         assert_eq!((Axes::C | Axes::X | Axes::Z).letters(), "XZC");
         assert!(Axes::LINEAR.contains(Axes::X | Axes::Z) && !Axes::LINEAR.contains(Axes::A));
         assert_eq!(Axes::linear(1) | Axes::rotary(2), Axes::Y | Axes::C);

@@ -351,8 +351,8 @@ fn dwells_and_stops_come_in_their_place() {
     assert_eq!(at_record(2, own_dwell(1.5), dwell(15.0)), ["dwell"]);
     assert_eq!(at_record(2, own_dwell(1.5), vec![]), ["dwell"]);
     assert_eq!(at_record(2, vec![], dwell(1.5)), ["dwell"]);
-    let told = vec![Action::Stop, Action::Comment("x".into())];
-    assert!(at_record(2, vec![Op::Stop], told).is_empty());
+    let reported = vec![Action::Stop, Action::Comment("x".into())];
+    assert!(at_record(2, vec![Op::Stop], reported).is_empty());
     assert_eq!(at_record(2, vec![Op::Stop], vec![Action::OptionalStop]), ["stop"]);
     assert_eq!(at_record(3, vec![], vec![Action::Stop]), ["stop"]);
     let mut moved = cut_nc();
@@ -513,7 +513,7 @@ fn a_lift_along_the_tool_axis_and_back_is_an_excursion() {
     proven(&lifted);
     assert_eq!(lifted.excursions[0].lift_mm, 41.0);
     let (up, down) = (rapid(10.0, 0.0, 40.0), rapid(10.0, 0.0, -1.0));
-    // Down into the part, beside, and back on a slope are not.
+    // Down into the part, next to it, and back on a slope are not.
     assert_eq!(rules(&report(vec![rapid(10.0, 0.0, -5.0), down.clone()])), ["rapid-feed"]);
     assert_eq!(rules(&report(vec![rapid(12.0, 0.0, 40.0), down.clone()])), ["rapid-feed"]);
     let aside = vec![up.clone(), rapid(10.0, 9.0, 40.0), down.clone()];
@@ -561,7 +561,7 @@ fn what_a_program_leaves_on_at_its_end_is_refused() {
 }
 
 #[test]
-fn a_program_that_ends_with_the_tool_over_the_part_is_told_of() {
+fn a_program_that_ends_with_the_tool_over_the_part_is_reported() {
     let warned = |between: Vec<Action>| {
         let report = run(&mill(), &source(cut()), [nc_start(), cut_nc(), between, end()].concat());
         proven(&report);
@@ -583,7 +583,7 @@ fn a_first_cut_from_an_unknown_place_has_to_go_straight_to_its_end() {
 }
 
 #[test]
-fn the_same_difference_is_told_once_with_its_count() {
+fn the_same_difference_is_reported_once_with_its_count() {
     let slow = vec![Action::Feed(Feed::PerMinute(30.0))];
     let report = judge(&mill(), &source(cut()), [slow, cut_nc()].concat());
     assert_eq!(report.mismatches.len(), 1);

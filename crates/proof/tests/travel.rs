@@ -1,7 +1,7 @@
 //! The travel of the axes, in machine space: at the end of each block and on its way, in every kind of coordinates.
 //!
 //! The table of these tests turns by C on A, about points 50 mm below the work zero. A work zero that stands 50 mm above
-//! the axis of A stands, with A at 90°, 50 mm beside it along +Y, at the height of the axis: Y +50, Z -50.
+//! the axis of A stands, with A at 90°, 50 mm from it along +Y, at the height of the axis: Y +50, Z -50.
 
 mod common;
 
@@ -180,7 +180,7 @@ fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
     assert!(judged(0.0, &round[..3]).is_empty());
     assert_eq!(judged(0.0, &round[..4]), ["axis-limit"]);
     assert!(judged(-210.0, &[[20.0, -150.0], [20.0, -90.0], [20.0, 210.0]]).is_empty());
-    // 20° before the pole and 20° behind it, 5.3° aside of the diameter: on the great circle 0.95° beside the pole.
+    // 20° before the pole and 20° behind it, 5.3° aside of the diameter: on the great circle 0.95° from the pole.
     // So near that the control leads it through the pole.
     assert_eq!(judged(170.0, &[[20.0, 344.7]]), ["pole-way", "axis-limit"]);
     assert_eq!(judged(170.0, &[[20.0, -4.7]]), ["pole-way"]);

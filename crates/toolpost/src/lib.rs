@@ -49,7 +49,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(line) => line,
         Err(usage) => {
             let usage = shortened(usage);
-            // Nobody is left to be told where this cannot be printed.
+            // Where this cannot be printed, nobody is left to read it.
             let _ = usage.print();
             return u8::try_from(usage.exit_code()).unwrap_or(u8::MAX);
         }

@@ -52,7 +52,7 @@ fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Tells of programs and pictures of another call that stay beside those of this one.
+/// Tells of programs and pictures of another call that stay next to those of this one.
 fn older(args: &Pcb, programs: &[Program]) -> Option<Diagnostic> {
     let is_made = |name: &str| programs.iter().any(|made| made.name == name);
     let names = Part::ALL.into_iter().map(Part::name).chain([PROBE]);

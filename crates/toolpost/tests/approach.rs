@@ -130,7 +130,7 @@ fn with(text: &str, block: &str, others: &[&str]) -> String {
 }
 
 #[test]
-fn x_and_y_first_dive_beside_a_part_that_the_table_has_swung_up() {
+fn x_and_y_first_dive_next_to_a_part_that_the_table_has_swung_up() {
     let (source, machine) = (read(LEDGE), fanuc());
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
@@ -141,7 +141,7 @@ fn x_and_y_first_dive_beside_a_part_that_the_table_has_swung_up() {
     let dives = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-145.", "Z20."]);
     let dives = with(&dives, "Y-145.", &[]);
     assert_eq!(refused(&source, &machine, &dives), ("rapid-path", "X0. Y-145.".into()));
-    // The same in one block comes down aslant beside what stands out.
+    // The same in one block comes down aslant next to what stands out.
     let aslant = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-145. Z20."]);
     let aslant = with(&aslant, "Y-145.", &[]);
     assert_eq!(refused(&source, &machine, &aslant), ("rapid-path", "X0. Y-145. Z20.".into()));
@@ -194,8 +194,8 @@ fn z_alone_comes_down_where_x_and_y_stand_over_the_place_before_the_tip_is_kept(
         with(&with(&text, "X0. Y-201.01 Z20.", &["X0. Y-145. Z20."]), "Y-145.", &[])
     };
     proven(&source, &machine, &over("Y120."));
-    let beside = over("Y119.");
-    assert_eq!(refused(&source, &machine, &beside), ("rapid-path", "X0. Y-145. Z20.".into()));
+    let aside = over("Y119.");
+    assert_eq!(refused(&source, &machine, &aside), ("rapid-path", "X0. Y-145. Z20.".into()));
 }
 
 #[test]
@@ -478,7 +478,7 @@ fn z_first_comes_down_above_all_cuts_only() {
     assert_eq!(refused(&low, &machine, &z_first), ("rapid-path", "G0 Z3".into()));
 }
 
-/// The same beside a wall that is cut 2.5 mm high.
+/// The same next to a wall that is cut 2.5 mm high.
 fn source_with_a_wall() -> Program {
     read(
         "UNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/5,0,3\nGOTO/5,0,-5\nGOTO/25,0,2.5\nRAPID\n\

@@ -130,7 +130,7 @@ fn a_radius_is_negative_over_a_half_circle_and_what_it_cannot_say_is_cut() {
     }
     let machine = mill("generic-3axis-sinumerik", &words(false, &[("R", "CR=")]), RADIUS);
     assert_eq!(arcs(&machine), blocks.map(|block| block.replace(" R", " CR=")));
-    // No G94 beside G3 in Marlin, no plane in Klartext, which names the direction.
+    // No G94 with G3 in Marlin, no plane in Klartext, which names the direction.
     let plus = "[words]\nR = { decimals = 4, trim = true, plus = true }\n[blocks]\n";
     let plain = plus.replace("plus = true", "modal = false");
     for (control, text, block, first) in [

@@ -44,18 +44,18 @@ struct Move {
 /// The moves of each block by its number.
 type Blocks = BTreeMap<u32, Vec<Move>>;
 
-/// What has been told so far.
-struct Told {
+/// What has been reported so far.
+struct Reported {
     blocks: Blocks,
     now: Move,
 }
 
-impl Told {
+impl Reported {
     /// Nothing yet, the tool being at `start`.
-    fn nothing(start: Vec3) -> Told {
+    fn nothing(start: Vec3) -> Reported {
         let (way, coolant) = (Way::Rapid, [false; 2]);
         let now = Move { way, end: start, feed: 0.0, spindle: 0.0, coolant };
-        Told { blocks: Blocks::new(), now }
+        Reported { blocks: Blocks::new(), now }
     }
 
     fn moves(&mut self, block: u32, way: Way, end: Vec3) {
@@ -93,7 +93,7 @@ fn theirs(folder: &Path, text: &str) -> Result<Blocks, String> {
     if !run.status.success() {
         return Err(format!("{said}{}", String::from_utf8_lossy(&run.stderr)));
     }
-    let mut told = Told::nothing(Vec3::ZERO);
+    let mut reported = Reported::nothing(Vec3::ZERO);
     let (mut speed, mut plane) = (0.0, 0);
     for line in said.lines() {
         // `   19 N12    STRAIGHT_TRAVERSE(1.0000, 2.0000, ...)`
@@ -111,9 +111,9 @@ fn theirs(folder: &Path, text: &str) -> Result<Blocks, String> {
             "SELECT_PLANE" => {
                 plane = ["XY", "YZ", "XZ"].iter().position(|p| rest.contains(p)).unwrap();
             }
-            "STRAIGHT_TRAVERSE" => told.moves(number(), Way::Rapid, place()),
-            "STRAIGHT_FEED" => told.moves(number(), Way::Feed, place()),
-            "RIGID_TAP" => told.stays(number(), Way::Hole(numbers[2], 0.0)),
+            "STRAIGHT_TRAVERSE" => reported.moves(number(), Way::Rapid, place()),
+            "STRAIGHT_FEED" => reported.moves(number(), Way::Feed, place()),
+            "RIGID_TAP" => reported.stays(number(), Way::Hole(numbers[2], 0.0)),
             "ARC_FEED" => {
                 // First and second axis of the plane (X Y, Y Z, Z X), then the one it rises along.
                 let turned = |a: f64, b: f64, c: f64| match plane {
@@ -122,76 +122,76 @@ fn theirs(folder: &Path, text: &str) -> Result<Blocks, String> {
                     _ => Vec3::new(b, c, a),
                 };
                 let center = turned(numbers[2], numbers[3], f64::NAN);
-                told.moves(
+                reported.moves(
                     number(),
                     Way::Arc(center, numbers[4] as i32),
                     turned(numbers[0], numbers[1], numbers[5]),
                 );
             }
-            "DWELL" => told.stays(number(), Way::Dwell(numbers[0])),
-            "CHANGE_TOOL" => told.stays(number(), Way::Tool(numbers[0] as u32)),
-            "SET_FEED_RATE" => told.now.feed = numbers[0],
+            "DWELL" => reported.stays(number(), Way::Dwell(numbers[0])),
+            "CHANGE_TOOL" => reported.stays(number(), Way::Tool(numbers[0] as u32)),
+            "SET_FEED_RATE" => reported.now.feed = numbers[0],
             "SET_SPINDLE_SPEED" => {
                 speed = numbers[1];
-                told.now.spindle =
-                    speed.copysign(told.now.spindle) * told.now.spindle.abs().min(1.0);
+                reported.now.spindle =
+                    speed.copysign(reported.now.spindle) * reported.now.spindle.abs().min(1.0);
             }
-            "START_SPINDLE_CLOCKWISE" => told.now.spindle = speed,
-            "START_SPINDLE_COUNTERCLOCKWISE" => told.now.spindle = -speed,
-            "STOP_SPINDLE_TURNING" => told.now.spindle = 0.0,
-            "FLOOD_ON" => told.now.coolant[0] = true,
-            "FLOOD_OFF" => told.now.coolant[0] = false,
-            "MIST_ON" => told.now.coolant[1] = true,
-            "MIST_OFF" => told.now.coolant[1] = false,
+            "START_SPINDLE_CLOCKWISE" => reported.now.spindle = speed,
+            "START_SPINDLE_COUNTERCLOCKWISE" => reported.now.spindle = -speed,
+            "STOP_SPINDLE_TURNING" => reported.now.spindle = 0.0,
+            "FLOOD_ON" => reported.now.coolant[0] = true,
+            "FLOOD_OFF" => reported.now.coolant[0] = false,
+            "MIST_ON" => reported.now.coolant[1] = true,
+            "MIST_OFF" => reported.now.coolant[1] = false,
             _ => {}
         }
     }
-    Ok(told.blocks)
+    Ok(reported.blocks)
 }
 
 /// What the virtual control of the proof makes of it.
 fn ours(machine: &Machine, text: &str) -> Blocks {
     let settings = nc::settings(machine, Setup::default()).unwrap();
-    let mut told = Told::nothing(Vec3::NAN);
+    let mut reported = Reported::nothing(Vec3::NAN);
     let mut cycle: Option<Cycle> = None;
     let run = control::read(&settings, "p.ngc", text.as_bytes(), &mut |event| {
         let line = event.line;
         match &event.action {
-            Action::Rapid(to) => told.moves(line, Way::Rapid, to.point),
-            Action::Line(to) => told.moves(line, Way::Feed, to.point),
+            Action::Rapid(to) => reported.moves(line, Way::Rapid, to.point),
+            Action::Line(to) => reported.moves(line, Way::Feed, to.point),
             Action::Arc(arc) => {
                 let about = arc.normal.x + arc.normal.y + arc.normal.z;
                 let turns = (arc.turns as i32 + 1) * about.signum() as i32;
                 let axis = arc.normal.abs();
                 let center = arc.center + axis * f64::NAN;
                 let center = Vec3::select(axis.cmpgt(Vec3::splat(0.5)), center, arc.center);
-                told.moves(line, Way::Arc(center, turns), arc.end.point);
+                reported.moves(line, Way::Arc(center, turns), arc.end.point);
             }
             Action::Cycle(new) => cycle = Some(**new),
             Action::Hole(at) => {
                 let cycle = cycle.expect("a hole has a cycle");
                 if let Some(Feed::PerMinute(own)) = cycle.feed {
-                    told.now.feed = own;
+                    reported.now.feed = own;
                 }
                 let end = at.point + Vec3::Z * cycle.retract;
-                told.moves(line, Way::Hole(at.point.z - cycle.depth, cycle.dwell), end);
+                reported.moves(line, Way::Hole(at.point.z - cycle.depth, cycle.dwell), end);
             }
             Action::MachineMove(to) => {
                 let z = to.linear[2].unwrap_or(f64::NAN);
-                told.moves(line, Way::Rapid, Vec3::new(f64::NAN, f64::NAN, z));
+                reported.moves(line, Way::Rapid, Vec3::new(f64::NAN, f64::NAN, z));
             }
-            Action::Dwell(seconds) => told.stays(line, Way::Dwell(*seconds)),
-            Action::Tool(tool) => told.moves(line, Way::Tool(tool.number), Vec3::NAN),
-            Action::Feed(Feed::PerMinute(feed)) => told.now.feed = *feed,
+            Action::Dwell(seconds) => reported.stays(line, Way::Dwell(*seconds)),
+            Action::Tool(tool) => reported.moves(line, Way::Tool(tool.number), Vec3::NAN),
+            Action::Feed(Feed::PerMinute(feed)) => reported.now.feed = *feed,
             Action::Spindle(spindle) => {
-                told.now.spindle = match *spindle {
+                reported.now.spindle = match *spindle {
                     Spindle::Off => 0.0,
                     Spindle::Clockwise(speed) => speed,
                     Spindle::CounterClockwise(speed) => -speed,
                 }
             }
             Action::Coolant(coolant) => {
-                told.now.coolant = match coolant {
+                reported.now.coolant = match coolant {
                     Coolant::Off => [false; 2],
                     Coolant::Flood => [true, false],
                     Coolant::Mist => [false, true],
@@ -207,7 +207,7 @@ fn ours(machine: &Machine, text: &str) -> Blocks {
         Ok(())
     });
     run.unwrap_or_else(|found| panic!("{found}"));
-    told.blocks
+    reported.blocks
 }
 
 /// The moves of a block that drills, as one.
@@ -256,7 +256,7 @@ fn linuxcnc_itself_does_in_each_block_what_the_proof_reads() {
             let text = std::fs::read(&file).unwrap();
             let name = file.display().to_string();
             let source = source::apt::read(&name, &text, &Default::default()).unwrap().program;
-            // What the machine refuses is told in `library.rs`.
+            // What the machine refuses stands in `library.rs`.
             let Ok(output) = post::write(&source, &machine) else { continue };
             let text = numbered(&String::from_utf8(output.text).unwrap());
             let theirs = theirs(folder.path(), &text).unwrap_or_else(|why| panic!("{name}: {why}"));

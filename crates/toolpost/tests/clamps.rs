@@ -166,7 +166,7 @@ fn a_machine_with_clamps_says_all_that_they_need() {
 
 /// The clamps of the machine that a program comes from are none of another one.
 #[test]
-fn clamps_of_a_source_are_left_to_the_machine_and_told() {
+fn clamps_of_a_source_are_left_to_the_machine_and_reported() {
     let machine = load("sinumerik-840d-table-ac").unwrap();
     let text = posted(&machine);
     let read = nc::read(&machine, Default::default(), "s.mpf", text.as_bytes()).unwrap();

@@ -360,7 +360,7 @@ fn a_way_out_through_the_contour_is_not_proven() {
     assert_eq!(refused, [(23, "compensation-gouge"); 4]);
 }
 
-/// From the end of a wall round 335° of a bore of radius 12 mm: 1.1 mm beside the place from where the tool comes. Elements are looked at
+/// From the end of a wall round 335° of a bore of radius 12 mm: 1.1 mm from the place from where the tool comes. Elements are looked at
 /// with those on both sides of them.
 #[test]
 fn a_contour_that_comes_back_to_the_element_before_is_refused_by_the_writer_and_by_the_proof() {

@@ -86,7 +86,7 @@ fn a_rule_that_is_accepted_passes_and_stands_in_the_report() {
 }
 
 #[test]
-fn a_machine_that_keeps_to_the_path_is_told_so() {
+fn a_machine_that_keeps_to_the_path_gets_the_word_for_it() {
     let exact = "extends = \"linuxcnc-mill\"\n[options]\npath_tolerance = 0\n";
     let machine = load_text("own.toml", exact).unwrap();
     let text = posted(&machine);
@@ -315,10 +315,10 @@ fn a_tolerance_for_which_a_control_has_no_word_is_told() {
 }
 
 #[test]
-fn what_a_source_asks_for_and_the_machine_does_not_give_is_told() {
+fn what_a_source_asks_for_and_the_machine_does_not_give_is_reported() {
     let silent = "extends = \"linuxcnc-mill\"\n[blocks]\nlook_ahead_on = \"\"\n";
     let machine = load_text("own.toml", silent).unwrap();
-    let told = |mode: &str| {
+    let reported = |mode: &str| {
         let text = format!(
             "G21 G90 G17 G94 G54 {mode}\nT1 M6\nS1000 M3\nG43 H1\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX9\nG0 Z50\nM30\n"
         );
@@ -327,14 +327,14 @@ fn what_a_source_asks_for_and_the_machine_does_not_give_is_told() {
         let rules = output.warnings.iter().filter(|found| found.rule.name() == "path-mode");
         rules.map(|found| found.message.clone()).collect::<Vec<_>>()
     };
-    assert_eq!(told("G64 P0.1"), [""; 0]);
-    assert_eq!(told("G64"), [""; 0]);
+    assert_eq!(reported("G64 P0.1"), [""; 0]);
+    assert_eq!(reported("G64"), [""; 0]);
     assert_eq!(
-        told("G61.1"),
+        reported("G61.1"),
         ["the source stops at each corner: this control leaves it by 0.01 mm at the most there"]
     );
     assert_eq!(
-        told("G64 P0.001"),
+        reported("G64 P0.001"),
         [
             "the source leaves the path by 0.002 mm at corners: this control leaves it by 0.01 mm at the most there"
         ]

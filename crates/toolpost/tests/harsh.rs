@@ -46,7 +46,7 @@ const ACCEPTED: &[&str] = &[
 /// How many jobs there are, and how many with `TOOLPOST_JUDGES=long`.
 const JOBS: [u64; 2] = [300, 10_000];
 
-/// A job that failed once beyond the first ones: a rapid under vectors that begins 0.06° beside the pole.
+/// A job that failed once beyond the first ones: a rapid under vectors that begins 0.06° from the pole.
 const FOUND: [u64; 1] = [9392];
 
 /// A rotary axis of a machine file.

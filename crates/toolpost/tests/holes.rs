@@ -298,7 +298,7 @@ fn the_feeds_of_cycle85_count_as_the_feed_does() {
 
 /// The spindle stands after CYCLE86 until it is started; before each hole the cycle starts it.
 #[test]
-fn the_spindle_is_told_anew_after_boring() {
+fn the_spindle_is_printed_again_after_boring() {
     let machine = boring("generic-3axis-sinumerik");
     let mut source = source(cycle(BORE, 0.0));
     let at = |z| Pose::upright(Vec3::new(30.0, 5.0, z)).unwrap();

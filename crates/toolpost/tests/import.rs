@@ -1,5 +1,5 @@
 //! Posts and templates of other systems, written here in the style that is in use, as machine files: the
-//! blocks that they become, what is told, and that the sample part is proven with each.
+//! blocks that they become, what is reported, and that the sample part is proven with each.
 
 use import::Import;
 use machine::{Machine, load_text};
@@ -79,8 +79,8 @@ fn blocks(machine: &Machine, expected: &[(&str, &str)]) {
     }
 }
 
-/// The lines of what is told of the post, with its rule. What no post says, the safe height, is not among them.
-fn told(import: &Import) -> Vec<(u32, &'static str)> {
+/// The lines of what is reported of the post, with its rule. What no post says, the safe height, is not among them.
+fn reported(import: &Import) -> Vec<(u32, &'static str)> {
     let findings = import.findings.iter().filter(|found| found.rule.name() != "safe-height");
     findings.map(|found| (found.line, found.rule.name())).collect()
 }
@@ -140,7 +140,7 @@ begin FOOTER
     let at = |what: &str| 1 + text.lines().position(|line| line.contains(what)).unwrap() as u32;
     let footer = 1 + text.lines().position(|line| line.contains("FOOTER")).unwrap() as u32;
     assert_eq!(
-        told(&import),
+        reported(&import),
         [
             (at("G0[ZH]"), OTHERWISE),
             (at("G0[XH]"), OTHERWISE),
@@ -223,7 +223,7 @@ begin FOOTER
     );
     let lost = |what: &str| {
         let line = 1 + text.lines().position(|line| line.contains(what)).unwrap() as u32;
-        assert!(told(&import).contains(&(line, LOST)), "{what}: {:?}", import.findings);
+        assert!(reported(&import).contains(&(line, LOST)), "{what}: {:?}", import.findings);
     };
     for what in ["DIRECT_OUTPUT", "\"%\"", "[DATE]", "M07", "M0\"", "JET_TOOL_ON"] {
         lost(what);
@@ -292,7 +292,7 @@ begin FOOTER
         ],
     );
     let line = 1 + text.lines().position(|line| line.contains("M117")).unwrap() as u32;
-    assert!(told(&import).contains(&(line, LOST)), "{:?}", import.findings);
+    assert!(reported(&import).contains(&(line, LOST)), "{:?}", import.findings);
     let program = sample(&machine).unwrap();
     assert!(program.contains("M0 Load the tool") && program.contains("G4 S0.50"), "{program}");
 }
@@ -339,7 +339,7 @@ M30
             ("tool_change", "{{N}} G0 SUPA {{SAFE_HEIGHT}} D0\n{{T}}\nM6"),
         ],
     );
-    let lost: Vec<u32> = told(&import).into_iter().map(|(line, _)| line).collect();
+    let lost: Vec<u32> = reported(&import).into_iter().map(|(line, _)| line).collect();
     // Tool radius, approach, leave, the hole by moves, the second end.
     assert_eq!(lost, [3, 7, 16, 25, 27], "{:?}", import.findings);
     let program = sample(&machine).unwrap();
@@ -391,16 +391,16 @@ G81 X@x@ Y@y@ Z@depth@ R@clearance@ F@f@
         let (import, machine) = imported("mill.txt", text, Some(control));
         let expected = [(0, "rapid-feed"), (4, OTHERWISE), (6, OTHERWISE), (8, LOST)];
         // Rapids of Marlin go at an F, which the post does not say.
-        assert_eq!(told(&import), expected[usize::from(control == "grbl")..]);
+        assert_eq!(reported(&import), expected[usize::from(control == "grbl")..]);
         assert!(machine.capabilities.cycles.is_empty() && !machine.capabilities.arcs.is_empty());
         blocks(&machine, &[("arc_cw", "G2 {{X}} {{Y}} {{R}} {{F}}")]);
         let program = sample(&machine).unwrap();
         assert!(!program.contains("G81"), "{program}");
         assert!(program.lines().any(|l| l.starts_with("G3 ") && l.contains(" R10")), "{program}");
     }
-    // Beside a centre it stays what it is, and a word that has no value leaves arcs out.
-    let beside = text.replace("R@r@", "I@i@ J@j@ R@r@");
-    let (_, machine) = imported("mill.txt", &beside, Some("grbl"));
+    // With a centre it stays what it is, and a word that has no value leaves arcs out.
+    let both = text.replace("R@r@", "I@i@ J@j@ R@r@");
+    let (_, machine) = imported("mill.txt", &both, Some("grbl"));
     blocks(&machine, &[("arc_cw", "G2 {{X}} {{Y}} {{I}} {{J}} {{RADIUS}} {{F}}")]);
     let (import, machine) = imported("mill.txt", &text.replace("R@r@", "U@r@"), Some("grbl"));
     assert!(machine.capabilities.arcs.is_empty());
@@ -409,7 +409,7 @@ G81 X@x@ Y@y@ Z@depth@ R@clearance@ F@f@
 }
 
 #[test]
-fn what_differs_from_the_first_move_and_what_the_toolpath_says_itself_is_told() {
+fn what_differs_from_the_first_move_and_what_the_toolpath_says_itself_is_reported() {
     let rest = r#"POST_NAME = "linuxcnc"
 begin HEADER
 "S12000 M3"
@@ -441,7 +441,7 @@ begin CCW_ARC_MOVE
         (retract, LOST),
         (line("ArcMidXI"), LOST),
     ];
-    assert_eq!(told(&import), expected, "{:?}", import.findings);
+    assert_eq!(reported(&import), expected, "{:?}", import.findings);
     assert!(machine.capabilities.arcs.is_empty());
     // What a command says stays with it, and what it does is the proof's to say.
     let start = machine.blocks["program_start"].text.trim_end();

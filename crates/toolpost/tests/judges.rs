@@ -1,5 +1,5 @@
 //! Programs we write, run by interpreters that others wrote: `rs274` of LinuxCNC (Debian package
-//! `linuxcnc-uspace`) and `nc-gcode-interpreter` (PyPI). Both are programs run beside ours; their
+//! `linuxcnc-uspace`) and `nc-gcode-interpreter` (PyPI). Both are programs run and compared with ours; their
 //! motion is held against the source, so nothing of ours but the reader and the writer is trusted.
 //!
 //! A judge that is not installed is named on stderr and its test passes; in CI it fails.
@@ -92,12 +92,12 @@ fn assert_same_cuts(program: &Program, cuts: &[Cut], tolerance: f64, holes: bool
             Op::Hole(at) if holes => {
                 let cycle = cycle.expect("a hole has a cycle");
                 let bottom = at.point() - at.axis() * cycle.depth;
-                // Pecks, if any, then the bottom; never beside the hole nor below it.
+                // Pecks, if any, then the bottom; never off the axis of the hole nor below it.
                 loop {
                     let cut = cuts.next().unwrap_or_else(|| panic!("line {line}: no more holes"));
-                    let beside = (cut.to - bottom).truncate().length();
+                    let off = (cut.to - bottom).truncate().length();
                     assert!(
-                        beside <= tolerance && cut.to.z >= bottom.z - tolerance,
+                        off <= tolerance && cut.to.z >= bottom.z - tolerance,
                         "{line}: {cut:?}"
                     );
                     if cut.to.z <= bottom.z + tolerance {

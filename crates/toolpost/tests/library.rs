@@ -1,4 +1,4 @@
-//! The machines of the library: the sample program beside each, and what each makes of every file of
+//! The machines of the library: the sample program of each, and what each makes of every file of
 //! cutter-location data.
 
 mod files;

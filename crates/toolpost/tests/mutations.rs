@@ -1,7 +1,7 @@
 //! Proven programs with one character damaged, or with a block put in: the proof refuses each, or the machine does the
 //! same. `make judges-long` damages ten times as many.
 //!
-//! What a surviving program does is shown without the proof: the virtual control runs it beside the
+//! What a surviving program does is shown without the proof: the virtual control runs it and the
 //! one it came from, and both do the same things at the same places.
 
 mod dice;
@@ -823,8 +823,8 @@ impl Allowed<'_> {
             let (way, mut leg) = (points(others), 0);
             steps.iter().zip(&points(steps)[1..]).all(|(step, point)| {
                 let near = |leg: &usize| {
-                    let beside = nearest_on_segment(way[*leg], way[leg + 1], *point).1;
-                    beside <= off && self.switched(&step.on, &others[*leg].on)
+                    let distance = nearest_on_segment(way[*leg], way[leg + 1], *point).1;
+                    distance <= off && self.switched(&step.on, &others[*leg].on)
                 };
                 let found = (leg..others.len()).find(near);
                 leg = found.unwrap_or(leg);

@@ -101,7 +101,7 @@ fn work_offsets_are_written_where_the_machine_declares_it() {
         nc::read(machine, Default::default(), "s.nc", text.as_bytes())
             .unwrap_or_else(|e| panic!("{e}"))
     };
-    // In a source of another machine they are told of.
+    // In a source of another machine they are reported.
     assert!(read(&keeps).warnings.iter().any(|found| found.rule.name() == "operator-data"));
     let source = read(&sets);
     assert!(source.warnings.iter().all(|found| found.rule.name() != "operator-data"));

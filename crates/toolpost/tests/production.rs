@@ -136,7 +136,7 @@ fn a_fanuc_retracts_by_g53_where_its_file_says_so() {
 }
 
 #[test]
-fn a_haas_is_told_how_smooth_it_goes_and_by_how_much_it_may_round_corners() {
+fn a_program_for_haas_says_how_smooth_it_goes_and_by_how_much_it_may_round_corners() {
     let source = sample("three-axes");
     for (options, block) in [
         ("smoothness = 3\npath_tolerance = 0.05", "G187 P3 E0.05\n"),
@@ -243,7 +243,7 @@ fn a_haas_clears_chips_above_r_as_far_as_setting_52_says() {
         "{text}"
     );
     assert_eq!(post::write(&source, &far).unwrap_err()[0].rule.name(), "axis-limit");
-    // A file that does not say it is told so.
+    // A file that does not say it is reported.
     let unsaid = machine("extends = \"haas\"\n");
     let text = post::write(&source, &unsaid).unwrap().text;
     let report = proof::prove(&source, &unsaid, "p", &text, &Default::default());

@@ -172,7 +172,7 @@ fn a_picture_shows_where_the_axes_take_the_tip_by_rapid() {
 }
 
 /// The same two in the frame of the machine: one block is straight there. Half way the table stands at A30, and the tip at Y 0 and Z 5 of the
-/// part: by hand that is Y -5 sin 30° = -2.5 and Z 5 cos 30° = 4.33 of the machine, 50.7 mm beside the way of the block.
+/// part: by hand that is Y -5 sin 30° = -2.5 and Z 5 cos 30° = 4.33 of the machine, 50.7 mm from the path of the block.
 #[test]
 fn in_the_frame_of_the_machine_one_block_is_straight_and_the_pieces_go_round() {
     let machine = load("sinumerik-840d-table-ac").unwrap();
@@ -296,15 +296,15 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
         "{warning}"
     );
     // A feed in place of a rapid that does not keep to the way is none.
-    let beside = good.replace("X30. Y0.\nZ-5.", "X0. Y0.\nX30.\nZ-5.");
-    assert_eq!(refused(&source, &machine, &beside)[0].0, "path");
+    let aside = good.replace("X30. Y0.\nZ-5.", "X0. Y0.\nX30.\nZ-5.");
+    assert_eq!(refused(&source, &machine, &aside)[0].0, "path");
     // Where rapids are straight, nobody asks for it.
     assert_eq!(refused(&source, &straight, &good)[0].0, "rapid-feed");
 }
 
 /// A wall at height 10, and three holes at height 0 whose cycle retracts to 2, in a plane with the tool along its Z: along its
 /// X from the first to the second, aslant to the third.
-fn holes_beside_a_wall(retract: f64, [x, y, z]: [Vec3; 3]) -> Program {
+fn holes_next_to_a_wall(retract: f64, [x, y, z]: [Vec3; 3]) -> Program {
     let at = |[a, b, c]: [f64; 3]| {
         let (p, axis) = (x * a + y * b + z * c, z);
         format!("GOTO/{:.6},{:.6},{:.6},{:.8},{:.8},{:.8}\n", p.x, p.y, p.z, axis.x, axis.y, axis.z)
@@ -342,7 +342,7 @@ fn between_holes_a_cycle_goes_across_beyond_all_cuts_or_along_one_axis() {
         "extends = \"generic-3axis-fanuc\"\n[settings]\nrapid_path = \"linear\"\n",
     )
     .unwrap();
-    let source = holes_beside_a_wall(2.0, LEVEL);
+    let source = holes_next_to_a_wall(2.0, LEVEL);
     let straight = plain(&text(&written(&source, &linear)));
     proven(&source, &linear, &straight);
     assert!(straight.contains("\nX40. Y0.\nX0. Y30.\nG80\n"), "{straight}");
@@ -352,7 +352,7 @@ fn between_holes_a_cycle_goes_across_beyond_all_cuts_or_along_one_axis() {
     proven(&source, &machine, &good);
     assert!(good.contains("\nX40. Y0.\nG80\nG0 Z11.02\nX0. Y30.\nZ2.\n"), "{good}");
     // So high does the cycle retract by itself.
-    let high = holes_beside_a_wall(12.0, LEVEL);
+    let high = holes_next_to_a_wall(12.0, LEVEL);
     let good = plain(&text(&written(&high, &machine)));
     proven(&high, &machine, &good);
     assert!(good.contains("\nX40. Y0.\nX0. Y30.\nG80\n"), "{good}");
@@ -363,7 +363,7 @@ fn between_holes_a_cycle_goes_across_beyond_all_cuts_or_along_one_axis() {
 fn in_a_tilted_plane_a_cycle_goes_across_beyond_all_cuts_too() {
     let z = Vec3::new(0.5, 0.5, 0.5_f64.sqrt());
     let x = Vec3::new(0.5_f64.sqrt(), -(0.5_f64.sqrt()), 0.0);
-    let source = holes_beside_a_wall(2.0, [x, z.cross(x), z]);
+    let source = holes_next_to_a_wall(2.0, [x, z.cross(x), z]);
     let linear = load("fanuc-table-bc").unwrap();
     let text_of = "extends = \"fanuc-table-bc\"\n[settings]\nrapid_path = \"independent\"\n";
     let machine = load_text("m.toml", text_of).unwrap();

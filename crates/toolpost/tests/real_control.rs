@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Lengths of T1 and T2, mm.
 const LENGTHS: [f64; 2] = [30.0, 50.0];
 
-/// Besides the path tolerance, mm: the axes are told to six decimals, the program has four.
+/// Besides the path tolerance, mm: the axes are printed to six decimals, the program has four.
 const ROUNDING: f64 = 0.002;
 
 /// Where the axes were at a millisecond, machine coordinates, and the line of the program.
@@ -143,7 +143,7 @@ fn deviation(ways: &[Way], samples: &[Sample]) -> (f64, u32) {
         }
     };
     for sample in samples {
-        // A line that is blended into the next may be told as either; one that calls the tool goes where the machine likes.
+        // A line that is blended into the next may be reported as either; one that calls the tool goes where the machine likes.
         let Some(at) = ways.iter().position(|way| way.line == sample.line) else { continue };
         let last = ways.iter().rposition(|way| way.line == sample.line).unwrap();
         let near = &ways[at.saturating_sub(2)..(last + 3).min(ways.len())];
@@ -209,7 +209,7 @@ fn generated(seed: u64, arcs: bool) -> Program {
             for _ in 0..1 + below(5) {
                 let to = [f64::from(below(120)) / 2.0, f64::from(below(80)) / 2.0];
                 if arcs && below(3) == 0 {
-                    // A quarter of a circle about a point beside it.
+                    // A quarter of a circle about a point next to it.
                     let r = f64::from(1 + below(10));
                     let end = [here[0] + r, here[1] + r];
                     job.arc([end[0], end[1], z], [here[0], here[1] + r, z], [0.0, 0.0, 1.0], 0)

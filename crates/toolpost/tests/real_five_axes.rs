@@ -366,7 +366,7 @@ struct Worst {
     tip: (f64, u32),
     /// Tool axis in the cut, degrees.
     axis: (f64, u32),
-    /// A rapid beside the straight way, mm, where it is on it.
+    /// How far a rapid is from the straight line, mm, where it is on it.
     rapid: (f64, u32),
     /// Milliseconds in the cut, by rapid on the way, and clear of the part.
     counts: [usize; 3],
@@ -425,10 +425,10 @@ impl Walk {
         }
         let over = |place: Vec3, axis: Vec3| {
             let up = spot.tip - place;
-            let beside = up - axis * up.dot(axis);
+            let across = up - axis * up.dot(axis);
             angle_between(axis, spot.axis) < 1e-3
                 && up.dot(axis) > -self.tolerance
-                && beside.length() <= CORRIDOR
+                && across.length() <= CORRIDOR
         };
         let last = self.at.checked_sub(1).map(|last| &self.ways[last]);
         let way = &self.ways[self.at];
@@ -451,9 +451,9 @@ impl Walk {
                 && next.is_some_and(|next| self.on(next, here, spot).is_some() || passes(next));
             if !goes_on && let Some((off, bend)) = self.on(way, here, spot) {
                 // At a corner it is on the motion before or behind as well.
-                let beside = [self.at.wrapping_sub(1), self.at + 1].map(|at| self.ways.get(at));
-                let beside = beside.into_iter().flatten().map(|way| way.apart(spot.tip).0);
-                let off = beside.fold(off, f64::min);
+                let next = [self.at.wrapping_sub(1), self.at + 1].map(|at| self.ways.get(at));
+                let next = next.into_iter().flatten().map(|way| way.apart(spot.tip).0);
+                let off = next.fold(off, f64::min);
                 let worst = &mut self.worst;
                 if way.cuts {
                     Worst::note(&mut worst.tip, off, way.line);

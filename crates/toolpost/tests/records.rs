@@ -1,4 +1,4 @@
-//! Every kind of record beside who handles it: the table of `docs/architecture.md`, found by doing it.
+//! Every kind of record with those that handle it: the table of `docs/architecture.md`, found by doing it.
 //!
 //! `TOOLPOST_DOCS=write cargo test -p toolpost --test records` writes the table anew.
 
@@ -69,8 +69,8 @@ fn writes(with: &Program, without: &Program, machine: &Machine) -> String {
     let text = |program: &Program| post::write(program, machine);
     match (text(with), text(without)) {
         (Ok(with), Ok(without)) if with.text == without.text => {
-            let told = with.warnings.len() > without.warnings.len();
-            if told { "leaves it out, with a warning" } else { "nothing" }.into()
+            let is_reported = with.warnings.len() > without.warnings.len();
+            if is_reported { "leaves it out, with a warning" } else { "nothing" }.into()
         }
         (Ok(_), _) => "writes it".into(),
         (Err(found), _) => format!("refuses (`{}`)", found[0].rule),
@@ -148,14 +148,14 @@ fn architecture() -> PathBuf {
 fn the_table_of_records_is_that_of_the_documentation() {
     let text = std::fs::read_to_string(architecture()).unwrap();
     let (head, rest) = text.split_once("<!-- records -->\n").expect("a place for the table");
-    let (told, tail) = rest.split_once("<!-- end of records -->").expect("its end");
+    let (stored, tail) = rest.split_once("<!-- end of records -->").expect("its end");
     let table = table();
     if std::env::var("TOOLPOST_DOCS").is_ok_and(|how| how == "write") {
         let text = format!("{head}<!-- records -->\n{table}<!-- end of records -->{tail}");
         std::fs::write(architecture(), text).unwrap();
         return;
     }
-    assert_eq!(told, table, "TOOLPOST_DOCS=write cargo test -p toolpost --test records");
+    assert_eq!(stored, table, "TOOLPOST_DOCS=write cargo test -p toolpost --test records");
 }
 
 /// What is compared with nothing changes neither where the tool goes nor what it does there: a cycle matters for its

@@ -52,8 +52,8 @@ fn the_documentation_lists_the_catalogue() {
     if std::env::var("TOOLPOST_DOCS").is_ok_and(|how| how == "write") {
         return fs::write(path, page()).unwrap();
     }
-    let told = fs::read_to_string(path).unwrap();
-    assert!(told == page(), "TOOLPOST_DOCS=write cargo test -p toolpost --test rules");
+    let stored = fs::read_to_string(path).unwrap();
+    assert!(stored == page(), "TOOLPOST_DOCS=write cargo test -p toolpost --test rules");
 }
 
 /// The texts of the Rust files below a folder, but for the catalogue.

@@ -39,7 +39,7 @@ fn switching(text: &str) -> Vec<&str> {
 }
 
 #[test]
-fn linuxcnc_says_again_what_it_has_been_told() {
+fn linuxcnc_says_again_what_it_has_been_sent() {
     let text = rewritten(&linuxcnc(), SWITCHING, &linuxcnc()).unwrap();
     let own = [
         "M64 P1",
@@ -178,7 +178,7 @@ fn called(program: &program::Program) -> Vec<u32> {
 const MILLS: [&str; 9] =
     ["fanuc", "haas", "iso", "linuxcnc", "mach3", "grbl", "marlin", "sinumerik", "heidenhain"];
 
-/// Before the first tool, between two cuts, in a cycle, beside a move and behind the last one.
+/// Before the first tool, between two cuts, in a cycle, with a move and behind the last one.
 #[test]
 fn functions_of_the_builder_go_from_each_control_to_each_other() {
     let list = "auxiliary = [10, 11, 162]\n";

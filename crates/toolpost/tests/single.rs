@@ -168,7 +168,7 @@ fn a_thread_needs_a_pitch_and_a_spindle_that_turns() {
     assert_eq!(refused("generic-3axis-linuxcnc", still), "spindle-off");
 }
 
-/// What another moves or says is told.
+/// What another moves or says is reported.
 #[test]
 fn another_thread_or_probing_move_is_not_proven() {
     let rule = |ops: Vec<Op>, from: &str, to: &str| {

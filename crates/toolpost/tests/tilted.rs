@@ -71,7 +71,7 @@ fn job([i, j, k]: [f64; 3]) -> Program {
         .program
 }
 
-/// A job that turns the tool in the cut, with tool-centre control, 80 mm beside the axis of the table.
+/// A job that turns the tool in the cut, with tool-centre control, 80 mm from the axis of the table.
 fn turning() -> Program {
     let at = |x: f64, y: f64, lean: f64, about: f64| {
         let ((s, c), (t, u)) = (lean.to_radians().sin_cos(), about.to_radians().sin_cos());
@@ -150,14 +150,14 @@ fn a_fanuc_stands_at_its_solution_before_the_plane_is_tilted() {
         found.message.contains("A at -40") && found.help.contains("tilt_within_travel"),
         "{found}"
     );
-    let told = table("fanuc-31i", ZERO, "tilt_within_travel = true", half, WIDE);
-    proven(&told, &slope, &without).unwrap();
+    let stated = table("fanuc-31i", ZERO, "tilt_within_travel = true", half, WIDE);
+    proven(&stated, &slope, &without).unwrap();
 }
 
-/// A work zero 50 mm beside the axes: with A at 40° the slide of Y stands elsewhere than with A at -40° and C half a turn
+/// A work zero 50 mm from the axes: with A at 40° the slide of Y stands elsewhere than with A at -40° and C half a turn
 /// on.
 #[test]
-fn cycle800_is_told_the_direction_where_the_machines_file_says_which_axis_it_means() {
+fn cycle800_gets_the_direction_where_the_machines_file_says_which_axis_it_means() {
     let slope = job(SLOPE);
     let aside = "work_zero = [0, 50, 0]";
     let made = |settings: &str, prefer: i32, slides: [f64; 3]| {
@@ -197,7 +197,7 @@ fn cycle800_is_told_the_direction_where_the_machines_file_says_which_axis_it_mea
 }
 
 #[test]
-fn a_heidenhain_is_told_the_sequence_where_both_solutions_are_within_the_travel() {
+fn a_program_for_heidenhain_says_the_sequence_where_both_solutions_are_within_the_travel() {
     let slope = job(SLOPE);
     for (prefer, sequence) in [(1, "TURN FMAX SEQ+"), (-1, "TURN FMAX SEQ-")] {
         let a = format!("{EVEN}\nprefer = {prefer}");
@@ -273,7 +273,7 @@ fn what_the_travel_does_not_take_is_refused_before_it_is_written() {
     assert!(made > 60 && refused > 60, "{made} made, {refused} refused");
 }
 
-/// High above the part C turns from 50° to -40° under tool-centre control, the tip 82.46 mm beside it: on its way X passes
+/// High above the part C turns from 50° to -40° under tool-centre control, the tip 82.46 mm from it: on its way X passes
 /// that, and stands at less at both ends.
 #[test]
 fn a_rapid_that_leaves_the_travel_on_its_way_is_refused_before_it_is_written() {

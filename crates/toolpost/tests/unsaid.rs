@@ -39,7 +39,7 @@ fn proven(machine: &Machine, source: &Program, text: &[u8]) -> Result<(), Box<Di
     report.mismatches.into_iter().next().map_or(Ok(()), |found| Err(Box::new(found)))
 }
 
-/// The tip of a tool that is 120 mm longer than somebody thinks stands 120 mm · sin 30° beside the place.
+/// The tip of a tool that is 120 mm longer than somebody thinks stands 120 mm · sin 30° from the place.
 #[test]
 fn a_head_tilts_no_tool_of_unknown_length() {
     let (known, unknown) = (source(",LENGTH,120"), source(""));

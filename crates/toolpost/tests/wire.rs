@@ -17,7 +17,7 @@ fn upright(x: f64, y: f64) -> Pose {
     Pose::upright(Vec3::new(x, y, 0.0)).unwrap()
 }
 
-/// A wire that is at `x` `y` below, and `u` `v` beside that 40 mm above.
+/// A wire that is at `x` `y` below, and `u` `v` from that 40 mm above.
 fn leaning(x: f64, y: f64, u: f64, v: f64) -> Pose {
     Pose::new(Vec3::new(x, y, 0.0), Vec3::new(u, v, 40.0).normalize()).unwrap()
 }

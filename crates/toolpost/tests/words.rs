@@ -1,4 +1,4 @@
-//! Single words put into proven programs: what they switch, set or change beside the motion is refused, in front of the cuts
+//! Single words put into proven programs: what they switch, set or change in addition to the motion is refused, in front of the cuts
 //! and behind the last of them.
 
 mod files;
@@ -183,7 +183,7 @@ fn two_tools_under_one_number_are_refused_on_every_mill() {
     }
 }
 
-/// PM19 p. 181. The way by which a rapid goes from (10, 0, 0) to (110, 5, 40) dives beside the part where each axis goes by itself.
+/// PM19 p. 181. The way by which a rapid goes from (10, 0, 0) to (110, 5, 40) dives next to the part where each axis goes by itself.
 #[test]
 fn behind_rtliof_a_rapid_is_no_straight_line() {
     let source = read(

@@ -138,7 +138,7 @@ fn a_feed_beyond_the_machine_is_refused() {
 }
 
 #[test]
-fn registers_that_the_control_cannot_name_are_told() {
+fn registers_that_the_control_cannot_name_are_reported() {
     let path = "LOAD/TOOL,2,ADJUST,12\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0\n\
                 CUTCOM/LEFT,5\nGOTO/10,0,0\nCUTCOM/OFF\nGOTO/20,0,0";
     let (_, warnings) = posted("generic-3axis-sinumerik", path);

@@ -220,7 +220,7 @@ fn a_die_that_starts_in_its_corner_is_cut_from_the_middle_of_a_long_side() {
 }
 
 #[test]
-fn a_lead_that_cuts_the_part_is_told_with_the_line_of_its_contour() {
+fn a_lead_that_cuts_the_part_is_reported_with_the_line_of_its_contour() {
     let inside = Opening { thread: Some(p(15.0, 10.0)), ..punch() };
     let found = plan(&[inside], &settings(&[0.15])).unwrap_err();
     assert_eq!((found.rule.name(), found.line), ("cuts-part", 1));

@@ -106,7 +106,7 @@ fn a_circle_becomes_a_cone_and_a_side_that_vanishes_is_refused() {
 proptest! {
     /// Sides are parallel, arcs concentric, each as far from its partner as the lean.
     #[test]
-    fn every_element_lies_beside_its_partner(
+    fn every_element_is_parallel_to_its_partner(
         radii in prop::collection::vec(10.0f64..20.0, 3..16),
         bulges in prop::collection::vec(-0.2f64..0.2, 16),
         distance in -2.0f64..2.0,

@@ -49,7 +49,7 @@ def test_what_is_not_changed_is_saved_as_it_is(window):
     assert post["saved"] == post["shown"][0]
 
 
-def test_a_comment_is_proven_and_told(window):
+def test_a_comment_is_proven_and_reported(window):
     post = window["comment"]
     assert post["saved"] == post["shown"][0].replace("M30", "; ready\nM30")
     assert "edited: + M30" in window["said"]

@@ -136,10 +136,10 @@ fn a_frame_out_of_reach_has_no_way() {
     let arm = arm(spherical("kuka", [25.0, -35.0, 0.0, 400.0, 455.0, 420.0, 80.0]));
     let far = Frame::from_translation(Vec3::new(2000.0, 0.0, 400.0));
     assert_eq!(arm.inverse(&far, 0.0).iter().count(), 0);
-    // In axis 1 of an arm whose plane is beside it.
-    let beside = self::arm(spherical("staubli", [0.0, 0.0, 20.0, 375.0, 290.0, 310.0, 70.0]));
+    // In axis 1 of an arm whose plane does not go through it.
+    let offset = self::arm(spherical("staubli", [0.0, 0.0, 20.0, 375.0, 290.0, 310.0, 70.0]));
     let inside = Frame::from_translation(Vec3::new(0.0, 10.0, 300.0));
-    assert_eq!(beside.inverse(&inside, 0.0).iter().count(), 0);
+    assert_eq!(offset.inverse(&inside, 0.0).iter().count(), 0);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use geom::{Arc, Vec3};
 /// Ways that turn by less than this from a half turn, radians, go back where they have come.
 const TURNED_BACK: f64 = 1e-6;
 
-/// What a block with a corner, or one between its two ways, may say beside the way.
+/// What a block with a corner, or one between its two ways, may say in addition to the path.
 pub(crate) fn may_stand_at(action: &Action) -> bool {
     matches!(
         action,
@@ -91,7 +91,7 @@ impl Element {
 
     /// Where centres of arcs of `radius` lie that touch it on its left (1) or right (-1) side: a line by a
     /// point and its direction, or a circle by its centre and radius.
-    fn beside(&self, up: Vec3, radius: f64, side: f64) -> Locus {
+    fn parallel(&self, up: Vec3, radius: f64, side: f64) -> Locus {
         match self.circle {
             None => {
                 let way = self.direction(true);
@@ -189,8 +189,8 @@ pub(crate) fn joint(
     };
     let joint = match shape {
         Shape::Round(radius) => {
-            let one = first.beside(up, radius, side);
-            let other = second.beside(up, radius, side);
+            let one = first.parallel(up, radius, side);
+            let other = second.parallel(up, radius, side);
             one.meet(other, up, corner).map(|center| Joint {
                 from: first.touched(center),
                 to: second.touched(center),

@@ -1,4 +1,4 @@
-//! LinuxCNC's own interpreter beside ours: what `rs274 -g` makes of a program, what we make of it, and
+//! LinuxCNC's own interpreter and ours: what `rs274 -g` makes of a program, what we make of it, and
 //! where the two differ.
 
 use geom::{Frame, Mat3, Vec3};

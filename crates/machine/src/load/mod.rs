@@ -241,7 +241,7 @@ max = 200.5
     }
 
     #[test]
-    fn mistakes_that_only_a_machinist_sees_are_told_at_their_place() {
+    fn mistakes_that_only_a_machinist_sees_are_reported_at_their_place() {
         let rotary = |fields: &str| {
             refusal(&format!(
                 "reader = \"grbl\"\n[orientation]\nsimultaneous = \"vectors\"\n[[rotary]]\nletter = \
@@ -306,7 +306,7 @@ max = 200.5
     }
 
     #[test]
-    fn what_two_files_make_wrong_together_is_told_in_the_nearer_one() {
+    fn what_two_files_make_wrong_together_is_reported_in_the_nearer_one() {
         let folder = std::env::temp_dir().join(format!("toolpost-both-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("base.toml"), MILL).unwrap();
@@ -349,7 +349,7 @@ max = 200.5
     }
 
     #[test]
-    fn a_missing_or_endless_ancestor_is_told_where_it_is_named() {
+    fn a_missing_or_endless_ancestor_is_reported_where_it_is_named() {
         let shown = refusal("extends = \"nowhere\"");
         assert!(
             shown.starts_with("mill.toml:1:11: error[machine-file]: extends: `nowhere`"),

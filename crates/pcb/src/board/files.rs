@@ -59,7 +59,7 @@ pub fn artwork(
 ) -> Result<(Artwork, Layers), Vec<Diagnostic>> {
     let mut artwork = Artwork::default();
     artwork.board.name = name.into();
-    let known = told_apart(files, &wanted, &mut artwork.warnings)?;
+    let known = distinguished(files, &wanted, &mut artwork.warnings)?;
     let mut errors = Vec::new();
     // Some at the same time, and put together in the order of the files.
     for part in known.par_iter().map(Known::read).collect::<Vec<_>>() {
@@ -98,7 +98,7 @@ enum From {
 }
 
 /// Which file is which: those that have something of a board that is wanted.
-fn told_apart<'a>(
+fn distinguished<'a>(
     files: &'a [File<'a>],
     wanted: &impl Fn(Layer) -> bool,
     warnings: &mut Vec<Diagnostic>,

@@ -246,7 +246,7 @@ fn rounded_corners_stay_arcs() {
 }
 
 #[test]
-fn several_boards_beside_each_other() {
+fn several_boards_next_to_each_other() {
     let other = lines(&[(30.0, 0.0), (40.0, 0.0), (40.0, 10.0), (30.0, 10.0), (30.0, 0.0)]);
     let reading = outline(&(square() + &other)).unwrap();
     assert_area(&reading, 500.0);

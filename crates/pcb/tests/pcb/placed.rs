@@ -64,7 +64,7 @@ fn turning_over_shows_the_back() {
 }
 
 #[test]
-fn pins_are_beside_the_board_and_the_axis_between_them() {
+fn pins_are_next_to_the_board_and_the_axis_between_them() {
     let board = board();
     let pins = board.pins(Axis::X(10.0), 3.0, 2.0).unwrap();
     assert_eq!(pins.each_ref().map(round), [Vec2::new(-3.5, 5.0), Vec2::new(23.5, 5.0)]);
@@ -87,7 +87,7 @@ fn moving_has_its_limits() {
 }
 
 #[test]
-fn a_panel_is_copies_beside_each_other() {
+fn a_panel_is_copies_next_to_each_other() {
     let board = board();
     let panel = board.panel(3, 2, Vec2::new(2.0, 3.0)).unwrap();
     assert_eq!(panel.extents(), Some((Vec2::ZERO, Vec2::new(64.0, 23.0))));

@@ -115,7 +115,7 @@ fn islands_of_one_net_are_not_parted() {
 }
 
 #[test]
-fn a_gap_narrower_than_the_tool_is_told_with_its_place() {
+fn a_gap_narrower_than_the_tool_is_reported_with_its_place() {
     // Two discs 0.3 apart, a tool of 0.5: too narrow where |x| is small.
     let copper = copper(&[disc(-2.15, 0.0, 2.0), disc(2.15, 0.0, 2.0)]);
     let board = rectangle((-10.0, -4.0), (10.0, 4.0));

@@ -296,7 +296,7 @@ rules! {
         "switch the compensation off (G40) before this block"
         "`M6` under G41";
     CompensationOpen "compensation-open" []
-        "Where the control leads the tool's centre beside a contour is not compared: the tool's radius, or how the control joins the contour, is not known. The contour itself is compared."
+        "Where the control leads the tool's centre along a contour is not compared: the tool's radius, or how the control joins the contour, is not known. The contour itself is compared."
         "give the diameter of the tool: `CUTTER` or `TLDATA` in cutter-location data, a tool table (`--tools`) with an NC program; else try the contour on the machine"
         "A contour with `G41` and no tool table";
     CompensationOrientation "compensation-orientation" []

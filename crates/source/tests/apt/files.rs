@@ -126,7 +126,7 @@ fn poses(program: &Program) -> impl Iterator<Item = &program::Pose> {
 }
 
 #[test]
-fn the_cam_system_is_told_by_the_file() {
+fn the_cam_system_is_detected_in_the_file() {
     for (name, ..) in FILES {
         let Some(reading) = reading(name) else { return };
         let dialect = match name.split('/').next() {
@@ -158,7 +158,7 @@ fn arcs(program: &Program) -> Vec<(Arc, Option<Vec3>, Option<Vec3>)> {
 }
 
 #[test]
-fn arcs_go_on_smoothly_from_the_straight_cuts_beside_them() {
+fn arcs_go_on_smoothly_from_the_straight_cuts_before_and_behind_them() {
     // By system: arcs with a tangent straight cut (within 3 degrees) if turned as read, arcs in all; none
     // would have all its straight cuts tangent in the other direction.
     for (system, expected, all) in [("makino", 49, 58), ("nx", 469, 647), ("solidworks", 700, 1571)]

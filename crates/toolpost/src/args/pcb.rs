@@ -334,7 +334,7 @@ pub struct Placing {
     /// How the board is turned over for its back: about a line along Y, or along X, through its middle.
     #[arg(long, value_name = "LINE", default_value = "y", value_parser = choice(&TURNS))]
     pub turn: Turn,
-    /// Diameter of holes beside the board, drilled with the others, by which it is aligned when it is turned.
+    /// Diameter of holes next to the board, drilled with the others, by which it is aligned when it is turned.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub alignment: Option<f64>,
     /// Make a panel of so many boards.

@@ -100,7 +100,7 @@ fn a_record_that_is_malformed_or_means_nothing() {
 
 #[test]
 fn a_cut_that_no_machine_may_make() {
-    // Feed 0, and a spindle that was never started: told at the first cut.
+    // Feed 0, and a spindle that was never started: reported at the first cut.
     refused(with_line(10, "FEDRAT/MMPM,0"), MACHINE, 2, 11, "no-feed");
     refused(with_line(4, "$$"), MACHINE, 2, 11, "spindle-off");
 }
@@ -697,7 +697,7 @@ fn two_tools_of_one_number_are_refused_in_every_source_that_gives_them_sizes() {
     assert!(said.code == 1 && said.err.contains("error[tool-twice]"), "{said:?}");
 }
 
-/// What an operator who is new is told: the way out as he needs it.
+/// What an operator who is new reads: the way out as he needs it.
 #[test]
 fn the_ways_out_that_a_newcomer_missed_are_there() {
     let folder = Folder::new();
@@ -705,7 +705,7 @@ fn the_ways_out_that_a_newcomer_missed_are_there() {
         folder.write(name, text_of(&format!("../../examples/{name}")));
     }
     folder.write("whole.nc", "%\nO1\nG21\nG90 G94\nT1 M6\nS900 M3\nG0 X0 Y0 Z5\nM30\n%\n");
-    for (words, told) in [
+    for (words, expected) in [
         // M5
         ("post dome.cls -m generic-3axis-fanuc -o a.nc", "five-axis toolpath, three-axis machine"),
         (
@@ -723,6 +723,6 @@ fn the_ways_out_that_a_newcomer_missed_are_there() {
         ("show whole.nc --from fanuc-31i", "`--whole-numbers units` where X10 is 10 mm"),
     ] {
         let said = folder.run(&words.split(' ').collect::<Vec<_>>());
-        assert!(said.code != 0 && said.err.contains(told), "{words}: {told}\n{}", said.err);
+        assert!(said.code != 0 && said.err.contains(expected), "{words}: {expected}\n{}", said.err);
     }
 }

@@ -76,7 +76,7 @@ fn json_is_one_object_with_status_and_findings() {
 }
 
 #[test]
-fn a_damaged_program_is_shown_beside_its_source() {
+fn a_damaged_program_is_shown_with_its_source() {
     let folder = Folder::new();
     assert_eq!(folder.post().code, 0);
     let prove = ["prove", "out.mpf", "-m", MACHINE, "--against", "part.cls"];
@@ -187,7 +187,7 @@ fn a_mistyped_machine_brings_the_nearest_alone() {
 }
 
 #[test]
-fn a_machine_that_is_not_there_is_told_with_those_that_are() {
+fn a_machine_that_is_not_there_is_refused_with_those_that_are() {
     let folder = Folder::new();
     for arguments in [
         &["machines", "show", "nonesuch"][..],
@@ -202,7 +202,7 @@ fn a_machine_that_is_not_there_is_told_with_those_that_are() {
 }
 
 #[test]
-fn a_control_in_place_of_a_machine_is_told_with_the_machines_that_build_on_it() {
+fn a_control_in_place_of_a_machine_is_refused_with_the_machines_that_build_on_it() {
     let folder = Folder::new();
     let said = folder.run(&["post", "part.cls", "-m", "grbl", "-o", "out.mpf"]);
     assert_eq!(said.code, 2);
@@ -306,7 +306,7 @@ fn the_summary_says_in_which_frame_set_ups_are_read_and_why() {
 
 /// What a file does not say on which programs hang: all at once, as lines to add.
 #[test]
-fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
+fn a_machine_file_that_is_older_than_a_key_is_refused_with_the_line_to_add() {
     let folder = Folder::new();
     let rotary = "[[rotary]]\nletter = \"C\"\non = \"table\"\naxis = [0, 0, 1]\nrapid = 9000\nacceleration = 300\n";
     let old = format!(

@@ -1,4 +1,4 @@
-//! `machines import`: a post of another system becomes a file, and what it could not carry over is told.
+//! `machines import`: a post of another system becomes a file, and what it could not carry over is reported.
 
 use crate::folder::Folder;
 
@@ -27,12 +27,12 @@ fn a_post_becomes_a_file_that_posts() {
     let said = folder.run(&["machines", "import", "shop.pp", "-o", "mine.toml", "--json"]).json();
     assert_eq!((&said["sample"], &said["extends"]), (&"proven".into(), &"grbl".into()));
     assert_eq!(said["warnings"][1]["line"], 7);
-    // No post says where Z is at its top: that of any mill with this control, and it is told.
+    // No post says where Z is at its top: that of any mill with this control, and it is reported.
     assert!(said["warnings"][0]["message"].as_str().unwrap().contains("`safe_height = -1`"));
 }
 
 #[test]
-fn a_file_whose_sample_is_not_proven_is_saved_and_told() {
+fn a_file_whose_sample_is_not_proven_is_saved_and_reported() {
     let folder = Folder::new();
     // No control knows what 1 is without its G.
     folder.write("shop.pp", POST.replace("G1[X]", "1[X]"));

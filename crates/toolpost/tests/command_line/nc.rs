@@ -61,7 +61,7 @@ fn with_the_tool_table_compensation_becomes_the_path_of_the_centre() {
     let said = post(&folder, &[&["--tools", "tools.tbl"], &target[..]].concat());
     assert_eq!(said.code, 0, "{said:?}");
     let new = folder.read("new.gcode");
-    // 5 mm beside the square, at its corners too.
+    // 5 mm off the square, at its corners too.
     assert!(new.contains("X-5 Y-10 F400\nY45\nX45\nY-5\nX-10\nX-20 Y-10\n"), "{new}");
     let said = post(&folder, &[&["--tools", "nowhere.tbl"], &target[..]].concat());
     assert!(said.code == 2 && said.err.contains("nowhere.tbl"), "{said:?}");
@@ -71,7 +71,7 @@ fn with_the_tool_table_compensation_becomes_the_path_of_the_centre() {
 }
 
 #[test]
-fn an_nc_program_without_its_control_is_told_how_to_name_it() {
+fn an_nc_program_without_its_control_is_refused_with_the_way_to_name_it() {
     let folder = Folder::new();
     folder.write("old.nc", SQUARE);
     let said = folder.run(&["show", "old.nc"]);

@@ -83,7 +83,7 @@ fn the_machine_file_is_never_the_output() {
 }
 
 #[test]
-fn a_place_where_nothing_can_be_saved_is_told_before_the_work() {
+fn a_place_where_nothing_can_be_saved_is_refused_before_the_work() {
     let folder = Folder::new();
     fs::create_dir(folder.path().join("folder.mpf")).unwrap();
     let calls = [
@@ -312,7 +312,7 @@ fn a_program_beyond_the_largest_file_of_the_shell_is_not_begun() {
     assert_eq!(folder.names(), ["long.cls", "part.cls"]);
 }
 
-/// The digest that the report beside `out.mpf` gives for it is that of `out.mpf`.
+/// The digest that the report next to `out.mpf` gives for it is that of `out.mpf`.
 fn is_a_pair(folder: &Folder) -> bool {
     let report: serde_json::Value =
         serde_json::from_str(&folder.read("out.mpf.report.json")).unwrap();

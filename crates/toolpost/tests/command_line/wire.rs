@@ -177,7 +177,7 @@ fn mills_and_wires_have_their_own_commands() {
 }
 
 #[test]
-fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
+fn a_bad_source_is_reported_with_its_line_and_writes_nothing() {
     let folder = sector();
     let bad = |from: &str, to: &str, words: &[&str]| {
         folder.write("sector.nc", SECTOR.replace(from, to));
@@ -379,7 +379,7 @@ fn the_picture_is_the_same_each_time_and_in_both_formats() {
     refused(&folder, &["--picture", "sector.nc"], 2, &["error[output-file]"]);
 }
 
-/// The opening of a die in two passes, as everyone may read it beside its machine.
+/// The opening of a die in two passes, as everyone may read it next to its machine.
 const DIE: [&str; 15] = [
     "--from",
     "fanuc-31i",

@@ -64,7 +64,7 @@ fn pins_are_where_they_were_when_the_board_is_turned() {
 }
 
 #[test]
-fn it_is_told_when_the_board_is_turned() {
+fn it_is_reported_when_the_board_is_turned() {
     let folder = small();
     let turns = |more: &[&str]| -> Vec<String> {
         let made = made(&folder, more);
@@ -81,7 +81,7 @@ fn it_is_told_when_the_board_is_turned() {
 }
 
 #[test]
-fn pins_that_come_when_the_board_is_turned_are_told() {
+fn pins_that_come_when_the_board_is_turned_are_reported() {
     let folder = small();
     for (from, more, late) in [
         ("back", &[][..], true),
@@ -898,7 +898,7 @@ fn what_a_board_lacks_is_in_the_summary() {
 }
 
 #[test]
-fn programs_of_an_earlier_call_are_told() {
+fn programs_of_an_earlier_call_are_reported() {
     let folder = small();
     let call = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
     assert_eq!(folder.run(&call).code, 0);

@@ -296,7 +296,7 @@ group! {
         end_switches_off: bool = true;
         /// Coolant through the tool has a function of its own to end it.
         ends_through_apart: bool = false;
-        /// `M19` takes P and Q besides R.
+        /// `M19` takes P and Q in addition to R.
         orients_by_pq: bool = false;
     }
 }
@@ -304,13 +304,13 @@ group! {
 group! {
     /// How the axes go.
     MotionRules {
-        /// A word of group 00 with axis words may stand beside `G0`, and `G31` beside `G1`.
-        one_shot_beside_motion: bool = false, FANUC = true;
+        /// A word of group 00 with axis words may stand in a block with `G0`, and `G31` with `G1`.
+        one_shot_with_motion: bool = false, FANUC = true;
         /// How an axis that rolls over turns.
         rollover: Rollover = Rollover::NotFollowed;
         /// Units change before the first move only.
         units_at_start: bool = false, FANUC = true;
-        /// Other words beside `G20` and `G21` may not act (FANUC).
+        /// Other words in a block with `G20` and `G21` may not act (FANUC).
         units_alone: bool = false;
         /// A thread runs along one axis only.
         threads_along_one_axis: bool = false, FANUC = true;

@@ -1,4 +1,4 @@
-//! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
+//! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand in a block with `G0` to `G3`, so it has
 //! a group of its own.
 
 use super::facts::{

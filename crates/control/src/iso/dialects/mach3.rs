@@ -1,5 +1,5 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
-//! on which it is built; `G80` may stand beside `G0` to `G3`.
+//! on which it is built; `G80` may stand in a block with `G0` to `G3`.
 
 use super::facts::{Facts, FrameRules, Functions, Language, Offsets, Reset, Syntax, Tools};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};

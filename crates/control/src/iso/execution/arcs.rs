@@ -155,7 +155,7 @@ impl Step<'_, '_, '_> {
 
     /// LinuxCNC: `P` counts the turns begun, 1 where it is not given.
     fn turns(&mut self) -> Result<u32, Fault> {
-        // Beside G4 the P is that of the dwell, which has taken it.
+        // With G4 the P is that of the dwell, which has taken it.
         if !self.facts.arcs.counts_turns {
             return Ok(0);
         }

@@ -29,7 +29,7 @@ pub(crate) struct Holding {
     /// P, s.
     dwell: Option<f64>,
     /// What the records said last.
-    told: Option<Cycle>,
+    reported: Option<Cycle>,
     /// The spindle is turned by rigid tapping.
     rigid: bool,
 }
@@ -110,7 +110,7 @@ impl Step<'_, '_, '_> {
             bottom: None,
             q: None,
             dwell: None,
-            told: None,
+            reported: None,
             rigid: false,
         };
         self.state.cycle = Some(match self.state.cycle {
@@ -119,9 +119,12 @@ impl Step<'_, '_, '_> {
             Some(held) if self.facts.cycles.apart || held.canned == canned => {
                 Holding { canned, ..held }
             }
-            Some(held) => {
-                Holding { initial: held.initial, told: held.told, rigid: held.rigid, ..fresh }
-            }
+            Some(held) => Holding {
+                initial: held.initial,
+                reported: held.reported,
+                rigid: held.rigid,
+                ..fresh
+            },
         });
         Ok(())
     }
@@ -136,7 +139,7 @@ impl Step<'_, '_, '_> {
     /// No cycle is active any more.
     pub(super) fn end_cycle(&mut self) {
         let Some(held) = self.state.cycle.take() else { return };
-        if held.told.is_some() {
+        if held.reported.is_some() {
             self.actions.push(Action::CycleOff);
         }
         // The end of rigid tapping leaves the spindle standing.
@@ -430,7 +433,7 @@ impl Step<'_, '_, '_> {
             {
                 self.actions.push(Action::Risk(Risk::PECK_RETRACT.into()));
             }
-            if held.told.replace(cycle) != Some(cycle) {
+            if held.reported.replace(cycle) != Some(cycle) {
                 self.actions.push(Action::Cycle(Box::new(cycle)));
             }
             let mut pose = self.state.pose(at, self.state.rotary);

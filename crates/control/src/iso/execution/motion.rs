@@ -87,14 +87,14 @@ impl Step<'_, '_, '_> {
     /// Another word of the block uses its axis words, too.
     fn has_the_axis_words(&self, word: G) -> Result<(), Fault> {
         let motion = self.block.g(Group::Motion);
-        let takes = self.facts.motion.one_shot_beside_motion;
-        let beside = match motion {
+        let takes = self.facts.motion.one_shot_with_motion;
+        let is_refused = match motion {
             None => return Ok(()),
             Some(G::Motion(Motion::Rapid)) => takes || word == G::Machine,
             Some(G::Motion(Motion::Line)) => word == G::Machine || takes && word == G::Skip,
             Some(_) => false,
         };
-        if beside {
+        if is_refused {
             return Ok(());
         }
         let message = "two words of the block use its axis words: which one has them?";
@@ -364,7 +364,7 @@ impl Step<'_, '_, '_> {
         let Vec3 { x, y, .. } = target.point;
         let cartesian = b"XY".iter().find(|&&letter| self.block.has(letter));
         if self.state.plane.axes()[2] != 2 || cartesian.is_some() {
-            let message = "@ and ^ are for the plane G17, and not beside X or Y";
+            let message = "@ and ^ are for the plane G17, and not in a block with X or Y";
             return Err(self.block.whole(Rule::Polar, message));
         }
         let (mut radius, mut degrees) = (x.hypot(y), y.atan2(x).to_degrees());
@@ -530,12 +530,12 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// Says where the tool stands, where `G92` alone has told so.
+    /// Says where the tool stands, where `G92` alone has said so.
     pub(super) fn stood(&mut self) {
-        if !self.state.told && self.state.position.is_finite() {
+        if !self.state.is_reported && self.state.position.is_finite() {
             let here = self.state.pose(self.state.position, self.state.rotary);
             self.actions.push(Action::Rapid(here));
-            self.state.told = true;
+            self.state.is_reported = true;
             self.state.frames.used();
         }
     }

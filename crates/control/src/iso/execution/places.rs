@@ -10,9 +10,9 @@ use crate::iso::language::words::{Group, Motion};
 use geom::Vec3;
 use program::{Axes, MachineMove, Probe, Rule};
 
-/// How far beside a probe a point of the surface may be that it touches, mm: words are rounded, those of two decimals
+/// How far from a probe, across its way, a point of the surface may be that it touches, mm: words are rounded, those of two decimals
 /// by up to 0.005 mm along X and along Y.
-const BESIDE: f64 = 0.0075;
+const REACH: f64 = 0.0075;
 
 impl Step<'_, '_, '_> {
     /// `G28`, `G30`: by rapid through the point of the block to the reference position, the named axes
@@ -208,9 +208,9 @@ impl Step<'_, '_, '_> {
     fn touched(&self, target: &Target, must_answer: bool) -> Result<Option<Vec3>, Fault> {
         let place = &self.state.place;
         let (from, to) = (place.point(self.state.position), place.point(target.point));
-        let beside = |point: &Vec3| point.truncate().distance(to.truncate());
-        let below = self.state.touches.iter().filter(|point| beside(point) <= BESIDE);
-        let nearest = below.min_by(|a, b| beside(a).total_cmp(&beside(b)));
+        let across = |point: &Vec3| point.truncate().distance(to.truncate());
+        let below = self.state.touches.iter().filter(|point| across(point) <= REACH);
+        let nearest = below.min_by(|a, b| across(a).total_cmp(&across(b)));
         let straight = from.truncate() == to.truncate();
         let Some(point) = nearest.filter(|_| straight) else {
             return Ok(None);

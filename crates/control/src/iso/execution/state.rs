@@ -14,7 +14,7 @@ use crate::{Settings, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Purpose, Spindle, WorkOffset};
 
-/// The modes, the position and what the machine was last told.
+/// The modes, the position and what was reported last.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     /// Interpolation; none where axis words mean nothing (LinuxCNC and GRBL after `G80`).
@@ -111,7 +111,7 @@ pub(crate) struct State {
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
     /// The records say where the tool stands, as far as it is known.
-    pub told: bool,
+    pub is_reported: bool,
     /// Z stands where `G28`, `G30` or `G53` has sent it.
     pub z_is_home: bool,
     /// `G28`, `G30` or `G53` of Z has taken the tool length away, and no block has given it back (FANUC).
@@ -261,7 +261,7 @@ impl State {
             return_to_r: facts.cycles.returns,
             cycle_dwell: None,
             cycle: None,
-            told: all_zero,
+            is_reported: all_zero,
             z_is_home: false,
             length_is_suspended: false,
             moved: false,
@@ -301,7 +301,7 @@ impl State {
     #[inline]
     pub(super) fn arrive(&mut self, point: Vec3, rotary: [f64; 3]) {
         (self.position, self.rotary) = (point, rotary);
-        (self.moved, self.told) = (true, true);
+        (self.moved, self.is_reported) = (true, true);
         // Words of X and Y move Z as well where the axes are not those of the machine.
         let apart = self.tilt != Tilt::None || self.keeps_center();
         self.z_is_home &= point.z.is_nan() && !apart;
@@ -324,7 +324,7 @@ impl State {
             nurbs,
             wire,
             feed,
-            told,
+            is_reported,
             cut,
             length_is_suspended,
             // The block says them itself, or the short path asks for them.
@@ -389,7 +389,7 @@ impl State {
             && compensation.active == compensation.asked
             && matches!(feed, Some(Feed::PerMinute(_)))
             && *cut
-            && *told
+            && *is_reported
             && !self.awaits_tool(facts)
     }
 
@@ -408,7 +408,7 @@ impl State {
         let [first, second, third] = self.plane.axes();
         let mut normal = Vec3::ZERO;
         normal[third] = 1.0;
-        // The side that is told is that after a mirror, which has turned the sense of the plane round.
+        // The side that is reported is that after a mirror, which has turned the sense of the plane round.
         let swaps = self.frames.transform.swaps_sides(first, second);
         let sense = if swaps { -1.0 } else { 1.0 };
         Terms {

@@ -78,7 +78,7 @@ impl Step<'_, '_, '_> {
         self.inside_nurbs()?;
         self.wire()?;
         if more {
-            self.m_functions_beside_motion()?;
+            self.m_functions_with_motion()?;
         }
         self.feed()?;
         if more {
@@ -118,8 +118,8 @@ impl Step<'_, '_, '_> {
     }
 
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
-    /// says whether it comes before or after the motion beside it.
-    fn m_functions_beside_motion(&mut self) -> Result<(), Fault> {
+    /// says whether it comes before or after the motion of its block.
+    fn m_functions_with_motion(&mut self) -> Result<(), Fault> {
         if self.block.m_count == 0 || !self.facts.functions.builders {
             return Ok(());
         }
@@ -221,7 +221,7 @@ impl Step<'_, '_, '_> {
             self.state.surface.or(self.state.speed).ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";
                 let fault = self.block.at_group(Group::Spindle, Rule::Spindle, message);
-                Fault::from(fault.help("write S beside M3 or M4, or before"))
+                Fault::from(fault.help("write S with M3 or M4, or before"))
             })
         };
         let is_own = self.block.m(Group::Spindle).is_some_and(|m| m != M::RigidTap);

@@ -123,7 +123,7 @@ impl Step<'_, '_, '_> {
             if compensates && stays && self.state.registers.d != Some(register) {
                 let message = "another radius while radius compensation is on";
                 let fault = self.block.at_word(b'D', Rule::Compensation, message);
-                return Err(fault.help("write it beside G41 or G42, after G40").into());
+                return Err(fault.help("write it with G41 or G42, after G40").into());
             }
             self.state.registers.d = Some(register);
         }
@@ -176,7 +176,7 @@ impl Step<'_, '_, '_> {
             }
             Some(G::DynamicLength) => {
                 if self.block.g(Group::Motion).is_some() || !self.block.has(b'Z') {
-                    let message = "G43.1 takes Z alone, and no motion beside it";
+                    let message = "G43.1 takes Z alone, and no motion in its block";
                     return Err(self.block.at_group(Group::Length, Rule::LengthOffset, message));
                 }
                 // No program has measured it.

@@ -13,7 +13,7 @@ use program::Rule;
 pub(crate) struct Wire {
     /// Height at which U and V are counted, mm.
     upper_plane: Option<f64>,
-    /// How far the wire is beside X and Y there, mm.
+    /// How far the wire is from X and Y there, mm.
     u: f64,
     v: f64,
     /// Where that points it: it is set up upright.
@@ -114,7 +114,9 @@ impl Step<'_, '_, '_> {
             return refused("U or V while the control leans the wire");
         }
         if matches!(self.state.motion, Some(Motion::Arc { .. })) {
-            return refused("U or V beside an arc: the upper end would not go along an arc");
+            return refused(
+                "U or V in the block of an arc: the upper end would not go along an arc",
+            );
         }
         self.state.wire = Some(Wire { axis, ..wire });
         Ok(named)

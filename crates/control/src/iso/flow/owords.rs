@@ -75,7 +75,7 @@ pub(super) struct OWords {
 
 /// Where the O of a line stands, if the line begins with one.
 pub(super) fn at(line: &[u8]) -> Option<usize> {
-    // Nearly every line is told by its first byte.
+    // The first byte decides for nearly every line.
     let (at, _) = match line.first()? {
         b'O' | b'o' => return Some(0),
         b' ' | b'\t' | b'/' | b'N' | b'n' => source::start(line),

@@ -176,7 +176,7 @@ pub enum Motion {
     },
 }
 
-/// The canned cycles that can be told in the neutral program.
+/// The canned cycles that the neutral program has a record for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Canned {
     /// `G73`.
@@ -446,7 +446,7 @@ pub type MRow = (u16, Group, M);
 /// A word that exists and is refused on purpose, with the reason.
 pub type Refused = (u16, &'static str);
 
-/// What a word may begin with, beside the letters: LinuxCNC's polar words and the number of a spindle.
+/// What a word may begin with, in addition to the letters: LinuxCNC's polar words and the number of a spindle.
 pub(in crate::iso) const LETTERS: [u8; 30] = *b"ABCDEFGHIJKLMNOPQRSTUVWXYZ@$ ^";
 
 /// Where each byte stands in [`LETTERS`]; 0 where it does not.

@@ -11,7 +11,7 @@ use program::Rule;
 pub(super) struct Leaving {
     pub plane: Plane,
     pub guarded: bool,
-    /// The last element, and what runs beside it.
+    /// The last element, and its parallel.
     pub contour: Element,
     pub parallel: Element,
 }
@@ -25,7 +25,7 @@ impl Leaving {
             return Ok(());
         }
         if to.distance(self.contour.end) < SAME && to.distance(self.parallel.end) > SAME {
-            let message = "compensation is switched off beside a move out of its plane: whether the \
+            let message = "compensation is switched off in the block of a move out of its plane: whether the \
                            tool goes to the contour is not known";
             return Err(error(Rule::CompensationExit, line, message)
                 .help("switch it off in a straight move in the plane")

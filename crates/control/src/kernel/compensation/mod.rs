@@ -22,7 +22,7 @@ use path::Path;
 use program::{Axes, Compensation, Feed, Rule};
 pub(crate) use rules::{Outer, Rules};
 
-/// What a control says of compensation beside its side and register.
+/// What a control says of compensation in addition to its side and register.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
     /// Unit vector across the plane of compensation, from where the side is seen, in the frame of the
@@ -50,8 +50,8 @@ pub(crate) struct Compensator<'a> {
     inverse_time: bool,
     /// The contour, while compensation is on and resolved.
     path: Option<Box<Path>>,
-    /// Compensation has been told as a state, and nothing has moved since.
-    told: bool,
+    /// Compensation has been reported as a state, and nothing has moved since.
+    reported: bool,
     /// The end of the contour, until the tool has left it.
     leaving: Option<Box<Leaving>>,
 }
@@ -67,7 +67,7 @@ impl<'a> Compensator<'a> {
             at: Position { point: Vec3::NAN, orientation: nowhere },
             inverse_time: false,
             path: None,
-            told: false,
+            reported: false,
             leaving: None,
         }
     }
@@ -113,7 +113,7 @@ impl<'a> Compensator<'a> {
                     .help("with the tool in the tool table it is resolved into the path")
                     .into());
             }
-            self.told = side != Compensation::Off;
+            self.reported = side != Compensation::Off;
             return (self.sink)(Event { line, action: Action::Compensation(side) });
         };
         let Some(rules) = Rules::of(self.dialect) else {
@@ -183,7 +183,7 @@ impl<'a> Compensator<'a> {
                 };
                 self.at.point = Vec3::NAN;
             }
-            Action::Arc(_) if self.told => return Err(on_arc(record.line)),
+            Action::Arc(_) if self.reported => return Err(on_arc(record.line)),
             Action::WorkOffset(_) | Action::Probe(_) | Action::Across(_) => {
                 self.at.point = Vec3::NAN;
             }
@@ -213,7 +213,7 @@ impl<'a> Compensator<'a> {
             leaving.check(line, &pose)?;
         }
         self.at = pose;
-        self.told = false;
+        self.reported = false;
         Ok(())
     }
 

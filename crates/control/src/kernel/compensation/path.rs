@@ -48,10 +48,10 @@ enum Stage {
 struct Piece {
     line: u32,
     rapid: bool,
-    /// It is the move that switches compensation on: no contour lies beside it.
+    /// It is the move that switches compensation on: no contour belongs to it.
     begins: bool,
     contour: Element,
-    /// What runs beside it, of which the part `from..to` (0 to 1) remains ...
+    /// Its parallel, of which the part `from..to` (0 to 1) remains ...
     parallel: Element,
     from: f64,
     to: f64,
@@ -186,7 +186,7 @@ impl Path {
         }
     }
 
-    /// What runs beside an element of the contour, whole.
+    /// The parallel of an element of the contour, whole.
     fn piece(&self, line: u32, contour: Element, heights: [f64; 3]) -> Outcome<Piece> {
         let Some(parallel) = contour.parallel(self.left) else {
             let radius = contour.turn.map_or(0.0, |turn| contour.start.distance(turn.center));
@@ -251,7 +251,7 @@ impl Path {
         Ok(Stage::Following(Piece { begins: true, parallel, ..piece }))
     }
 
-    /// The arc from where the tool stands that ends beside the programmed one and in its direction.
+    /// The arc from where the tool stands that ends next to the end of the programmed one and in its direction.
     fn enter_on_arc(&self, piece: Piece) -> Outcome<Stage> {
         let Piece { contour, parallel, .. } = piece;
         let (start, end) = (contour.start, parallel.end);
@@ -346,7 +346,7 @@ impl Path {
         Ok((first + second) * self.left < 0.0)
     }
 
-    /// At an inner corner both elements end where what runs beside them crosses.
+    /// At an inner corner both elements end where their parallels cross.
     fn shorten(&self, last: &mut Piece, next: &mut Piece) -> Outcome {
         let crossings = last.parallel.crossings(&next.parallel);
         let mut crossings: Vec<_> = crossings.filter(|c| c.on_first > last.from).collect();

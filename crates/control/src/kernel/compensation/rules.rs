@@ -33,7 +33,7 @@ pub(crate) enum Entry {
 pub(crate) enum Outer {
     /// On an arc about the corner.
     Arc,
-    /// To where the lines beside the two tangents cross; where the way turns by more than 90°, first
+    /// To where the parallels of the two tangents cross; where the way turns by more than 90°, first
     /// on by the radius, then straight over to the same on the other side.
     Polygon,
     /// To where two lines cross; on an arc where the way turns by more than 100°.

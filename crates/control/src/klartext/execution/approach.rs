@@ -2,7 +2,7 @@
 //!
 //! Names as in the manuals: from PS by PH to PA, the first point of the contour; from PE, its last
 //! point, to PN. PS and PN are places of the tool's center; PH, PA and PE are places of the contour,
-//! beside which the tool runs by its radius.
+//! from which the tool is offset by its radius.
 
 use super::contour::{Bend, Element, Waiting, left_of};
 use super::state::Control;
@@ -154,7 +154,7 @@ impl Control<'_, '_> {
         Ok(())
     }
 
-    /// The contour begins with `next`: the approach is told.
+    /// The contour begins with `next`: the approach is reported.
     pub(super) fn finish_approach(
         &mut self,
         s: &Scanner,
@@ -167,20 +167,20 @@ impl Control<'_, '_> {
             return Err(s.error_block(Rule::Contour, message));
         };
         let contour = next.start;
-        let beside = side(compensation).unwrap_or(0.0);
+        let sign = side(compensation).unwrap_or(0.0);
         let (before, arc) = match shape {
             Shape::Tangent(length) => (contour - along * length, None),
             Shape::Normal(length) => {
-                let away = length + self.radius_beside_contour(s, beside)?;
-                (contour + left_of(along) * (beside * away), None)
+                let away = length + self.offset_from_contour(s, sign)?;
+                (contour + left_of(along) * (sign * away), None)
             }
             Shape::Arc(radius, angle) => {
-                let arc = Touching::new(contour, along, beside * radius.signum(), radius.abs());
+                let arc = Touching::new(contour, along, sign * radius.signum(), radius.abs());
                 (arc.turned(contour, -angle), Some(arc.bend))
             }
             Shape::LineAndArc(radius) => {
-                let arc = Touching::new(contour, along, beside, radius);
-                let tool = self.radius_beside_contour(s, beside)?;
+                let arc = Touching::new(contour, along, sign, radius);
+                let tool = self.offset_from_contour(s, sign)?;
                 let before = arc.tangent_point(start, tool, true);
                 (before.ok_or_else(|| no_tangent(s))?, Some(arc.bend))
             }
@@ -233,16 +233,16 @@ impl Control<'_, '_> {
             let message = "DEP goes on from the line or arc directly before it, and there is none";
             return Err(s.error_block(Rule::Contour, message));
         };
-        let beside = side(self.compensation);
-        let Some(beside) = beside.or(matches!(shape, Shape::Tangent(_)).then_some(0.0)) else {
+        let sign = side(self.compensation);
+        let Some(sign) = sign.or(matches!(shape, Shape::Tangent(_)).then_some(0.0)) else {
             let message = "on which side of the contour the tool leaves is said by RL or RR";
             return Err(s.error_block(Rule::Compensation, message));
         };
         self.functions(s, words.functions, When::Start)?;
         self.set_feed(s, words.feed)?;
         self.needs_feed(s, false)?;
-        let tool = self.radius_beside_contour(s, beside)?;
-        let (last, across) = (self.here, |along: Vec3| left_of(along) * (beside * tool));
+        let tool = self.offset_from_contour(s, sign)?;
+        let (last, across) = (self.here, |along: Vec3| left_of(along) * (sign * tool));
         let element = |end, arc| Element { start: last, end, arc };
         match shape {
             Shape::Tangent(length) => {
@@ -251,11 +251,11 @@ impl Control<'_, '_> {
             }
             Shape::Normal(length) => {
                 self.set_compensation(Compensation::Off)?;
-                let end = last + left_of(along) * (beside * (length + tool));
+                let end = last + left_of(along) * (sign * (length + tool));
                 self.tell(s, element(end, None))
             }
             Shape::Arc(radius, angle) => {
-                let arc = Touching::new(last, along, beside * radius.signum(), radius.abs());
+                let arc = Touching::new(last, along, sign * radius.signum(), radius.abs());
                 let element = element(arc.turned(last, angle), Some(arc.bend));
                 self.tell(s, element)?;
                 let along = element.tangent_at_end().unwrap_or(along);
@@ -263,7 +263,7 @@ impl Control<'_, '_> {
             }
             Shape::LineAndArc(radius) => {
                 let (end, _) = self.targets(s, &words)?;
-                let arc = Touching::new(last, along, beside, radius);
+                let arc = Touching::new(last, along, sign, radius);
                 let before = arc.tangent_point(end, tool, false).ok_or_else(|| no_tangent(s))?;
                 self.tell(s, element(before, Some(arc.bend)))?;
                 self.set_compensation(Compensation::Off)?;
@@ -280,9 +280,9 @@ impl Control<'_, '_> {
         self.set_compensation(Compensation::Off)
     }
 
-    /// How far beside the contour the center of the tool runs.
-    fn radius_beside_contour(&self, s: &Scanner, beside: f64) -> Outcome<f64> {
-        if beside == 0.0 {
+    /// How far the center of the tool is offset from the contour.
+    fn offset_from_contour(&self, s: &Scanner, sign: f64) -> Outcome<f64> {
+        if sign == 0.0 {
             return Ok(0.0);
         }
         if self.transforms().scales() {

@@ -88,10 +88,10 @@ pub(super) fn left_of(along: Vec3) -> Vec3 {
 /// The element that replaces the corner between two others, or why that cannot be.
 fn cut_off(first: &Element, second: &Element, shape: Shape) -> Result<Element, &'static str> {
     if first.tangent_at_end().is_none() || second.tangent_at_start().is_none() {
-        return Err("where an element beside the corner leads is not known");
+        return Err("where an element of the corner leads is not known");
     }
     if !first.is_plane() || !second.is_plane() {
-        return Err("the elements beside the corner must lie in the plane XY");
+        return Err("the elements of the corner must lie in the plane XY");
     }
     let no_corner = "there is no corner: the elements run into each other or back";
     let joint = corner::joint(&first.part(), &second.part(), Vec3::Z, shape, SMOOTH);
@@ -145,7 +145,7 @@ impl Control<'_, '_> {
         }
     }
 
-    /// An element that is not rapid leads to `element.end`: it is told, or waits for its corner.
+    /// An element that is not rapid leads to `element.end`: it is reported, or waits for its corner.
     pub(super) fn contour_element(
         &mut self,
         s: &Scanner,
@@ -160,7 +160,7 @@ impl Control<'_, '_> {
         self.tell(s, element)
     }
 
-    /// The next element of the contour is known: what waits for it is told, up to where the element
+    /// The next element of the contour is known: what waits for it is reported, up to where the element
     /// begins then.
     pub(super) fn meet(&mut self, s: &Scanner, next: &Element) -> Outcome {
         let Some(waiting) = self.waiting.take() else { return Ok(()) };

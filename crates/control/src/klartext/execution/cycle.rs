@@ -297,8 +297,8 @@ impl Control<'_, '_> {
             cycle.kind = CycleKind::Tap { pitch: feed / speed, left };
         }
         let hole = self.cutting_pose(s, self.here.with_z(point))?;
-        if self.told != Some(cycle) {
-            self.told = Some(cycle);
+        if self.reported != Some(cycle) {
+            self.reported = Some(cycle);
             self.emit(Action::Cycle(Box::new(cycle)))?;
         }
         self.emit(Action::Hole(hole))?;

@@ -189,7 +189,7 @@ impl Hole<'_> {
         if decrement < 0.0 || least < 0.0 {
             return Err("the decrement Q212 and the least depth Q205 must not be negative".into());
         }
-        // Two depths can be told: the first one, and that of all others.
+        // Two depths can be reported: the first one, and that of all others.
         let further = if decrement == 0.0 { first } else { (first - decrement).max(least) };
         let ends = decrement == 0.0 || further == least || first + further >= cycle.depth;
         if !ends || further <= 0.0 {

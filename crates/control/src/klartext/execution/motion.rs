@@ -245,7 +245,7 @@ impl Control<'_, '_> {
     }
 
     /// Tells where the tool turns over the part while the control keeps its tip, and not the way that its words need: vectors and
-    /// spatial angles are told as turning on the great circle, positions of axes as turning evenly.
+    /// spatial angles are reported as turning on the great circle, positions of axes as turning evenly.
     fn hold_turning(&mut self, turns: bool, great_circle: bool, here: Vec3) -> Outcome {
         let over_part = self.tip != Tip::Free && !here.z.is_nan();
         if !(turns && over_part) || self.great_circle == great_circle {

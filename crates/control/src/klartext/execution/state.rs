@@ -89,15 +89,15 @@ pub(crate) struct Control<'a, 's> {
     pub(super) path: Option<Element>,
     /// Whether the last positioning was at rapid.
     pub(super) rapid: bool,
-    /// What is not told before the next element of the contour is known.
+    /// What is not reported before the next element of the contour is known.
     pub(super) waiting: Option<Waiting>,
     pub(super) cycle: Option<Defined>,
     /// An older hole cycle that is being defined.
     pub(super) older: Older,
     /// Points of the last `PATTERN DEF`, mm.
     pub(super) pattern: Vec<Vec3>,
-    /// The cycle as it was told last.
-    pub(super) told: Option<Cycle>,
+    /// The cycle as it was reported last.
+    pub(super) reported: Option<Cycle>,
     pub(super) calls_modally: bool,
     pub(crate) ended: bool,
     pub(crate) registers: Registers,
@@ -163,7 +163,7 @@ impl<'a, 's> Control<'a, 's> {
             cycle: None,
             older: Older::default(),
             pattern: Vec::new(),
-            told: None,
+            reported: None,
             calls_modally: false,
             ended: false,
             registers: Registers::new(),
@@ -343,7 +343,7 @@ impl<'a, 's> Control<'a, 's> {
             return Ok(());
         }
         self.compensation = compensation;
-        // What is left in mirrored coordinates is right of the path that is told.
+        // What is left in mirrored coordinates is right of the path that is reported.
         let side = match (compensation, self.mirrors()) {
             (Compensation::Left(_), true) => Compensation::Right(None),
             (Compensation::Right(_), true) => Compensation::Left(None),

@@ -209,9 +209,9 @@ impl Interpreter<'_, '_> {
             let line = held.line;
             let message = match misfit {
                 Misfit::TurnsBack => format!("the way turns back at the corner of line {line}"),
-                Misfit::ChamferAtArc => {
-                    String::from("a chamfer beside an arc is not supported; write its line")
-                }
+                Misfit::ChamferAtArc => String::from(
+                    "a chamfer before or behind an arc is not supported; write its line",
+                ),
                 Misfit::TooLarge => {
                     format!(
                         "the corner of line {line} with {size} mm does not fit between its blocks"

@@ -487,7 +487,7 @@ impl Interpreter<'_, '_> {
     }
 
     /// The positions of a block in machine coordinates. `SUPA` and its kin leave the tool length on (Programming
-    /// Manual Fundamentals, "Deselect frame": `D0` beside them ends it), so Z of the spindle is not known with an edge.
+    /// Manual Fundamentals, "Deselect frame": `D0` in their block ends it), so Z of the spindle is not known with an edge.
     fn machine_target(&self, source: &Source, block: &Block) -> Outcome<MachineMove> {
         let mut to = MachineMove::default();
         for (axis, word) in block.axes.iter().enumerate() {
