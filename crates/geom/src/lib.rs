@@ -29,6 +29,7 @@ mod chain;
 mod crossing;
 mod element;
 pub mod lettering;
+pub mod linear;
 pub mod region;
 mod rotation;
 mod transform;

@@ -2,12 +2,14 @@
 
 use super::Solutions;
 use crate::arm::{Arm, Joints, Structure};
-use geom::{Frame, Mat3, Vec3, wrap};
+use geom::{Frame, Mat3, Vec3, linear, wrap};
 
 /// Steps at most: each squares what is left.
 const MOST_STEPS: usize = 12;
 /// What is left at the end, mm and radians.
 const CLOSE: f64 = 1e-9;
+/// Below this pivot the equations are those of a singular pose.
+const FLATTEST: f64 = 1e-6;
 
 /// The nominal joints `near` a frame, corrected; those that do not come to rest, close to a singularity, are left out.
 pub(super) fn refine(arm: &Arm, flange: &Frame, near: &Solutions) -> Solutions {
@@ -60,34 +62,14 @@ fn turn(rotation: &Mat3) -> Vec3 {
     if sin > 0.0 { twice * (angle / (2.0 * sin)) } else { Vec3::ZERO }
 }
 
-/// The changes of the joints that move the flange by `gap` and `turn`: six equations, by elimination with pivots.
+/// The changes of the joints that move the flange by `gap` and `turn`.
 fn solve(axes: &[(Vec3, Vec3); 6], flange: &Vec3, gap: Vec3, turn: Vec3) -> Option<Joints> {
     // Turns count as much as a metre, so that rows are of one size.
     const METRE: f64 = 1000.0;
-    let mut rows = [[0.0; 7]; 6];
-    for (i, (point, axis)) in axes.iter().enumerate() {
-        let moved = axis.cross(*flange - *point);
-        for k in 0..3 {
-            rows[k][i] = moved[k];
-            rows[k + 3][i] = axis[k] * METRE;
-        }
-    }
-    for k in 0..3 {
-        rows[k][6] = gap[k];
-        rows[k + 3][6] = turn[k] * METRE;
-    }
-    for column in 0..6 {
-        let pivot =
-            (column..6).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))?;
-        rows.swap(column, pivot);
-        if rows[column][column].abs() < 1e-6 {
-            return None;
-        }
-        let head = rows[column];
-        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != column) {
-            let share = row[column] / head[column];
-            row.iter_mut().zip(&head).for_each(|(cell, from)| *cell -= share * from);
-        }
-    }
-    Some(std::array::from_fn(|i| rows[i][6] / rows[i][i]))
+    let six = |moved: Vec3, turned: Vec3| {
+        let Vec3 { x, y, z } = turned * METRE;
+        [moved.x, moved.y, moved.z, x, y, z]
+    };
+    let columns = axes.map(|(point, axis)| six(axis.cross(*flange - point), axis));
+    linear::solve(&columns, six(gap, turn), FLATTEST)
 }

@@ -225,15 +225,11 @@ impl Known<'_> {
                 board.side_mut(face).mask = Some(mask);
             }
             Layer::Legend(face) => board.side_mut(face).legend = Some(image),
-            Layer::Outline => match outline::of_image(&image) {
-                Ok((region, found)) => {
-                    board.outline = Some(region);
-                    warnings.extend(found.into_iter().map(placed));
-                }
-                Err(findings) => {
-                    board.broken_edge = Some(BrokenEdge::of_image(findings, &image).file(name));
-                }
-            },
+            Layer::Outline => {
+                let broken = |findings| BrokenEdge::of_image(findings, &image).file(name);
+                let mended = board.take_outline(outline::of_image(&image), broken);
+                warnings.extend(mended.into_iter().map(placed));
+            }
             Layer::Holes(plated) => {
                 let found =
                     holes::of_image(&image, plated).map_err(|error| vec![placed(*error)])?;

@@ -32,7 +32,7 @@ use crate::contour::around;
 use crate::gerber::Image;
 use geom::region::Region;
 use geom::{Element, Vec2};
-use outline::BrokenEdge;
+use outline::{BrokenEdge, Outlined};
 use program::Diagnostic;
 
 /// A board, seen from the front: X to the right, Y up, mm.
@@ -66,13 +66,24 @@ pub struct Side {
 impl Board {
     /// Takes the outline from the lines that draw its edge, each with its line in the file; answers what had to be mended.
     pub(crate) fn take_edge(&mut self, lines: &[(Element, u32)]) -> Vec<Diagnostic> {
-        match outline::of_lines(lines) {
+        self.take_outline(outline::of_lines(lines), |findings| {
+            BrokenEdge::of_lines(findings, lines)
+        })
+    }
+
+    /// Takes the outline, or what `broken` makes of an edge that is none; answers what had to be mended.
+    fn take_outline(
+        &mut self,
+        found: Result<Outlined, Vec<Diagnostic>>,
+        broken: impl FnOnce(Vec<Diagnostic>) -> BrokenEdge,
+    ) -> Vec<Diagnostic> {
+        match found {
             Ok((region, mended)) => {
                 self.outline = Some(region);
                 mended
             }
             Err(findings) => {
-                self.broken_edge = Some(BrokenEdge::of_lines(findings, lines));
+                self.broken_edge = Some(broken(findings));
                 Vec::new()
             }
         }

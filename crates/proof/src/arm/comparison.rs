@@ -54,7 +54,7 @@ struct Changes {
     asked: Option<u32>,
 }
 
-pub(super) struct Judge<'a> {
+pub(super) struct Comparison<'a> {
     machine: &'a Machine,
     arm: &'a Arm,
     cell: &'a Cell,
@@ -80,18 +80,18 @@ pub(super) struct Judge<'a> {
     joint_step: f64,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> Comparison<'a> {
     pub(super) fn new(
         source: &Program,
         (machine, arm, cell): (&'a Machine, &'a Arm, &'a Cell),
         expected: Vec<Expected>,
         report: Report,
-    ) -> Judge<'a> {
+    ) -> Comparison<'a> {
         let half = |word: &str, otherwise: f64| {
             let word = machine.words.get(word);
             word.map_or(otherwise, |word| 0.5 * word.resolution())
         };
-        Judge {
+        Comparison {
             machine,
             arm,
             cell,

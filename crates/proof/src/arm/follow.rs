@@ -1,7 +1,7 @@
 //! The joints along a path of the tool: from where they stand, step by step, by the forward kinematics alone.
 
 use ::arm::{Arm, Joints, Posture};
-use geom::{Frame, Mat3, Quat, Vec3};
+use geom::{Frame, Mat3, Quat, Vec3, linear};
 
 /// Points of a path are at most so far apart, mm.
 const SPACING: f64 = 5.0;
@@ -22,6 +22,9 @@ const NEAREST_AXIS: f64 = 5.0;
 
 /// What is a millimetre to a radian, in the equations.
 const SCALE: f64 = 1e-3;
+
+/// Below this pivot the equations are those of a singular pose.
+const FLATTEST: f64 = 1e-9;
 
 /// A path of the tool in the base.
 pub(super) struct Path<'a> {
@@ -172,7 +175,7 @@ fn solve(arm: &Arm, flange: &Frame, guess: &Joints) -> Option<Joints> {
             moved[i] += STEP;
             *column = difference(&here, &arm.flange(&moved)).map(|part| part / STEP);
         }
-        let change = solved(columns, error)?;
+        let change = linear::solve(&columns, error, FLATTEST)?;
         if change.iter().any(|part| part.abs() > LEAP) {
             return None;
         }
@@ -188,34 +191,6 @@ fn difference(from: &Frame, to: &Frame) -> [f64; 6] {
     let (x, y, z) = (turned.x_axis, turned.y_axis, turned.z_axis);
     let about = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) / 2.0;
     [moved.x, moved.y, moved.z, about.x, about.y, about.z]
-}
-
-/// The combination of columns that makes `right`; `None` where they are no base.
-fn solved(columns: [[f64; 6]; 6], right: [f64; 6]) -> Option<[f64; 6]> {
-    let mut rows: [[f64; 7]; 6] = std::array::from_fn(|row| {
-        std::array::from_fn(|column| if column < 6 { columns[column][row] } else { right[row] })
-    });
-    for pivot in 0..6 {
-        let best =
-            (pivot..6).max_by(|a, b| rows[*a][pivot].abs().total_cmp(&rows[*b][pivot].abs()))?;
-        rows.swap(pivot, best);
-        if rows[pivot][pivot].abs() < 1e-9 {
-            return None;
-        }
-        let head = rows[pivot];
-        for row in rows.iter_mut().skip(pivot + 1) {
-            let part = row[pivot] / head[pivot];
-            for (value, above) in row.iter_mut().zip(head) {
-                *value -= part * above;
-            }
-        }
-    }
-    let mut found = [0.0; 6];
-    for row in (0..6).rev() {
-        let known: f64 = (row + 1..6).map(|column| rows[row][column] * found[column]).sum();
-        found[row] = (rows[row][6] - known) / rows[row][row];
-    }
-    Some(found)
 }
 
 /// The orientation between two, evenly about one axis.

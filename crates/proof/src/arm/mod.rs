@@ -18,16 +18,16 @@
 //!
 //! It knows nothing of the arm itself, the cell and the load: the summary says so.
 
+mod comparison;
 mod expected;
 mod follow;
-mod judge;
 
 use crate::report::Report;
 use crate::tolerance::{Applied, Tolerances};
 use ::arm::Arm;
+use comparison::Comparison;
 use control::Setup;
 use expected::Expected;
-use judge::Judge;
 use machine::{Cell, Machine};
 use program::{Diagnostic, Program, Rule};
 
@@ -52,7 +52,7 @@ pub(crate) fn prove(
             return report;
         }
     };
-    let mut judge = Judge::new(source, (machine, arm, cell), expected, report);
+    let mut comparison = Comparison::new(source, (machine, arm, cell), expected, report);
     let mut events = 0_u32;
     let run = nc::settings(machine, Setup::default()).and_then(|settings| {
         control::read(&settings, file_name, text, &mut |event| {
@@ -63,10 +63,10 @@ pub(crate) fn prove(
                     .help("prove it again")
                     .into());
             }
-            judge.event(&event)
+            comparison.event(&event)
         })
     });
-    let mut report = judge.finish(run);
+    let mut report = comparison.finish(run);
     report.quote(file_name, text);
     report
 }

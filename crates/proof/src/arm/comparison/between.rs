@@ -1,14 +1,14 @@
 //! What happens between motions: outputs, dwells, stops, tool changes, the load, the end.
 
 use super::super::expected::Step;
-use super::{Judge, refused};
+use super::{Comparison, refused};
 use geom::Vec3;
 use program::{Outcome, Output, OutputValue, Rule};
 
 /// So much longer than the spindle needs to its speed a program may wait for it, s.
 const MOST_WAITING: f64 = 60.0;
 
-impl Judge<'_> {
+impl Comparison<'_> {
     /// What hangs on the flange.
     ///
     /// # Errors

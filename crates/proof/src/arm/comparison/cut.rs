@@ -2,12 +2,12 @@
 
 use super::super::expected::Expected;
 use super::super::follow::angle;
-use super::{Judge, refused};
+use super::{Comparison, refused};
 use control::{ArmMove, Corner, Rounding};
 use geom::Frame;
 use program::{Coolant, Outcome, Rule, Spindle};
 
-impl Judge<'_> {
+impl Comparison<'_> {
     /// # Errors
     /// Base and tool are not those of the cell, within the rounding of their words.
     pub(super) fn frames(&self) -> Outcome {

@@ -2,12 +2,12 @@
 
 use super::super::expected::{REENTRY, Step};
 use super::super::follow::limit;
-use super::{Judge, STRIDE, Standing, refused};
+use super::{Comparison, STRIDE, Standing, refused};
 use ::arm::Joints;
 use geom::{Frame, Vec3, angle_between, nearest_on_segment};
 use program::{Diagnostic, Outcome, Pose, Rule};
 
-impl Judge<'_> {
+impl Comparison<'_> {
     /// A motion of all joints.
     pub(super) fn joints(&mut self, shown: [f64; 6]) -> Outcome {
         let home = shown.iter().zip(self.cell.home).all(|(at, home)| (at - home).abs() < 1e-3);

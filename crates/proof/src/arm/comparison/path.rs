@@ -2,7 +2,7 @@
 
 use super::super::expected::{Expected, REENTRY, Step};
 use super::super::follow::{Followed, Path, angle, follow, turned};
-use super::{Judge, STRIDE, Standing, refused};
+use super::{Comparison, STRIDE, Standing, refused};
 use ::arm::Joints;
 use control::kernel::arc::through;
 use control::{ArmMove, ArmPosture, Corner, Rounding, Turning};
@@ -25,7 +25,7 @@ const SMALL_TURN: f64 = 1.745_329_251_994_329_6e-4;
 /// By so much of itself the time of a cut may be longer than its feed wants it.
 const SLOWER: f64 = 0.05;
 
-impl Judge<'_> {
+impl Comparison<'_> {
     /// A straight line of the tip.
     pub(super) fn line(
         &mut self,
@@ -421,7 +421,7 @@ impl Judge<'_> {
         let allowed = ROUNDINGS * self.tip(true);
         let before = self.done;
         let end = self.in_part(&at(1.0));
-        let mut reached = Judge::angle_on(wanted, before, end.translation) / wanted.sweep;
+        let mut reached = Comparison::angle_on(wanted, before, end.translation) / wanted.sweep;
         let left = (reached - 1.0).abs() * wanted.length();
         if end.translation.distance(wanted.end) <= self.tip(false) && left <= 2.0 * allowed {
             reached = 1.0;
@@ -508,7 +508,7 @@ impl Judge<'_> {
         let allowed = self.tip(true);
         let before = self.done;
         let tip = self.in_part(end).translation;
-        let mut reached = Judge::angle_on(wanted, before, tip) / wanted.sweep;
+        let mut reached = Comparison::angle_on(wanted, before, tip) / wanted.sweep;
         if tip.distance(wanted.end) <= self.tip(false) && reached > 1.0 - 0.25 {
             reached = 1.0;
         }
