@@ -281,7 +281,7 @@ pub struct Post {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
-    /// Where to save the program; the report goes beside it.
+    /// Where to save the program; the report goes next to it.
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
     /// Another value for one of the options of the machine file; may be given several times.
@@ -299,7 +299,7 @@ pub struct Wire {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
-    /// Where to save the program; the report goes beside it.
+    /// Where to save the program; the report goes next to it.
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
     /// Draw the contour, its points and the ruled surface, as .svg or .png.
@@ -360,7 +360,7 @@ pub struct Drawing {
 
 /// How the wire goes along a contour.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "The wire beside the contour")]
+#[command(next_help_heading = "The wire and the contour")]
 pub struct Cutting {
     /// On which side of the contours the wire runs [default: along the contours themselves].
     #[arg(long, value_parser = choice(&SIDES))]
@@ -380,7 +380,7 @@ pub struct Cutting {
     /// Where the wire is threaded; once for each contour, in their order.
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
     pub thread: Vec<[f64; 2]>,
-    /// How far beside a contour the wire is threaded where --thread does not say where.
+    /// How far from a contour the wire is threaded where --thread does not say where.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub lead: Option<f64>,
     /// Radius of the quarter circle by which the wire comes to the contour [default: straight].
