@@ -1,9 +1,13 @@
 //! KRL, by what KUKA's manuals say of it, the job of the specification, and programs that others have written.
 
+#[path = "common/arm.rs"]
+mod arm;
+
+use arm::moves;
 use geom::{Euler, Frame, Vec3};
 use program::{Feed, Output, OutputValue, Until};
 use toolpost_control::{
-    Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding, Settings, Turning, read,
+    Action, ArmAction, ArmPath, Corner, Dialect, Event, Rounding, Settings, Turning, read,
 };
 
 fn settings() -> Settings {
@@ -11,25 +15,12 @@ fn settings() -> Settings {
 }
 
 fn run_with(settings: &Settings, text: &str) -> Result<Vec<Event>, String> {
-    let mut events = Vec::new();
-    let taken = read(settings, "job.src", text.as_bytes(), &mut |event| {
-        events.push(event);
-        Ok(())
-    });
-    taken.map(|()| events).map_err(|found| found.to_string())
+    arm::run(settings, "job.src", text)
 }
 
 /// The events of a program of these lines.
 fn body(lines: &str) -> Result<Vec<Event>, String> {
     run_with(&settings(), &format!("DEF job ( )\n{lines}\nEND\n"))
-}
-
-fn moves(events: &[Event]) -> Vec<(u32, ArmMove)> {
-    let of = |event: &Event| match &event.action {
-        Action::Arm(ArmAction::Move(motion)) => Some((event.line, **motion)),
-        _ => None,
-    };
-    events.iter().filter_map(of).collect()
 }
 
 #[track_caller]

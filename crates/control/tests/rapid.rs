@@ -1,9 +1,13 @@
 //! RAPID, by what ABB's manuals say of it, the job of the specification, and a program that others have written.
 
+#[path = "common/arm.rs"]
+mod arm;
+
+use arm::moves;
 use geom::{Frame, Vec3};
 use program::{Feed, Output, OutputValue, Until};
 use toolpost_control::{
-    Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding, Settings, Turning, read,
+    Action, ArmAction, ArmPath, Corner, Dialect, Event, Rounding, Settings, Turning, read,
 };
 
 fn settings() -> Settings {
@@ -13,26 +17,13 @@ fn settings() -> Settings {
 }
 
 fn run_with(settings: &Settings, text: &str) -> Result<Vec<Event>, String> {
-    let mut events = Vec::new();
-    let taken = read(settings, "job.mod", text.as_bytes(), &mut |event| {
-        events.push(event);
-        Ok(())
-    });
-    taken.map(|()| events).map_err(|found| found.to_string())
+    arm::run(settings, "job.mod", text)
 }
 
 /// The events of a procedure of these statements, which begin in line 4.
 fn body(lines: &str) -> Result<Vec<Event>, String> {
     let text = format!("MODULE Job\nVAR num number;\nPROC main()\n{lines}\nENDPROC\nENDMODULE\n");
     run_with(&settings(), &text)
-}
-
-fn moves(events: &[Event]) -> Vec<(u32, ArmMove)> {
-    let of = |event: &Event| match &event.action {
-        Action::Arm(ArmAction::Move(motion)) => Some((event.line, **motion)),
-        _ => None,
-    };
-    events.iter().filter_map(of).collect()
 }
 
 #[track_caller]

@@ -4,10 +4,10 @@ mod dice;
 mod files;
 mod robot;
 
-use control::{Action, ArmAction, ArmPath, Dialect, Event};
+use control::{ArmPath, Dialect};
 use files::root;
 use machine::Machine;
-use robot::{JOB, proof_of, proven, source};
+use robot::{JOB, LINE, proof_of, proven, refused, source};
 
 fn lrmate() -> Machine {
     machine::load("fanuc-lrmate-200id-mill").unwrap()
@@ -15,27 +15,13 @@ fn lrmate() -> Machine {
 
 /// The machine of the library with lines of its file changed.
 fn lrmate_with(changes: &[(&str, &str)]) -> Machine {
-    let path = root().join("machines/robots/fanuc-lrmate-200id-mill.toml");
-    let mut text = std::fs::read_to_string(path).unwrap();
-    for (from, to) in changes {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    machine::load_text("mine.toml", &text).unwrap()
-}
-
-fn paths(text: &str) -> Vec<ArmPath> {
-    let of = |event: Event| match event.action {
-        Action::Arm(ArmAction::Move(motion)) => Some(motion.path),
-        _ => None,
-    };
-    robot::events(Dialect::Ls, text).into_iter().filter_map(of).collect()
+    robot::changed("fanuc-lrmate-200id-mill", changes)
 }
 
 #[test]
 fn the_job_of_the_specification_is_posted_with_its_joints_and_proven() {
     let text = proven(&source(JOB), &lrmate());
-    let paths = paths(&text);
+    let paths = robot::paths(Dialect::Ls, &text);
     // The joints that the specification has calculated, as the pendant shows them: J3 counts against the horizontal.
     let ArmPath::Joints(start) = paths[1] else { panic!("{text}") };
     for (at, expected) in start.iter().zip([0.0, 23.408, -42.993, 0.0, -47.007]) {
@@ -150,20 +136,6 @@ fn of_200_single_damages_each_is_refused_or_changes_nothing() {
     let sample = std::fs::read_to_string(root().join("machines/samples/robot.cls")).unwrap();
     let refused = robot::damaged_by_dice(&sample, (&lrmate(), Dialect::Ls), "/MN", 8);
     assert!(refused > 120, "{refused}");
-}
-
-/// A plunge and a line.
-const LINE: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
-GOTO/0,0,-2\nFEDRAT/MMPM,1200\nGOTO/60,0,-2\nRAPID\nGOTO/60,0,50\nFINI\n";
-
-#[track_caller]
-fn refused(from: &str, to: &str, machine: &Machine, line: u32, what: &str) {
-    assert!(LINE.contains(from), "{from}");
-    let source = source(&LINE.replacen(from, to, 1));
-    let found = post::write(&source, machine).expect_err(to);
-    let found = &found[0];
-    assert!(found.message.contains(what) || found.help.contains(what), "{found}");
-    assert_eq!(found.line, line, "{found}");
 }
 
 #[test]

@@ -15,13 +15,7 @@ fn irb120() -> Machine {
 
 /// The machine of the library with lines of its file changed.
 fn irb120_with(changes: &[(&str, &str)]) -> Machine {
-    let path = root().join("machines/robots/abb-irb120-mill.toml");
-    let mut text = std::fs::read_to_string(path).unwrap();
-    for (from, to) in changes {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    machine::load_text("mine.toml", &text).unwrap()
+    robot::changed("abb-irb120-mill", changes)
 }
 
 #[test]

@@ -4,12 +4,12 @@ mod dice;
 mod files;
 mod robot;
 
-use control::{Action, ArmAction, ArmPath, Dialect, Event};
+use control::{ArmPath, Dialect};
 use files::root;
 use geom::Vec3;
 use machine::Machine;
 use program::{CompensatedPath, Program};
-use robot::{JOB, proof_of, proven, source};
+use robot::{JOB, proof_of, proven, refused, source};
 
 fn kuka() -> Machine {
     machine::load("kuka-kr6-r900").unwrap()
@@ -17,21 +17,7 @@ fn kuka() -> Machine {
 
 /// A machine of the library with lines of its file changed.
 fn kuka_with(changes: &[(&str, &str)]) -> Machine {
-    let path = root().join("machines/robots/kuka-kr6-r900.toml");
-    let mut text = std::fs::read_to_string(path).unwrap();
-    for (from, to) in changes {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    machine::load_text("mine.toml", &text).unwrap()
-}
-
-fn paths(text: &str) -> Vec<ArmPath> {
-    let of = |event: Event| match event.action {
-        Action::Arm(ArmAction::Move(motion)) => Some(motion.path),
-        _ => None,
-    };
-    robot::events(Dialect::Krl, text).into_iter().filter_map(of).collect()
+    robot::changed("kuka-kr6-r900", changes)
 }
 
 /// A cell whose operator has a program that changes the tool.
@@ -46,7 +32,7 @@ fn kuka_with_tool_change() -> Machine {
 #[test]
 fn the_job_of_the_specification_is_posted_with_its_joints_and_proven() {
     let text = proven(&source(JOB), &kuka());
-    let paths = paths(&text);
+    let paths = robot::paths(Dialect::Krl, &text);
     // The joints that the specification has calculated for the tool at (0, 0, 50); how it is turned about its axis is free.
     let ArmPath::Joints(start) = paths[1] else { panic!("{text}") };
     for (at, expected) in start.iter().zip([0.0, -61.080, 126.744, 0.0, 24.336]) {
@@ -246,20 +232,6 @@ fn of_200_single_damages_each_is_refused_or_changes_nothing() {
     let sample = std::fs::read_to_string(root().join("machines/samples/robot.cls")).unwrap();
     let refused = robot::damaged_by_dice(&sample, (&kuka(), Dialect::Krl), "BAS (#VEL_PTP", 17);
     assert!(refused > 120, "{refused}");
-}
-
-/// A plunge and a line.
-const LINE: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
-GOTO/0,0,-2\nFEDRAT/MMPM,1200\nGOTO/60,0,-2\nRAPID\nGOTO/60,0,50\nFINI\n";
-
-#[track_caller]
-fn refused(from: &str, to: &str, machine: &Machine, line: u32, what: &str) {
-    assert!(LINE.contains(from), "{from}");
-    let source = source(&LINE.replacen(from, to, 1));
-    let found = post::write(&source, machine).expect_err(to);
-    let found = &found[0];
-    assert!(found.message.contains(what) || found.help.contains(what), "{found}");
-    assert_eq!(found.line, line, "{found}");
 }
 
 #[test]

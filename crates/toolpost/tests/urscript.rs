@@ -4,11 +4,11 @@ mod dice;
 mod files;
 mod robot;
 
-use control::{Action, ArmAction, ArmPath, Dialect, Event};
+use control::{ArmPath, Dialect};
 use files::root;
 use geom::{Frame, Vec3};
 use machine::Machine;
-use robot::{JOB, proof_of, proven, source};
+use robot::{JOB, proof_of, proven, refused, source};
 use std::f64::consts::FRAC_PI_2;
 
 fn ur5e() -> Machine {
@@ -17,13 +17,7 @@ fn ur5e() -> Machine {
 
 /// The machine of the library with lines of its file changed.
 fn ur5e_with(changes: &[(&str, &str)]) -> Machine {
-    let mut text =
-        std::fs::read_to_string(root().join("machines/robots/universal-ur5e.toml")).unwrap();
-    for (from, to) in changes {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    machine::load_text("mine.toml", &text).unwrap()
+    robot::changed("universal-ur5e", changes)
 }
 
 /// The rows of a calibration.yaml, which are those of the arm as drawn (`config/ur5e/default_kinematics.yaml` of the maker's ROS package).
@@ -36,18 +30,10 @@ fn measured() -> Machine {
     ur5e_with(&[("model = \"ur5e\"", &model)])
 }
 
-fn paths(text: &str) -> Vec<ArmPath> {
-    let of = |event: Event| match event.action {
-        Action::Arm(ArmAction::Move(motion)) => Some(motion.path),
-        _ => None,
-    };
-    robot::events(Dialect::UrScript, text).into_iter().filter_map(of).collect()
-}
-
 #[test]
 fn the_job_of_the_specification_is_posted_with_its_joints_and_proven() {
     let text = proven(&source(JOB), &ur5e());
-    let paths = paths(&text);
+    let paths = robot::paths(Dialect::UrScript, &text);
     // The joints that the specification has calculated for the tool at (0, 0, 50), radians; how it is turned about its axis is free.
     let ArmPath::Joints(start) = paths[1] else { panic!("{text}") };
     for (at, expected) in start.iter().zip([2.84086, -1.65957, 2.0143, -1.92553, -FRAC_PI_2]) {
@@ -106,7 +92,7 @@ end
     let report = proof_of(&source(JOB), &machine, PROGRAM);
     assert!(report.proven, "{:#?}", report.mismatches);
     let arm = machine.arm.as_ref().unwrap();
-    let ArmPath::Joints(start) = paths(PROGRAM)[1] else { panic!() };
+    let ArmPath::Joints(start) = robot::paths(Dialect::UrScript, PROGRAM)[1] else { panic!() };
     let tool = Frame::from_translation(Vec3::new(0.0, 0.0, 150.0));
     let at = arm.flange(&start.map(f64::to_radians)) * tool;
     assert!(at.translation.distance(Vec3::new(450.0, 0.0, 200.0)) < 5e-3, "{at:?}");
@@ -230,20 +216,6 @@ fn of_200_single_damages_each_is_refused_or_changes_nothing() {
             robot::damaged_by_dice(&sample, (&machine, Dialect::UrScript), "joint_acc=", seed);
         assert!(refused > 120, "{refused}");
     }
-}
-
-/// A plunge and a line.
-const LINE: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
-GOTO/0,0,-2\nFEDRAT/MMPM,1200\nGOTO/60,0,-2\nRAPID\nGOTO/60,0,50\nFINI\n";
-
-#[track_caller]
-fn refused(from: &str, to: &str, machine: &Machine, line: u32, what: &str) {
-    assert!(LINE.contains(from), "{from}");
-    let source = source(&LINE.replacen(from, to, 1));
-    let found = post::write(&source, machine).expect_err(to);
-    let found = &found[0];
-    assert!(found.message.contains(what) || found.help.contains(what), "{found}");
-    assert_eq!(found.line, line, "{found}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each file of tests uses some of it")]
 
 use crate::dice::Dice;
+use crate::files::root;
 use control::{Action, ArmAction, ArmPath, Dialect, Event, Settings};
 use geom::{Frame, Vec3};
 use machine::Machine;
@@ -11,6 +12,41 @@ use proof::Report;
 /// The job of the specification of robots, as cutter-location data.
 pub const JOB: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-2\n\
 FEDRAT/MMPM,1200\nGOTO/60,0,-2\nCIRCLE/60,20,-2,0,0,1,20\nGOTO/80,20,-2\nRAPID\nGOTO/80,20,50\nFINI\n";
+
+/// A plunge and a line.
+pub const LINE: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
+GOTO/0,0,-2\nFEDRAT/MMPM,1200\nGOTO/60,0,-2\nRAPID\nGOTO/60,0,50\nFINI\n";
+
+/// A robot of the library with parts of its file changed.
+pub fn changed(name: &str, changes: &[(&str, &str)]) -> Machine {
+    let path = root().join(format!("machines/robots/{name}.toml"));
+    let mut text = std::fs::read_to_string(path).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    machine::load_text("mine.toml", &text).unwrap()
+}
+
+/// [`LINE`] with a part changed is refused, at this line and with these words.
+#[track_caller]
+pub fn refused(from: &str, to: &str, machine: &Machine, line: u32, what: &str) {
+    assert!(LINE.contains(from), "{from}");
+    let source = source(&LINE.replacen(from, to, 1));
+    let found = post::write(&source, machine).expect_err(to);
+    let found = &found[0];
+    assert!(found.message.contains(what) || found.help.contains(what), "{found}");
+    assert_eq!(found.line, line, "{found}");
+}
+
+/// Where the motions of a program go.
+pub fn paths(dialect: Dialect, text: &str) -> Vec<ArmPath> {
+    let of = |event: Event| match event.action {
+        Action::Arm(ArmAction::Move(motion)) => Some(motion.path),
+        _ => None,
+    };
+    events(dialect, text).into_iter().filter_map(of).collect()
+}
 
 pub fn source(text: &str) -> Program {
     source::apt::read("job.cls", text.as_bytes(), &Default::default()).unwrap().program
