@@ -201,7 +201,12 @@ impl Reader {
             );
             return Ok(());
         }
-        let Some(Op::Arc(to)) = self.program.records.last().map(|r| &r.op) else { return Ok(()) };
+        // Records that move nothing may stand between.
+        let last = self.program.records.iter().rev().find_map(|record| match &record.op {
+            Op::Arc(to) => Some(to),
+            _ => None,
+        });
+        let Some(to) = last else { return Ok(()) };
         let on = Arc::new(
             to.end.point(),
             pose.point(),

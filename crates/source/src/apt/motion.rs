@@ -417,12 +417,11 @@ mod tests {
         "/1.5,1.5,0,0,0,1,1.5811388",
     ];
 
-    /// A blank before a comma leads past the short path.
-    #[test]
-    fn a_plain_goto_does_the_same_on_the_short_path_behind_every_word() {
-        let start = "PARTNO/A\nUNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0\nGOTO/1,0,0\n";
-        let end = "GOTO/2,0,0\nGOTO/2,3,0,0,0,1\nRAPID\nGOTO/2,3,5\nGOTO/4,0,0\nFINI\n";
-        let result = |text: &str| match read("a.cls", text.as_bytes(), &Options::default()) {
+    const START: &str = "PARTNO/A\nUNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0\n";
+
+    /// What comes of a text: records and warnings, or errors.
+    fn result(text: &str) -> String {
+        match read("a.cls", text.as_bytes(), &Options::default()) {
             Ok(read) => {
                 let warnings = read.warnings.iter().map(|found| (found.rule, found.line));
                 format!("{:?} {:?}", read.program.records, warnings.collect::<Vec<_>>())
@@ -431,14 +430,71 @@ mod tests {
                 let found = found.iter().map(|found| (found.rule, found.line));
                 format!("{:?}", found.collect::<Vec<_>>())
             }
-        };
+        }
+    }
+
+    /// What comes of it on the short path and past it; a blank before a comma leads past it.
+    fn both_paths(text: &str) -> [String; 2] {
+        let past: String = text
+            .split_inclusive('\n')
+            .map(|line| match line.starts_with("GOTO/") {
+                true => line.replacen(',', " ,", 1),
+                false => line.into(),
+            })
+            .collect();
+        [result(text), result(&past)]
+    }
+
+    #[test]
+    fn a_plain_goto_does_the_same_on_the_short_path_behind_every_word() {
+        let end = "GOTO/2,0,0\nGOTO/2,3,0,0,0,1\nRAPID\nGOTO/2,3,5\nGOTO/4,0,0\nFINI\n";
         for (word, _) in WORDS {
             for body in BODIES {
-                let text = format!("{start}{word}{body}\n{end}");
-                let past = text.replace("GOTO/0,", "GOTO/0 ,").replace("GOTO/1,", "GOTO/1 ,");
-                let past = past.replace("GOTO/2,", "GOTO/2 ,").replace("GOTO/4,", "GOTO/4 ,");
-                assert_eq!(result(&text), result(&past), "{text}");
+                let text = format!("{START}GOTO/1,0,0\n{word}{body}\n{end}");
+                let [short, past] = both_paths(&text);
+                assert_eq!(short, past, "{text}");
             }
         }
+    }
+
+    /// Half circles one behind the other, each word between them, and points on the last circle, at its start and off it: what Creo means
+    /// by those depends on the arc that was just cut.
+    #[test]
+    fn points_behind_arcs_of_creo_mean_the_same_on_the_short_path() {
+        let first = "CIRCLE/0.5,0,0,0,0,1,0.5\nGOTO/1,0,0\n";
+        let second = "CIRCLE/1.5,0,0,0,0,1,0.5\nGOTO/2,0,0\n";
+        let ends =
+            ["GOTO/1.5,0.5,0\n", "GOTO/1,0,0\n", "GOTO/2,3,0\n", "1.5,0.5,0\n", "1.7,0.4,0\n"];
+        let mut read = 0;
+        for (word, _) in WORDS {
+            for body in ["", "/1", "/ON", "/0,0,1", "/100,MMPM", "/2,2,0", "/DRILL,5,MMPM,100,1"] {
+                for (arcs, end) in [first, second]
+                    .into_iter()
+                    .flat_map(|last| ends.map(|end| (format!("{first}{last}"), end)))
+                {
+                    for between in [String::new(), format!("{word}{body}\n")] {
+                        let text = format!(
+                            "$$* Pro/CLfile  Version Creo\n{START}{arcs}{between}{end}{end}GOTO/4,0,0\nFINI\n"
+                        );
+                        let [short, past] = both_paths(&text);
+                        assert_eq!(short, past, "{text}");
+                        read += usize::from(short.contains("Line"));
+                    }
+                }
+            }
+        }
+        assert!(read > 1000, "{read}");
+        let behind = |end: &str| {
+            result(&format!("$$* Pro/CLfile  Version Creo\n{START}{first}{second}{end}FINI\n"))
+        };
+        // A further point of the circle in a GOTO of its own is refused; in a line of its own the arc goes on to it.
+        assert!(behind("GOTO/1.5,0.5,0\n").contains("ArcPoints"), "{}", behind("GOTO/1.5,0.5,0\n"));
+        assert!(!behind("1.5,0.5,0\n").contains("ArcPoints"), "{}", behind("1.5,0.5,0\n"));
+        // So is one behind a record that moves nothing.
+        assert!(
+            behind("FEDRAT/50,MMPM\nGOTO/1.5,0.5,0\n").contains("ArcPoints"),
+            "{}",
+            behind("FEDRAT/50,MMPM\nGOTO/1.5,0.5,0\n")
+        );
     }
 }
