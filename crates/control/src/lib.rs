@@ -162,6 +162,12 @@ impl Dialect {
         Rules::of(self).is_some()
     }
 
+    /// Whether, under compensation, it joins elements that turn by little without a corner, so that the tool cuts into the joint by up to
+    /// a thousandth of its radius.
+    pub fn cuts_compensated_joints(self) -> bool {
+        Rules::of(self).is_some_and(Rules::cuts_joints)
+    }
+
     /// How a program for this control ends.
     pub fn ending(self) -> Ending {
         match self.language() {
@@ -205,10 +211,9 @@ impl Dialect {
         }
     }
 
-    /// Whether the work offset of the program before may be active when a program starts: as FANUC parameter 3402#6, Haas
-    /// setting 56 and the page "Logic" of Mach3's configuration say.
+    /// Whether the work offset of the program before may be active when a program starts.
     pub fn may_keep_work_offset(self) -> bool {
-        matches!(self, Dialect::Fanuc | Dialect::Haas | Dialect::Mach3)
+        matches!(self.language(), Language::Iso(facts) if facts.reset.keeps_work_offset)
     }
 }
 

@@ -4,7 +4,7 @@
 //! They share the words and the order of execution and differ in tables (`dialects`) and in
 //! the rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
 //! The `flow` of a program takes one line after the other, or leads elsewhere. In its `language` the
-//! line becomes a block, and the `execution` carries that out with its records held back: a block with
+//! line becomes a block, and the `execution` carries that out with its events held back: a block with
 //! a mistake leaves none.
 
 pub(crate) mod dialects;

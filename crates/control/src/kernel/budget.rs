@@ -80,7 +80,7 @@ impl Budget {
 
     /// Something has happened. What does not lead the tool elsewhere is nothing.
     #[inline]
-    pub(crate) fn record(&mut self, action: &Action) {
+    pub(crate) fn note(&mut self, action: &Action) {
         if self.idle > 0 {
             self.after_a_jump(action);
         }
@@ -106,12 +106,12 @@ mod tests {
         let mut budget = Budget::default();
         for x in [1.0, 2.0, 1.0] {
             assert!(budget.spend(IDLE as usize).is_ok());
-            budget.record(&to(x));
+            budget.note(&to(x));
         }
         // What is only said, a stop, and a way to where the tool is already.
         assert!((0..IDLE).all(|_| budget.jump().is_ok()));
         for action in [Action::Comment("on the way".into()), Action::Stop, to(1.0)] {
-            budget.record(&action);
+            budget.note(&action);
         }
         assert!(budget.jump().is_err());
     }

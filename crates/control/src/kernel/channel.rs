@@ -1,4 +1,4 @@
-//! The way from a control to who asked: its records go out one by one, compensated, and jumps are counted against them.
+//! The way from a control to who asked: its events go out one by one, compensated, and jumps are counted against them.
 
 use super::Outcome;
 use super::budget::Budget;
@@ -11,7 +11,7 @@ use program::{Compensation, Diagnostic};
 /// Length of a program, bytes, from which its control runs in a thread of its own.
 pub(crate) const LONG: usize = 1 << 16;
 
-/// Where the records of a control go.
+/// Where the events of a control go.
 pub struct Channel<'a> {
     compensator: Compensator<'a>,
     /// How far the program may still jump without a move.
@@ -23,17 +23,17 @@ impl<'a> Channel<'a> {
         Channel { compensator: Compensator::new(settings, sink), budget: Budget::default() }
     }
 
-    /// Takes any record but a change of compensation.
+    /// Takes any event but a change of compensation.
     ///
     /// # Errors
-    /// What the caller answered; or the record does not fit to compensation that is on.
+    /// What the caller answered; or the event does not fit to compensation that is on.
     #[inline]
-    pub fn take(&mut self, record: Event) -> Outcome {
-        self.budget.record(&record.action);
-        self.compensator.take(record)
+    pub fn take(&mut self, event: Event) -> Outcome {
+        self.budget.note(&event.action);
+        self.compensator.take(event)
     }
 
-    /// A record of what `line` does.
+    /// An event of what `line` does.
     ///
     /// # Errors
     /// As [`Channel::take`].
@@ -47,7 +47,7 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// Runs a control: `language` reads `text` and hands its records to the channel, from which `sink` takes them in order and on
+/// Runs a control: `language` reads `text` and hands its events to the channel, from which `sink` takes them in order and on
 /// this thread. What a language reads is named by `file_name`, where it names no other file.
 ///
 /// # Errors

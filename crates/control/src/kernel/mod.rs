@@ -4,7 +4,7 @@
 //! [`flow::lines`], [`scan`] and [`decimal`]; its formulas are a [`formula`] of typed values, or a
 //! [`Grammar`](expression::Grammar) of operands and ranks of its own; its jumps, loops and calls are looked up in the tables of
 //! [`flow`]; its arcs come from [`arc`], its chamfers and rounded corners from `corner`. [`run`] gives it a [`Channel`] for its
-//! records, which leads the tool's centre where compensation is resolved, ends loops that never move (the [`budget`]), and hands
+//! events, which leads the tool's centre where compensation is resolved, ends loops that never move (the [`budget`]), and hands
 //! over what a long program does while it is read. Called programs are looked for in [`Folders`](crate::Folders).
 //!
 //! `tests/fourth_language.rs` is a whole language of this kind: labels, variables, a loop, subprograms, arcs by a point between

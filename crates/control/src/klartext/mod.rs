@@ -3,7 +3,7 @@
 //! A program is a list of numbered blocks between `BEGIN PGM` and `END PGM`; a line that ends in `~`
 //! goes on in the next one. What a block means, in which order its parts act, and where that is
 //! written is stated in `docs/controls/klartext.md`. The [`flow`] of the program takes one block after the
-//! other, its [`language`] gives the words, and its [`execution`] the records.
+//! other, its [`language`] gives the words, and its [`execution`] the events.
 
 mod execution;
 mod flow;

@@ -72,13 +72,12 @@ fn table(source: &Program, machine: &Machine) -> Vec<ToolData> {
     rows.collect()
 }
 
-/// By how much the control may leave the path where two elements join, mm: LinuxCNC joins those that turn by less than 0.05 rad without
-/// a corner (`rs274`), so that the tool cuts up to a thousandth of its radius into it. That is held to what the machine file allows at
-/// corners.
+/// By how much the control may leave the path where two elements join, mm: nothing, but where it cuts into joints, to what the machine
+/// file allows at corners.
 fn joints(machine: &Machine) -> f64 {
     match Dialect::named(&machine.reader) {
-        Some(Dialect::LinuxCnc) => machine.path_tolerance(),
-        _ => 0.0,
+        Some(dialect) if dialect.cuts_compensated_joints() => machine.path_tolerance(),
+        Some(_) | None => 0.0,
     }
 }
 

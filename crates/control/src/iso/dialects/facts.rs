@@ -517,6 +517,9 @@ group! {
         feed_path: FeedPath = FeedPath::AsSetUp;
         /// The work offset that is active; none where it is that of the last program, or there is none.
         work_offset: Option<WorkOffset> = Some(WorkOffset::FIRST), FANUC = None;
+        /// That of the program before may be active: FANUC parameter 3402#6, Haas setting 56, the page "Logic" of Mach3's
+        /// configuration.
+        keeps_work_offset: bool = false, FANUC = true;
         /// What becomes of it at the end of a program.
         at_end: AtEnd = AtEnd::Keeps;
     }

@@ -65,6 +65,6 @@ pub(crate) static FACTS: Facts = Facts {
     },
     frames: FrameRules { scales_by_axis: true, turn_center: Some(*b"AB"), ..FrameRules::ISO },
     tools: Tools { rs274_data: true, ..Tools::ISO },
-    reset: Reset { corners: Corners::AsSetUp, ..Reset::ISO },
+    reset: Reset { corners: Corners::AsSetUp, keeps_work_offset: true, ..Reset::ISO },
     ..Facts::iso(WORDS, Language::Rs274)
 };

@@ -32,7 +32,7 @@ impl Step<'_, '_, '_> {
                 }
                 let values = self.axis_values()?;
                 let here = self.here();
-                // After a way home the records do not say what G92 does.
+                // After a way home the events do not say what G92 does.
                 self.state.is_reported &=
                     (0..3).all(|i| values[i].is_none() || here[i].is_finite());
                 let shifted = self.state.frames.shift_here(here, values);

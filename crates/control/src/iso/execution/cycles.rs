@@ -28,7 +28,7 @@ pub(crate) struct Holding {
     q: Option<f64>,
     /// P, s.
     dwell: Option<f64>,
-    /// What the records said last.
+    /// What the events said last.
     reported: Option<Cycle>,
     /// The spindle is turned by rigid tapping.
     rigid: bool,

@@ -66,7 +66,42 @@ impl Step<'_, '_, '_> {
                 self.coordinates(word)?;
                 self.go()
             }
-            _ => self.go(),
+            // What follows is executed elsewhere (modes, dwells, calls), and the block moves as the modes say. Each word is named: a new
+            // one does not compile before it is decided here.
+            G::Motion(_)
+            | G::Cycle(_)
+            | G::CancelCycle
+            | G::Plane(_)
+            | G::Incremental(_)
+            | G::CentersAbsolute(_)
+            | G::FeedMode(_)
+            | G::Inches(_)
+            | G::Compensation(_)
+            | G::DynamicCompensation(_)
+            | G::Taper(_)
+            | G::Length
+            | G::ToolCenter
+            | G::DynamicLength
+            | G::CancelLength
+            | G::ReturnToR(_)
+            | G::WorkOffset(_)
+            | G::FurtherOffset { .. }
+            | G::Neutral(_)
+            | G::Path(_)
+            | G::LockOverrides
+            | G::Smoothness
+            | G::Turn
+            | G::Tilt
+            | G::Upright
+            | G::Scale(_)
+            | G::Mirror(_)
+            | G::Polar(_)
+            | G::Diameter(_)
+            | G::SurfaceSpeed(_)
+            | G::Dwell
+            | G::LookAhead { .. }
+            | G::MacroCall { .. }
+            | G::CancelMacroCall => self.go(),
         }
     }
 

@@ -110,7 +110,7 @@ pub(crate) struct State {
     /// The last P of a cycle, s.
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
-    /// The records say where the tool stands, as far as it is known.
+    /// The events say where the tool stands, as far as it is known.
     pub is_reported: bool,
     /// Z stands where `G28`, `G30` or `G53` has sent it.
     pub z_is_home: bool,

@@ -19,7 +19,7 @@ pub(crate) struct Control {
     pub state: State,
 }
 
-/// A block in the making: the control's rules, the state as it changes, the records so far.
+/// A block in the making: the control's rules, the state as it changes, the events so far.
 pub(super) struct Step<'s, 'b, 't> {
     pub facts: &'static Facts,
     pub axes: [bool; 3],
@@ -49,7 +49,7 @@ impl Control {
         }
     }
 
-    /// Executes `block` and puts its records into `actions`.
+    /// Executes `block` and puts its events into `actions`.
     ///
     /// # Errors
     /// The block means nothing, or is not legal here: the run ends with it.
@@ -456,7 +456,10 @@ impl Step<'_, '_, '_> {
                 return refused(self, "compensation is on already: G40 first".into());
             }
             if self.state.plane == Plane::Yz {
-                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only".into());
+                return refused(
+                    self,
+                    "the control compensates in the planes G17 and G18 only".into(),
+                );
             }
         }
         if side != Side::Off && radius.is_none() {
@@ -518,7 +521,43 @@ impl Step<'_, '_, '_> {
                 self.looks_ahead_no_more();
                 self.end()?;
             }
-            _ => {}
+            // What follows is executed elsewhere (spindle, coolant, outputs, calls). Each function is named: a new one does not compile
+            // before it is decided here.
+            Some(
+                M::OptionalStop
+                | M::Clockwise
+                | M::CounterClockwise
+                | M::SpindleOff
+                | M::Orient
+                | M::ChangeTool
+                | M::ToolIsIn
+                | M::Mist
+                | M::Flood
+                | M::Through
+                | M::ThroughOff
+                | M::CoolantOff
+                | M::RigidTap
+                | M::Call
+                | M::CallBlock
+                | M::Return
+                | M::SaveModes { .. }
+                | M::ForgetModes
+                | M::RestoreModes
+                | M::ThreadWire
+                | M::CutWire
+                | M::Neutral(_)
+                | M::LockOverrides
+                | M::Override
+                | M::AdaptiveFeed
+                | M::Message
+                | M::IdleTime
+                | M::Digital { .. }
+                | M::Analog { .. }
+                | M::Input
+                | M::FollowTip(_)
+                | M::Program(_),
+            )
+            | None => {}
         }
         Ok(())
     }

@@ -52,7 +52,7 @@ pub(crate) struct Run<'a, 's> {
     onward: Option<StraightContinuation>,
     /// The block whose corner waits for the next one.
     pub(super) held: Option<WaitingCorner>,
-    /// Where the records go.
+    /// Where the events go.
     pub(super) channel: &'a mut Channel<'s>,
 }
 
@@ -332,7 +332,7 @@ impl<'a, 's> Run<'a, 's> {
         Ok(())
     }
 
-    /// The comments of the block as records.
+    /// The comments of the block as events.
     fn comments(&mut self) {
         for comment in self.block.comments() {
             let text = String::from_utf8_lossy(comment);
@@ -397,7 +397,7 @@ impl<'a, 's> Run<'a, 's> {
         self.kind() == kind
     }
 
-    /// Adds a record.
+    /// Adds an event.
     pub(super) fn tell(&mut self, action: Action) {
         self.actions.push(action);
     }

@@ -20,6 +20,7 @@ use geom::Vec3;
 use leaving::Leaving;
 use path::Path;
 use program::{Axes, Compensation, Feed, Rule};
+use rules::Registers;
 pub(crate) use rules::{Outer, Rules};
 
 /// What a control says of compensation in addition to its side and register.
@@ -38,7 +39,7 @@ pub(crate) struct Terms {
     pub around: bool,
 }
 
-/// Where the records of a control go: on to the sink, compensated.
+/// Where the events of a control go: on to the sink, compensated.
 pub(crate) struct Compensator<'a> {
     sink: &'a mut Sink<'a>,
     dialect: Dialect,
@@ -72,17 +73,17 @@ impl<'a> Compensator<'a> {
         }
     }
 
-    /// Takes any record but a change of compensation.
+    /// Takes any event but a change of compensation.
     #[inline]
-    pub(crate) fn take(&mut self, record: Event) -> Outcome {
+    pub(crate) fn take(&mut self, event: Event) -> Outcome {
         match self.path {
-            Some(_) => self.follow(record),
+            Some(_) => self.follow(event),
             None => {
-                match &record.action {
-                    Action::Rapid(pose) | Action::Line(pose) => self.arrive(record.line, *pose)?,
-                    _ => self.note(&record)?,
+                match &event.action {
+                    Action::Rapid(pose) | Action::Line(pose) => self.arrive(event.line, *pose)?,
+                    _ => self.note(&event)?,
                 }
-                (self.sink)(record)
+                (self.sink)(event)
             }
         }
     }
@@ -160,20 +161,20 @@ impl<'a> Compensator<'a> {
         }
     }
 
-    fn follow(&mut self, record: Event) -> Outcome {
-        if record.action == Action::End {
+    fn follow(&mut self, event: Event) -> Outcome {
+        if event.action == Action::End {
             self.finish()?;
-            return (self.sink)(record);
+            return (self.sink)(event);
         }
         match &mut self.path {
-            Some(path) => path.take(record, self.sink),
-            None => (self.sink)(record),
+            Some(path) => path.take(event, self.sink),
+            None => (self.sink)(event),
         }
     }
 
     /// Keeps in mind what compensation will need.
-    fn note(&mut self, record: &Event) -> Outcome {
-        match &record.action {
+    fn note(&mut self, event: &Event) -> Outcome {
+        match &event.action {
             Action::Feed(feed) => self.inverse_time = matches!(feed, Feed::InverseTime(_)),
             Action::Tool(tool) => {
                 let named = |t: &&ToolData| !tool.name.is_empty() && t.name == tool.name;
@@ -183,7 +184,7 @@ impl<'a> Compensator<'a> {
                 };
                 self.at.point = Vec3::NAN;
             }
-            Action::Arc(_) if self.reported => return Err(on_arc(record.line)),
+            Action::Arc(_) if self.reported => return Err(on_arc(event.line)),
             Action::WorkOffset(_) | Action::Probe(_) | Action::Across(_) => {
                 self.at.point = Vec3::NAN;
             }
@@ -191,7 +192,7 @@ impl<'a> Compensator<'a> {
             Action::MachineMove(to) => self.leave_for(to.axes()),
             action => {
                 if let Some(pose) = action.position() {
-                    self.arrive(record.line, *pose)?;
+                    self.arrive(event.line, *pose)?;
                 }
             }
         }
@@ -222,15 +223,13 @@ impl<'a> Compensator<'a> {
         self.tools.iter().find(|tool| tool.number == number)
     }
 
-    /// The radius that `register` stands for, where the table has it. On a FANUC it is that of the
-    /// tool's number and register 0 is none; on LinuxCNC no register and register 0 mean the tool in
-    /// the spindle; on a SINUMERIK it counts the edges of the tool, of which the table knows the first.
+    /// The radius that `register` stands for, where the table has it.
     fn radius(&self, register: Option<u32>) -> Option<f64> {
-        let tool = match (self.dialect, register) {
-            (Dialect::Sinumerik | Dialect::Sinumerik828d, Some(1))
-            | (Dialect::LinuxCnc, None | Some(0))
-            | (Dialect::Klartext, None) => self.tool,
-            (Dialect::Sinumerik | Dialect::Sinumerik828d, _) | (_, None) => None,
+        let tool = match (Registers::of(self.dialect), register) {
+            (Registers::Edges, Some(1))
+            | (Registers::NumberedOrHeld, None | Some(0))
+            | (Registers::Held, None) => self.tool,
+            (Registers::Edges, _) | (Registers::Numbered, None) => None,
             (_, Some(0)) => return (!self.tools.is_empty()).then_some(0.0),
             (_, Some(number)) => self.of_number(number),
         };

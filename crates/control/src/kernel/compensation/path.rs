@@ -11,7 +11,7 @@ use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
 use program::{Diagnostic, Feed, Rule};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Most records between two elements of the contour.
+/// Most events between two elements of the contour.
 const LOOK_AHEAD: usize = 10_000;
 
 /// By how much an arc may turn farther for where the element before it has ended, radians (`rs274`).
@@ -83,19 +83,19 @@ impl Path {
         self.at
     }
 
-    /// Takes a record while compensation is on.
-    pub(super) fn take(&mut self, record: Event, sink: &mut Sink) -> Outcome {
-        let line = record.line;
-        match &record.action {
+    /// Takes an event while compensation is on.
+    pub(super) fn take(&mut self, event: Event, sink: &mut Sink) -> Outcome {
+        let line = event.line;
+        match &event.action {
             Action::Rapid(pose) | Action::Line(pose) => {
                 let ((from, start), (to, end)) = self.arrive(line, pose)?;
                 if from.distance(to) < SAME {
                     if matches!(self.stage, Stage::On) && self.rules.entry == Entry::OfItself {
                         return Err(self.too_short(line, 0.0));
                     }
-                    return self.pass(record, sink);
+                    return self.pass(event, sink);
                 }
-                let rapid = matches!(record.action, Action::Rapid(_));
+                let rapid = matches!(event.action, Action::Rapid(_));
                 let piece = self.piece(line, Element::line(from, to), [start, end, end])?;
                 self.element(Piece { rapid, ..piece }, sink)
             }
@@ -124,7 +124,7 @@ impl Path {
                 let message = "only straight moves and arcs lead the tool while compensation is on";
                 Err(error(Rule::CompensationOn, line, message).into())
             }
-            _ => self.pass(record, sink),
+            _ => self.pass(event, sink),
         }
     }
 
@@ -419,9 +419,9 @@ impl Path {
         let silent = |action: &Action| matches!(action, Action::Comment(_));
         let mut blocks = 0;
         let mut last = line;
-        for record in self.waiting.iter().filter(|record| !silent(&record.action)) {
-            blocks += usize::from(record.line != last);
-            last = record.line;
+        for event in self.waiting.iter().filter(|event| !silent(&event.action)) {
+            blocks += usize::from(event.line != last);
+            last = event.line;
         }
         if blocks <= self.rules.blind {
             return Ok(());
@@ -436,27 +436,27 @@ impl Path {
             .into())
     }
 
-    /// A record that moves nothing in the plane.
-    fn pass(&mut self, record: Event, sink: &mut Sink) -> Outcome {
+    /// An event that moves nothing in the plane.
+    fn pass(&mut self, event: Event, sink: &mut Sink) -> Outcome {
         if matches!(self.stage, Stage::On) {
-            return sink(record);
+            return sink(event);
         }
         if self.waiting.len() >= LOOK_AHEAD {
             let message =
-                format!("{LOOK_AHEAD} records without a move in the plane of compensation");
-            return Err(error(Rule::CompensationLookAhead, record.line, message).into());
+                format!("{LOOK_AHEAD} events without a move in the plane of compensation");
+            return Err(error(Rule::CompensationLookAhead, event.line, message).into());
         }
-        self.waiting.push(record);
+        self.waiting.push(event);
         Ok(())
     }
 
     /// What has waited happens at `point` of the plane.
     fn send_waiting(&mut self, point: Vec2, sink: &mut Sink) -> Outcome {
-        for mut record in self.waiting.drain(..) {
-            if let Action::Rapid(pose) | Action::Line(pose) = &mut record.action {
+        for mut event in self.waiting.drain(..) {
+            if let Action::Rapid(pose) | Action::Line(pose) = &mut event.action {
                 pose.point = self.plane.lift(point, self.plane.flat(pose.point).1);
             }
-            sink(record)?;
+            sink(event)?;
         }
         Ok(())
     }

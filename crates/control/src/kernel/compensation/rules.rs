@@ -42,18 +42,56 @@ pub(crate) enum Outer {
     Peak,
 }
 
+/// What the register of a radius means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Registers {
+    /// The tool of that number; register 0 is no radius.
+    Numbered,
+    /// The tool of that number; no register and register 0 are the tool in the spindle.
+    NumberedOrHeld,
+    /// There is none: the tool in the spindle counts.
+    Held,
+    /// An edge of the tool in the spindle, of which the table knows the first.
+    Edges,
+}
+
+impl Registers {
+    /// Those of `dialect`.
+    pub(super) fn of(dialect: Dialect) -> Registers {
+        match dialect {
+            Dialect::LinuxCnc => Registers::NumberedOrHeld,
+            Dialect::Klartext => Registers::Held,
+            Dialect::Sinumerik | Dialect::Sinumerik828d => Registers::Edges,
+            Dialect::Fanuc | Dialect::Haas | Dialect::Mach3 | Dialect::Grbl | Dialect::Marlin => {
+                Registers::Numbered
+            }
+            Dialect::FanucWire | Dialect::Sodick | Dialect::Agie => Registers::Numbered,
+            Dialect::Krl | Dialect::UrScript | Dialect::Ls | Dialect::Rapid => Registers::Numbered,
+            Dialect::Points | Dialect::Source(_) => Registers::Numbered,
+        }
+    }
+}
+
 impl Outer {
     /// How much the way may turn for [`Outer::Intersection`], radians (MD20210 CUTCOM_CORNER_LIMIT).
     pub(super) const SHARPEST: f64 = 100.0 * PI / 180.0;
 }
 
+/// Elements that turn by no more than this, radians, join without a corner on most controls.
+const SMOOTH: f64 = 1e-5;
+
 impl Rules {
+    /// Whether elements with a turn that a drawing may show join without a corner, so that the tool cuts into it.
+    pub(crate) fn cuts_joints(self) -> bool {
+        self.smooth > SMOOTH
+    }
+
     /// Those of `dialect`; none where it has no compensation.
     pub(crate) fn of(dialect: Dialect) -> Option<Rules> {
         let rules = Rules {
             entry: Entry::OfNext,
             outer: Outer::Arc,
-            smooth: 1e-5,
+            smooth: SMOOTH,
             rounds_rapids: true,
             blind: usize::MAX,
             guarded: true,

@@ -1,6 +1,6 @@
 //! The execution of a block: what it does, from the state that the blocks before it have left.
 //!
-//! The [`state`] turns it into records: path functions ([`motion`]) along a [`contour`] with its
+//! The [`state`] turns it into events: path functions ([`motion`]) along a [`contour`] with its
 //! [`approach`], cycles ([`cycle`] with its [`layout`], [`hole`], [`helix`], [`older`]) at a place or over
 //! a [`pattern`], [`tool`]s, and the coordinates ([`transform`], and the tilted [`plane`]).
 

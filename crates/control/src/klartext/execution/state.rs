@@ -1,4 +1,4 @@
-//! What the control holds while a program runs, and how that becomes records.
+//! What the control holds while a program runs, and how that becomes events.
 
 use super::contour::{Element, Waiting};
 use super::cycle::Defined;
@@ -171,7 +171,7 @@ impl<'a, 's> Control<'a, 's> {
         }
     }
 
-    /// The records from here on come from `line` of the main program.
+    /// The events from here on come from `line` of the main program.
     pub(crate) fn at_line(&mut self, line: u32) {
         if self.called == 0 {
             self.line = line;

@@ -1,9 +1,8 @@
 //! What a program has set: variables, frames, modes, where the arm is.
 
-use super::system;
-use crate::event::{Action, Risk};
+use crate::event::Action;
 use crate::kernel::Channel;
-use crate::kernel::arm::{MOST_VARIABLES, tool_change};
+use crate::kernel::arm::MOST_VARIABLES;
 use crate::kernel::formula::Typed;
 use crate::krl::language::{Name, Readable, Scan, Target, Value, Waiting};
 use crate::{ArmAction, Turning};
@@ -44,7 +43,7 @@ pub(in crate::krl) struct State {
     /// `$VEL_AXIS`, percent.
     pub(super) joint_speeds: [Option<f64>; 6],
     /// The name of the operator's program that changes tools.
-    tool_change: String,
+    pub(super) tool_change: String,
 }
 
 impl Readable for State {
@@ -135,47 +134,6 @@ impl State {
             }
         }
         Ok(())
-    }
-
-    /// An assignment.
-    pub(in crate::krl) fn assign(
-        &mut self,
-        scan: &Scan,
-        target: Target,
-        value: Value,
-        channel: &mut Channel,
-    ) -> Outcome {
-        if target.name.as_str().starts_with('$') {
-            return system::assign(self, scan, target, value, channel);
-        }
-        if matches!(target.name.as_str(), "BASE_DATA" | "TOOL_DATA" | "LOAD_DATA") {
-            let risk = Action::Risk(Box::new(Risk::OPERATOR_DATA));
-            channel.report(scan.line, risk)?;
-        }
-        self.set(scan, target, value)
-    }
-
-    /// A call of `BAS` or of the operator's tool change; whether it is one of them.
-    pub(in crate::krl) fn called(
-        &mut self,
-        scan: &Scan,
-        name: Name,
-        arguments: &[Value],
-        channel: &mut Channel,
-    ) -> Outcome<bool> {
-        if name.as_str() == "BAS" {
-            return system::bas(self, scan, arguments, channel).map(|()| true);
-        }
-        if self.tool_change.is_empty() || name.as_str() != self.tool_change {
-            return Ok(false);
-        }
-        let number = if let [value] = arguments { value.number() } else { None };
-        let tool = tool_change(number).map_err(|message| scan.since(0, Rule::Tool, message))?;
-        channel.report(scan.line, tool)?;
-        // What the operator's program leaves behind, this one does not say.
-        self.forget(scan.line, channel)?;
-        self.standing = Standing::Unknown;
-        Ok(true)
     }
 
     /// Frames and modes are as the machine is configured, or as another program has left them.

@@ -1,8 +1,9 @@
 //! System variables, outputs, and `BAS`.
 
-use super::state::{State, unfit};
-use crate::event::Action;
+use super::state::{Standing, State, unfit};
+use crate::event::{Action, Risk};
 use crate::kernel::Channel;
+use crate::kernel::arm::tool_change;
 use crate::kernel::formula::Typed;
 use crate::krl::language::{Name, Scan, Target, Value, frame, whole_frame};
 use crate::{ArmAction, Turning};
@@ -15,8 +16,51 @@ const PER_MINUTE: f64 = 60_000.0;
 /// Most frames that the controller keeps for the operator.
 const MOST_FRAMES: i64 = 128;
 
+impl State {
+    /// An assignment.
+    pub(in crate::krl) fn assign(
+        &mut self,
+        scan: &Scan,
+        target: Target,
+        value: Value,
+        channel: &mut Channel,
+    ) -> Outcome {
+        if target.name.as_str().starts_with('$') {
+            return assign(self, scan, target, value, channel);
+        }
+        if matches!(target.name.as_str(), "BASE_DATA" | "TOOL_DATA" | "LOAD_DATA") {
+            let risk = Action::Risk(Box::new(Risk::OPERATOR_DATA));
+            channel.report(scan.line, risk)?;
+        }
+        self.set(scan, target, value)
+    }
+
+    /// A call of `BAS` or of the operator's tool change; whether it is one of them.
+    pub(in crate::krl) fn called(
+        &mut self,
+        scan: &Scan,
+        name: Name,
+        arguments: &[Value],
+        channel: &mut Channel,
+    ) -> Outcome<bool> {
+        if name.as_str() == "BAS" {
+            return bas(self, scan, arguments, channel).map(|()| true);
+        }
+        if self.tool_change.is_empty() || name.as_str() != self.tool_change {
+            return Ok(false);
+        }
+        let number = if let [value] = arguments { value.number() } else { None };
+        let tool = tool_change(number).map_err(|message| scan.since(0, Rule::Tool, message))?;
+        channel.report(scan.line, tool)?;
+        // What the operator's program leaves behind, this one does not say.
+        self.forget(scan.line, channel)?;
+        self.standing = Standing::Unknown;
+        Ok(true)
+    }
+}
+
 /// Assigns to a system variable.
-pub(super) fn assign(
+fn assign(
     state: &mut State,
     scan: &Scan,
     Target { name, index, field }: Target,
@@ -100,12 +144,7 @@ fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: 
 }
 
 /// `BAS (#COMMAND,value)`, as in KUKA's `BAS.SRC`.
-pub(super) fn bas(
-    state: &mut State,
-    scan: &Scan,
-    arguments: &[Value],
-    channel: &mut Channel,
-) -> Outcome {
+fn bas(state: &mut State, scan: &Scan, arguments: &[Value], channel: &mut Channel) -> Outcome {
     let line = scan.line;
     let command = match arguments {
         [Value::Entry(command), value] => value.number().map(|value| (command, value)),

@@ -14,7 +14,7 @@ use crate::sinumerik::language::block::{Block, Corner};
 use geom::Vec3;
 use program::{Diagnostic, Feed, Rule};
 
-/// Most records between the two blocks of a corner; our own limit.
+/// Most events between the two blocks of a corner; our own limit.
 const MOST_BETWEEN: usize = 100;
 
 /// Directions that differ by less, radians, make no corner.
@@ -100,16 +100,16 @@ impl Interpreter<'_, '_> {
         Ok(())
     }
 
-    /// A record while a block is held.
+    /// An event while a block is held.
     #[cold]
-    pub fn keep(&mut self, source: &Source, record: Event) -> Outcome {
-        let Some(held) = &mut self.held else { return self.send(record) };
-        if corner::may_stand_at(&record.action) && held.between.len() < MOST_BETWEEN {
-            held.between.push(record);
+    pub fn keep(&mut self, source: &Source, event: Event) -> Outcome {
+        let Some(held) = &mut self.held else { return self.send(event) };
+        if corner::may_stand_at(&event.action) && held.between.len() < MOST_BETWEEN {
+            held.between.push(event);
             return Ok(());
         }
         let pauses = matches!(
-            record.action,
+            event.action,
             Action::Stop
                 | Action::OptionalStop
                 | Action::Dwell(_)
@@ -121,7 +121,7 @@ impl Interpreter<'_, '_> {
             return Err(no_second_side(source, held.line));
         }
         self.release(source)?;
-        self.send(record)
+        self.send(event)
     }
 
     /// The held block goes all its way, as nothing follows that it could have a corner with.
@@ -132,7 +132,7 @@ impl Interpreter<'_, '_> {
         }
         let action = self.piece(source, &held.element)?;
         self.send(Event { line: held.line, action })?;
-        held.between.into_iter().try_for_each(|record| self.send(record))
+        held.between.into_iter().try_for_each(|event| self.send(event))
     }
 
     /// Puts the corner of the held block between it and `second`, which then starts behind it; whether
@@ -167,7 +167,7 @@ impl Interpreter<'_, '_> {
         }
         let action = self.piece(source, &first)?;
         self.send(Event { line: held.line, action })?;
-        held.between.into_iter().try_for_each(|record| self.send(record))?;
+        held.between.into_iter().try_for_each(|event| self.send(event))?;
         let Some(joint) = joint else { return Ok(false) };
         let piece = Element { start: joint.from, end: joint.to, circle: joint.circle, cut: true };
         let action = self.piece(source, &piece)?;
@@ -222,7 +222,7 @@ impl Interpreter<'_, '_> {
         })
     }
 
-    /// The record of a way.
+    /// The event of a way.
     pub fn piece(&self, source: &Source, element: &Element) -> Outcome<Action> {
         let end = self.state.pose(element.end);
         let Some((center, normal)) = element.circle else { return Ok(Action::Line(end)) };

@@ -31,9 +31,9 @@ pub(crate) struct Interpreter<'a, 's> {
     pub state: State,
     /// The machine.
     pub settings: &'a Settings,
-    /// Where the records go.
+    /// Where the events go.
     channel: &'a mut Channel<'s>,
-    /// The line of the main program that records carry, where another file runs.
+    /// The line of the main program that events carry, where another file runs.
     pub line: Option<u32>,
     /// Whether a called program runs.
     pub called: bool,
@@ -84,13 +84,13 @@ impl<'a, 's> Interpreter<'a, 's> {
     /// Reports what happens.
     #[inline]
     pub fn emit(&mut self, source: &Source, action: Action) -> Outcome {
-        let record = Event { line: self.line.unwrap_or(source.line), action };
-        if self.held.is_some() { self.keep(source, record) } else { self.send(record) }
+        let event = Event { line: self.line.unwrap_or(source.line), action };
+        if self.held.is_some() { self.keep(source, event) } else { self.send(event) }
     }
 
     #[inline]
-    pub fn send(&mut self, record: Event) -> Outcome {
-        self.channel.take(record).inspect_err(|_| self.stopped = true)
+    pub fn send(&mut self, event: Event) -> Outcome {
+        self.channel.take(event).inspect_err(|_| self.stopped = true)
     }
 
     /// Reports that compensation changes with the move that follows.
@@ -102,7 +102,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.channel.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
 
-    /// Turns of loops, jumps and calls, of which there may not be too many between two records.
+    /// Turns of loops, jumps and calls, of which there may not be too many between two events.
     pub fn spend(&mut self, source: &Source, turns: usize) -> Outcome {
         self.channel
             .budget

@@ -24,7 +24,7 @@ pub(crate) struct Caller {
     references: Vec<Reference>,
     /// Modal commands (`SAVE`).
     modes: Option<Box<Modes>>,
-    /// The line that records of the caller carry.
+    /// The line that events of the caller carry.
     line: Option<u32>,
     /// What `MCALL` calls after the next motion, where it has called this program.
     modal: Option<ProgramCall>,

@@ -1,5 +1,6 @@
 //! What is active, and what each statement does.
 
+mod arguments;
 mod command;
 mod motion;
 mod state;

@@ -1,6 +1,6 @@
 //! Motions.
 
-use super::command::Given;
+use super::arguments::Given;
 use super::state::State;
 use crate::event::Action;
 use crate::kernel::Channel;
