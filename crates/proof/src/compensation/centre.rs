@@ -341,8 +341,8 @@ impl PlanePaths {
             let [from, to] = self.between(i);
             let count = self.contour.len() - 1;
             let own = from.max(1)..=to.min(count);
-            let beside = (from.max(2) - 1)..=(to + 1).min(count);
-            let beside: Vec<usize> = beside.map(|k| number[k - 1]).collect();
+            let neighbours = (from.max(2) - 1)..=(to + 1).min(count);
+            let neighbours: Vec<usize> = neighbours.map(|k| number[k - 1]).collect();
             let lead = match i {
                 i if i < first => Some(start),
                 i if i > last => Some(end),
@@ -354,7 +354,7 @@ impl PlanePaths {
                 let message = "the contour lies over itself so often that it cannot be compared";
                 return Err((way.line, message.into()));
             }
-            for other in near.iter().filter(|other| !beside.contains(other)) {
+            for other in near.iter().filter(|other| !neighbours.contains(other)) {
                 self.apart(&way, &elements[*other].1, &self.contour[own.clone()], lead)?;
             }
         }
