@@ -351,7 +351,7 @@ impl Walk<'_> {
                 let Some(last) = last.filter(|_| pieces.len() > 1) else {
                     return unproven("compensation is on and off again with no contour between");
                 };
-                here.at(here.point() + left * radius * beside(last, here.axis()))?
+                here.at(here.point() + left * radius * across(last, here.axis()))?
             }
         };
         let terms = Terms { source_line: line, side, radius: Some(radius), tool_length: None };
@@ -432,7 +432,7 @@ impl Walk<'_> {
 }
 
 /// To the left of the way at the end of a piece, across the tool.
-fn beside(piece: &Piece, axis: Vec3) -> Vec3 {
+fn across(piece: &Piece, axis: Vec3) -> Vec3 {
     let along = match piece.arc {
         Some(arc) => arc.normal.cross(arc.end - arc.center),
         None => piece.to.tip - piece.from.tip,

@@ -2,7 +2,7 @@
 //! arcs of the source, with all that is asked of those.
 
 use super::super::expected::{Contour, Expected, Step};
-use super::{Judge, refused};
+use super::{Comparison, refused};
 use crate::compensation::centre::{self, Slack};
 use crate::compensation::trail::Piece;
 use crate::resolved_pose::{Number, PartialPose};
@@ -27,7 +27,7 @@ pub(super) struct Gathered {
     fault: Option<centre::Fault>,
 }
 
-impl Judge<'_> {
+impl Comparison<'_> {
     /// Gathers an event on a contour; whether it is one of it.
     ///
     /// # Errors
