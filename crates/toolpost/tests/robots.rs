@@ -4,7 +4,7 @@ mod dice;
 mod files;
 mod robot;
 
-use control::{ArmPath, Dialect};
+use control::{Action, ArmAction, ArmPath, Dialect, Event};
 use files::root;
 use geom::Vec3;
 use machine::Machine;
