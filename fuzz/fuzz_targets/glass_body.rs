@@ -1,6 +1,7 @@
-//! Any bytes as a body or a list of points, in the form that the first byte chooses: no panic, and what is refused says where to go.
+//! Any bytes as a body, a drawing or a list of points, in the form that the first byte chooses: no panic, and what is refused says where to go.
 #![no_main]
 
+use glass::curve::{self, Layers};
 use glass::list::Columns;
 use glass::mesh::{Form, Shape, read};
 use libfuzzer_sys::fuzz_target;
@@ -10,13 +11,27 @@ const FORMS: [Form; 5] =
 
 fuzz_target!(|data: &[u8]| {
     let Some((first, bytes)) = data.split_first() else { return };
-    match read(bytes, FORMS[usize::from(*first) % FORMS.len()], "fuzz") {
+    let drawings = [curve::Form::Dxf, curve::Form::Hpgl];
+    let number = usize::from(*first) % (FORMS.len() + drawings.len());
+    let read = match drawings.get(number.wrapping_sub(FORMS.len())) {
+        Some(form) => curve::read(bytes, *form, "fuzz").map(Shape::Curves),
+        None => read(bytes, FORMS[number], "fuzz"),
+    };
+    match read {
         Ok(Shape::Mesh(mesh)) => {
             let count = mesh.vertices.len();
             assert!(mesh.triangles.iter().flatten().all(|corner| (*corner as usize) < count));
             mesh.health();
         }
         Ok(Shape::Points(points)) => assert!(points.iter().all(|point| point.is_finite())),
+        Ok(Shape::Curves(curves)) => {
+            let all = curves.curves.iter().flat_map(|curve| &curve.corners);
+            assert!(all.clone().all(|corner| corner.is_finite()));
+            // A step that leaves a few points, however large the drawing is.
+            let size = all.map(|corner| corner.abs().max_element()).fold(1.0, f64::max);
+            let corners = curves.curves.iter().map(|curve| &curve.corners[..]).take(20);
+            Layers::default().points(corners, size / 10.0, 1.0, glass::fill::direction(2, [0.0; 3]));
+        }
         Ok(Shape::Picture(_)) => unreachable!("no form of this reader is one"),
         Err(found) => assert!(found.is_error() && !found.help.is_empty()),
     }

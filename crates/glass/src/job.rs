@@ -1,6 +1,7 @@
 //! A job: bodies and points placed in a block, made into a cloud, ordered, written, read back and proven.
 
 use crate::cloud::{self, Distances, Point};
+use crate::curve::Layers;
 use crate::fill::{self, Fill, Filling, Left};
 use crate::machine::{Lens, Machine};
 use crate::material::Material;
@@ -56,6 +57,8 @@ pub struct Settings {
     pub spacing: Option<f64>,
     /// How bodies become points.
     pub filling: Filling,
+    /// How often curves are repeated, and where points lie along them.
+    pub layers: Layers,
     /// By which ray the focus is found.
     pub ray: Ray,
     /// The order.
@@ -192,12 +195,13 @@ impl<'m> Job<'m> {
         let Placing { block, margin, .. } = settings.placing;
         let room = DVec3::from_array(block) - 2.0 * margin;
         let mut parts = Parts::new(shapes, room, apart)?;
-        let mut findings: Vec<Diagnostic> = parts.health.iter().filter_map(unhealthy).collect();
+        let mut findings = std::mem::take(&mut parts.warnings);
+        findings.extend(parts.health.iter().filter_map(unhealthy));
         let scale = place(
-            [&mut parts.mesh.vertices, &mut parts.points, &mut parts.corners],
+            [&mut parts.mesh.vertices, &mut parts.points, &mut parts.corners, &mut parts.curves],
             &settings.placing,
         )?;
-        let (cloud, welded, left) = discretise(&parts, &settings.filling, apart, settings.seed)?;
+        let (cloud, welded, left) = discretise(&parts, settings, apart)?;
         findings.extend(left_out(&left, &settings.filling));
         let health = parts.health;
         if cloud.len() as u64 > machine.program.points {
@@ -393,6 +397,11 @@ struct Parts {
     pictures: Vec<(Picture, usize)>,
     /// Three corners of each sheet, and the fourth: what has to fit into the block.
     corners: Vec<DVec3>,
+    /// The corners of all curves, and how many each has.
+    curves: Vec<DVec3>,
+    lengths: Vec<usize>,
+    /// What is said of the files.
+    warnings: Vec<Diagnostic>,
 }
 
 impl Parts {
@@ -408,6 +417,11 @@ impl Parts {
                     parts.mesh.join(body);
                 }
                 Shape::Points(more) => parts.points.extend(more),
+                Shape::Curves(more) => {
+                    parts.lengths.extend(more.curves.iter().map(|curve| curve.corners.len()));
+                    parts.curves.extend(more.curves.into_iter().flat_map(|curve| curve.corners));
+                    parts.warnings.extend(more.warnings);
+                }
                 Shape::Picture(picture) => {
                     let least = apart.rounded();
                     let (_, distance) = picture.setting.sheets;
@@ -429,6 +443,13 @@ impl Parts {
             }
         }
         Ok(parts)
+    }
+
+    /// The corners of each curve, as they are placed.
+    fn curves(&self) -> impl Iterator<Item = &[DVec3]> + Clone {
+        let start = |at: &mut usize, length: &usize| Some(std::mem::replace(at, *at + length));
+        let starts = self.lengths.iter().scan(0, start);
+        starts.zip(&self.lengths).map(|(start, length)| &self.curves[start..start + length])
     }
 
     /// The pictures with their sheets, as they are placed.
@@ -496,7 +517,7 @@ fn cut_off(cut: Cut, margin: f64) -> Option<Diagnostic> {
 }
 
 /// Moves bodies, points and pictures to their place in the block; answers their scale.
-fn place(mut groups: [&mut Vec<DVec3>; 3], placing: &Placing) -> Result<f64, Vec<Diagnostic>> {
+fn place(mut groups: [&mut Vec<DVec3>; 4], placing: &Placing) -> Result<f64, Vec<Diagnostic>> {
     let [x, y, z] = placing.turn.map(f64::to_radians);
     let mirror =
         DVec3::from_array(placing.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 }));
@@ -528,11 +549,9 @@ fn place(mut groups: [&mut Vec<DVec3>; 3], placing: &Placing) -> Result<f64, Vec
     let Some((low, high)) = each(&|place| (place - middle) * scale + target) else {
         return Ok(scale);
     };
-    // Points are rounded to whole µm: half of one beyond the margin is no matter.
-    let slack = 1e-3;
     let (least, most) = (
-        DVec3::splat(placing.margin - slack),
-        DVec3::from_array(placing.block) - placing.margin + slack,
+        DVec3::splat(placing.margin - SLACK),
+        DVec3::from_array(placing.block) - placing.margin + SLACK,
     );
     if low.cmplt(least).any() || high.cmpgt(most).any() {
         let size = high - low;
@@ -568,21 +587,25 @@ fn place(mut groups: [&mut Vec<DVec3>; 3], placing: &Placing) -> Result<f64, Vec
 /// The cloud of bodies, pictures and points, and how many points of them were too close to others.
 fn discretise(
     parts: &Parts,
-    filling: &Filling,
+    settings: &Settings,
     apart: Apart,
-    seed: u64,
 ) -> Result<(Vec<Point>, u64, Left), Vec<Diagnostic>> {
     let Parts { mesh, points, .. } = parts;
+    let Settings { filling, layers, seed, .. } = settings;
     // A saturated packing has 0.6966 points in a square of the spacing; some more where it is curved.
     let sheets = parts.sheets().map(|(_, sheet)| sheet.area()).sum::<f64>();
     let sheets = sheets * 1e6 / f64::from(apart.spacing).powi(2);
-    let expected = sheets + filling.expected(mesh, apart.spacing);
+    let step = filling.step.unwrap_or(apart.rounded());
+    let sides = parts.curves().flat_map(|curve| curve.windows(2));
+    let curves =
+        sides.map(|side| side[0].distance(side[1])).sum::<f64>() / step * f64::from(layers.count);
+    let expected = sheets + curves + filling.expected(mesh, apart.spacing);
     if expected > MOST_POINTS {
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
         return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
-    let (mut cloud, left) = fill::points(mesh, filling, apart, seed);
+    let (mut cloud, left) = fill::points(mesh, filling, apart, *seed);
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
     let Some(mut given) = given else {
         return Err(error(
@@ -591,6 +614,12 @@ fn discretise(
             "lengths are mm: take a --scale",
         ));
     };
+    let distance = layers.distance.unwrap_or(apart.rounded());
+    let along = layers.points(parts.curves(), step, distance, filling.direction);
+    if layers.count > 1 {
+        all_within(&along, &settings.placing)?;
+    }
+    given.extend(along);
     for (number, (picture, sheet)) in parts.sheets().enumerate() {
         given.extend(picture.points(&sheet, apart, seed.wrapping_add(number as u64)));
     }
@@ -609,6 +638,22 @@ fn discretise(
     let left_out = (asked - cloud.len()) as u64;
     Ok((cloud, left_out, left))
 }
+
+/// Layers of curves stay within the margins.
+fn all_within(points: &[Point], placing: &Placing) -> Result<(), Vec<Diagnostic>> {
+    let Some((low, high)) = cloud::bounds(points) else { return Ok(()) };
+    let (low, high) = (cloud::place(low), cloud::place(high));
+    let most = DVec3::from_array(placing.block) - placing.margin + SLACK;
+    if low.min_element() < placing.margin - SLACK || high.cmpgt(most).any() {
+        let message = format!("the layers of the curves reach from {low:.3} to {high:.3} mm");
+        let help = "take fewer --layers, a smaller --layer-distance, or another --axis";
+        return Err(error(Rule::DoesNotFit, message, help));
+    }
+    Ok(())
+}
+
+/// Points are rounded to whole µm: half of one beyond the margin is no matter, mm.
+const SLACK: f64 = 1e-3;
 
 /// Squares of the spacing on a surface beyond which no cloud is begun: 200 million points.
 const MOST_POINTS: f64 = 3e8;

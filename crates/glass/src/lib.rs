@@ -3,7 +3,7 @@
 //! Lengths are mm and points whole µm, times s, angles radians, unless a name says otherwise. The block's frame has its origin in a lower
 //! corner of the block; Z points up, against the beam. The same input gives the same result on any number of threads.
 //!
-//! A body ([`mesh`]), a [`picture`] or a list of points is placed in a block and becomes a cloud ([`fill`], [`sample`], [`weld`]), whose minimum distance
+//! A body ([`mesh`]), a [`picture`], a drawing of curves ([`curve`]) or a list of points is placed in a block and becomes a cloud ([`fill`], [`sample`], [`weld`]), whose minimum distance
 //! [`cloud`] proves. [`order`] puts it in an order that shadows no point and takes few laser ticks ([`clock`], [`profile`]),
 //! [`optics`] corrects for refraction, [`post`] writes the program. [`control`] reads it back, and [`proof`] compares its pulses
 //! with the cloud: those two share nothing with the writer but the [`machine`]'s description. [`job`] does all of it.
@@ -22,6 +22,7 @@ pub mod clock;
 pub mod cloud;
 pub mod comparison;
 pub mod control;
+pub mod curve;
 pub mod fill;
 pub mod job;
 pub mod list;

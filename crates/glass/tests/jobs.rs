@@ -5,6 +5,7 @@ mod bodies;
 use bodies::sphere;
 use toolpost_glass::cloud::{Point, distances};
 use toolpost_glass::control::read;
+use toolpost_glass::curve::{self, Layers, read as read_curves};
 use toolpost_glass::fill::{Fill, Filling};
 use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
@@ -45,6 +46,7 @@ fn settings() -> Settings {
         focal: 70.0,
         spacing: None,
         filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },
+        layers: Layers::default(),
         ray,
         order,
         effort,
@@ -191,6 +193,27 @@ fn pulses_that_come_too_near_are_refused_and_those_that_rounding_brings_near_are
     assert_eq!(near(judge("-6.493"), 0.1307), (0, vec![]));
     assert_eq!(near(judge("-6.494"), 0.1292), (1, vec![("spacing", false)]));
     assert_eq!(near(judge("-6.495"), 0.1277), (1, vec![("spacing", true)]));
+}
+
+#[test]
+fn curves_become_a_proven_program_that_keeps_the_distance_where_they_cross() {
+    // Two lines that cross, in three layers: 10 mm each.
+    let text = b"IN;PU0,0;PD400,0;PU200,-200;PD200,200;";
+    let curves = || Shape::Curves(read_curves(text, curve::Form::Hpgl, "in.plt").unwrap());
+    let layers = Layers { count: 3, distance: Some(2.0), ..Layers::default() };
+    let settings = Settings { layers, ..settings() };
+    let made = made(curves(), "numbered", &settings);
+    assert!(made.proven && made.findings.is_empty(), "{:?}", made.findings);
+    assert_eq!(distances(&made.cloud, 130).too_close, 0);
+    // 133 µm by default (130, and what rounding takes): 75 chords and 76 points a line, less what is near the crossing.
+    let report = &made.report;
+    assert_eq!(report.points + report.welded, 6 * 76);
+    assert!((3..=12).contains(&report.welded), "{}", report.welded);
+    let heights = [13_000, 15_000, 17_000];
+    assert!(made.cloud.iter().all(|point| heights.contains(&point[2])));
+    // 26 mm of layers do not fit into 30 mm with margins of 2 mm twice and more.
+    let layers = Layers { distance: Some(13.5), ..layers };
+    assert_eq!(refusals(curves(), &Settings { layers, ..settings }), ["does-not-fit"]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, LumaA, RgbImage};
 use std::io::Cursor;
 use toolpost_glass::cloud::{Point, distances, squared};
+use toolpost_glass::curve::Layers;
 use toolpost_glass::fill::{Fill, Filling};
 use toolpost_glass::job::{Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
@@ -52,6 +53,7 @@ fn engraved(
         focal: 70.0,
         spacing: None,
         filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },
+        layers: Layers::default(),
         ray: Ray::Marginal,
         order: Order::Fastest,
         effort: Effort { rounds: 0, tries: 0, until: None },

@@ -5,6 +5,7 @@ use crate::args::glass::{
     self as args, Drawn, Engrave, Filled, Glass, GlassCommand, Job, Ordering, Sorting,
 };
 use crate::progress::Progress;
+use ::glass::curve::{self, Layers};
 use ::glass::fill::{self, Fill, Filling, Sections};
 use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
@@ -69,7 +70,7 @@ fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
         _ => {
             let found = Diagnostic::error(
                 Rule::Form,
-                format!("`.{ending}` is no form of bodies, pictures or points"),
+                format!("`.{ending}` is no form of bodies, pictures, curves or points"),
             );
             Err(found.file(files::name(path)).into())
         }
@@ -84,8 +85,14 @@ fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
 /// What a file of a job holds.
 fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if !["png", "jpg", "jpeg", "bmp"].contains(&ending.as_str()) {
-        return shape(path, job.columns);
+    let curves = |form| -> Result<Shape, Stop> {
+        Ok(Shape::Curves(curve::read(&files::read(path)?, form, &files::name(path))?))
+    };
+    match ending.as_str() {
+        "png" | "jpg" | "jpeg" | "bmp" => {}
+        "dxf" => return curves(curve::Form::Dxf),
+        "plt" | "hpgl" | "hpg" => return curves(curve::Form::Hpgl),
+        _ => return shape(path, job.columns),
     }
     let args = &job.image;
     let setting = picture::Setting {
@@ -114,8 +121,8 @@ fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
     let places = match shape(path, columns)? {
         Shape::Points(places) => places,
         Shape::Mesh(mesh) => mesh.vertices,
-        // No form of lists is one.
-        Shape::Picture(_) => Vec::new(),
+        // No form of lists is one of these.
+        Shape::Picture(_) | Shape::Curves(_) => Vec::new(),
     };
     let points: Option<Vec<_>> = places.iter().map(|place| cloud::point(*place)).collect();
     let points = points.ok_or_else(|| {
@@ -165,6 +172,12 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
         focal: args.lens,
         spacing: args.spacing,
         filling: filling(&args.filling),
+        layers: Layers {
+            count: args.filling.layers,
+            distance: args.filling.layer_distance,
+            twist: args.filling.twist.unwrap_or_default(),
+            ends: !args.filling.no_ends,
+        },
         ray,
         order,
         effort,

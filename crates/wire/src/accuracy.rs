@@ -1,10 +1,10 @@
 //! How well points follow their contour, measured on the points.
 
 use crate::contour::Contour;
-use crate::element::Element;
 use crate::path::Path;
 use crate::points::Points;
 use geom::{Vec2, turn_angle};
+use sketch::Element;
 
 /// The chord errors of some chords of arcs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

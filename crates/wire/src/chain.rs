@@ -1,9 +1,9 @@
 //! Loose elements as contours, whatever their order and direction.
 
 use crate::contour::Contour;
-use crate::element::Element;
 use geom::ChainError;
 use program::{Diagnostic, Rule};
+use sketch::Element;
 
 /// What chaining made.
 #[derive(Clone, Debug, PartialEq)]

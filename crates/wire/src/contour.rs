@@ -1,8 +1,8 @@
 //! A chain of lines and arcs, open or closed.
 
-use crate::element::{Element, SAME, finite};
 use geom::{Turn, Vec2, turn_angle};
 use program::{Diagnostic, Rule};
+use sketch::{Element, SAME, finite};
 use std::f64::consts::{PI, TAU};
 
 /// A chain of elements, each of which starts, bit for bit, where the one before ends. It is closed

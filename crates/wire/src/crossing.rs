@@ -1,11 +1,11 @@
 //! Contours that cross themselves.
 
 use crate::contour::Contour;
-use crate::element::Element;
 use crate::near::Near;
 use cavalier_contours::static_aabb2d_index::Control;
 use geom::Vec2;
 use program::{Diagnostic, Rule};
+use sketch::Element;
 
 /// Elements this near to each other touch, mm: half of what counts as one point.
 pub(crate) const TOUCH: f64 = 5e-8;

@@ -1,9 +1,9 @@
 //! From where the wire is threaded to the contour, and back.
 
 use crate::contour::Contour;
-use crate::element::Element;
 use crate::path::Path;
 use geom::Vec2;
+use sketch::Element;
 use std::f64::consts::FRAC_PI_2;
 
 /// How the wire comes to the contour; it leaves it likewise.

@@ -46,8 +46,6 @@ mod contour;
 mod crossing;
 pub mod cutting;
 pub mod dxf;
-mod element;
-mod fit;
 mod lead;
 mod near;
 pub mod offset;
@@ -64,7 +62,8 @@ mod trace;
 
 pub use accuracy::{Accuracy, ArcChords, Chords};
 pub use contour::{Contour, ContourPoint};
-pub use element::{ARC_TOLERANCE, Direction, Element};
+
 pub use lead::{Lead, LeadShape};
 pub use path::{Limits, Path};
+pub use sketch::{ARC_TOLERANCE, Direction, Element};
 pub use trace::{OffsetContour, contours, cuts, offset_contours};

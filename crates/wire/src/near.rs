@@ -1,11 +1,11 @@
 //! Which elements of a chain are near a point, without looking at all of them.
 
 use crate::crossing::TOUCH;
-use crate::element::Element;
 use cavalier_contours::static_aabb2d_index::{
     Control, NeighborPriorityQueue, StaticAABB2DIndex, StaticAABB2DIndexBuilder,
 };
 use geom::Vec2;
+use sketch::Element;
 
 /// Elements in a tree of boxes.
 pub(crate) struct Near<'a> {

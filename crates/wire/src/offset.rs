@@ -5,7 +5,6 @@
 //! the right side, and what of the contour it does not reach is found.
 
 use crate::contour::Contour;
-use crate::element::{Element, SAME, finite};
 use crate::near::Near;
 use cavalier_contours::core::math::Vector2;
 use cavalier_contours::polyline::{
@@ -13,6 +12,7 @@ use cavalier_contours::polyline::{
 };
 use geom::Vec2;
 use program::{Diagnostic, Rule};
+use sketch::{Element, SAME, finite};
 use std::f64::consts::{PI, TAU};
 
 /// By how much the wire's centre may be off, mm.

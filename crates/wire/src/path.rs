@@ -1,8 +1,8 @@
 //! Where the wire goes: its lower end, and its upper end where it leans.
 
 use crate::contour::{Contour, ContourPoint};
-use crate::element::{Element, SAME};
 use program::{Diagnostic, Rule};
+use sketch::{Element, SAME};
 
 /// The path of the wire. Where it leans, each element of the lower contour has its element of the
 /// upper one, and both ends run through them evenly at the same time: the cut is the ruled surface

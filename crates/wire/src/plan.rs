@@ -1,7 +1,6 @@
 //! What is cut in which order: openings, passes, leads, tabs.
 
 use crate::contour::Contour;
-use crate::element::{Element, FAR};
 use crate::lead::{Lead, LeadShape};
 use crate::offset::{Corner, Corners};
 use crate::order::order;
@@ -11,6 +10,7 @@ use crate::round::Round;
 use crate::taper::Rounding;
 use geom::Vec2;
 use program::{Diagnostic, Rule};
+use sketch::{Element, FAR};
 use std::f64::consts::FRAC_PI_3;
 
 /// A contour to cut.

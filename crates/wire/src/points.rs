@@ -1,10 +1,10 @@
 //! A path as points, for a control that knows no arcs.
 
 use crate::contour::Contour;
-use crate::element::Element;
 use crate::path::Path;
 use geom::Vec2;
 use program::{Diagnostic, Rule};
+use sketch::Element;
 use std::f64::consts::TAU;
 use std::ops::Range;
 

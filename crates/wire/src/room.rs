@@ -1,6 +1,5 @@
 //! Whether passes and their leads have room between what remains, and which lead would have.
 
-use crate::element::Element;
 use crate::near::Near;
 use crate::offset::EXACT;
 use crate::plan::{Opening, Pass, Settings};
@@ -8,6 +7,7 @@ use crate::round::{Round, middle};
 use cavalier_contours::static_aabb2d_index::Control;
 use geom::Vec2;
 use program::{Diagnostic, Rule};
+use sketch::Element;
 
 /// How near to its own end a lead may touch the upper path of the last pass, mm.
 const JOINS: f64 = 0.01;

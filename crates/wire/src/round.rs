@@ -1,7 +1,6 @@
 //! The passes round one opening.
 
 use crate::contour::{Contour, ContourPoint};
-use crate::element::{Element, SAME};
 use crate::lead::{LeadShape, Pairs, reversed};
 use crate::offset::{Corner, Corners, offset};
 use crate::path::Path;
@@ -9,6 +8,7 @@ use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
 use crate::taper::{Remains, lean};
 use geom::{Vec2, turn_angle};
 use program::{Diagnostic, Rule};
+use sketch::{Element, SAME};
 
 /// From which turn on, radians, a contour has a corner.
 const CORNER: f64 = 0.02;

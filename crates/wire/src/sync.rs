@@ -1,10 +1,10 @@
 //! Which point of the upper contour belongs to which of the lower one.
 
 use crate::contour::Contour;
-use crate::element::{Element, SAME, finite};
 use crate::path::Path;
 use geom::{Vec2, turn_angle};
 use program::{Diagnostic, Rule};
+use sketch::{Element, SAME, finite};
 use std::f64::consts::PI;
 
 /// How far a given point may lie off its contour, mm.

@@ -1,10 +1,10 @@
 //! The upper contour of a wire that leans by an angle.
 
 use crate::contour::Contour;
-use crate::element::{Element, SAME};
 use crate::offset::EXACT;
 use geom::{Turn, Vec2, turn_angle};
 use program::{Diagnostic, Rule};
+use sketch::{Element, SAME};
 use std::f64::consts::{PI, TAU};
 
 /// The widest corner whose radius can stay the same: beyond it the two sides nearly face each other.

@@ -1,9 +1,9 @@
 //! The contours that a neutral program cuts.
 
 use crate::contour::Contour;
-use crate::element::{ARC_TOLERANCE, Direction, Element, SAME};
 use geom::{Vec2, angle_between};
 use program::{ArcTo, Compensation, Diagnostic, Op, Pose, Program, Rule};
+use sketch::{ARC_TOLERANCE, Direction, Element, SAME};
 
 /// What `program` cuts in the plane of X and Y: each contour runs from where a rapid ends to where the
 /// next begins, and its start is where the wire is threaded. `start` is where the wire stands before

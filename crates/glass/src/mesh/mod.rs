@@ -5,6 +5,7 @@ mod ply;
 mod stl;
 mod threemf;
 
+use crate::curve::Curves;
 use crate::list::{self, Columns};
 use crate::picture::Picture;
 use glam::DVec3;
@@ -30,6 +31,8 @@ pub enum Shape {
     Points(Vec<DVec3>),
     /// A picture, on a sheet or as a relief.
     Picture(Picture),
+    /// Curves, mm.
+    Curves(Curves),
 }
 
 /// The form of a file.
@@ -68,7 +71,7 @@ pub struct Health {
 const MOST: usize = u32::MAX as usize / 4;
 
 /// The largest coordinate of a body, mm: what is larger is not engraved but a mistake, and exact sums need room.
-const LARGEST: f64 = 1e6;
+pub(crate) const LARGEST: f64 = 1e6;
 
 /// Reads the bytes of the file `file` as `form`.
 ///
@@ -94,8 +97,8 @@ pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnosti
     let (places, empty) = match &shape {
         Shape::Mesh(mesh) => (&mesh.vertices, mesh.triangles.is_empty()),
         Shape::Points(points) => (points, points.is_empty()),
-        // No form of this reader is one.
-        Shape::Picture(_) => return Ok(shape),
+        // No form of this reader is one of these.
+        Shape::Picture(_) | Shape::Curves(_) => return Ok(shape),
     };
     if empty {
         return Err(Fault::new(Rule::Empty, "has no triangle and no point").diagnostic(file));

@@ -739,6 +739,10 @@ rules! {
         "The way from home to the first point may meet the part."
         "send Z home at the start, or set `safe_height` of the machine"
         "Z not at its upper end when the first rapid begins";
+    Hpgl "hpgl" []
+        "A command of an HP-GL file is none that is read, or lacks numbers."
+        "write the file in plain HP-GL: absolute units of 0.025 mm, without SC and PE"
+        "`SC0,100,0,100;`";
     IgnoredWord "ignored-word" []
         "A word of the source is not used."
         "nothing to do, if the part does not need it"

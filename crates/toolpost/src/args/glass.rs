@@ -93,8 +93,8 @@ pub struct Engrave {
 /// What is engraved, and on what: the points of a job, the same whenever the same is given.
 #[derive(Debug, Args)]
 pub struct Job {
-    /// Bodies (.stl, .obj, .ply, .3mf), pictures (.png, .jpg, .bmp) and lists of points (.xyz, .txt, .csv, .cft), all in one block
-    /// and in one frame; mm.
+    /// Bodies (.stl, .obj, .ply, .3mf), pictures (.png, .jpg, .bmp), curves (.dxf, .plt, .hpgl) and lists of points (.xyz, .txt,
+    /// .csv, .cft), all in one block and in one frame; mm.
     #[arg(value_name = "BODY", required = true)]
     pub bodies: Vec<PathBuf>,
     /// Sides of the block along X, Y and Z.
@@ -137,30 +137,34 @@ pub struct Job {
 
 /// How bodies become points.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Points of bodies")]
+#[command(next_help_heading = "Points of bodies and curves")]
 pub struct Filling {
     /// Where a body gets points.
     #[arg(long, value_name = "HOW", default_value = "surface", value_parser = choice(&FILLS))]
     pub fill: Filled,
-    /// Distance of points along contours, in triangles and columns, and of rays [default: the spacing and what rounding takes].
+    /// Distance of points along contours and curves, in triangles and columns, and of rays [default: the spacing and what rounding
+    /// takes].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub step: Option<f64>,
-    /// Distance of the planes of sections [default: --step].
+    /// Distance of the planes of sections [default: --step], and of the layers of curves.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub layer_distance: Option<f64>,
     /// Distance of the first and the last plane from the ends of the body.
     #[arg(long, value_name = "MM", value_parser = length, default_value = "0.1")]
     pub first_distance: f64,
-    /// By which part of the distance each contour begins later than that of the layer before.
+    /// By which part of the distance each contour or curve begins later than that of the layer before.
     #[arg(long, value_name = "PART", value_parser = part)]
     pub twist: Option<f64>,
-    /// Leave the end of an open contour without a point.
+    /// Leave the end of an open contour or curve without a point.
     #[arg(long)]
     pub no_ends: bool,
     /// Put a point into triangles that are smaller than the grid, of `triangles`.
     #[arg(long)]
     pub full: bool,
-    /// Across the planes of sections, or along the rays.
+    /// How often curves are repeated along the axis.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub layers: u32,
+    /// Across the planes of sections and the layers of curves, or along the rays.
     #[arg(long, value_name = "AXIS", default_value = "z", value_parser = choice(&AXES))]
     pub axis: usize,
     /// Turn that axis about X, then Y, then Z, degrees.

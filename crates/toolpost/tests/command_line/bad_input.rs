@@ -421,6 +421,16 @@ const READERS: &[(&str, &str, &str)] = &[
         "glass in.obj --block 20x20x30 --material k9 --lens 70 -m glass-xyz-100hz -o out.prg",
     ),
     (
+        "wire/lines.dxf",
+        "in.dxf",
+        "glass in.dxf --block 99x99x30 --material k9 --lens 70 --rounds 0 -m glass-xyz-100hz -o out.prg",
+    ),
+    (
+        "glass_body/lines.plt",
+        "in.plt",
+        "glass in.plt --block 99x99x30 --material k9 --lens 70 --rounds 0 -m glass-xyz-100hz -o out.prg",
+    ),
+    (
         "PULSES",
         "in.prg",
         "glass prove in.prg cloud.xyz --block 9x9x9 --material k9 --lens 70 -m glass-xyz-100hz",

@@ -10,10 +10,10 @@ use std::ops::Deref;
 pub const ARC_TOLERANCE: f64 = 0.005;
 
 /// Ends closer than this are one point, mm: far below what any wire machine resolves.
-pub(crate) const SAME: f64 = 1e-7;
+pub const SAME: f64 = 1e-7;
 
 /// The greatest coordinate that is taken, mm.
-pub(crate) const FAR: f64 = 1e6;
+pub const FAR: f64 = 1e6;
 
 /// A line or an arc of a source. Its geometry is that of its shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl Element {
     }
 
     /// What has become of it, from the same line.
-    pub(crate) fn shaped(&self, shape: geom::Element) -> Element {
+    pub fn shaped(&self, shape: geom::Element) -> Element {
         Element { line: self.line, shape }
     }
 
@@ -167,7 +167,7 @@ impl Element {
 
     /// The same shape between other ends, which are near the old ones. An arc up to half a circle keeps
     /// its sweep, a longer one its centre between both shifts.
-    pub(crate) fn spanning(&self, start: Vec2, end: Vec2) -> Element {
+    pub fn spanning(&self, start: Vec2, end: Vec2) -> Element {
         if start == self.start && end == self.end {
             return *self;
         }
@@ -189,7 +189,7 @@ impl Element {
 }
 
 /// Refuses what is no number, and what is out of this world.
-pub(crate) fn finite(points: &[Vec2]) -> Result<(), Box<Diagnostic>> {
+pub fn finite(points: &[Vec2]) -> Result<(), Box<Diagnostic>> {
     match points.iter().find(|p| !p.to_array().iter().all(|v| v.abs() <= FAR)) {
         None => Ok(()),
         Some(p) => {

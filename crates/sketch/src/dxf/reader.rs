@@ -1,10 +1,10 @@
 //! The sections of the file, and blocks in their places.
 
-use super::Options;
 use super::entity::{Entity, each, split, vertices};
 use super::groups::Group;
 use super::placement::Placement;
 use super::shapes::{Shape, Shapes};
+use super::{Drawing, Options, Piece};
 use crate::element::{Element, FAR, finite};
 use geom::Vec2;
 use program::{Diagnostic, Rule};
@@ -15,9 +15,6 @@ const DEEPEST: usize = 16;
 
 /// The most elements that a drawing may come to.
 const MOST: usize = 5_000_000;
-
-/// Runs of elements that hang together, in mm.
-pub(super) type Pieces = Vec<Vec<Element>>;
 
 /// A block: its base point and its entities.
 #[derive(Clone, Copy)]
@@ -34,7 +31,7 @@ pub(super) struct Reader<'a> {
     blocks: HashMap<&'a [u8], Block<'a>>,
     /// Layers that are off or frozen, in capitals.
     hidden: Vec<Vec<u8>>,
-    pieces: Pieces,
+    pieces: Vec<Piece>,
     count: usize,
     /// What was left out, by kind, with the first line and how often.
     left_out: BTreeMap<String, (u32, u32)>,
@@ -91,8 +88,8 @@ impl<'a> Reader<'a> {
         self.entities(drawn, &Placement::scaled(self.unit), b"0", 0)
     }
 
-    /// The pieces that hang together, and what there is to say.
-    pub fn finish(mut self) -> Result<(Pieces, Vec<Diagnostic>), Box<Diagnostic>> {
+    /// What is drawn, and what there is to say.
+    pub fn finish(mut self) -> Result<Drawing, Box<Diagnostic>> {
         for layer in &self.options.layers {
             if !self.layers.contains(layer.to_ascii_uppercase().as_bytes()) {
                 let names = self.layers.iter().map(|name| String::from_utf8_lossy(name));
@@ -108,7 +105,7 @@ impl<'a> Reader<'a> {
             let warning = Diagnostic::warning(Rule::DxfLeftOut, message).line(line);
             self.warnings.push(Diagnostic { count, ..warning });
         }
-        Ok((self.pieces, self.warnings))
+        Ok(Drawing { pieces: self.pieces, warnings: self.warnings })
     }
 
     /// Which layers are off or frozen.
@@ -160,8 +157,9 @@ impl<'a> Reader<'a> {
                 self.insert(&entity, placement, own, depth)?;
             } else if self.shown(own, &entity) {
                 let shapes = Shapes { options: self.options, unit: self.unit };
-                match shapes.shape(&entity, &vertices.unwrap_or_default())? {
-                    Shape::Elements(piece) => self.keep(&piece, &entity, placement)?,
+                let vertices = vertices.unwrap_or_default();
+                match shapes.shape(&entity, &vertices)? {
+                    Shape::Elements(piece) => self.keep(&piece, &entity, &vertices, placement)?,
                     Shape::Other(kind) => self.leave_out(&kind, &entity),
                     Shape::Nothing => {}
                 }
@@ -194,6 +192,7 @@ impl<'a> Reader<'a> {
         &mut self,
         piece: &[Element],
         entity: &Entity,
+        vertices: &[Entity],
         placement: &Placement,
     ) -> Result<(), Box<Diagnostic>> {
         self.spend(piece.len(), entity)?;
@@ -202,7 +201,15 @@ impl<'a> Reader<'a> {
         for element in &piece {
             finite(&[element.start, element.end]).map_err(|d| d.line(entity.line()))?;
         }
-        self.pieces.push(piece);
+        let height = placement.height(entity.height(vertices)?);
+        if height.abs() > FAR {
+            return Err(entity.refused(
+                Rule::NotAPlace,
+                format!("a height of {height} mm"),
+                "look at the unit of the drawing",
+            ));
+        }
+        self.pieces.push(Piece { height, elements: piece });
         Ok(())
     }
 
@@ -250,6 +257,8 @@ impl<'a> Reader<'a> {
             axis: turned * x,
             mirrored: (x < 0.0) != (y < 0.0),
             shift: entity.point(10)?.unwrap_or_default(),
+            up: entity.number(43)?.unwrap_or(1.0),
+            rise: entity.number(30)?.unwrap_or(0.0),
         };
         let columns = entity.whole(70)?.unwrap_or(1).max(1);
         let rows = entity.whole(71)?.unwrap_or(1).max(1);

@@ -1,8 +1,7 @@
-//! Drawings: the contours of an ASCII DXF file.
+//! Drawings: what an ASCII DXF file holds of lines and curves.
 //!
 //! Read are `LINE`, `ARC`, `CIRCLE`, `ELLIPSE`, `SPLINE`, `LWPOLYLINE` and `POLYLINE` of model space,
-//! and blocks through `INSERT`. Every contour element has the line of the file on which its entity
-//! begins. What is not read is counted by its kind.
+//! and blocks through `INSERT`. Every entity lies in a plane of its own height. What is not read is counted by its kind.
 
 mod entity;
 mod groups;
@@ -10,8 +9,7 @@ mod placement;
 mod reader;
 mod shapes;
 
-use crate::chain::chain;
-use crate::contour::Contour;
+use crate::Element;
 use groups::groups;
 use program::{Diagnostic, Rule};
 use reader::Reader;
@@ -35,21 +33,30 @@ impl Default for Options {
     }
 }
 
+/// Elements that hang together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// Their height over the plane of the drawing, mm.
+    pub height: f64,
+    /// The elements, mm, each with the line of the file on which its entity begins.
+    pub elements: Vec<Element>,
+}
+
 /// What was in a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// The contours, in the order of their first entities.
-    pub contours: Vec<Contour>,
-    /// What was left out, assumed or mended.
+    /// What is drawn, in the order of the file.
+    pub pieces: Vec<Piece>,
+    /// What was left out or assumed.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Reads the contours of a drawing.
+/// Reads what is drawn in a file.
 ///
 /// # Errors
 /// `dxf-...` with the line for a file that is no ASCII DXF, and for entities that are not whole or not
 /// in the plane; `dxf-layer` for a layer that holds nothing; `curve-fit` for a curve that arcs do not
-/// follow; `branch` and `gap` for elements that make no contour; `empty-contour` where there are none.
+/// follow.
 pub fn read(text: &[u8], options: &Options) -> Result<Drawing, Box<Diagnostic>> {
     for (name, value) in [("gap", options.gap), ("tolerance", options.tolerance)] {
         if !(1e-6..=10.0).contains(&value) {
@@ -61,20 +68,5 @@ pub fn read(text: &[u8], options: &Options) -> Result<Drawing, Box<Diagnostic>> 
     let groups = groups(text)?;
     let mut reader = Reader::new(&groups, options);
     reader.read()?;
-    let (pieces, mut warnings) = reader.finish()?;
-    let chained = chain(&pieces, options.gap)?;
-    if chained.contours.is_empty() {
-        let refused = Diagnostic::error(Rule::EmptyContour, "the drawing holds no contour");
-        return Err(refused.help("LINE, ARC, CIRCLE, polylines, ELLIPSE, SPLINE are read").into());
-    }
-    if chained.doubled > 0 {
-        let message = format!("{} entities lie on others and were left out", chained.doubled);
-        warnings.push(Diagnostic::warning(Rule::DxfDoubled, message));
-    }
-    if chained.gaps > 0 {
-        let message =
-            format!("{} gaps were closed, the widest of {:.6} mm", chained.gaps, chained.widest);
-        warnings.push(Diagnostic::warning(Rule::DxfGap, message));
-    }
-    Ok(Drawing { contours: chained.contours, warnings })
+    reader.finish()
 }

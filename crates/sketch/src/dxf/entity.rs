@@ -68,6 +68,18 @@ impl<'a> Entity<'a> {
         Ok(z < 0.0)
     }
 
+    /// The height at which it lies in the drawing or its block; of an old polyline its first vertex may say it.
+    pub fn height(&self, vertices: &[Entity]) -> Result<f64, Box<Diagnostic>> {
+        let (code, owner, turned) = match self.kind() {
+            // The plane of lines, ellipses and splines is that of the drawing, whatever side they are seen from.
+            b"LINE" | b"ELLIPSE" | b"SPLINE" => (30, self, false),
+            b"LWPOLYLINE" => (38, self, self.behind()?),
+            _ => (30, vertices.first().unwrap_or(self), self.behind()?),
+        };
+        let height = owner.number(code)?.unwrap_or(0.0);
+        Ok(if turned { -height } else { height })
+    }
+
     /// Refuses heights that differ by more than a micrometre, or a slope.
     pub fn level(&self, codes: &[i32], unit: f64) -> Result<(), Box<Diagnostic>> {
         let mut first = None;
