@@ -7,14 +7,21 @@ use glass::machine::{Machine, library};
 use glass::proof::{Task, prove};
 use libfuzzer_sys::fuzz_target;
 
-const FORMS: [&str; 4] = ["numbered", "points", "gcode\"\nfire = \"M101 P0", "binary"];
+const FORMS: [&str; 5] = [
+    "numbered",
+    "points",
+    "gcode\"\nfire = \"M101 P0",
+    "binary",
+    // With the words after it in place of a comment: pulses in motion.
+    "numbered\"\nruns = true #\"",
+];
 
 fuzz_target!(|data: &[u8]| {
     let Some((first, text)) = data.split_first() else { return };
     let form = FORMS[usize::from(*first) % FORMS.len()];
     let machine = library("glass-xyz-100hz")
         .expect("it is there")
-        .replace("numbered\"", &format!("{form}\""));
+        .replacen("numbered\"", &format!("{form}\""), 1);
     let machine = Machine::read(&machine, "fuzz.toml").expect("it is one");
     let lens = machine.lens(70.0).expect("it has one");
     let task = Task {
@@ -23,6 +30,7 @@ fuzz_target!(|data: &[u8]| {
         lens: &lens,
         index: 1.5195,
         block: [20.0, 20.0, 30.0],
+        blocks: 1,
         spacing: 0.13,
         accept_shadowed: false,
     };

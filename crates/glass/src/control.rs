@@ -2,7 +2,7 @@
 //!
 //! A line that is not understood ends the reading with an error, and a coordinate that no line has stated is not zero.
 
-use crate::machine::{Format, Machine};
+use crate::machine::{Coordinate, Format, Machine};
 use program::{Diagnostic, Rule};
 
 /// A pulse of the laser.
@@ -10,8 +10,21 @@ use program::{Diagnostic, Rule};
 pub struct Pulse {
     /// The line of the program, from 1; of a binary program the number of the pulse.
     pub line: u32,
-    /// Where the axes stand, mm.
+    /// Where the axes are, mm or degrees.
     pub at: [f64; 3],
+    /// Ticks since the pulse before, where both are fired in one motion at constant speed; else 0.
+    pub passed: u32,
+}
+
+/// A motion at constant speed in which pulses are fired.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Its first pulse, from 0.
+    pub first: u32,
+    /// How many pulses it has.
+    pub count: u32,
+    /// How far each axis goes in a tick, mm or degrees.
+    pub speed: [f64; 3],
 }
 
 /// A place where the axes stop and the laser does not fire.
@@ -30,6 +43,10 @@ pub struct Stop {
 pub struct Run {
     /// The sides of the block that the program states, mm.
     pub block: Option<[f64; 3]>,
+    /// How many equal blocks it states.
+    pub blocks: Option<u32>,
+    /// Its motions at constant speed, in their order.
+    pub motions: Vec<Motion>,
     /// Its pulses, in their order.
     pub pulses: Vec<Pulse>,
     /// Where else the axes stop, in their order.
@@ -42,7 +59,7 @@ pub struct Run {
 /// The first line that the machine would not take, or that the program ends too early.
 pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
     let read = match machine.program.format {
-        Format::Numbered => numbered(text),
+        Format::Numbered => numbered(text, machine),
         Format::Points => points(text),
         Format::Binary => binary(text).map_err(|message| (0, message)),
         Format::Gcode => gcode(text, machine.program.fire.as_deref().unwrap_or_default()),
@@ -91,9 +108,10 @@ fn binary(bytes: &[u8]) -> Result<Run, String> {
         let mm = |at: usize| whole(at).map(|value| f64::from(value) / 1e3);
         Some([mm(at)?, mm(at + 4)?, mm(at + 8)?])
     };
-    let pulse = |(number, at): (u32, usize)| Some(Pulse { line: number, at: place(at)? });
+    let pulse =
+        |(number, at): (u32, usize)| Some(Pulse { line: number, at: place(at)?, passed: 0 });
     let pulses = (1..=u32::MAX).zip((HEAD..own.len()).step_by(12)).filter_map(pulse).collect();
-    Ok(Run { block: place(8), pulses, stops: Vec::new() })
+    Ok(Run { block: place(8), pulses, ..Run::default() })
 }
 
 /// A line, from 1 (0 of a binary program), and what is wrong with it.
@@ -128,10 +146,13 @@ fn decimal(word: &str) -> Option<f64> {
     number.then(|| word.parse().ok()).flatten().filter(|value: &f64| value.is_finite())
 }
 
-/// Reads `X… Y… Z…`, all three in this order.
-fn place<'w>(words: &mut impl Iterator<Item = &'w str>) -> Result<[f64; 3], String> {
+/// Reads three coordinates, such as `X… Y… Z…`, all of them in this order.
+fn place<'w>(
+    words: &mut impl Iterator<Item = &'w str>,
+    names: [&str; 3],
+) -> Result<[f64; 3], String> {
     let mut at = [0.0; 3];
-    for (value, name) in at.iter_mut().zip(["X", "Y", "Z"]) {
+    for (value, name) in at.iter_mut().zip(names) {
         let word = words.next().and_then(|word| word.strip_prefix(name));
         *value =
             word.and_then(decimal).ok_or_else(|| format!("{name} and a number are needed here"))?;
@@ -139,7 +160,56 @@ fn place<'w>(words: &mut impl Iterator<Item = &'w str>) -> Result<[f64; 3], Stri
     Ok(at)
 }
 
-fn numbered(text: &[u8]) -> Result<Run, Wrong> {
+/// A motion at constant speed as it is read: its speed, and where it has come to.
+struct Moving {
+    speed: [f64; 3],
+    /// The first pulse, and the ticks since then.
+    from: Option<([f64; 3], u32)>,
+}
+
+impl Moving {
+    /// The ticks since the pulse before at which the axes pass `to`, and where they are then; `None` where they never do.
+    fn pass(&mut self, to: [f64; 3], axes: &[Coordinate; 3]) -> Option<(u32, [f64; 3])> {
+        let Some((from, since)) = self.from else {
+            self.from = Some((to, 0));
+            return Some((0, to));
+        };
+        // The axis that moves most steps says how long it took.
+        let steps = |axis: &usize| (self.speed[*axis] * axes[*axis].steps()).abs();
+        let fastest = (0..3).max_by(|a, b| steps(a).total_cmp(&steps(b)))?;
+        let speed = self.speed[fastest];
+        let before = from[fastest] + speed * f64::from(since);
+        let mut ticks = (to[fastest] - before) / speed;
+        if axes[fastest].endless {
+            ticks = ticks.rem_euclid(360.0 / speed.abs());
+        }
+        let ticks = ticks.round();
+        if !(1.0..=1e9).contains(&ticks) {
+            return None;
+        }
+        let since = since.checked_add(ticks as u32)?;
+        let at = [0, 1, 2].map(|axis| {
+            let at = from[axis] + self.speed[axis] * f64::from(since);
+            if axes[axis].endless { at.rem_euclid(360.0) } else { at }
+        });
+        let is_near = |axis: usize| {
+            let off = to[axis] - at[axis];
+            let off = if axes[axis].endless { off - 360.0 * (off / 360.0).round() } else { off };
+            // What whole steps of both ends take.
+            off.abs() * axes[axis].steps() <= 1.0 + 1e-3
+        };
+        self.from = Some((from, since));
+        (0..3).all(is_near).then_some((ticks as u32, at))
+    }
+}
+
+/// The numbered form, `Nn` before each command: BEGIN, PULSE, RUN with the speed of each axis in a tick, REST, END.
+fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
+    let axes = machine.coordinates();
+    let names = axes.map(|axis| axis.word);
+    // From the trigger to the pulse the axes go on.
+    let late = machine.laser.delay * 1e-6 * machine.laser.rate;
+    let mut moving: Option<Moving> = None;
     let mut run = Run::default();
     let mut promised: Option<u64> = None;
     let mut ended = false;
@@ -160,16 +230,61 @@ fn numbered(text: &[u8]) -> Result<Run, Wrong> {
                 if words.next() != Some("BLOCK") {
                     return wrong("BEGIN needs BLOCK and its sides");
                 }
-                run.block = Some(place(&mut words).map_err(|message| (at, message))?);
+                let sides = place(&mut words, ["X", "Y", "Z"]).map_err(|message| (at, message))?;
+                run.block = Some(sides);
                 let count = (words.next() == Some("POINTS")).then(|| words.next()).flatten();
                 promised = count.and_then(whole);
                 if promised.is_none() {
                     return wrong("BEGIN needs POINTS and their number");
                 }
+                if let Some(word) = words.next() {
+                    let blocks = (word == "BLOCKS").then(|| words.next()).flatten().and_then(whole);
+                    let most = u64::from(machine.blocks());
+                    let blocks = blocks.filter(|blocks| (1..=most).contains(blocks));
+                    let Some(blocks) = blocks else {
+                        return Err((
+                            at,
+                            format!("BLOCKS and a number from 1 to {most} are needed"),
+                        ));
+                    };
+                    run.blocks = Some(blocks as u32);
+                }
             }
             (Some("PULSE"), Some(_)) => {
-                let place = place(&mut words).map_err(|message| (at, message))?;
-                run.pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
+                let place = place(&mut words, names).map_err(|message| (at, message))?;
+                let number = u32::try_from(at).unwrap_or(u32::MAX);
+                let (mut passed, mut fired) = (0, place);
+                if let Some(moving) = &mut moving {
+                    let Some((ticks, there)) = moving.pass(place, &axes) else {
+                        return wrong("the motion at constant speed passes this place on no tick");
+                    };
+                    passed = ticks;
+                    fired = [0, 1, 2].map(|axis| there[axis] + moving.speed[axis] * late);
+                    run.motions.iter_mut().last().into_iter().for_each(|motion| motion.count += 1);
+                }
+                run.pulses.push(Pulse { line: number, at: fired, passed });
+            }
+            (Some("RUN"), Some(_)) if moving.is_none() && machine.program.runs => {
+                let speed = place(&mut words, names).map_err(|message| (at, message))?;
+                let steps = [0, 1, 2].map(|axis: usize| speed[axis] * axes[axis].steps());
+                if !machine.clock().allows(steps) {
+                    return wrong("an axis is not as fast as that");
+                }
+                if steps.iter().all(|speed| speed.abs() < 1e-3) {
+                    return wrong("RUN needs a speed of at least one axis");
+                }
+                let first = u32::try_from(run.pulses.len()).unwrap_or(u32::MAX);
+                run.motions.push(Motion { first, count: 0, speed });
+                moving = Some(Moving { speed, from: None });
+            }
+            (Some("REST"), Some(_)) if moving.is_some() => {
+                if run.motions.last().is_some_and(|motion| motion.count == 0) {
+                    return wrong("there is no pulse between RUN and REST");
+                }
+                moving = None;
+            }
+            (Some("END"), Some(_)) if moving.is_some() => {
+                return wrong("REST is missing before END");
             }
             (Some("END"), Some(count)) => {
                 if run.pulses.len() as u64 != count {
@@ -181,7 +296,11 @@ fn numbered(text: &[u8]) -> Result<Run, Wrong> {
                 ended = true;
             }
             (_, None) => return wrong("a program begins with BEGIN"),
-            (_, Some(_)) => return wrong("PULSE or END is needed here"),
+            (_, Some(_)) => {
+                return wrong(
+                    "PULSE or END is needed here, or RUN and REST on a machine with `runs`",
+                );
+            }
         }
         if words.next().is_some() {
             return wrong("the command has a word too many");
@@ -200,7 +319,7 @@ fn points(text: &[u8]) -> Result<Run, Wrong> {
         let Some(Ok(place)) = values.map(<[f64; 3]>::try_from) else {
             return Err((at, String::from("three numbers are needed: X Y Z")));
         };
-        pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place });
+        pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place, passed: 0 });
     }
     Ok(Run { pulses, ..Run::default() })
 }
@@ -246,7 +365,7 @@ impl Gcode<'_> {
                 return Err(String::from("a pulse where not every axis has been sent to a place"));
             };
             self.open = None;
-            self.run.pulses.push(Pulse { line: number, at: [x, y, z] });
+            self.run.pulses.push(Pulse { line: number, at: [x, y, z], passed: 0 });
             return Ok(());
         }
         if ["M2", "M30"].contains(&line) {

@@ -3,6 +3,7 @@
 use crate::cloud::{self, Distances, Point};
 use crate::curve::Layers;
 use crate::fill::{self, Fill, Filling, Left};
+use crate::fly::{self, Run};
 use crate::machine::{Lens, Machine};
 use crate::material::Material;
 use crate::mesh::{self, Health, Mesh, Shape};
@@ -11,6 +12,7 @@ use crate::order::{self, Effort, Shadow};
 use crate::picture::{Picture, Sheet};
 use crate::proof::{self, Proof};
 use crate::sample::Apart;
+use crate::scenario::{Blocks, Scenario};
 use crate::{control, post, weld};
 use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
@@ -25,6 +27,8 @@ pub enum Order {
     Kdz(f64, f64),
     /// `Sort by layers` of the source, with the height of a layer, mm; without, the spacing.
     Layers(Option<f64>),
+    /// In motion, on a polar machine.
+    Scenario(Scenario),
 }
 
 /// How a body lies in its block.
@@ -51,6 +55,8 @@ pub struct Placing {
 pub struct Settings {
     /// How they lie.
     pub placing: Placing,
+    /// How many equal blocks are made.
+    pub blocks: u32,
     /// Focal length of the lens, mm.
     pub focal: f64,
     /// Smallest distance of points, mm; without, that of the lens.
@@ -100,6 +106,14 @@ pub struct Report {
     pub rays_apart: f64,
     /// Where side faces cut the beam.
     pub cut: Cut,
+    /// Equal blocks, each with all points.
+    pub blocks: u32,
+    /// Pulses in motion at constant speed.
+    pub in_motion: u64,
+    /// How far the farthest point was moved so that a motion passes it, mm, and how many points fell together; of a scenario only.
+    pub moved: Option<(f64, u64)>,
+    /// The part of the block, seen from above, that the arm does not reach; of a polar machine only.
+    pub unreachable: Option<f64>,
     /// Ticks as planned; of a program that was not made here none.
     pub planned_ticks: Option<u64>,
     /// Rules that were let pass, and broken.
@@ -140,10 +154,9 @@ pub fn make(
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
     let mut job = Job::new(shapes, material, machine, settings)?;
-    let axes = job.order();
-    let order: Vec<u32> = (0..axes.len() as u32).collect();
-    let planned = 1 + order::ticks(&axes, &order, &machine.clock());
-    let text = post::write(&axes, machine, settings.placing.block);
+    let (axes, runs) = job.order();
+    let planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], &machine.clock());
+    let text = post::write(&axes, &runs, machine, (settings.placing.block, settings.blocks));
     job.judge(text, Some(planned))
 }
 
@@ -169,6 +182,8 @@ struct Job<'m> {
     scale: f64,
     spacing: f64,
     micrometres: u32,
+    apart: Apart,
+    moved: Option<(f64, u64)>,
     health: Vec<Health>,
     lens: Lens,
     beam: Beam,
@@ -191,7 +206,10 @@ impl<'m> Job<'m> {
         let micrometres = spacing_in_micrometres(spacing, &lens)?;
         let beam = Beam::new(&lens, machine.laser.beam, material.index);
         // Two heights are rounded by half a µm of drive each.
-        let apart = Apart { spacing: micrometres, lost: 1.0 / beam.drive(Ray::Marginal) };
+        // Angles are rounded too: less than a µm of the place of two points.
+        let more = u32::from(machine.polar.is_some());
+        let apart = Apart { spacing: micrometres + more, lost: 1.0 / beam.drive(Ray::Marginal) };
+        on_machine(machine, settings)?;
         let Placing { block, margin, .. } = settings.placing;
         let room = DVec3::from_array(block) - 2.0 * margin;
         let mut parts = Parts::new(shapes, room, apart)?;
@@ -203,13 +221,15 @@ impl<'m> Job<'m> {
         )?;
         let (cloud, welded, left) = discretise(&parts, settings, apart)?;
         findings.extend(left_out(&left, &settings.filling));
+        if let Some(blocks) = blocks_of(machine, settings) {
+            within_reach(&cloud, &blocks)?;
+        }
         let health = parts.health;
-        if cloud.len() as u64 > machine.program.points {
+        let pulses = cloud.len() as u64 * u64::from(settings.blocks);
+        if pulses > machine.program.points {
             let message = format!(
-                "{} points are more than the {} that {} holds",
-                cloud.len(),
-                machine.program.points,
-                machine.title
+                "{pulses} points are more than the {} that {} holds",
+                machine.program.points, machine.title
             );
             let help = "take a larger --spacing or a smaller --scale";
             return Err(error(Rule::Points, message, help));
@@ -221,6 +241,8 @@ impl<'m> Job<'m> {
             scale,
             spacing,
             micrometres,
+            apart,
+            moved: None,
             health,
             lens,
             beam,
@@ -231,39 +253,60 @@ impl<'m> Job<'m> {
         })
     }
 
-    /// Puts the cloud in the order of its pulses; answers where the axes stand at each point, µm.
-    fn order(&mut self) -> Vec<Point> {
+    /// Puts the cloud in the order of its pulses; answers where the axes stand at each pulse, in steps, and which are fired in motion.
+    fn order(&mut self) -> (Vec<Point>, Vec<Run>) {
         let Job { lens, beam, machine, settings, .. } = *self;
+        let clock = machine.clock();
+        let on_table = blocks_of(machine, settings);
         let top = settings.placing.block[2] * 1e3;
         let drive = beam.drive(settings.ray);
-        let at = |point: &Point| {
-            [point[0], point[1], ((f64::from(point[2]) - top) * drive).round() as i32]
+        let down = |point: &Point| ((f64::from(point[2]) - top) * drive).round() as i32;
+        if let (Some(blocks), Order::Scenario(scenario)) = (&on_table, settings.order) {
+            let (step, margin) = (self.apart.rounded(), settings.placing.margin);
+            let plan = blocks.plan(&self.cloud, scenario, step, margin, &clock);
+            self.moved = Some((plan.moved, plan.merged));
+            self.cloud = plan.cloud;
+            let pulses = plan.axes.iter().zip(&plan.points);
+            let at = |(&[a, b], &i): (&[i32; 2], &u32)| [a, b, down(&self.cloud[i as usize])];
+            return (pulses.map(at).collect(), plan.runs);
+        }
+        let flat: Vec<[i32; 2]> = match &on_table {
+            Some(blocks) => blocks.poses(&self.cloud),
+            None => self.cloud.iter().map(|[x, y, _]| [*x, *y]).collect(),
         };
-        let axes: Vec<Point> = self.cloud.iter().map(at).collect();
+        let axes: Vec<Point> =
+            flat.iter().zip(&self.cloud).map(|(&[a, b], point)| [a, b, down(point)]).collect();
         let shadow = Shadow {
             slope: beam.slope_in_glass() * WIDER,
             radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
         };
         let cloud = &self.cloud;
         let order = match settings.order {
-            Order::Fastest => {
-                order::fastest(cloud, &axes, shadow, &machine.clock(), settings.effort)
-            }
+            Order::Fastest => order::fastest(cloud, &axes, shadow, &clock, settings.effort),
+            // `on_machine` has refused it elsewhere.
+            Order::Scenario(_) => (0..cloud.len() as u32).collect(),
             Order::Kdz(up, down) => order::kdz(cloud, up, down),
             Order::Layers(height) => {
                 let height = height.or(settings.spacing).unwrap_or(lens.spacing);
                 order::layers(cloud, (height * 1e3).round().max(1.0) as u32)
             }
         };
-        let own = |all: &[Point]| order.iter().map(|&i| all[i as usize]).collect();
-        let axes = own(&axes);
+        let own =
+            |all: &[Point]| -> Vec<Point> { order.iter().map(|&i| all[i as usize]).collect() };
+        let first = own(&axes);
         self.cloud = own(cloud);
-        axes
+        let mut axes = first.clone();
+        for block in 1..settings.blocks {
+            let turned = on_table.map_or(0, |blocks| blocks.turned(block));
+            axes.extend(first.iter().map(|[a, b, z]| [*a, b + turned, *z]));
+        }
+        let runs = if machine.program.runs { fly::runs(&axes, &clock) } else { Vec::new() };
+        (axes, runs)
     }
 
     /// Reads the program back and compares it with the cloud; `planned` are the ticks of the order that was written.
     fn judge(mut self, text: Vec<u8>, planned: Option<u64>) -> Result<Made, Vec<Diagnostic>> {
-        let Job { spacing, lens, beam, material, machine, settings, .. } = self;
+        let Job { spacing, lens, beam, material, machine, settings, moved, .. } = self;
         let (cloud, mut findings) = (&self.cloud, std::mem::take(&mut self.findings));
         let placing = &settings.placing;
         let cut = optics::cut(cloud, placing.block, beam.slope_in_glass());
@@ -280,6 +323,7 @@ impl<'m> Job<'m> {
             lens: &lens,
             index: material.index,
             block: placing.block,
+            blocks: settings.blocks,
             spacing,
             accept_shadowed: settings.accept_shadowed,
         };
@@ -309,14 +353,57 @@ impl<'m> Job<'m> {
             ray: settings.ray,
             rays_apart: deepest * (beam.drive(Ray::Paraxial) / beam.drive(Ray::Marginal) - 1.0),
             cut,
+            blocks: settings.blocks,
+            in_motion: run.motions.iter().map(|motion| u64::from(motion.count)).sum(),
+            moved,
+            unreachable: machine.polar.map(|table| table.with(placing.block[0]).unreachable(200)),
             planned_ticks: planned,
             accepted: if accepts { vec![Rule::Shadowed] } else { vec![] },
             proof,
         };
         let proven = !findings.iter().any(Diagnostic::is_error);
-        let places = proof::places(&run, &task);
+        let places = proof::places(&run, &task).into_iter().map(|(place, _)| place).collect();
         Ok(Made { text, cloud: self.cloud, places, report, proven, findings })
     }
+}
+
+/// The blocks on the table of a polar machine.
+fn blocks_of<'m>(machine: &'m Machine, settings: &Settings) -> Option<Blocks<'m>> {
+    let (block, count) = (settings.placing.block, settings.blocks);
+    machine.polar.map(|table| Blocks { machine, table, block, count })
+}
+
+/// Whether the machine has what is asked for besides points.
+fn on_machine(machine: &Machine, settings: &Settings) -> Result<(), Vec<Diagnostic>> {
+    let most = machine.blocks();
+    if !(1..=most).contains(&settings.blocks) {
+        let message =
+            format!("{} has places for {most} blocks, not {}", machine.title, settings.blocks);
+        return Err(error(Rule::GlassBlock, message, "take fewer --blocks"));
+    }
+    if let Some(message) = machine.polar.and_then(|table| table.refuses(settings.placing.block)) {
+        return Err(error(Rule::GlassBlock, message, "take smaller blocks"));
+    }
+    if matches!(settings.order, Order::Scenario(_)) && machine.polar.is_none() {
+        let message = format!("{} has no arm and no turning table", machine.title);
+        return Err(error(Rule::GlassBlock, message, "take another --order, or a polar machine"));
+    }
+    Ok(())
+}
+
+/// All points lie within the reach of the arm.
+fn within_reach(cloud: &[Point], blocks: &Blocks) -> Result<(), Vec<Diagnostic>> {
+    let beyond: Vec<&Point> = cloud.iter().filter(|point| !blocks.reaches(**point)).collect();
+    let Some(first) = beyond.first() else { return Ok(()) };
+    let polar = blocks.table.with(blocks.block[0]);
+    let message = format!(
+        "the arm does not reach {} points, the first one at {:.3} mm; it misses {:.1} % of the block",
+        beyond.len(),
+        cloud::place(**first),
+        100.0 * polar.unreachable(200)
+    );
+    let help = "move the body away from the table's axis (--move 0,5,0), or take a longer arm: polar.arm no shorter than polar.distance - polar.offset";
+    Err(error(Rule::Travel, message, help))
 }
 
 /// The way out of what cannot be.

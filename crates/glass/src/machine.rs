@@ -3,16 +3,18 @@
 //! This is all that the writer and the judge share.
 
 use crate::clock::Clock;
+use crate::polar::{Branch, Polar};
 use crate::profile::{Limits, Profile};
 use program::{Diagnostic, Rule};
 use serde::Deserialize;
 
 /// The machines that come with Toolpost: name and text.
-pub const LIBRARY: [(&str, &str); 4] = [
+pub const LIBRARY: [(&str, &str); 5] = [
     ("glass-xyz-50hz", include_str!("../machines/glass-xyz-50hz.toml")),
     ("glass-xyz-100hz", include_str!("../machines/glass-xyz-100hz.toml")),
     ("glass-xyz-200hz", include_str!("../machines/glass-xyz-200hz.toml")),
     ("glass-planar-200hz", include_str!("../machines/glass-planar-200hz.toml")),
+    ("glass-polar-100hz", include_str!("../machines/glass-polar-100hz.toml")),
 ];
 
 /// A machine that engraves inside glass.
@@ -29,6 +31,9 @@ pub struct Machine {
     pub drive: Drive,
     /// Its axes.
     pub axes: Axes,
+    /// Table and arm, of a polar machine only.
+    #[serde(default)]
+    pub polar: Option<Table>,
     /// Its lenses.
     pub lenses: Vec<Lens>,
     /// How its programs are written.
@@ -41,6 +46,83 @@ pub struct Machine {
 pub enum Kind {
     /// The block in X and Y, the lens in Z.
     Xyz,
+    /// The blocks on a turning table, the lens on an arm, and in Z.
+    Polar,
+}
+
+/// A turning table with blocks, and an arm with the lens (spec 2.16), mm.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// From the table's axis to the arm's.
+    pub distance: f64,
+    /// Length of the arm.
+    pub arm: f64,
+    /// From the table's axis to the near side of each block.
+    pub offset: f64,
+    /// Radius of the table.
+    pub radius: f64,
+    /// Places for blocks, evenly around the table.
+    pub blocks: u32,
+    /// Which way the elbow bends.
+    pub branch: Branch,
+}
+
+impl Table {
+    /// Its lengths, with a block of `side` mm across.
+    pub fn with(&self, side: f64) -> Polar {
+        Polar { side, distance: self.distance, offset: self.offset, arm: self.arm }
+    }
+
+    /// Why blocks of these sides cannot lie on it, side by side; `None` where they can.
+    pub fn refuses(&self, [x, y, _]: [f64; 3]) -> Option<String> {
+        let reach = (0.5 * x).hypot(self.offset + y);
+        if reach > self.radius {
+            return Some(format!(
+                "the corners of the block are {reach:.1} mm from the table's axis, and the table has a radius of {} mm",
+                self.radius
+            ));
+        }
+        // Neighbours meet where the near side is as wide as the angle between them leaves room.
+        let room = 2.0 * self.offset * (std::f64::consts::PI / f64::from(self.blocks)).tan();
+        (self.blocks > 2 && x > room).then(|| {
+            format!(
+                "{} blocks of {x} mm do not lie side by side on the table: {room:.1} mm are the most",
+                self.blocks
+            )
+        })
+    }
+}
+
+/// A coordinate of a program, and the axis that it moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Coordinate {
+    /// The word in programs.
+    pub word: &'static str,
+    /// Decimals of the word.
+    pub decimals: u32,
+    /// Whether it is an angle.
+    pub turns: bool,
+    /// Whether it turns on and on: 360° is 0°.
+    pub endless: bool,
+    /// What the axis can do.
+    pub axis: Axis,
+}
+
+impl Coordinate {
+    /// Steps of a program's word in a mm or a degree.
+    pub fn steps(&self) -> f64 {
+        f64::from(10_u32.pow(self.decimals))
+    }
+
+    /// What the axis can do, in mm or degrees.
+    pub fn limits(&self) -> Limits {
+        let Axis { acceleration, speed, .. } = self.axis;
+        match self.turns {
+            true => Limits { acceleration, speed },
+            false => Limits::metric(acceleration, speed),
+        }
+    }
 }
 
 /// A pulsed laser.
@@ -53,6 +135,9 @@ pub struct Laser {
     pub wavelength: f64,
     /// Diameter of the beam at the lens, mm.
     pub beam: f64,
+    /// From the place at which a pulse in motion is asked for until it fires, µs.
+    #[serde(default)]
+    pub delay: f64,
 }
 
 /// What holds for every axis.
@@ -67,30 +152,25 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axes {
-    /// Along the block's first side.
+    /// Along the block's first side; of a polar machine the arm.
+    #[serde(alias = "arm")]
     pub x: Axis,
-    /// Along its second side.
+    /// Along its second side; of a polar machine the table.
+    #[serde(alias = "table")]
     pub y: Axis,
     /// Up.
     pub z: Axis,
-}
-
-impl Axes {
-    /// X, Y and Z with their names.
-    pub fn named(&self) -> [(&'static str, Axis); 3] {
-        [("X", self.x), ("Y", self.y), ("Z", self.z)]
-    }
 }
 
 /// An axis.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
-    /// From where to where it moves, mm.
+    /// From where to where it moves, mm or degrees.
     pub travel: [f64; 2],
-    /// Largest acceleration, m/s².
+    /// Largest acceleration, m/s² or °/s².
     pub acceleration: f64,
-    /// Largest speed, m/s.
+    /// Largest speed, m/s or °/s.
     pub speed: f64,
 }
 
@@ -142,6 +222,9 @@ pub struct Form {
     /// The word that fires the laser once; of G-code only.
     #[serde(default)]
     pub fire: Option<String>,
+    /// Whether the controller fires while its axes move at constant speed; of the numbered form only.
+    #[serde(default)]
+    pub runs: bool,
 }
 
 /// The form of a program.
@@ -200,6 +283,15 @@ impl Machine {
     }
 
     fn check(&self) -> Result<(), String> {
+        match (self.kind, self.polar) {
+            (Kind::Polar, None) => {
+                return Err(String::from("[polar] is missing: the lengths of table and arm"));
+            }
+            (Kind::Xyz, Some(_)) => {
+                return Err(String::from("[polar] is for kind = \"polar\" only"));
+            }
+            _ => {}
+        }
         for (name, value, range) in self.figures() {
             // NaN is in no range.
             if !(range[0]..=range[1]).contains(&value) {
@@ -218,6 +310,13 @@ impl Machine {
                 return Err(format!("two lenses have f = {} mm: leave one out", lens.focal));
             }
         }
+        if self.program.format != Format::Numbered
+            && (self.program.runs || self.kind == Kind::Polar)
+        {
+            return Err(String::from(
+                "program.format must be \"numbered\" for a polar machine, and for `runs`",
+            ));
+        }
         match (&self.program.fire, self.program.format) {
             (None, Format::Gcode) => {
                 Err(String::from("program.fire is missing: the word that fires the laser once"))
@@ -235,16 +334,25 @@ impl Machine {
 
     /// Every figure with its name, and from what to what it may be.
     fn figures(&self) -> Vec<(String, f64, [f64; 2])> {
-        let Laser { rate, wavelength, beam } = self.laser;
+        let Laser { rate, wavelength, beam, delay } = self.laser;
         let mut figures = vec![
             (String::from("laser.rate"), rate, [0.1, 1e6]),
             (String::from("laser.wavelength"), wavelength, [100.0, 20_000.0]),
             (String::from("laser.beam"), beam, [0.1, 100.0]),
+            (String::from("laser.delay"), delay, [0.0, 1e4]),
         ];
-        for (name, axis) in self.axes.named() {
-            let name = name.to_lowercase();
-            figures.push((format!("axes.{name}.acceleration"), axis.acceleration, [1e-3, 1e4]));
-            figures.push((format!("axes.{name}.speed"), axis.speed, [1e-4, 100.0]));
+        if let Some(Table { distance, arm, offset, radius, blocks, .. }) = self.polar {
+            let lengths =
+                [("distance", distance), ("arm", arm), ("offset", offset), ("radius", radius)];
+            figures.extend(lengths.map(|(name, mm)| (format!("polar.{name}"), mm, [1.0, 5000.0])));
+            figures.push((String::from("polar.blocks"), f64::from(blocks), [1.0, 64.0]));
+        }
+        for (Coordinate { axis, turns, .. }, name) in
+            self.coordinates().into_iter().zip(self.names())
+        {
+            let most = if turns { [1e7, 1e5] } else { [1e4, 100.0] };
+            figures.push((format!("axes.{name}.acceleration"), axis.acceleration, [1e-3, most[0]]));
+            figures.push((format!("axes.{name}.speed"), axis.speed, [1e-4, most[1]]));
             let [low, high] = axis.travel;
             figures.push((format!("axes.{name}: the length of `travel`"), high - low, [0.1, 1e4]));
             figures.push((format!("axes.{name}.travel[0]"), low, [-1e4, 1e4]));
@@ -276,9 +384,37 @@ impl Machine {
 
     /// The tick and the axes.
     pub fn clock(&self) -> Clock {
-        let limits =
-            self.axes.named().map(|(_, axis)| Limits::metric(axis.acceleration, axis.speed));
-        Clock::new(self.laser.rate, self.drive.profile, limits)
+        let axes = self.coordinates().map(|of| {
+            let turn = of.endless.then(|| (360.0 * of.steps()) as i64);
+            (of.limits(), of.steps(), turn)
+        });
+        Clock::of(self.laser.rate, self.drive.profile, axes)
+    }
+
+    /// What its axes are called in machine files.
+    fn names(&self) -> [&'static str; 3] {
+        match self.kind {
+            Kind::Xyz => ["x", "y", "z"],
+            Kind::Polar => ["arm", "table", "z"],
+        }
+    }
+
+    /// The coordinates of its programs. A degree has four decimals: 0.35 µm at 200 mm.
+    pub fn coordinates(&self) -> [Coordinate; 3] {
+        let Axes { x, y, z } = self.axes;
+        let linear =
+            |word, axis| Coordinate { word, decimals: 3, turns: false, endless: false, axis };
+        let turning =
+            |word, endless, axis| Coordinate { word, decimals: 4, turns: true, endless, axis };
+        match self.kind {
+            Kind::Xyz => [linear("X", x), linear("Y", y), linear("Z", z)],
+            Kind::Polar => [turning("A", false, x), turning("C", true, y), linear("Z", z)],
+        }
+    }
+
+    /// How many equal blocks it can make at most.
+    pub fn blocks(&self) -> u32 {
+        self.polar.map_or(1, |table| table.blocks)
     }
 }
 

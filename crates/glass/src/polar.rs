@@ -22,7 +22,8 @@ pub struct Polar {
 }
 
 /// Which way the elbow bends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Branch {
     /// The beam on the left of the line of the axes: arm angles from 180° to 360°.
     Left,

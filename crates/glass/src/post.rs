@@ -1,10 +1,17 @@
 //! Programs: where the axes stand at each pulse, written for a machine.
 
 use crate::cloud::Point;
-use crate::machine::{Format, Machine};
+use crate::fly::Run;
+use crate::machine::{Coordinate, Format, Machine};
 
-/// The program of pulses at `axes` (µm), in their order, in a block of `block` (mm).
-pub fn write(axes: &[Point], machine: &Machine, block: [f64; 3]) -> Vec<u8> {
+/// The program of pulses at `axes` (steps of the machine's coordinates), in their order, in `blocks` equal blocks of `block` (mm);
+/// those of `runs` are fired in motion.
+pub fn write(
+    axes: &[Point],
+    runs: &[Run],
+    machine: &Machine,
+    (block, blocks): ([f64; 3], u32),
+) -> Vec<u8> {
     let mut text = Text(Vec::with_capacity(axes.len() * 40 + 200));
     let sides = block.map(|side| (side * 1e3).round() as i32);
     match (machine.program.format, &machine.program.fire) {
@@ -35,14 +42,12 @@ pub fn write(axes: &[Point], machine: &Machine, block: [f64; 3]) -> Vec<u8> {
             text.axes(sides);
             text.word(" POINTS ");
             text.whole(axes.len() as u64);
-            text.end();
-            for (i, &at) in axes.iter().enumerate() {
-                text.numbered(i as u64 + 2, "PULSE");
-                text.axes(at);
-                text.end();
+            if blocks > 1 {
+                text.word(" BLOCKS ");
+                text.whole(u64::from(blocks));
             }
-            text.numbered(axes.len() as u64 + 2, "END");
             text.end();
+            text.numbered_pulses(axes, runs, machine);
         }
     }
     text.0
@@ -87,6 +92,52 @@ impl Text {
         self.word(command);
     }
 
+    fn numbered_pulses(&mut self, axes: &[Point], runs: &[Run], machine: &Machine) {
+        let coordinates = machine.coordinates();
+        let late = machine.laser.delay * 1e-6 * machine.laser.rate;
+        let mut number = 2;
+        let mut command = |text: &mut Text, name| {
+            text.numbered(number, name);
+            number += 1;
+        };
+        let mut runs = runs.iter().peekable();
+        let mut moving: Option<&Run> = None;
+        for (i, &at) in axes.iter().enumerate() {
+            if let Some(run) = runs.next_if(|run| run.first == i) {
+                command(self, "RUN");
+                for (of, speed) in coordinates.iter().zip(run.speed) {
+                    // Nine decimals: over a whole turn they are less than a step.
+                    self.word(&format!(" {}{:.9}", of.word, speed / of.steps()));
+                }
+                self.end();
+                moving = Some(run);
+            }
+            command(self, "PULSE");
+            // The trigger leads by what the axes go until the pulse.
+            let led = moving.map_or([0.0; 3], |run| run.speed.map(|speed| speed * late));
+            for ((of, at), lead) in coordinates.iter().zip(at).zip(led) {
+                self.coordinate(of, (f64::from(at) - lead).round() as i32);
+            }
+            self.end();
+            if moving.is_some_and(|run| run.first + run.count == i + 1) {
+                command(self, "REST");
+                self.end();
+                moving = None;
+            }
+        }
+        command(self, "END");
+        self.end();
+    }
+
+    /// A coordinate in steps.
+    fn coordinate(&mut self, of: &Coordinate, at: i32) {
+        self.0.push(b' ');
+        self.word(of.word);
+        let turn = (360.0 * of.steps()) as i32;
+        let at = if of.endless { at.rem_euclid(turn) } else { at };
+        self.fixed(at, of.decimals);
+    }
+
     fn whole(&mut self, value: u64) {
         let mut digits = [0; 20];
         let mut at = digits.len();
@@ -104,18 +155,20 @@ impl Text {
 
     /// µm as mm with three decimals: exact.
     fn length(&mut self, micrometres: i32) {
-        let size = u64::from(micrometres.unsigned_abs());
-        if micrometres < 0 {
+        self.fixed(micrometres, 3);
+    }
+
+    /// Steps as a number with so many decimals: exact.
+    fn fixed(&mut self, steps: i32, decimals: u32) {
+        let size = u64::from(steps.unsigned_abs());
+        if steps < 0 {
             self.0.push(b'-');
         }
-        self.whole(size / 1000);
-        let part = size % 1000;
-        self.0.extend_from_slice(&[
-            b'.',
-            b'0' + (part / 100) as u8,
-            b'0' + (part / 10 % 10) as u8,
-            b'0' + (part % 10) as u8,
-        ]);
+        self.whole(size / 10u64.pow(decimals));
+        self.0.push(b'.');
+        for place in (0..decimals).rev() {
+            self.0.push(b'0' + (size / 10u64.pow(place) % 10) as u8);
+        }
     }
 
     fn axes(&mut self, at: Point) {

@@ -6,9 +6,10 @@
 //! distance is proven by [`crate::cloud::distances`].
 
 use crate::cloud::{self, Grid, Pair, Point};
-use crate::control::{Pulse, Run};
-use crate::machine::{Lens, Machine};
-use glam::DVec3;
+use crate::control::{Motion, Pulse, Run};
+use crate::machine::{Lens, Machine, Table};
+use crate::polar::Pose;
+use glam::{DVec2, DVec3};
 use program::{Diagnostic, Findings, Rule};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -24,8 +25,10 @@ pub struct Task<'t> {
     pub lens: &'t Lens,
     /// Index of refraction of the block.
     pub index: f64,
-    /// Sides of the block, mm.
+    /// Sides of each block, mm.
     pub block: [f64; 3],
+    /// How many equal blocks there are, each with the whole cloud.
+    pub blocks: u32,
     /// Smallest distance of two pulses, mm.
     pub spacing: f64,
     /// Whether shadowed points pass.
@@ -62,14 +65,42 @@ fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
     (in_air.tan() / in_glass.tan(), in_glass.tan())
 }
 
-/// Where the pulses of a run lie in the glass, in their order, mm.
-pub fn places(run: &Run, task: &Task) -> Vec<DVec3> {
+/// Where the pulses of a run lie in the glass, in their order: mm in the frame of their block, and the number of that, from 0.
+pub fn places(run: &Run, task: &Task) -> Vec<(DVec3, u32)> {
     let (deeper, _) = depth(task.lens, task.machine.laser.beam, task.index);
     let in_glass = |pulse: &Pulse| {
-        let [x, y, z] = pulse.at;
-        DVec3::new(x, y, task.block[2] + z * deeper)
+        let [a, b, z] = pulse.at;
+        let (flat, block) = match &task.machine.polar {
+            Some(table) => on_table(a, b, table, task),
+            None => (DVec2::new(a, b), 0),
+        };
+        (flat.extend(task.block[2] + z * deeper), block)
     };
     run.pulses.iter().map(in_glass).collect()
+}
+
+/// Where the beam hits at these angles of arm and table (degrees): in the frame of the block under it, or of the first one where
+/// there is none.
+fn on_table(arm: f64, turned: f64, table: &Table, task: &Task) -> (DVec2, u32) {
+    let polar = table.with(task.block[0]);
+    let hits = |block: u32| {
+        let turned = turned - 360.0 / f64::from(table.blocks) * f64::from(block);
+        polar.forward(Pose { arm: arm.to_radians(), table: turned.to_radians() })
+    };
+    let lies =
+        |at: DVec2| at.min_element() >= 0.0 && at.x <= task.block[0] && at.y <= task.block[1];
+    let under = (0..task.blocks).map(|block| (hits(block), block)).find(|(at, _)| lies(*at));
+    under.unwrap_or_else(|| (hits(0), 0))
+}
+
+/// The clouds of all blocks side by side, farther apart than a block is wide, and that distance, µm.
+fn side_by_side(task: &Task) -> (Vec<Point>, i32) {
+    let apart = ((task.block[0] + 50.0) * 1e3) as i32;
+    let moved = |block: u32| {
+        let shift = apart * block as i32;
+        task.cloud.iter().map(move |[x, y, z]| [x + shift, *y, *z])
+    };
+    ((0..task.blocks).flat_map(moved).collect(), apart)
 }
 
 /// Compares the pulses of `run` with `task`.
@@ -86,14 +117,19 @@ pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Dia
     findings_of_block(run, task, &mut findings);
     travels(run, task, &mut findings);
     let (deeper, slope) = depth(task.lens, task.machine.laser.beam, task.index);
-    let places = places(run, task);
+    let (cloud, apart_by) = side_by_side(task);
+    let task = &Task { cloud: &cloud, ..*task };
+    let shift = |(place, block): (DVec3, u32)| {
+        place + DVec3::X * (f64::from(apart_by) * 1e-3 * f64::from(block))
+    };
+    let places: Vec<DVec3> = places(run, task).into_iter().map(shift).collect();
     let (order, across, along) = matched(pulses, &places, task, &mut findings);
     let (nearest, too_close) = distances(&places, task.spacing);
     let apart = apart(nearest, too_close, pulses, task.spacing, deeper);
     let shadowed = shadows(&order, task.cloud, slope, 500.0 * task.lens.crack[0]);
     let hidden = finding_of_shadows(&shadowed, &order, pulses, task);
     apart.into_iter().chain(hidden).for_each(|found| findings.push(found));
-    let ticks = ticks(run, task.machine);
+    let ticks = steps(run, task.machine).into_par_iter().sum::<u64>();
     let proof = Proof {
         pulses: pulses.len() as u64,
         across,
@@ -110,6 +146,16 @@ pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Dia
 
 /// The program states the block that the task has.
 fn findings_of_block(run: &Run, task: &Task, findings: &mut Findings) {
+    if let Some(blocks) =
+        run.block.map(|_| run.blocks.unwrap_or(1)).filter(|own| *own != task.blocks)
+    {
+        let message = format!("the program is for {blocks} blocks, not for {}", task.blocks);
+        findings.push(
+            Diagnostic::error(Rule::GlassBlock, message)
+                .line(1)
+                .help("give --blocks as for the program, or write the program anew"),
+        );
+    }
     let Some(block) = run.block else { return };
     if block.iter().zip(task.block).any(|(stated, side)| (stated - side).abs() > 5e-4) {
         let ([a, b, c], [x, y, z]) = (block, task.block);
@@ -152,20 +198,51 @@ fn finding_of_shadows(
     })
 }
 
-/// The ticks of a run, from its first pulse to its last: every motion from stop to stop takes whole ticks.
-fn ticks(run: &Run, machine: &Machine) -> u64 {
+/// The ticks before each pulse of a run, 1 before the first: every motion from stop to stop takes whole ticks, and pulses in one
+/// motion are as many apart as it says.
+pub fn steps(run: &Run, machine: &Machine) -> Vec<u64> {
     let clock = machine.clock();
-    let whole = |value: f64| (value * 1e3).round() as i32;
-    let step = |from: [f64; 3], to: [f64; 3]| u64::from(clock.step(from.map(whole), to.map(whole)));
-    let straight = |pair: &[Pulse]| step(pair[0].at, pair[1].at);
-    let mut ticks = 1 + run.pulses.par_windows(2).map(straight).sum::<u64>();
+    let units = machine.coordinates().map(|of| of.steps());
+    let in_steps = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] * units[axis]);
+    let step = |from: [f64; 3], to: [f64; 3]| {
+        let [from, to] = [from, to].map(|at| in_steps(at).map(|value| value.round() as i32));
+        u64::from(clock.step(from, to))
+    };
+    let straight = |pair: &[Pulse]| match pair[1].passed {
+        0 => step(pair[0].at, pair[1].at),
+        passed => u64::from(passed),
+    };
+    let mut ticks: Vec<u64> = run.pulses.iter().take(1).map(|_| 1).collect();
+    ticks.par_extend(run.pulses.par_windows(2).map(straight));
+    // Into a motion at constant speed the axes gain it, out of it they brake.
+    let late = machine.laser.delay * 1e-6 * machine.laser.rate;
+    let mut ends: Vec<(usize, [f64; 3], [f64; 3])> = Vec::new();
+    for Motion { first, count, speed } in &run.motions {
+        let (before, after) = (*first as usize, (first + count) as usize);
+        let speed = in_steps(*speed);
+        match ends.last_mut().filter(|end| end.0 == before) {
+            Some(end) => end.2 = speed,
+            None => ends.push((before, [0.0; 3], speed)),
+        }
+        ends.push((after, speed, [0.0; 3]));
+    }
+    let between = |next: usize| -> Option<(Pulse, Pulse)> {
+        Some((*run.pulses.get(next.checked_sub(1)?)?, *run.pulses.get(next)?))
+    };
+    for (next, leaves, enters) in ends {
+        let Some((from, to)) = between(next) else { continue };
+        // At the trigger, which is a little before.
+        let led = |at: [f64; 3], speed: [f64; 3]| {
+            let at = in_steps(at);
+            [0, 1, 2].map(|axis| at[axis] - speed[axis] * late)
+        };
+        let (a, b) = (led(from.at, leaves), led(to.at, enters));
+        let way = [0, 1, 2].map(|axis| b[axis].round() - a[axis].round());
+        ticks[next] = clock.between(way, leaves, enters);
+    }
     for stops in run.stops.chunk_by(|a, b| a.pulses == b.pulses) {
         let next = stops[0].pulses as usize;
-        let (Some(before), Some(after)) =
-            (next.checked_sub(1).and_then(|i| run.pulses.get(i)), run.pulses.get(next))
-        else {
-            continue;
-        };
+        let Some((before, after)) = between(next) else { continue };
         // After the first pulse every axis has been sent to a place.
         let known = stops.iter().filter_map(|stop| match stop.at {
             [Some(x), Some(y), Some(z)] => Some([x, y, z]),
@@ -173,8 +250,7 @@ fn ticks(run: &Run, machine: &Machine) -> u64 {
         });
         let chain: Vec<[f64; 3]> =
             std::iter::once(before.at).chain(known).chain([after.at]).collect();
-        ticks += chain.windows(2).map(|pair| step(pair[0], pair[1])).sum::<u64>();
-        ticks -= step(before.at, after.at);
+        ticks[next] = chain.windows(2).map(|pair| step(pair[0], pair[1])).sum();
     }
     ticks
 }
@@ -242,12 +318,26 @@ fn apart(
 fn travels(run: &Run, task: &Task, findings: &mut Findings) {
     let pulses = run.pulses.iter().map(|pulse| (pulse.line, pulse.at.map(Some)));
     let stops = run.stops.iter().map(|stop| (stop.line, stop.at));
-    let all: Vec<(u32, [Option<f64>; 3])> = pulses.chain(stops).collect();
-    for (i, (name, axis)) in task.machine.axes.named().into_iter().enumerate() {
-        let [low, high] = axis.travel;
+    // Where the axes begin to gain the speed of a motion, and where they stand when they have braked.
+    let clock = task.machine.clock();
+    let coordinates = task.machine.coordinates();
+    let turned = run.motions.iter().flat_map(|motion| {
+        let steps = [0, 1, 2].map(|axis| motion.speed[axis] * coordinates[axis].steps());
+        let gained = clock.gained(steps).1;
+        let ends = [(motion.first, -1.0), (motion.first + motion.count - 1, 1.0)];
+        ends.map(|(pulse, side)| {
+            let Pulse { line, at, .. } = run.pulses[pulse as usize];
+            let beyond = |axis: usize| at[axis] + side * gained[axis] / coordinates[axis].steps();
+            (line, [0, 1, 2].map(|axis| Some(beyond(axis))))
+        })
+    });
+    let all: Vec<(u32, [Option<f64>; 3])> = pulses.chain(stops).chain(turned).collect();
+    for (i, of) in coordinates.into_iter().enumerate().filter(|(_, of)| !of.endless) {
+        let (name, [low, high]) = (of.word, of.axis.travel);
+        let unit = if of.turns { "°" } else { "mm" };
         let beyond = all.iter().filter_map(|(line, at)| Some((*line, at[i]?)));
         for (line, at) in beyond.filter(|(_, at)| !(low..=high).contains(at)) {
-            let message = format!("{name}{at:.3} is beyond the travel from {low} to {high} mm");
+            let message = format!("{name}{at:.3} is beyond the travel from {low} to {high} {unit}");
             let found = Diagnostic::error(Rule::Travel, message).line(line);
             findings.push(found.help("take a smaller block, or move the body"));
         }

@@ -43,6 +43,7 @@ fn settings() -> Settings {
     let (order, ray) = (Order::Fastest, Ray::Marginal);
     Settings {
         placing,
+        blocks: 1,
         focal: 70.0,
         spacing: None,
         filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },
@@ -117,6 +118,7 @@ fn judged(text: &[u8], cloud: &[Point], format: &str) -> Vec<&'static str> {
         lens: &lens,
         index: 1.5195,
         block,
+        blocks: 1,
         spacing: 0.13,
         accept_shadowed: false,
     };
@@ -179,6 +181,7 @@ fn pulses_that_come_too_near_are_refused_and_those_that_rounding_brings_near_are
             lens: &lens,
             index: 1.5195,
             block,
+            blocks: 1,
             spacing: 0.13,
             accept_shadowed: false,
         };

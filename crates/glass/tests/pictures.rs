@@ -50,6 +50,7 @@ fn engraved(
     };
     let mut settings = Settings {
         placing,
+        blocks: 1,
         focal: 70.0,
         spacing: None,
         filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },

@@ -14,7 +14,9 @@ use ::glass::mesh::{self, Form, Shape};
 use ::glass::optics::Ray;
 use ::glass::order::Effort;
 use ::glass::picture::{self, Manner};
-use ::glass::{cloud, material, source};
+use ::glass::scenario::Scenario;
+use ::glass::simulate::{Events, simulate};
+use ::glass::{cloud, control, material, source};
 use app::files::{self, Target};
 use app::{Account, Stop, Verdict, Watch};
 use drawing::Format;
@@ -30,6 +32,26 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
         Glass::Command(GlassCommand::Tables) => Ok(tables()),
         Glass::Command(GlassCommand::Show { name }) => show(name),
         Glass::Command(GlassCommand::Prove { program, job }) => prove(program, job, silent),
+        Glass::Command(GlassCommand::Simulate {
+            program,
+            machine,
+            from,
+            until,
+            misses,
+            feedback,
+            seed,
+            start,
+            output,
+        }) => {
+            let events = Events {
+                from: *from,
+                until: *until,
+                misses: misses.unwrap_or_default(),
+                feedback: *feedback,
+                seed: *seed,
+            };
+            simulated(program, machine, events, *start, output.as_deref())
+        }
         Glass::Command(GlassCommand::Check { points, spacing, columns }) => {
             check(points, *spacing, *columns)
         }
@@ -40,6 +62,57 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
 fn tables() -> Answer {
     let data = json!({ "series": source::series(), "checks": source::checks() });
     Answer::product(source::report(), data)
+}
+
+/// Runs a program tick by tick.
+fn simulated(
+    program: &Path,
+    name: &str,
+    events: Events,
+    start: i64,
+    output: Option<&Path>,
+) -> Result<Answer, Stop> {
+    let target = output.map(|file| Target::new(file, &[program, Path::new(name)])).transpose()?;
+    let machine = machine(name)?;
+    let run = control::read(&program_text(program, &machine)?, &machine).map_err(|found| {
+        found.into_iter().map(|found| found.file(files::name(program))).collect::<Vec<_>>()
+    })?;
+    if events.from as usize > run.pulses.len() {
+        let message =
+            format!("the program has {} points, no point {}", run.pulses.len(), events.from);
+        return Err(Diagnostic::error(Rule::Points, message).help("take a smaller --from").into());
+    }
+    let made = simulate(&run, &machine, events);
+    let text = made.text(start);
+    if let Some(target) = &target {
+        files::save(&[(target, text.as_bytes())])?;
+    }
+    let mut rows = vec![("machine", machine.title.clone())];
+    rows.push((
+        "time",
+        format!("{:.2} s; the whole program is done after {:.2} s", made.seconds, made.predicted),
+    ));
+    rows.push((
+        "pulses",
+        format!(
+            "{} fired, {} passed unused, {} points counted",
+            made.fired, made.unused, made.counted
+        ),
+    ));
+    let missed = made.missed.iter().take(10).map(|point| point.to_string()).collect::<Vec<_>>();
+    if !missed.is_empty() {
+        let more = if made.missed.len() > missed.len() { ", …" } else { "" };
+        rows.push(("missed", format!("{} points: {}{more}", made.missed.len(), missed.join(", "))));
+    }
+    if let Some(next) = made.next {
+        rows.push((
+            "stopped",
+            format!("{:.1} % done; go on by --from {next}", 100.0 * made.progress()),
+        ));
+    }
+    rows.extend(output.map(|file| ("saved", file.display().to_string())));
+    let data = json!({ "machine": machine.title, "statistics": made });
+    Ok(Answer::summary(Verdict::Done, app::summary::rows(&rows), data))
 }
 
 /// A file of the library.
@@ -169,6 +242,7 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
     };
     Settings {
         placing,
+        blocks: args.blocks,
         focal: args.lens,
         spacing: args.spacing,
         filling: filling(&args.filling),
@@ -209,9 +283,29 @@ fn ordering(args: &Ordering, begun: Instant) -> (Order, Effort) {
         Sorting::Fastest => Order::Fastest,
         Sorting::Kdz => Order::Kdz(args.slopes[0], args.slopes[1]),
         Sorting::Layers => Order::Layers(args.layer),
+        Sorting::Arcs => Order::Scenario(Scenario::Arcs),
+        Sorting::Tracks => Order::Scenario(Scenario::Tracks),
     };
     let until = args.seconds.and_then(|s| begun.checked_add(Duration::try_from_secs_f64(s).ok()?));
     (order, Effort { rounds: args.rounds, until, ..Effort::default() })
+}
+
+/// A machine of the library, or of a file.
+fn machine(name: &str) -> Result<Machine, Stop> {
+    Ok(match Path::new(name) {
+        path if path.extension().is_some_and(|ending| ending == "toml") => {
+            Machine::read(&text(path)?, &files::name(path))?
+        }
+        _ => Machine::read(library(name)?, name)?,
+    })
+}
+
+/// The bytes of a program: only a binary one need not be text.
+fn program_text(program: &Path, machine: &Machine) -> Result<Vec<u8>, Stop> {
+    match machine.program.format {
+        ::glass::machine::Format::Binary => Ok(files::read(program)?),
+        _ => Ok(files::text(program)?),
+    }
 }
 
 /// The files of a job, read.
@@ -223,12 +317,7 @@ struct Read {
 
 impl Read {
     fn new(job: &Job) -> Result<Read, Stop> {
-        let machine = match Path::new(&job.machine) {
-            path if path.extension().is_some_and(|ending| ending == "toml") => {
-                Machine::read(&text(path)?, &files::name(path))?
-            }
-            _ => Machine::read(library(&job.machine)?, &job.machine)?,
-        };
+        let machine = machine(&job.machine)?;
         let (table, file) = match &job.materials {
             Some(path) => (text(path)?, files::name(path)),
             None => (material::TABLE.to_owned(), String::from("materials.toml")),
@@ -311,8 +400,7 @@ fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
     let drawing = Drawing::new(job, &inputs)?;
     progress.step("reading");
     let Read { machine, material, shapes } = Read::new(job)?;
-    let is_binary = machine.program.format == ::glass::machine::Format::Binary;
-    let text = if is_binary { files::read(program)? } else { files::text(program)? };
+    let text = program_text(program, &machine)?;
     progress.step("proving");
     let settings = settings(job, Ray::Marginal, Order::Fastest, Effort::default());
     let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
@@ -358,6 +446,21 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
         ));
     }
     rows.push(("nearest", nearest(&report.distances, cloud)));
+    if report.blocks > 1 {
+        rows.push(("blocks", format!("{}, each with all points", report.blocks)));
+    }
+    if let Some((moved, merged)) = report.moved {
+        rows.push((
+            "moved",
+            format!("by {moved:.3} mm at most, to where a motion passes on a tick; {merged} points fell together or out of the margin"),
+        ));
+    }
+    if report.in_motion > 0 {
+        rows.push(("in motion", format!("{} of {} pulses", report.in_motion, proof.pulses)));
+    }
+    if let Some(part) = report.unreachable {
+        rows.push(("reach", format!("the arm misses {:.1} % of the block", 100.0 * part)));
+    }
     if made.report.planned_ticks.is_some() {
         let ray = match report.ray {
             Ray::Marginal => "marginal",

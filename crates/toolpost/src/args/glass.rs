@@ -62,6 +62,35 @@ pub enum GlassCommand {
         #[command(flatten)]
         job: Box<Job>,
     },
+    /// Run a program tick by tick: pulses that make no point, a stop, and going on from a point.
+    Simulate {
+        /// The program.
+        program: PathBuf,
+        /// Name in the library, or a file ending in .toml.
+        #[arg(long, short, value_name = "NAME|FILE")]
+        machine: String,
+        /// The first point that is made, from 1; those before it are made already.
+        #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+        from: u32,
+        /// When the run is stopped [default: at its end].
+        #[arg(long, value_name = "S", value_parser = length)]
+        until: Option<f64>,
+        /// The part of the pulses that make no point.
+        #[arg(long, value_name = "PART", value_parser = part)]
+        misses: Option<f64>,
+        /// Listen to the sensor: a pulse that made no point is fired again, up to three times, where the axes stand still.
+        #[arg(long)]
+        feedback: bool,
+        /// Chooses which pulses make no point.
+        #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+        seed: u64,
+        /// When the run begins, as 2026-11-26 20:15:00.
+        #[arg(long, value_name = "DATE", value_parser = start, default_value = "2000-01-01 00:00:00")]
+        start: i64,
+        /// Where to save the statistics: duration, progress, start, predicted end, counted points.
+        #[arg(long, short, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
     /// Check the smallest distance of the points of a list or a cloud, and name the nearest two.
     Check {
         /// The points (.xyz, .txt, .csv, .cft, .ply).
@@ -112,6 +141,9 @@ pub struct Job {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
+    /// How many equal blocks are made, of machines with places for several.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub blocks: u32,
     /// Smallest distance of two points [default: that of the lens].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub spacing: Option<f64>,
@@ -306,12 +338,26 @@ pub enum Sorting {
     Kdz,
     /// `Sort by layers` of the source.
     Layers,
+    /// In motion along arcs of the arm.
+    Arcs,
+    /// In motion along tracks of the table.
+    Tracks,
 }
 
-const ORDERS: [Choice<Sorting>; 3] = [
+const ORDERS: [Choice<Sorting>; 5] = [
     ("fastest", "In the fewest laser ticks, without shadowing a point", Sorting::Fastest),
     ("kdz", "From the lowest point to that of least max(dx, dy) + K dz", Sorting::Kdz),
     ("layers", "Layer by layer from below, in each to the nearest point", Sorting::Layers),
+    (
+        "arcs",
+        "In motion along arcs of a polar machine's arm, to which the points are moved",
+        Sorting::Arcs,
+    ),
+    (
+        "tracks",
+        "In motion along circles of a polar machine's table, to which the points are moved",
+        Sorting::Tracks,
+    ),
 ];
 
 const RAYS: [Choice<Ray>; 2] = [
@@ -333,6 +379,12 @@ fn block(text: &str) -> Result<[f64; 3], String> {
 fn part(text: &str) -> Result<f64, String> {
     let part = text.parse::<f64>().ok().filter(|part| *part > 0.0 && *part <= 1.0);
     part.ok_or_else(|| String::from("a number greater than 0 is needed, up to 1, such as 0.5"))
+}
+
+/// A date, as seconds since 1970.
+fn start(text: &str) -> Result<i64, String> {
+    ::glass::simulate::seconds_of(text)
+        .ok_or_else(|| String::from("a date is needed, such as 2026-11-26 20:15:00"))
 }
 
 /// Two slopes.

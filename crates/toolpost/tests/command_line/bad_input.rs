@@ -445,6 +445,11 @@ const READERS: &[(&str, &str, &str)] = &[
         "in.toml",
         "glass prove out.prg cloud.xyz --block 9x9x9 --material k9 --materials in.toml --lens 70 -m glass-xyz-50hz",
     ),
+    (
+        "../../crates/glass/machines/glass-xyz-100hz.toml",
+        "in.toml",
+        "glass simulate out.prg -m in.toml",
+    ),
     ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
     ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
     ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),

@@ -96,6 +96,58 @@ fn what_cannot_be_engraved_is_refused_and_saves_nothing() {
 }
 
 #[test]
+fn a_polar_machine_makes_several_blocks_in_motion_and_an_edited_program_is_proven() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    let polar = ["--machine", "glass-polar-100hz", "--blocks", "4"];
+    for order in ["arcs", "tracks", "fastest"] {
+        let said = engrave(&folder, &[&polar[..], &["--order", order]].concat());
+        assert!(said.code == 0 && said.out.contains("4, each with all points"), "{said:?}");
+        let program = folder.read("roof.prg");
+        assert!(program.contains(" BLOCKS 4\nN2 "), "{program:.200}");
+    }
+    let prove = |blocks: &str| {
+        let words = ["glass", "prove", "roof.prg", "roof.stl", "--block", "20x20x30"];
+        let more = ["--material", "k9", "--lens", "70", "--machine", "glass-polar-100hz"];
+        folder.run(&[&words[..], &more[..], &["--blocks", blocks]].concat())
+    };
+    assert_eq!(prove("4").code, 0);
+    let said = prove("3");
+    assert!(said.code == 1 && said.err.contains("is for 4 blocks, not for 3"), "{said:?}");
+    let said = engrave(&folder, &["--order", "tracks"]);
+    assert!(said.code == 2 && said.err.contains("no turning table"), "{said:?}");
+}
+
+#[test]
+fn a_run_is_simulated_stopped_and_goes_on() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    assert_eq!(engrave(&folder, &[]).code, 0);
+    let simulate = |more: &[&str]| {
+        folder.run(&[&["glass", "simulate", "roof.prg", "-m", "glass-xyz-100hz"], more].concat())
+    };
+    let report: serde_json::Value =
+        serde_json::from_str(&folder.read("roof.prg.report.json")).unwrap();
+    let seconds = report["glass"]["proof"]["seconds"].as_f64().unwrap();
+    let said = simulate(&[]);
+    assert!(said.code == 0 && said.out.contains(&format!("{seconds:.2} s; ")), "{said:?}");
+    let said =
+        simulate(&["--until", "2", "--start", "2026-11-26 20:15:00", "-o", "statistica.txt"]);
+    assert!(said.code == 0 && said.out.contains("go on by --from "), "{said:?}");
+    let text = folder.read("statistica.txt");
+    assert!(
+        text.contains("Start date: 2026-11-26 20:15:00\nPredicted end: 2026-11-26 20:15:"),
+        "{text}"
+    );
+    let said = simulate(&["--misses", "0.1", "--feedback"]);
+    assert!(said.code == 0, "{said:?}");
+    assert!(simulate(&["--from", "99999999"]).err.contains("no point 99999999"));
+    assert_eq!(simulate(&["--start", "tomorrow"]).code, 2);
+    folder.write("roof.prg", "N1 BEGIN\n");
+    assert!(simulate(&[]).err.contains("roof.prg:1: error[glass-program]"));
+}
+
+#[test]
 fn an_edited_program_is_proven_against_its_body() {
     let folder = Folder::empty();
     folder.write("roof.stl", body());
