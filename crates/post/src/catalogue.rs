@@ -366,6 +366,11 @@ pub(crate) const VARIABLES: &[Parameter] = &[
         "Whether the coolant is known to be off: since the program has switched it off, or changed a tool.",
     ),
     variable(
+        "coolant.off",
+        "",
+        "The M function that ends the coolant that was switched on last: `M9`, or what `[coolant]` names.",
+    ),
+    variable(
         "place.home",
         "",
         "Whether Z is known to be home: since a `retract` or a tool change, and nothing has moved.",

@@ -270,7 +270,7 @@ impl Scope {
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first, first.then_some(&tool)),
             spindle: spindle_value(first, first, !first),
-            coolant: coolant_value(!first, !first),
+            coolant: coolant_value(machine, !first, !first),
             place: place_value(!first, first, !first, [!first; 2]),
             cut: cut_value(!first, first),
             text: Value::from(text),
@@ -305,7 +305,7 @@ impl Scope {
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true, None),
             spindle: spindle_value(true, true, false),
-            coolant: coolant_value(false, false),
+            coolant: coolant_value(machine, false, false),
             place: place_value(false, false, false, [false; 2]),
             cut: cut_value(false, false),
             text: Value::from(""),
@@ -330,9 +330,17 @@ pub(crate) fn spindle_value(changed: bool, clockwise: bool, stopped: bool) -> Va
     map(members.map(|(key, value)| (key, Value::from(value))))
 }
 
-/// The coolant as templates see it.
-pub(crate) fn coolant_value(stopped: bool, through: bool) -> Value {
-    map([("stopped", Value::from(stopped)), ("through", Value::from(through))])
+/// The coolant as templates see it: whether it is known to be off, whether that through the tool was switched on last, and the M
+/// function that ends what was.
+pub(crate) fn coolant_value(machine: &Machine, stopped: bool, through: bool) -> Value {
+    let functions = machine.coolant;
+    let apart = functions.through_off.filter(|_| through);
+    let off = apart.or(functions.off).unwrap_or(9);
+    map([
+        ("stopped", Value::from(stopped)),
+        ("through", Value::from(through)),
+        ("off", Value::from(format!("M{off}"))),
+    ])
 }
 
 /// The cuts to come, as templates see them.

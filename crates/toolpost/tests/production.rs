@@ -196,10 +196,10 @@ fn a_fanuc_has_coolant_through_the_tool_where_its_file_states_it() {
         source::apt::read("c.cls", text.as_bytes(), &Default::default()).unwrap().program
     };
     let own = machine(
-        "extends = \"generic-3axis-fanuc\"\n[coolant]\nflood = 70\nthrough = 50\n[blocks]\ncoolant_flood = \"{{N}} M70\"\n\
-         coolant_through = \"{{N}} M50\"\n",
+        "extends = \"generic-3axis-fanuc\"\n[coolant]\nflood = 28\nthrough = 26\n[blocks]\ncoolant_flood = \"{{N}} M28\"\n\
+         coolant_through = \"{{N}} M26\"\n",
     );
-    for (coolant, function, other) in [("THRU", "M50", "M70"), ("FLOOD", "M70", "M50")] {
+    for (coolant, function, other) in [("THRU", "M26", "M28"), ("FLOOD", "M28", "M26")] {
         let source = source(coolant);
         let text = written(&source, &own);
         assert!(text.lines().any(|line| line.ends_with(function)), "{text}");
@@ -216,9 +216,33 @@ fn a_fanuc_has_coolant_through_the_tool_where_its_file_states_it() {
     assert_eq!(refused[0].rule.name(), "missing-block", "{refused:?}");
     let twice = machine::load_text(
         "two.toml",
-        "extends = \"fanuc-31i\"\n[coolant]\nflood = 50\nthrough = 50\n",
+        "extends = \"fanuc-31i\"\n[coolant]\nflood = 26\nthrough = 26\n",
     );
     assert!(twice.unwrap_err().message.contains("two things"));
+}
+
+/// The table and the block that switches it on are all that a machine file needs: what ends a coolant is taken from the table at
+/// tool changes, stops and the end. There M9 would leave on what has a function of its own to end it.
+#[test]
+fn coolant_through_the_tool_is_ended_by_its_own_function_on_every_mill() {
+    let text = "UNITS/MM\nLOADTL/1\nCUTTER/10,0\nSPINDL/900,RPM,CLW\nFEDRAT/100,MMPM\nCOOLNT/THRU\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-1\n\
+                COOLNT/OFF\nGOTO/5,0,-1\nCOOLNT/THRU\nGOTO/9,0,-1\nRAPID\nGOTO/0,0,20\nSTOP\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-2\nRAPID\nGOTO/0,0,20\n\
+                LOADTL/2\nCUTTER/8,0\nSPINDL/800,RPM,CLW\nCOOLNT/THRU\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,20\nFINI\n";
+    let source = source::apt::read("c.cls", text.as_bytes(), &Default::default()).unwrap().program;
+    for mill in ["sinumerik", "fanuc", "heidenhain", "linuxcnc"] {
+        let own = machine(&format!(
+            "extends = \"generic-3axis-{mill}\"\n[coolant]\nthrough = 26\nthrough_off = 27\n[blocks]\ncoolant_through = \"{{{{N}}}} M26\"\n"
+        ));
+        let text = written(&source, &own);
+        let ends: Vec<usize> = text.match_indices("M27").map(|(at, _)| at).collect();
+        // In the cut, before the stop, before the tool change, before the end.
+        assert_eq!(ends.len(), 4, "{mill}: {text}");
+        for at in ends {
+            let mut damaged = text.clone();
+            damaged.replace_range(at..at + 3, "M9");
+            assert_eq!(rules(&source, &own, &damaged), ["coolant"], "{mill} {at}: {damaged}");
+        }
+    }
 }
 
 /// Setting 52 ("G83 Retract Above R"): chips are cleared above R, where Z has to have room for it.

@@ -15,6 +15,7 @@ pub(crate) mod arm;
 pub mod budget;
 mod channel;
 pub(crate) mod compensation;
+pub(crate) mod coolant;
 pub(crate) mod corner;
 pub mod decimal;
 pub mod expression;

@@ -506,6 +506,7 @@ impl<'a> Walk<'a> {
                     set: self.writer.set_words(),
                     spindle: spindle_value(self.sent.speed_changed(), clockwise, spindle_stopped),
                     coolant: coolant_value(
+                        self.machine,
                         known && self.sent.has_coolant(Coolant::Off),
                         self.sent.last_coolant() == Coolant::Through,
                     ),

@@ -294,8 +294,8 @@ group! {
         ignores_optional_stop: bool = false;
         /// The end of the program switches spindle and coolant off.
         end_switches_off: bool = true;
-        /// Coolant through the tool has a function of its own to end it.
-        ends_through_apart: bool = false;
+        /// The M function that ends coolant through the tool, where that for all coolant leaves it on.
+        ends_through: Option<u32> = None;
         /// `M19` takes P and Q in addition to R.
         orients_by_pq: bool = false;
     }

@@ -105,7 +105,7 @@ pub(crate) static FACTS: Facts = Facts {
     functions: Functions {
         // *Mill Operator's Manual*, M00.
         stop_switches_off: true,
-        ends_through_apart: true,
+        ends_through: Some(89),
         stop_leaves_on: false,
         ..Functions::FANUC
     },

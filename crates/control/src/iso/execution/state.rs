@@ -36,8 +36,6 @@ pub(crate) struct State {
     /// `M29` has been given: the next tapping cycle turns the spindle itself.
     pub rigid: bool,
     pub coolant: Coolant,
-    /// Whether the word that ends all coolant ends that through the tool, too.
-    pub off_ends_through: bool,
     /// Last T.
     pub selected: Option<u32>,
     /// Tool in the spindle.
@@ -216,9 +214,6 @@ impl State {
             surface: None,
             rigid: false,
             coolant: Coolant::Off,
-            off_ends_through: settings.coolant.through.is_some()
-                && settings.coolant.through_off.is_none()
-                && !facts.functions.ends_through_apart,
             selected: None,
             tool: None,
             length: Length::None,
@@ -367,7 +362,6 @@ impl State {
             surface: _,
             rigid: _,
             coolant: _,
-            off_ends_through: _,
             work_offset: _,
             purpose: _,
             homes: _,

@@ -5,9 +5,10 @@ use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::{AtEnd, Facts};
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
+use crate::kernel::coolant::{Coolants, Doubtful};
 use crate::{Settings, WholeNumbers};
 use program::Rule;
-use program::{Coolant, PathMode, Spindle, WorkOffset};
+use program::{Coolant, CoolantSwitch, PathMode, Spindle, WorkOffset};
 
 /// A virtual control: its dialect, its axes and its state.
 #[derive(Debug)]
@@ -16,6 +17,7 @@ pub(crate) struct Control {
     /// Which of A, B, C exist.
     pub axes: [bool; 3],
     pub whole_numbers: WholeNumbers,
+    pub coolants: Coolants,
     pub state: State,
 }
 
@@ -24,6 +26,7 @@ pub(super) struct Step<'s, 'b, 't> {
     pub facts: &'static Facts,
     pub axes: [bool; 3],
     pub whole_numbers: WholeNumbers,
+    pub coolants: &'s Coolants,
     pub state: &'s mut State,
     pub block: &'b mut Block<'t>,
     pub actions: &'s mut Vec<Action>,
@@ -37,7 +40,12 @@ impl Control {
             true => settings.setup.whole_numbers,
             false => WholeNumbers::Units,
         };
-        Control { facts, axes, whole_numbers, state: State::new(facts, axes, settings) }
+        let coolants = Coolants {
+            functions: settings.coolant,
+            adds: !facts.functions.builders,
+            ends_through: facts.functions.ends_through,
+        };
+        Control { facts, axes, whole_numbers, coolants, state: State::new(facts, axes, settings) }
     }
 
     /// # Errors
@@ -58,12 +66,12 @@ impl Control {
         block: &mut Block,
         actions: &mut Vec<Action>,
     ) -> Result<(), Fault> {
-        let Control { facts, axes, whole_numbers, state } = self;
+        let Control { facts, axes, whole_numbers, coolants, state } = self;
         let (facts, axes, whole_numbers) = (*facts, *axes, *whole_numbers);
         if state.flat && state.position.z.is_nan() {
             state.position.z = 0.0;
         }
-        Step { facts, axes, whole_numbers, state, block, actions }.run()
+        Step { facts, axes, whole_numbers, coolants, state, block, actions }.run()
     }
 }
 
@@ -254,14 +262,16 @@ impl Step<'_, '_, '_> {
             Some(_) if !self.facts.functions.builders => self.turn(Spindle::Off),
             _ => {}
         }
-        match self.block.m(Group::Coolant) {
-            Some(M::Mist) => self.cool(Coolant::Mist)?,
-            Some(M::Flood) => self.cool(Coolant::Flood)?,
-            Some(M::Through) => self.cool(Coolant::Through)?,
-            Some(_) if !self.facts.functions.builders => self.cool(Coolant::Off)?,
-            _ => {}
+        match self.coolant_switch() {
+            // What switches off comes last where the builder may have it so.
+            Some(CoolantSwitch::Off | CoolantSwitch::ThroughOff)
+                if self.facts.functions.builders =>
+            {
+                Ok(())
+            }
+            Some(switch) => self.switch_coolant(switch),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// M functions for which nothing moves.
@@ -296,29 +306,31 @@ impl Step<'_, '_, '_> {
         self.block.take(b'P').is_some_and(|word| word.value == 0.0)
     }
 
-    fn cool(&mut self, coolant: Coolant) -> Result<(), Fault> {
-        let running = self.state.coolant;
-        let coolant = match (running, coolant) {
-            (Coolant::Flood | Coolant::FloodAndMist, Coolant::Mist)
-            | (Coolant::Mist | Coolant::FloodAndMist, Coolant::Flood)
-                if !self.facts.functions.builders =>
-            {
-                Coolant::FloodAndMist
-            }
-            (_, coolant) => coolant,
+    /// What the block does with the coolant.
+    fn coolant_switch(&self) -> Option<CoolantSwitch> {
+        self.block.m(Group::Coolant).and_then(M::coolant)
+    }
+
+    /// Switches the coolant as the block says.
+    fn switch_coolant(&mut self, switch: CoolantSwitch) -> Result<(), Fault> {
+        let doubt = |doubt: Box<Doubtful>| {
+            self.block.at_group(Group::Coolant, Rule::Coolant, doubt.message).help(doubt.help)
         };
-        if coolant == running {
-            return Ok(());
-        }
-        let adds = coolant == Coolant::FloodAndMist || running == Coolant::Off;
-        if coolant != Coolant::Off && !adds {
-            let message = "one coolant runs already: whether both then run is up to the machine";
-            let fault = self.block.at_group(Group::Coolant, Rule::Coolant, message);
-            return Err(fault.help("write M9 first").into());
-        }
-        self.state.coolant = coolant;
-        self.actions.push(Action::Coolant(coolant));
+        let coolant = self.coolants.behind(self.state.coolant, switch).map_err(doubt)?;
+        self.set_coolant(coolant);
         Ok(())
+    }
+
+    /// The end of the program, or a stop that ends all coolant of the control itself.
+    fn reset_coolant(&mut self) {
+        self.set_coolant(self.coolants.behind_reset(self.state.coolant));
+    }
+
+    fn set_coolant(&mut self, coolant: Coolant) {
+        if coolant != self.state.coolant {
+            self.state.coolant = coolant;
+            self.actions.push(Action::Coolant(coolant));
+        }
     }
 
     fn dwell(&mut self) -> Result<(), Fault> {
@@ -484,17 +496,10 @@ impl Step<'_, '_, '_> {
             if self.block.m(Group::Spindle) == Some(M::SpindleOff) {
                 self.turn(Spindle::Off);
             }
-            match (self.block.m(Group::Coolant), self.state.coolant) {
-                (Some(M::CoolantOff), Coolant::Flood | Coolant::Mist)
-                | (Some(M::ThroughOff), Coolant::Through) => self.cool(Coolant::Off)?,
-                (Some(M::CoolantOff), Coolant::Through) if self.state.off_ends_through => {
-                    self.cool(Coolant::Off)?;
-                }
-                (Some(M::CoolantOff), Coolant::Through) => {
-                    let message = "this leaves the coolant through the tool on, which has a function of its own to end it (M89 of Haas)";
-                    return Err(self.block.at_group(Group::Coolant, Rule::Coolant, message));
-                }
-                _ => {}
+            if let Some(switch @ (CoolantSwitch::Off | CoolantSwitch::ThroughOff)) =
+                self.coolant_switch()
+            {
+                self.switch_coolant(switch)?;
             }
         }
         match self.block.m(Group::Flow) {
@@ -510,12 +515,12 @@ impl Step<'_, '_, '_> {
             Some(M::Stop) => {
                 self.stops_while_running();
                 self.actions.push(Action::Stop);
-                self.stop_all()?;
+                self.stop_all();
             }
             Some(M::OptionalStop) if !self.facts.functions.ignores_optional_stop => {
                 self.stops_while_running();
                 self.actions.push(Action::OptionalStop);
-                self.stop_all()?;
+                self.stop_all();
             }
             Some(M::End) => {
                 self.looks_ahead_no_more();
@@ -569,7 +574,7 @@ impl Step<'_, '_, '_> {
         // The others switch off by themselves; on FANUC it is the builder's choice, on Mach3 the operator's.
         if self.facts.functions.end_switches_off {
             self.turn(Spindle::Off);
-            self.cool(Coolant::Off)?;
+            self.reset_coolant();
         }
         if self.facts.reset.at_end == AtEnd::Resets
             && self.state.work_offset.is_some_and(|number| number != WorkOffset::FIRST.number())
@@ -590,12 +595,11 @@ impl Step<'_, '_, '_> {
 
     /// `M0` and `M1` of Haas stop the spindle and the coolant, and nothing starts them again (*Mill Operator's Manual*,
     /// M00). `M1` counts as if the operator had asked for it.
-    fn stop_all(&mut self) -> Result<(), Fault> {
+    fn stop_all(&mut self) {
         if self.facts.functions.stop_switches_off {
             self.turn(Spindle::Off);
-            self.cool(Coolant::Off)?;
+            self.reset_coolant();
         }
-        Ok(())
     }
 
     /// What happens without radius compensation: where `G40` still waits for a move, it ends here.

@@ -90,6 +90,10 @@ impl Step<'_, '_, '_> {
         }
         self.not_compensated("a tool change")?;
         self.looks_ahead_no_more();
+        if let Err(doubt) = self.coolants.allow_change(self.state.coolant) {
+            let fault = self.block.at_group(Group::ToolChange, Rule::Coolant, doubt.message);
+            return Err(fault.help(doubt.help).into());
+        }
         self.put_in(number);
         self.turn(Spindle::Off);
         // The machine may go to a place of its own for the change.

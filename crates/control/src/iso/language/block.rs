@@ -355,6 +355,9 @@ impl<'a> Block<'a> {
                 })
                 .or_else(|| self.of_the_machine(word.value))
             {
+                Some((Group::Coolant, _)) if self.is_controls_own(facts, word.value) => {
+                    return Err(self.taken_for_coolant(word));
+                }
                 Some((group, meaning)) => {
                     if self.groups & group.bit() != 0 {
                         return Err(self.same_group(group, at, end));
@@ -430,6 +433,14 @@ impl<'a> Block<'a> {
         let functions = self.settings.coolant;
         let whole = (number.fract() == 0.0 && number >= 0.0).then_some(number as u32)?;
         functions.switch(whole).map(|switch| (Group::Coolant, M::of_coolant(switch)))
+    }
+
+    /// Whether the control has a use of its own for an M function of this number, which a machine file cannot give to coolant.
+    fn is_controls_own(&self, facts: &Facts, number: f64) -> bool {
+        let is_free = |(group, meaning): (Group, M)| {
+            group == Group::Coolant || matches!(meaning, M::Neutral(_))
+        };
+        facts.words.m(number).map_or(facts.why_refused(b'M', number).is_some(), |m| !is_free(m))
     }
 
     /// Whether a word of the control is what it usually is: the machine's file lists its number as one of the builder's, or gives

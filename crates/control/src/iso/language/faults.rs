@@ -88,6 +88,19 @@ impl Block<'_> {
         fault.at(self.line, self.text, start, end).into()
     }
 
+    /// An M function of the control itself that the machine file names in `[coolant]`.
+    #[cold]
+    pub(super) fn taken_for_coolant(&self, word: &Word) -> Fault {
+        let (start, end) = (word.start as usize, word.end as usize);
+        let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
+        let message = format!(
+            "{shown} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
+        );
+        let fault = Diagnostic::error(Rule::Coolant, message);
+        let help = "name the M function that switches the coolant of this machine in [coolant]";
+        fault.help(help).at(self.line, self.text, start, end).into()
+    }
+
     #[cold]
     pub(super) fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {

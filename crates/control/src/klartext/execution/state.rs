@@ -9,6 +9,7 @@ use crate::Settings;
 use crate::ToolData;
 use crate::event::{Action, Orientation, Position, Risk};
 use crate::kernel::compensation::Terms;
+use crate::kernel::coolant::{Coolants, Doubtful};
 use crate::kernel::{Channel, Outcome};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
@@ -16,7 +17,8 @@ use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, Readable};
 use geom::Vec3;
 use program::{
-    Auxiliary, Axes, Compensation, Coolant, CoolantFunctions, Cycle, Feed, Rule, Spindle,
+    Auxiliary, Axes, Compensation, Coolant, CoolantFunctions, CoolantSwitch, Cycle, Feed, Rule,
+    Spindle,
 };
 
 use std::collections::HashMap;
@@ -329,7 +331,18 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Outcome {
+    /// How the coolants of the machine go with each other.
+    pub(super) fn coolants(&self) -> Coolants {
+        Coolants { functions: self.settings.coolant, adds: false, ends_through: None }
+    }
+
+    fn switch_coolant(&mut self, s: &Scanner, switch: CoolantSwitch) -> Outcome {
+        let doubt =
+            |doubt: Box<Doubtful>| s.error_block(Rule::Coolant, doubt.message).help(doubt.help);
+        self.set_coolant(self.coolants().behind(self.coolant, switch).map_err(doubt)?)
+    }
+
+    fn set_coolant(&mut self, coolant: Coolant) -> Outcome {
         self.registers.preassign(111, f64::from(coolant != Coolant::Off));
         if self.coolant != coolant {
             self.coolant = coolant;
@@ -359,15 +372,6 @@ impl<'a, 's> Control<'a, 's> {
         self.channel.switch(self.line, side, terms)
     }
 
-    fn start_coolant(&mut self, s: &Scanner, coolant: Coolant) -> Outcome {
-        let both = self.coolant != Coolant::Off && self.coolant != coolant;
-        if both {
-            let message = "one coolant runs already: whether both then run is up to the machine; write M9 first";
-            return Err(s.error_block(Rule::Coolant, message));
-        }
-        self.set_coolant(coolant)
-    }
-
     /// Does the M functions of a block that act at that moment.
     pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Outcome {
         if all.is_empty() {
@@ -389,12 +393,12 @@ impl<'a, 's> Control<'a, 's> {
             Function::Clockwise { coolant } => {
                 let speed = self.needs_speed(s)?;
                 self.set_spindle(Spindle::Clockwise(speed))?;
-                coolant.map_or(Ok(()), |coolant| self.start_coolant(s, coolant))
+                coolant.map_or(Ok(()), |coolant| self.switch_coolant(s, coolant))
             }
             Function::CounterClockwise { coolant } => {
                 let speed = self.needs_speed(s)?;
                 self.set_spindle(Spindle::CounterClockwise(speed))?;
-                coolant.map_or(Ok(()), |coolant| self.start_coolant(s, coolant))
+                coolant.map_or(Ok(()), |coolant| self.switch_coolant(s, coolant))
             }
             Function::SpindleStop => self.set_spindle(Spindle::Off),
             Function::ToolChange if !self.tool_is_due => {
@@ -403,8 +407,7 @@ impl<'a, 's> Control<'a, 's> {
                 Err(s.error_block(Rule::MFunction, message).help(help).into())
             }
             Function::ToolChange => self.set_spindle(Spindle::Off),
-            Function::Coolant(coolant) => self.start_coolant(s, coolant),
-            Function::CoolantOff => self.set_coolant(Coolant::Off),
+            Function::Coolant(switch) => self.switch_coolant(s, switch),
             Function::Stop => {
                 // On every TNC it stops the spindle; the coolant on the older ones (TNC 360, 640: "M0").
                 self.stops_while(self.coolant != Coolant::Off)?;
@@ -474,7 +477,7 @@ impl<'a, 's> Control<'a, 's> {
     /// Spindle and coolant off: what a stop of the program, its end and a tool change bring.
     pub(super) fn stop_all(&mut self) -> Outcome {
         self.set_spindle(Spindle::Off)?;
-        self.set_coolant(Coolant::Off)
+        self.set_coolant(self.coolants().behind_reset(self.coolant))
     }
 
     fn needs_speed(&self, s: &Scanner) -> Outcome<f64> {

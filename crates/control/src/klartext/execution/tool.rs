@@ -147,6 +147,9 @@ impl Control<'_, '_> {
             let error: Box<Diagnostic> = s.error_block(Rule::ToolCenter, message);
             return Err(error.help("program M129 first").into());
         }
+        if let Err(doubt) = self.coolants().allow_change(self.coolant) {
+            return Err(s.error_block(Rule::Coolant, doubt.message).help(doubt.help).into());
+        }
         self.stop_all()?;
         let mut table = self.settings.setup.tools.iter();
         let data = match tool.name.is_empty() {

@@ -3,7 +3,7 @@
 use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
 use crate::kernel::Outcome;
-use program::{Coolant, CoolantFunctions, CoolantSwitch, Rule};
+use program::{CoolantFunctions, CoolantSwitch, Rule};
 
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,17 +17,15 @@ pub(crate) enum Function {
     /// End of the program: `M2`, `M30`.
     End,
     /// Spindle clockwise, and coolant where `M13` says so.
-    Clockwise { coolant: Option<Coolant> },
+    Clockwise { coolant: Option<CoolantSwitch> },
     /// Spindle counter-clockwise, and coolant where `M14` says so.
-    CounterClockwise { coolant: Option<Coolant> },
+    CounterClockwise { coolant: Option<CoolantSwitch> },
     /// Spindle stop: `M5`.
     SpindleStop,
     /// `M6`: the tool call before it has made the tool change, and the spindle stands.
     ToolChange,
-    /// `M8`, and what the machine's file has besides.
-    Coolant(Coolant),
-    /// `M9`.
-    CoolantOff,
+    /// `M8`, `M9`, and what the machine's file has besides.
+    Coolant(CoolantSwitch),
     /// The block gives machine coordinates (`M91`), or coordinates that count from the datum of the builder (`M92`).
     MachineCoordinates { builders: bool },
     /// Calls the cycle after every positioning block: `M89`.
@@ -66,10 +64,10 @@ const FUNCTIONS: [(u16, Function); 26] = [
     (4, Function::CounterClockwise { coolant: None }),
     (5, Function::SpindleStop),
     (6, Function::ToolChange),
-    (8, Function::Coolant(Coolant::Flood)),
-    (9, Function::CoolantOff),
-    (13, Function::Clockwise { coolant: Some(Coolant::Flood) }),
-    (14, Function::CounterClockwise { coolant: Some(Coolant::Flood) }),
+    (8, Function::Coolant(CoolantSwitch::Flood)),
+    (9, Function::Coolant(CoolantSwitch::Off)),
+    (13, Function::Clockwise { coolant: Some(CoolantSwitch::Flood) }),
+    (14, Function::CounterClockwise { coolant: Some(CoolantSwitch::Flood) }),
     (30, Function::End),
     (89, Function::CallCyclesModally),
     (91, Function::MachineCoordinates { builders: false }),
@@ -142,7 +140,15 @@ impl Function {
         let stated = control.coolant_functions();
         let whole = (number.fract() == 0.0).then_some(number as u32);
         if let Some(switch) = whole.and_then(|number| stated.switch(number)) {
-            return Ok(Function::of_coolant(switch));
+            if vocabulary().any(|n| is(&n) && !matches!(n, 8 | 9)) {
+                let message = format!(
+                    "M{number} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
+                );
+                let help =
+                    "name the M function that switches the coolant of this machine in [coolant]";
+                return Err(s.error(Rule::Coolant, word.span, message).help(help).into());
+            }
+            return Ok(Function::Coolant(switch));
         }
         let moved = [(8.0, CoolantSwitch::Flood), (9.0, CoolantSwitch::Off)];
         if moved.iter().any(|(usual, switch)| *usual == number && stated.is_stated(*switch)) {
@@ -186,15 +192,6 @@ impl Function {
         Err(s.error(Rule::MFunction, word.span, message))
     }
 
-    fn of_coolant(switch: CoolantSwitch) -> Function {
-        match switch {
-            CoolantSwitch::Flood => Function::Coolant(Coolant::Flood),
-            CoolantSwitch::Mist => Function::Coolant(Coolant::Mist),
-            CoolantSwitch::Through => Function::Coolant(Coolant::Through),
-            CoolantSwitch::Off | CoolantSwitch::ThroughOff => Function::CoolantOff,
-        }
-    }
-
     /// When it acts (TNC manuals, table of the M functions).
     pub(super) fn when(self) -> When {
         match self {
@@ -204,7 +201,7 @@ impl Function {
             | Function::End
             | Function::SpindleStop
             | Function::ToolChange
-            | Function::CoolantOff
+            | Function::Coolant(CoolantSwitch::Off | CoolantSwitch::ThroughOff)
             | Function::CallCyclesModally
             | Function::CallCycle
             | Function::ReleaseTip => When::End,
@@ -215,12 +212,12 @@ impl Function {
 
 /// The coolant of `M13` and `M14`: the control switches on what `M8` does (TNC 155, table of the M functions: their outputs are "Spindle
 /// clockwise" and "Coolant on").
-fn coolant_of_m8(s: &Scanner, word: &Word, stated: CoolantFunctions) -> Outcome<Coolant> {
+fn coolant_of_m8(s: &Scanner, word: &Word, stated: CoolantFunctions) -> Outcome<CoolantSwitch> {
     match stated.switch(8) {
-        Some(CoolantSwitch::Flood) => Ok(Coolant::Flood),
-        Some(CoolantSwitch::Mist) => Ok(Coolant::Mist),
-        Some(CoolantSwitch::Through) => Ok(Coolant::Through),
-        None if !stated.is_stated(CoolantSwitch::Flood) => Ok(Coolant::Flood),
+        Some(
+            switch @ (CoolantSwitch::Flood | CoolantSwitch::Mist | CoolantSwitch::Through),
+        ) => Ok(switch),
+        None if !stated.is_stated(CoolantSwitch::Flood) => Ok(CoolantSwitch::Flood),
         Some(CoolantSwitch::Off | CoolantSwitch::ThroughOff) | None => {
             let message = "M13 and M14 switch the coolant of M8, and [coolant] of the machine file names another M function";
             let help = "write M3 or M4, and the M function of the coolant in a block of its own";

@@ -14,6 +14,7 @@ use crate::event::{Action, Event, FeedPath, Risk};
 use crate::kernel::Channel;
 use crate::kernel::Outcome;
 use crate::kernel::compensation::Terms;
+use crate::kernel::coolant::{Coolants, Doubtful};
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
@@ -64,6 +65,13 @@ fn is_own(m: u32) -> bool {
     matches!(m, 6 | 19 | AUTOMATIC_GEAR)
         || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(&m))
         || GEARS.contains(&m)
+}
+
+/// Why a block that switches or leaves on a coolant is refused.
+fn refused(source: &Source, doubt: Box<Doubtful>) -> Box<Diagnostic> {
+    let mut error = source.block_error(Rule::Coolant, doubt.message);
+    error.help = doubt.help;
+    error
 }
 
 impl<'a, 's> Interpreter<'a, 's> {
@@ -238,6 +246,17 @@ impl<'a, 's> Interpreter<'a, 's> {
             return Err(source.block_error(Rule::ModalGroup, message));
         }
         for m in block.m.iter().flatten() {
+            let is_coolant = self.settings.coolant.switch(*m).is_some();
+            if is_coolant && is_own(*m) && !COOLANT.contains(m) {
+                let message = format!(
+                    "M{m} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
+                );
+                let mut error = source.block_error(Rule::Coolant, message);
+                error.help =
+                    "name the M function that switches the coolant of this machine in [coolant]"
+                        .into();
+                return Err(error);
+            }
             let is_known = match COOLANT.contains(m) {
                 true => self.coolant_of(*m).is_some(),
                 false => is_own(*m) || self.coolant_of(*m).is_some(),
@@ -430,6 +449,8 @@ impl<'a, 's> Interpreter<'a, 's> {
                     source.block_error(Rule::Tool, "M6 changes the tool, but no T has chosen one")
                 );
             };
+            let allowed = self.coolants().allow_change(self.state.coolant);
+            allowed.map_err(|doubt| refused(source, doubt))?;
             self.state.tool = Some(tool.clone());
             self.emit(source, Action::Tool(tool))?;
             self.report_spindle(source, Spindle::Off)?;
@@ -513,26 +534,20 @@ impl<'a, 's> Interpreter<'a, 's> {
         let positioned = block.rare.as_ref().is_some_and(|rare| rare.spindle_position.is_some());
         let spindle = if positioned || block.has_m(19) { Spindle::Off } else { spindle };
         self.report_spindle(source, spindle)?;
-        let coolant = block.m.iter().flatten().find_map(|m| self.coolant_of(*m));
-        let (running, coolant) = (self.state.coolant, coolant.unwrap_or(self.state.coolant));
-        let through = running == Coolant::Through || coolant == Coolant::Through;
-        if through && running != Coolant::Off && coolant != Coolant::Off && running != coolant {
-            let message = "one coolant runs already: whether both then run is up to the machine";
-            let mut error = source.block_error(Rule::Coolant, message);
-            error.help = "write M9 first".into();
-            return Err(error);
-        }
-        // Each of M7 and M8 switches its own, M9 both.
-        let both = match (running, coolant) {
-            (Coolant::Flood | Coolant::FloodAndMist, Coolant::Mist)
-            | (Coolant::Mist | Coolant::FloodAndMist, Coolant::Flood) => Coolant::FloodAndMist,
-            (_, coolant) => coolant,
+        let Some(switch) = block.m.iter().flatten().find_map(|m| self.coolant_of(*m)) else {
+            return Ok(());
         };
-        self.report_coolant(source, both)
+        let coolant = self.coolants().behind(self.state.coolant, switch);
+        self.report_coolant(source, coolant.map_err(|doubt| refused(source, doubt))?)
     }
 
-    /// The coolant that an M function leaves running: as the machine's file says, or M7, M8 and M9 where it does not.
-    fn coolant_of(&self, m: u32) -> Option<Coolant> {
+    /// How the coolants of the machine go with each other: each of M7 and M8 switches its own, M9 both.
+    fn coolants(&self) -> Coolants {
+        Coolants { functions: self.settings.coolant, adds: true, ends_through: None }
+    }
+
+    /// What an M function does with the coolant: as the machine's file says, or M7, M8 and M9 where it does not.
+    fn coolant_of(&self, m: u32) -> Option<CoolantSwitch> {
         let stated = self.settings.coolant;
         let usual = match m {
             7 => Some(CoolantSwitch::Mist),
@@ -540,13 +555,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             9 => Some(CoolantSwitch::Off),
             _ => None,
         };
-        let switch = stated.switch(m).or(usual.filter(|switch| !stated.is_stated(*switch)))?;
-        Some(match switch {
-            CoolantSwitch::Flood => Coolant::Flood,
-            CoolantSwitch::Mist => Coolant::Mist,
-            CoolantSwitch::Through => Coolant::Through,
-            CoolantSwitch::Off | CoolantSwitch::ThroughOff => Coolant::Off,
-        })
+        stated.switch(m).or(usual.filter(|switch| !stated.is_stated(*switch)))
     }
 
     /// The speed that the program has given, 1/min.
