@@ -30,6 +30,8 @@ pub(crate) struct Running {
     pub taper: f64,
     pub length_offset: Option<u32>,
     pub work_offset: Option<WorkOffset>,
+    /// Work offset and register of the length in the last motion that had those of the source, since the tool change.
+    pub last_offsets: Option<(Option<WorkOffset>, Option<u32>)>,
     pub cycle: Option<Cycle>,
     /// What happens at corners.
     pub path: PathMode,
@@ -58,6 +60,7 @@ impl Running {
             work_offset: dialect
                 .filter(|dialect| !dialect.may_keep_work_offset())
                 .and_then(Dialect::work_offset_at_reset),
+            last_offsets: None,
             cycle: None,
             path: PathMode::AsSetUp,
             clamps: [None; 3],
@@ -97,6 +100,7 @@ impl Running {
             self.coolant = Coolant::Off;
         }
         self.tool = Some(tool);
+        self.last_offsets = None;
     }
 }
 
@@ -137,24 +141,34 @@ pub(crate) fn set_up(
     work_offset(machine, wanted, running)
 }
 
-/// The same at a stop of a rapid. On its way to a tool change the last tool is still in the spindle,
-/// with the register that was its own.
-pub(crate) fn at_stop(
+/// The same on the way of a rapid to a known height. The tool comes out of a cut with the offsets of that cut, whatever the source
+/// has next; on its way to a tool change the last tool is still in the spindle.
+pub(crate) fn on_the_way(
     machine: &Machine,
     wanted: &ExpectedState,
     running: &Running,
 ) -> Option<Difference> {
-    match (wanted.tool, &running.tool) {
-        (Some(_), None) => None,
-        (Some(tool), Some(last)) if !same_tool(tool, last) => {
-            let needed = machine.capabilities.length_offset != LengthOffset::Implicit;
-            let message = || "no length offset is active on the way to the tool change".into();
-            (needed && running.length_offset.is_none())
-                .then(|| (Rule::LengthOffset, message()))
-                .or_else(|| work_offset(machine, wanted, running))
-        }
-        _ => set_up(machine, wanted, running),
+    let difference = set_up(machine, wanted, running)?;
+    if running.last_offsets == Some((running.work_offset, running.length_offset)) {
+        return None;
     }
+    if difference.0 != "tool" {
+        return Some(difference);
+    }
+    let called = running.tool.as_ref().map(|tool| tool.number).filter(|number| *number > 0);
+    let own = match machine.capabilities.length_offset {
+        LengthOffset::Implicit => return work_offset(machine, wanted, running),
+        LengthOffset::One => Some(1),
+        LengthOffset::ToolNumber => called,
+    };
+    let message = match running.length_offset {
+        None => "no length offset is active on the way to the tool change".into(),
+        Some(is) if own.is_some_and(|own| own != is) => format!(
+            "length offset {is} is active on the way to the tool change, which is not that of the tool in the spindle"
+        ),
+        Some(_) => return work_offset(machine, wanted, running),
+    };
+    Some((Rule::LengthOffset, message))
 }
 
 /// The work offset, or the register of a tool length, that is active at the end and was not in the last cut. The first work offset

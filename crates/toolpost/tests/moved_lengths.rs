@@ -1,5 +1,5 @@
-//! Damages by dice, the same each time, that two rules have to find: a tool length that begins in a block without Z, and corners of rapids
-//! near the part that are rounded.
+//! Lengths and work offsets on the way: damages, most of them by dice, the same each time. A tool length that begins in a block without Z,
+//! one that is none or another's before and behind the cuts, another work offset, and corners of rapids near the part that are rounded.
 
 mod dice;
 mod files;
@@ -110,5 +110,90 @@ fn a_corner_of_a_rapid_that_begins_in_the_part_is_rounded_by_no_word() {
                 lines.join("\n")
             );
         }
+    }
+}
+
+/// The tip goes down by the length of the tool where the control does not count it, or counts that of another: before the first cut,
+/// behind the last one, on the way to the tool change. In another work offset it goes anywhere.
+#[test]
+fn another_length_and_another_work_offset_are_refused_on_every_way() {
+    let source = job("three-axes");
+    let approach = "X10 Y10";
+    let iso = ["G49 Z25", "G43 Z25 H0", "G43 Z25 H9"];
+    let sinumerik = ["D0 Z25", "D2 Z25", "D0 Z20"];
+    let mills: [(&str, &[&str], [&str; 2]); 6] = [
+        ("generic-3axis-fanuc", &iso, ["G55", "G54"]),
+        ("generic-3axis-haas", &iso, ["G55", "G54"]),
+        ("generic-3axis-linuxcnc", &iso, ["G55", "G54"]),
+        ("generic-3axis-mach3", &iso, ["G59", "G54"]),
+        ("generic-3axis-sinumerik", &sinumerik, ["G55", "G54"]),
+        (
+            "generic-3axis-heidenhain",
+            &["TOOL CALL 9 Z S100\nL Z+25 R0 FMAX"],
+            ["CYCL DEF 247 DATUM SETTING Q339=+2", "CYCL DEF 247 DATUM SETTING Q339=+1"],
+        ),
+    ];
+    for (name, lengths, [other, own]) in mills {
+        let machine = load(name).unwrap();
+        let good = written(&source, &machine);
+        let bare = |line: &str| {
+            let words = line.replace(['.', '+'], "");
+            let number = words.split_once(' ').filter(|(n, _)| {
+                n.trim_start_matches('N').bytes().all(|byte| byte.is_ascii_digit())
+            });
+            number.map_or(words.clone(), |(_, rest)| rest.to_owned())
+        };
+        let is_up = |line: &&String| {
+            let line = bare(line);
+            line.ends_with("Z20") || line.contains("Z20 H") || line.contains("Z20 R0 FMAX")
+        };
+        let is_over = |line: &&String| bare(line).contains(approach);
+        // Above the slot behind the approach, above the ring on the way to the tool change, and at the end.
+        let ups: Vec<usize> = (0..good.len()).filter(|at| is_up(&&good[*at])).collect();
+        assert!(ups.len() >= 4, "{name}: {ups:?} {good:#?}");
+        let klartext = name.ends_with("heidenhain");
+        let try_out = |at: usize, blocks: &str| {
+            let mut lines = good.clone();
+            let point = if name.ends_with("fanuc") || name.ends_with("haas") { "." } else { "" };
+            for (i, block) in blocks.lines().enumerate() {
+                let words = block.split(' ').map(|word| match word.as_bytes() {
+                    [b'X' | b'Y' | b'Z', ..] if !klartext => format!("{word}{point}"),
+                    _ => word.to_owned(),
+                });
+                lines.insert(at + 1 + i, words.collect::<Vec<_>>().join(" "));
+            }
+            if klartext {
+                let mut number = -1;
+                for line in &mut lines {
+                    let rest = line.split_once(' ').filter(|(n, _)| n.parse::<u32>().is_ok());
+                    let continues = line.starts_with('Q');
+                    if !continues {
+                        number += 1;
+                        *line =
+                            format!("{number} {}", rest.map_or(line.as_str(), |(_, rest)| rest));
+                    }
+                }
+            }
+            (rules(&source, &machine, &lines), lines.join("\n"))
+        };
+        for &at in &ups {
+            for length in lengths {
+                let (found, text) = try_out(at, length);
+                assert!(!found.is_empty(), "{name} {length}\n{text}");
+            }
+            let down = if klartext { "L Z+25 R0 FMAX" } else { "Z25" };
+            let (found, text) = try_out(at, &format!("{other}\n{down}\n{own}"));
+            assert!(found.contains(&"work-offset"), "{name} {found:?}\n{text}");
+        }
+        // Down to the part in another work offset, before the first point of the source.
+        let over = good.iter().position(|line| is_over(&line)).unwrap();
+        let down = match klartext {
+            true => {
+                format!("{other}\nL X+10 Y+10 R0 FMAX\nL Z+3 R0 FMAX\n{own}\nL X+10 Y+10 R0 FMAX")
+            }
+            false => format!("{other}\nX10 Y10\nZ3\n{own}\nX10 Y10"),
+        };
+        let (found, text) = try_out(over, &down);
+        assert!(!found.is_empty(), "{name}\n{text}");
     }
 }

@@ -129,10 +129,10 @@ impl Prover<'_> {
     /// What must hold in a cut, whose feed has been compared.
     pub(super) fn check_cut(&mut self, to: &ResolvedPose, feed: Option<Difference>, on_arc: bool) {
         let rounding = self.gauge.slack(to);
+        self.check_set_up(to.line);
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;
         let found = [
-            state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
             state::taper(allowed, wanted, running),
             state::corners(machine, wanted, running),

@@ -121,6 +121,7 @@ impl Prover<'_> {
         cycle: Option<program::Feed>,
         is: Option<program::Feed>,
     ) {
+        self.check_set_up(line);
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;
         let tapping = matches!(
@@ -129,7 +130,6 @@ impl Prover<'_> {
                 if matches!(c.kind, program::CycleKind::Tap { .. })
         );
         let found = [
-            state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
             match tapping {
                 true => None,

@@ -388,6 +388,9 @@ impl<'a> Prover<'a> {
         arc: Option<&ArcTo>,
     ) -> Outcome {
         if arc.is_none() && *position == self.here.position {
+            // By another length it moves all the same.
+            let here = self.here;
+            self.check_offsets(&ResolvedPose { line, ..here });
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
@@ -421,6 +424,7 @@ impl<'a> Prover<'a> {
         }
         if gait == MotionKind::Rapid || self.leg.left.is_some() || !self.is_cutting() {
             self.check_contact(line, Some(&to));
+            self.check_offsets(&to);
         }
         if gait == MotionKind::Rapid && self.goes_nowhere_yet(&to) {
             return Ok(());

@@ -76,12 +76,6 @@ impl Prover<'_> {
 
     /// Keeps a stop of a rapid until its end explains it.
     pub(super) fn stop_at(&mut self, to: &ResolvedPose) -> Outcome {
-        // On its way home the tool goes by the offsets that were.
-        let leaves = matches!(&self.cursor.step, Step::Move(goal) if goal.homed && !self.leg.homed);
-        if to.place.known() && !leaves {
-            let found = state::at_stop(self.gauge.machine, &self.cursor.wanted, &self.running);
-            self.check(to.line, found);
-        }
         if self.leg.stops.len() >= MOST_STOPS {
             let stop = self.nearest_stop().unwrap_or(*to);
             return Err(self.lost_at(stop.line, Rule::EndPoint, &self.not_reached(&stop)));
@@ -90,9 +84,33 @@ impl Prover<'_> {
         Ok(())
     }
 
+    /// Holds the offsets in a rapid to a known height: by another length, or in another work offset, the tool goes elsewhere. Where it
+    /// comes to what the source has next, the comparison there asks for more.
+    pub(super) fn check_offsets(&mut self, to: &ResolvedPose) {
+        if to.position.point.z.is_nan() || self.gauge.machine.wire.is_some() {
+            return;
+        }
+        let found = state::on_the_way(self.gauge.machine, &self.cursor.wanted, &self.running);
+        self.check(to.line, found);
+    }
+
+    /// Compares tool and offsets with those of the source, and keeps offsets that are right.
+    pub(super) fn check_set_up(&mut self, line: u32) {
+        let found = state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running);
+        if found.is_none() {
+            self.running.last_offsets =
+                Some((self.running.work_offset, self.running.length_offset));
+        }
+        self.check(line, found);
+    }
+
     /// Explains the stops of a rapid that has come to its end.
     pub(super) fn approached(&mut self, to: &ResolvedPose) -> Outcome {
-        self.check(to.line, state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running));
+        // What is wrong on the way has been said.
+        let machine = self.gauge.machine;
+        if state::on_the_way(machine, &self.cursor.wanted, &self.running).is_none() {
+            self.check_set_up(to.line);
+        }
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let free = goal.free(self.gauge.allowed.axis_degrees);
         if goal.homed && !self.leg.homed {

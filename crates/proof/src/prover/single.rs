@@ -54,13 +54,9 @@ impl Prover<'_> {
             true => None,
             false => self.feed_of(&to, None, length, length),
         };
+        self.check_set_up(line);
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
-        let machine = self.gauge.machine;
-        let found = [
-            state::set_up(machine, wanted, running),
-            state::spindle_and_coolant(allowed, wanted, running),
-            feed,
-        ];
+        let found = [state::spindle_and_coolant(allowed, wanted, running), feed];
         for difference in found {
             self.check(line, difference);
         }
