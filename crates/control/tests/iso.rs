@@ -327,6 +327,10 @@ fn a_cycle_that_lacks_something_is_refused() {
         assert_eq!(rule(FANUC, &format!("{start}{block}\n")), "cycle", "{block}");
     }
     assert_eq!(rule(FANUC, "G0 X0 Y0\nG81 X1. Z-1. R2. F9\n"), "unknown-position");
+    // Also where the mode changes between two holes of one cycle.
+    for text in ["G93\nG0 X0 Y0 Z9\nG81 Z-1 R2 F9\n", "G0 X0 Y0 Z9\nG81 Z-1 R2 F9\nG93 X5 F9\n"] {
+        assert_eq!(rule(LINUXCNC, text), "cycle");
+    }
     // rs274 returns to R where neither is given, the manual does not say: so it must be said.
     assert_eq!(rule(LINUXCNC, "G0 X0 Y0 Z9\nG81 Z-1 R2 F9\n"), "cycle");
 }

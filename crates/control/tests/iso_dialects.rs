@@ -99,6 +99,9 @@ fn haas_refuses_with_the_reason() {
     ];
     let said = "G103 P1\nG21\nG187 P3 E0.01\nG61\nG64\nG187 P2\nG187\nG61\nG64\n";
     assert_eq!(ops(Dialect::Haas, said), corners.map(Action::PathMode));
+    for p in ["P9", "P-1", "P1.5", "P0"] {
+        assert_eq!(rule(Dialect::Haas, &format!("G21\nG187 {p} E0.01\n")), "number", "{p}");
+    }
     assert_eq!(rule(Dialect::Haas, "G21\nG0 X1\n"), "decimal-point");
 }
 

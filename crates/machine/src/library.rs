@@ -45,6 +45,43 @@ pub fn names(kinds: &[Kind]) -> impl Iterator<Item = &'static str> {
     files(kinds).map(|(path, _)| stem(path))
 }
 
+/// An option of a control of the library, as its file states it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StatedOption {
+    /// The control whose file states it; those that extend that one have it too.
+    pub control: &'static str,
+    /// Its key below `[options]`.
+    pub name: &'static str,
+    /// What holds where a machine file says nothing, as TOML.
+    pub value: &'static str,
+    /// The comment above it, with its unit.
+    pub help: String,
+}
+
+/// The options of the controls, in the order of their files. A comment stands for each key below it until the next comment.
+pub fn options() -> Vec<StatedOption> {
+    let mut all = Vec::new();
+    for (path, text) in files(CONTROLS) {
+        let mut within = false;
+        let (mut help, mut is_open) = (String::new(), false);
+        for line in text.lines() {
+            if line.starts_with('[') {
+                within = line == "[options]";
+            } else if let (true, Some(comment)) = (within, line.strip_prefix("# ")) {
+                if !std::mem::replace(&mut is_open, true) {
+                    help.clear();
+                }
+                let space = if help.is_empty() { "" } else { " " };
+                help = format!("{help}{space}{comment}");
+            } else if let (true, Some((name, value))) = (within, line.split_once(" = ")) {
+                is_open = false;
+                all.push(StatedOption { control: stem(path), name, value, help: help.clone() });
+            }
+        }
+    }
+    all
+}
+
 fn stem(path: &str) -> &str {
     let file = path.rsplit('/').next().unwrap_or(path);
     file.strip_suffix(".toml").unwrap_or(file)

@@ -397,6 +397,8 @@ struct Conversion<'a> {
     home: Option<u32>,
     /// The tool in the spindle, and whether nothing has moved since it was called.
     tool: Option<(Loaded, bool)>,
+    /// The line on which the spindle has been emptied, and no tool has come since.
+    emptied: Option<u32>,
     /// The cycle that withdraws from the wall, as the control has it, and the withdrawal at the last hole.
     boring: Option<(Cycle, Option<Vec3>)>,
     /// The work offset that the program names.
@@ -493,6 +495,7 @@ impl<'a> Conversion<'a> {
             written_feed: None,
             home: None,
             tool: None,
+            emptied: None,
             boring: None,
             work_offset: None,
             several: false,
@@ -515,6 +518,9 @@ impl<'a> Conversion<'a> {
         }
         let position = event.action.position().copied();
         within_reach(&event.action)?;
+        if self.moves_empty(&event.action)? {
+            return Ok(());
+        }
         if let (Action::Arc(_) | Action::Hole(_) | Action::Probe(_), Some(feed)) =
             (&event.action, self.feed)
         {
@@ -584,7 +590,14 @@ impl<'a> Conversion<'a> {
                 self.position = None;
                 return self.machine_move(line, &to);
             }
+            Action::Tool(tool) if tool.number == 0 && tool.name.is_empty() => {
+                self.emptied = Some(line);
+                let message = "the spindle is emptied (T0): the last tool stays in what is written from this, and moves without one are \
+                               left out";
+                self.warn_once(line, Diagnostic::warning(Rule::Tool, message));
+            }
             Action::Tool(mut tool) => {
+                self.emptied = None;
                 self.number(line, &mut tool)?;
                 if let Some(entry) = self.setup.tools.iter().find(|e| e.number == tool.number) {
                     tool.diameter = Some(2.0 * entry.radius);
@@ -859,6 +872,26 @@ impl<'a> Conversion<'a> {
         let (mut tip, axis) = resolve(self.machine, position, length);
         self.setup.flatten(&mut tip);
         PartialPose { tip, axis }
+    }
+
+    /// Whether this goes by rapid with an empty spindle, from where it stands nobody then knows.
+    ///
+    /// # Errors
+    /// It cuts so.
+    fn moves_empty(&mut self, action: &Action) -> Outcome<bool> {
+        let Some(line) = self.emptied else { return Ok(false) };
+        match action {
+            Action::Rapid(_) => {
+                self.tool_at = ToolPosition::Unknown;
+                Ok(true)
+            }
+            _ if action.position().is_none() => Ok(false),
+            _ => {
+                let message =
+                    format!("cuts without a tool: line {line} has emptied the spindle (T0)");
+                Err(refuse(Rule::Tool, message, "call a tool before the cut"))
+            }
+        }
     }
 
     /// Gives a tool that is called by its name a number that no other tool has.

@@ -412,3 +412,23 @@ fn a_place_beyond_every_machine_is_refused_with_its_line() {
     }
     assert!(fanuc(&format!("{START}G1 X1000000. F100.\nM30\n")).records.len() > 3);
 }
+
+/// `T0` is no tool: a program that puts its last tool away ends with it (TNC 640, "Tool call": `TOOL CALL 0`).
+#[test]
+fn an_empty_spindle_is_no_tool() {
+    let program = "G21 G17 G90 G94 G40 G49 G80 G54\nT1 M6\nS900 M3\nG0 X0 Y0\nG43 Z20. H1\nG1 Z-1. F100\nG0 Z20.\nG49\nM5\nG91 G28 Z0\nG90\nT0 M6\n";
+    let machine = load_origin("fanuc-31i").unwrap();
+    let end = format!("{program}M30\n");
+    let reading = read_for(&machine, Setup::default(), &end).unwrap();
+    let tools = reading.program.records.iter().filter(|r| matches!(r.op, Op::Tool(_))).count();
+    assert_eq!(tools, 1);
+    let said = |found: &Diagnostic| found.rule == "tool" && found.message.contains("emptied");
+    assert_eq!(reading.warnings.iter().filter(|found| said(found)).count(), 1);
+    // It moves on without a tool, which cuts nothing.
+    let moved = read_for(&machine, Setup::default(), &format!("{program}G0 X100.\nM30\n")).unwrap();
+    assert_eq!(moves(&moved.program), moves(&reading.program));
+    let cut = format!("{program}S900 M3\nG0 X0 Y0\nZ5.\nG1 Z-1. F100\nM30\n");
+    let found = refused(&cut);
+    assert_eq!(found.rule, "tool", "{found:?}");
+    assert!(found.message.contains("line 12 has emptied the spindle"), "{}", found.message);
+}

@@ -1,11 +1,11 @@
 //! `toolpost explain`: every name that a machine or control file may use, with unit and help, and every rule of
-//! findings; of a single block also how the controls of the library write it, of a single rule also the way out and
-//! an example.
+//! findings; of a block also how the controls of the library write it, of a single rule also the way out and an
+//! example.
 
 use crate::answer::Answer;
 use app::{Stop, summary};
 use machine::Key;
-use machine::library::{CONTROLS, names};
+use machine::library::{CONTROLS, StatedOption, names};
 use program::{Diagnostic, Rule};
 use serde_json::{Map, Value, json};
 
@@ -29,6 +29,13 @@ impl Row {
         Row::new(name, key.unit, key.help, data)
     }
 
+    fn option(option: &StatedOption) -> Row {
+        let StatedOption { control, name, value, help } = option;
+        let name = format!("options.{name}");
+        let data = json!({ "kind": "option", "name": name, "control": control, "value": value, "help": help });
+        Row { name, text: format!("{help} {control}: {value}"), data }
+    }
+
     fn rule(rule: Rule) -> Row {
         let data = json!({
             "kind": "rule",
@@ -47,13 +54,12 @@ impl Row {
 pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     let names = post::catalogue().iter();
     let names = names.map(|p| Row::new(p.name.to_owned(), p.unit, p.help, json!(p)));
-    let rows = names.chain(machine::keys().map(Row::key));
+    let options = machine::library::options();
+    let rows = names.chain(machine::keys().map(Row::key)).chain(options.iter().map(Row::option));
     let mut found: Vec<Row> =
         rows.filter(|row| topic.is_none_or(|t| matches(&row.name, t))).collect();
-    let written = match &found[..] {
-        [row] => written(&row.name)?,
-        _ => Vec::new(),
-    };
+    let block = topic.and_then(|topic| found.iter().find(|row| row.name == topic));
+    let written = block.map_or(Ok(Vec::new()), |row| written(&row.name))?;
     let named = topic.map(Rule::named);
     found.extend(named.as_deref().unwrap_or(Rule::ALL).iter().map(|rule| Row::rule(*rule)));
     if let (true, Some(topic)) = (found.is_empty(), topic) {

@@ -347,3 +347,61 @@ fn a_source_that_stops_the_spindle_before_it_draws_the_tool_out_is_followed() {
     let wrong = text.replacen(&format!("{last}\n"), "", 1);
     assert!(rules(&source, &machine, &wrong).contains(&"spindle"), "{wrong}");
 }
+
+/// The program with these words before the second cut, one block each.
+fn between_cuts(machine: &Machine, text: &str, words: &[&str]) -> String {
+    let mut cuts = Vec::new();
+    let settings = nc::settings(machine, Setup::default()).unwrap();
+    control::read(&settings, "p", text.as_bytes(), &mut |event| {
+        if matches!(event.action, Action::Line(_)) {
+            cuts.push(event.line as usize);
+        }
+        Ok(())
+    })
+    .unwrap();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let at = cuts[1] - 1;
+    // HEIDENHAIN numbers every block.
+    let number = lines[at].split_once(' ').filter(|_| text.contains("BEGIN PGM"));
+    let number = number.map_or(String::new(), |(number, _)| format!("{number} "));
+    for word in words.iter().rev() {
+        lines.insert(at, format!("{number}{word}"));
+    }
+    lines.join("\n") + "\n"
+}
+
+/// Between two cuts the tool stands in the part: a spindle that stops or turns the other way round there breaks it, though it turns
+/// rightly again before the next cut. Faster than it can turn it is switched on nowhere.
+#[test]
+fn what_the_spindle_does_between_two_cuts_is_compared() {
+    let source = program(vec![
+        Op::Line(at(20.0, -1.0)),
+        Op::Line(at(30.0, -1.0)),
+        Op::Rapid(at(30.0, 20.0)),
+        Op::Spindle(Spindle::Off),
+    ]);
+    for machine in mills() {
+        let text = String::from_utf8(post::write(&source, &machine).unwrap().text).unwrap();
+        let rules = |text: &str| {
+            let report = proof::prove(&source, &machine, "p", text.as_bytes(), &Default::default());
+            report.mismatches.iter().map(|found| found.rule.name()).collect::<Vec<_>>()
+        };
+        assert_eq!(rules(&text), [""; 0], "{}", machine.name);
+        for words in [["M5", "S600 M3"], ["M4", "M3"]] {
+            // A TOOL CALL switches the speed of a HEIDENHAIN, and S its own spindle nothing else.
+            let words = words.map(|word| match text.contains("BEGIN PGM") {
+                true => word.trim_start_matches("S600 "),
+                false => word,
+            });
+            let damaged = between_cuts(&machine, &text, &words);
+            let found = rules(&damaged);
+            assert!(found.contains(&"spindle"), "{} {found:?}\n{damaged}", machine.name);
+        }
+        if machine.spindle.max.is_finite() {
+            let fast = text.replace("S600", &format!("S{}", machine.spindle.max + 1.0));
+            assert_ne!(fast, text, "{}", machine.name);
+            let found = rules(&fast);
+            assert!(found.contains(&"spindle-range"), "{} {found:?}\n{fast}", machine.name);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! The spindle in motions that are no cuts: near the part a tool may touch it by rapid as well.
 
 use super::*;
-use program::CycleKind;
+use program::{CycleKind, Rule};
 
 /// What the spindle has done in the last motion, and where the tool is free of the part.
 pub(super) struct Contact {
@@ -11,17 +11,20 @@ pub(super) struct Contact {
     turned: Spindle,
     /// Whether the control has left the spindle standing behind a tap or a bore, and nothing has started it since.
     left_standing: bool,
+    /// The spindle has been switched where the tool stands near the part, as neither the source has it nor the last motion: on this line,
+    /// and how.
+    switched: Option<(u32, Spindle)>,
 }
 
 impl Contact {
     /// Before the first motion.
     pub fn new() -> Contact {
-        Contact { fed: None, turned: Spindle::Off, left_standing: false }
+        Contact { fed: None, turned: Spindle::Off, left_standing: false, switched: None }
     }
 
     /// A motion has ended with the spindle so.
     pub fn moved(&mut self, spindle: Spindle) {
-        self.turned = spindle;
+        (self.turned, self.switched) = (spindle, None);
     }
 
     /// The program has made a hole of this kind by its cycle.
@@ -49,6 +52,35 @@ impl Prover<'_> {
             return;
         }
         self.differs(line, state::wrong_spindle(wanted, is));
+    }
+
+    /// Holds the speed within what the spindle takes, also where nothing is cut.
+    pub(super) fn check_speed(&mut self, line: u32, spindle: Spindle) {
+        let (speed, most) = (state::speed(spindle), self.gauge.machine.spindle.max);
+        if speed > most + self.gauge.allowed.speed_per_min {
+            let message = format!(
+                "the spindle is switched on with {} 1/min, and turns at {} at the most",
+                Number(speed),
+                Number(most)
+            );
+            self.differs(line, (Rule::SpindleRange, message));
+        }
+    }
+
+    /// Compares the spindle where it has been switched between two motions. Where the tool stands near the part and it is switched once
+    /// more before anything moves, no motion shows what it has done in between.
+    pub(super) fn check_standing(&mut self, line: u32) {
+        if self.gauge.machine.wire.is_some() || self.raised {
+            return;
+        }
+        if let Some((line, is)) = self.contact.switched.take() {
+            self.differs(line, state::wrong_spindle(self.cursor.wanted.spindle, is));
+        }
+        let (wanted, is, here) = (self.cursor.wanted.spindle, self.running.spindle, self.here);
+        let alike = state::same_spindle(&self.gauge.allowed, wanted, is);
+        if !alike && self.is_near(&here) && !self.may_leave_so(wanted, is, None) {
+            self.contact.switched = Some((line, is));
+        }
     }
 
     /// Whether the spindle may be as it `is` on the way out, where the source wants it otherwise.

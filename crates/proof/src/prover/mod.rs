@@ -337,6 +337,8 @@ impl<'a> Prover<'a> {
             }
             Action::Spindle(spindle) => {
                 running.switch_spindle(line, *spindle, self.gauge.machine.spindle.dwell);
+                self.check_speed(line, *spindle);
+                self.check_standing(line);
             }
             Action::SurfaceSpeed(speed) => running.surface_speed = *speed,
             Action::Coolant(coolant) => {

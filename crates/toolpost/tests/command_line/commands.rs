@@ -230,6 +230,19 @@ fn explain_gives_unit_and_help_of_every_name() {
     let tilt = folder.run(&["explain", "plane_tilt"]).out;
     assert!(tilt.contains("\nfanuc-31i\n") && !tilt.contains("\ngrbl\n"), "{tilt}");
     // The keys of the files too: each table that has one of the name, with its own unit.
+    // A key of another table has the name of the block.
+    let change = folder.run(&["explain", "tool_change"]).out;
+    assert!(change.contains("cell.tool_change") && change.contains("{{N}} {{T}} M6"), "{change}");
+    // Options of the controls, with what each of them states.
+    let tolerance = folder.run(&["explain", "path_tolerance"]).out;
+    for said in ["T of cycle 32", "heidenhain-tnc640: 0.01", "(G187 E)", "haas: 0.01", "krl: 0.05"]
+    {
+        assert!(tolerance.contains(said), "{said}: {tolerance}");
+    }
+    for option in ["preselect_tools", "stop_between_tools", "hsc_mode", "tcpm", "swivel_data"] {
+        let one = folder.run(&["explain", option]);
+        assert!(one.code == 0 && one.out.contains(&format!("options.{option}")), "{one:?}");
+    }
     let min = folder.run(&["explain", "min"]).out;
     for (key, help) in
         [("axes.X.min ", "Lower end of"), ("rotary.min ", "Lower"), ("spindle.min ", "The slowest")]

@@ -6,7 +6,7 @@ use super::step::Step;
 use crate::event::{Action, Orientation, Risk};
 use crate::iso::dialects::facts::Cycles;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Canned, G, Group};
+use crate::iso::language::words::{Canned, FeedMode, G, Group};
 use geom::Vec3;
 use program::{Cycle, CycleKind, Feed, Rule, Spindle, Withdrawal};
 
@@ -212,6 +212,12 @@ impl Step<'_, '_, '_> {
         if let Some(&letter) = b"ABC".iter().find(|&&letter| self.block.has(letter)) {
             let message = "a rotary axis in a cycle; move it before";
             return Err(self.block.at_word(letter, Rule::Cycle, message));
+        }
+        // LinuxCNC, "Canned Cycle Errors"; elsewhere F would be the time of moves that the manuals do not name.
+        if self.state.feed_mode == FeedMode::InverseTime {
+            let message = "a cycle in inverse time (G93), in which F is the time of a move";
+            let fault = self.block.whole(Rule::Cycle, message);
+            return Err(fault.help("write G94 before it, and the feed").into());
         }
         if held.initial.is_nan() {
             let message = "a cycle starts, and at which level the tool stands is not known";

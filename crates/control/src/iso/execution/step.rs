@@ -386,7 +386,12 @@ impl Step<'_, '_, '_> {
             }
             (Some(G::Path(Path::Blend { .. })), _) => self.smoothness(),
             (_, Some(G::Smoothness)) => {
-                self.block.take(b'P');
+                if let Some(level) = self.block.take(b'P')
+                    && ![1.0, 2.0, 3.0].contains(&level.value)
+                {
+                    let message = "P of G187 is 1 (rough), 2 (medium) or 3 (finish)";
+                    return Err(self.block.at_word(b'P', Rule::Number, message));
+                }
                 self.state.rounds_corners = self.take_length(b'E')?;
                 self.smoothness()
             }
