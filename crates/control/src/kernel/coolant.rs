@@ -103,7 +103,9 @@ impl Coolants {
             Coolant::Off => false,
             Coolant::Flood => flood.is_some_and(|number| number != 8),
             Coolant::Mist => mist.is_some_and(|number| number != 7),
-            Coolant::FloodAndMist => self.is_builders(Coolant::Flood) || self.is_builders(Coolant::Mist),
+            Coolant::FloodAndMist => {
+                self.is_builders(Coolant::Flood) || self.is_builders(Coolant::Mist)
+            }
             Coolant::Through => through.is_some(),
         }
     }

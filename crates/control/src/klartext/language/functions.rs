@@ -214,9 +214,9 @@ impl Function {
 /// clockwise" and "Coolant on").
 fn coolant_of_m8(s: &Scanner, word: &Word, stated: CoolantFunctions) -> Outcome<CoolantSwitch> {
     match stated.switch(8) {
-        Some(
-            switch @ (CoolantSwitch::Flood | CoolantSwitch::Mist | CoolantSwitch::Through),
-        ) => Ok(switch),
+        Some(switch @ (CoolantSwitch::Flood | CoolantSwitch::Mist | CoolantSwitch::Through)) => {
+            Ok(switch)
+        }
         None if !stated.is_stated(CoolantSwitch::Flood) => Ok(CoolantSwitch::Flood),
         Some(CoolantSwitch::Off | CoolantSwitch::ThroughOff) | None => {
             let message = "M13 and M14 switch the coolant of M8, and [coolant] of the machine file names another M function";
