@@ -39,8 +39,9 @@ impl Source {
         origin: &Origin,
         settings: &Settings,
     ) -> Result<Source, Stop> {
-        if !is_drawing(source) && !settings.upper.as_ref().is_some_and(is_drawing) {
-            of_no_drawing(settings).map_err(|found| found.file(source.name()))?;
+        let is_drawn = is_drawing(source) || settings.upper.as_ref().is_some_and(is_drawing);
+        if let Some(found) = without_drawing(settings).filter(|_| !is_drawn) {
+            return Err(found.file(source.name()).into());
         }
         let height = height(origin, settings)?;
         let start = origin.start.map(|start| start.truncate());
@@ -101,16 +102,16 @@ fn is_drawing(source: &input::Source) -> bool {
     source.path().extension().unwrap_or_default().eq_ignore_ascii_case("dxf")
 }
 
-/// Refuses settings of a drawing where there is none.
-fn of_no_drawing(settings: &Settings) -> Result<(), Diagnostic> {
+/// What refuses settings of a drawing where there is none.
+fn without_drawing(settings: &Settings) -> Option<Diagnostic> {
     let default = Settings::default();
     let given = [
         ("--layer", settings.layers != default.layers),
         ("--close", settings.close != default.close),
     ];
-    let Some((name, _)) = given.into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    let (name, _) = given.into_iter().find(|(_, given)| *given)?;
     let message = format!("{name} is for a drawing (.dxf), which this is not");
-    Err(Diagnostic::error(Rule::Origin, message).help("leave it out"))
+    Some(Diagnostic::error(Rule::Origin, message).help("leave it out"))
 }
 
 impl File {
