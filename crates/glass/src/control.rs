@@ -45,6 +45,8 @@ pub struct Run {
     pub block: Option<[f64; 3]>,
     /// How many equal blocks it states.
     pub blocks: Option<u32>,
+    /// The fields of a scanner: the first pulse of each, from 0, the line, and the middle of the field in the block, mm.
+    pub fields: Vec<(u32, u32, [f64; 2])>,
     /// Its motions at constant speed, in their order.
     pub motions: Vec<Motion>,
     /// Its pulses, in their order.
@@ -253,6 +255,12 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
             (Some("PULSE"), Some(_)) => {
                 let place = place(&mut words, names).map_err(|message| (at, message))?;
                 let number = u32::try_from(at).unwrap_or(u32::MAX);
+                let [shift_x, shift_y] = match (run.fields.last(), machine.stage) {
+                    (Some((_, _, center)), _) => *center,
+                    (None, Some(_)) => return wrong("a pulse before the first FIELD"),
+                    (None, None) => [0.0; 2],
+                };
+                let place = [place[0] + shift_x, place[1] + shift_y, place[2]];
                 let (mut passed, mut fired) = (0, place);
                 if let Some(moving) = &mut moving {
                     let Some((ticks, there)) = moving.pass(place, &axes) else {
@@ -263,6 +271,21 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
                     run.motions.iter_mut().last().into_iter().for_each(|motion| motion.count += 1);
                 }
                 run.pulses.push(Pulse { line: number, at: fired, passed });
+            }
+            (Some("FIELD"), Some(_)) if machine.stage.is_some() => {
+                let mut center = [0.0; 2];
+                for (value, name) in center.iter_mut().zip(["X", "Y"]) {
+                    let number = words.next().and_then(|word| word.strip_prefix(name));
+                    let Some(number) = number.and_then(decimal) else {
+                        return wrong("FIELD needs X and Y");
+                    };
+                    *value = number;
+                }
+                let first = u32::try_from(run.pulses.len()).unwrap_or(u32::MAX);
+                if run.fields.last().is_some_and(|(before, _, _)| *before == first) {
+                    return wrong("there is no pulse in the field before");
+                }
+                run.fields.push((first, u32::try_from(at).unwrap_or(u32::MAX), center));
             }
             (Some("RUN"), Some(_)) if moving.is_none() && machine.program.runs => {
                 let speed = place(&mut words, names).map_err(|message| (at, message))?;

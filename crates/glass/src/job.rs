@@ -13,7 +13,7 @@ use crate::picture::{Picture, Sheet};
 use crate::proof::{self, Proof};
 use crate::sample::Apart;
 use crate::scenario::{Blocks, Scenario};
-use crate::{control, post, weld};
+use crate::{control, post, stitch, weld};
 use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
 use serde::Serialize;
@@ -108,6 +108,8 @@ pub struct Report {
     pub cut: Cut,
     /// Equal blocks, each with all points.
     pub blocks: u32,
+    /// Fields of a scanner.
+    pub fields: u64,
     /// Pulses in motion at constant speed.
     pub in_motion: u64,
     /// How far the farthest point was moved so that a motion passes it, mm, and how many points fell together; of a scenario only.
@@ -154,9 +156,22 @@ pub fn make(
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
     let mut job = Job::new(shapes, material, machine, settings)?;
-    let (axes, runs) = job.order();
-    let planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], &machine.clock());
-    let text = post::write(&axes, &runs, machine, (settings.placing.block, settings.blocks));
+    let Ordered { axes, runs, fields } = job.order();
+    let clock = machine.clock();
+    let mut planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], &clock);
+    for pair in fields.windows(2) {
+        let ((_, from), (next, to)) = (pair[0], pair[1]);
+        let mm = |at: [i32; 2]| at.map(|value| f64::from(value) * 1e-3);
+        let [before, after] = [(next - 1, from), (next, to)].map(|(i, center)| {
+            let [x, y, z] = axes[i];
+            [x - center[0], y - center[1], z]
+        });
+        let mirrors = u64::from(clock.step(before, after));
+        planned += mirrors.max(machine.carried(mm(from), mm(to)));
+        planned -= u64::from(clock.step(axes[next - 1], axes[next]));
+    }
+    let text =
+        post::write(&axes, &runs, &fields, machine, (settings.placing.block, settings.blocks));
     job.judge(text, Some(planned))
 }
 
@@ -172,6 +187,13 @@ pub fn prove(
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
     Job::new(shapes, material, machine, settings)?.judge(text, None)
+}
+
+/// Where the axes stand at each pulse, in steps; which pulses are fired in motion; the first pulse and the middle of each field.
+struct Ordered {
+    axes: Vec<Point>,
+    runs: Vec<Run>,
+    fields: Vec<(usize, [i32; 2])>,
 }
 
 /// A cloud in its block, and what was found of it.
@@ -253,8 +275,8 @@ impl<'m> Job<'m> {
         })
     }
 
-    /// Puts the cloud in the order of its pulses; answers where the axes stand at each pulse, in steps, and which are fired in motion.
-    fn order(&mut self) -> (Vec<Point>, Vec<Run>) {
+    /// Puts the cloud in the order of its pulses.
+    fn order(&mut self) -> Ordered {
         let Job { lens, beam, machine, settings, .. } = *self;
         let clock = machine.clock();
         let on_table = blocks_of(machine, settings);
@@ -268,7 +290,8 @@ impl<'m> Job<'m> {
             self.cloud = plan.cloud;
             let pulses = plan.axes.iter().zip(&plan.points);
             let at = |(&[a, b], &i): (&[i32; 2], &u32)| [a, b, down(&self.cloud[i as usize])];
-            return (pulses.map(at).collect(), plan.runs);
+            let axes = pulses.map(at).collect();
+            return Ordered { axes, runs: plan.runs, fields: Vec::new() };
         }
         let flat: Vec<[i32; 2]> = match &on_table {
             Some(blocks) => blocks.poses(&self.cloud),
@@ -281,7 +304,26 @@ impl<'m> Job<'m> {
             radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
         };
         let cloud = &self.cloud;
+        let mut fields = Vec::new();
         let order = match settings.order {
+            _ if machine.stage.is_some() => {
+                let (all, spacing) = (machine.coordinates(), f64::from(self.micrometres));
+                let size = [0, 1].map(|axis: usize| {
+                    let [low, high] = all[axis].axis.travel;
+                    1e3 * (high - low)
+                });
+                let mut order: Vec<u32> = Vec::with_capacity(cloud.len());
+                for field in stitch::fields(cloud, size, shadow, spacing) {
+                    fields.push((order.len(), field.center));
+                    let own = |all: &[Point]| -> Vec<Point> {
+                        field.points.iter().map(|&i| all[i as usize]).collect()
+                    };
+                    let within =
+                        order::fastest(&own(cloud), &own(&axes), shadow, &clock, settings.effort);
+                    order.extend(within.iter().map(|&i| field.points[i as usize]));
+                }
+                order
+            }
             Order::Fastest => order::fastest(cloud, &axes, shadow, &clock, settings.effort),
             // `on_machine` has refused it elsewhere.
             Order::Scenario(_) => (0..cloud.len() as u32).collect(),
@@ -301,7 +343,7 @@ impl<'m> Job<'m> {
             axes.extend(first.iter().map(|[a, b, z]| [*a, b + turned, *z]));
         }
         let runs = if machine.program.runs { fly::runs(&axes, &clock) } else { Vec::new() };
-        (axes, runs)
+        Ordered { axes, runs, fields }
     }
 
     /// Reads the program back and compares it with the cloud; `planned` are the ticks of the order that was written.
@@ -354,6 +396,7 @@ impl<'m> Job<'m> {
             rays_apart: deepest * (beam.drive(Ray::Paraxial) / beam.drive(Ray::Marginal) - 1.0),
             cut,
             blocks: settings.blocks,
+            fields: run.fields.len() as u64,
             in_motion: run.motions.iter().map(|motion| u64::from(motion.count)).sum(),
             moved,
             unreachable: machine.polar.map(|table| table.with(placing.block[0]).unreachable(200)),
@@ -383,6 +426,10 @@ fn on_machine(machine: &Machine, settings: &Settings) -> Result<(), Vec<Diagnost
     }
     if let Some(message) = machine.polar.and_then(|table| table.refuses(settings.placing.block)) {
         return Err(error(Rule::GlassBlock, message, "take smaller blocks"));
+    }
+    if machine.stage.is_some() && settings.order != Order::Fastest {
+        let message = format!("{} goes from field to field in an order of its own", machine.title);
+        return Err(error(Rule::GlassBlock, message, "leave --order out"));
     }
     if matches!(settings.order, Order::Scenario(_)) && machine.polar.is_none() {
         let message = format!("{} has no arm and no turning table", machine.title);

@@ -41,4 +41,5 @@ pub mod sample;
 pub mod scenario;
 pub mod simulate;
 pub mod source;
+pub mod stitch;
 pub mod weld;

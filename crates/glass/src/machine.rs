@@ -9,11 +9,12 @@ use program::{Diagnostic, Rule};
 use serde::Deserialize;
 
 /// The machines that come with Toolpost: name and text.
-pub const LIBRARY: [(&str, &str); 5] = [
+pub const LIBRARY: [(&str, &str); 6] = [
     ("glass-xyz-50hz", include_str!("../machines/glass-xyz-50hz.toml")),
     ("glass-xyz-100hz", include_str!("../machines/glass-xyz-100hz.toml")),
     ("glass-xyz-200hz", include_str!("../machines/glass-xyz-200hz.toml")),
     ("glass-planar-200hz", include_str!("../machines/glass-planar-200hz.toml")),
+    ("glass-galvo-1000hz", include_str!("../machines/glass-galvo-1000hz.toml")),
     ("glass-polar-100hz", include_str!("../machines/glass-polar-100hz.toml")),
 ];
 
@@ -34,6 +35,9 @@ pub struct Machine {
     /// Table and arm, of a polar machine only.
     #[serde(default)]
     pub polar: Option<Table>,
+    /// What carries the block from field to field, of a scanner only.
+    #[serde(default)]
+    pub stage: Option<Stage>,
     /// Its lenses.
     pub lenses: Vec<Lens>,
     /// How its programs are written.
@@ -48,6 +52,18 @@ pub enum Kind {
     Xyz,
     /// The blocks on a turning table, the lens on an arm, and in Z.
     Polar,
+    /// Mirrors in a field, the lens in Z, the block on a stage from field to field.
+    Galvo,
+}
+
+/// The stage of a scanner: where the middle of its field is in the block.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    /// Along the block's first side.
+    pub x: Axis,
+    /// Along its second side.
+    pub y: Axis,
 }
 
 /// A turning table with blocks, and an arm with the lens (spec 2.16), mm.
@@ -152,11 +168,11 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axes {
-    /// Along the block's first side; of a polar machine the arm.
-    #[serde(alias = "arm")]
+    /// Along the block's first side; of a polar machine the arm, of a scanner its first mirror.
+    #[serde(alias = "arm", alias = "u")]
     pub x: Axis,
-    /// Along its second side; of a polar machine the table.
-    #[serde(alias = "table")]
+    /// Along its second side; of a polar machine the table, of a scanner its second mirror.
+    #[serde(alias = "table", alias = "v")]
     pub y: Axis,
     /// Up.
     pub z: Axis,
@@ -287,7 +303,7 @@ impl Machine {
             (Kind::Polar, None) => {
                 return Err(String::from("[polar] is missing: the lengths of table and arm"));
             }
-            (Kind::Xyz, Some(_)) => {
+            (Kind::Xyz | Kind::Galvo, Some(_)) => {
                 return Err(String::from("[polar] is for kind = \"polar\" only"));
             }
             _ => {}
@@ -310,11 +326,20 @@ impl Machine {
                 return Err(format!("two lenses have f = {} mm: leave one out", lens.focal));
             }
         }
-        if self.program.format != Format::Numbered
-            && (self.program.runs || self.kind == Kind::Polar)
+        if self.stage.is_some() != (self.kind == Kind::Galvo) {
+            return Err(String::from(
+                "[stage.x] and [stage.y] are for kind = \"galvo\", which needs them",
+            ));
+        }
+        if self.kind == Kind::Galvo && self.program.runs {
+            return Err(String::from(
+                "program.runs is not for a scanner: its steps take a tick as it is",
+            ));
+        }
+        if self.program.format != Format::Numbered && (self.program.runs || self.kind != Kind::Xyz)
         {
             return Err(String::from(
-                "program.format must be \"numbered\" for a polar machine, and for `runs`",
+                "program.format must be \"numbered\" for a polar machine or a scanner, and for `runs`",
             ));
         }
         match (&self.program.fire, self.program.format) {
@@ -357,6 +382,12 @@ impl Machine {
             figures.push((format!("axes.{name}: the length of `travel`"), high - low, [0.1, 1e4]));
             figures.push((format!("axes.{name}.travel[0]"), low, [-1e4, 1e4]));
         }
+        for (name, axis) in self.stage.iter().flat_map(|stage| [("x", stage.x), ("y", stage.y)]) {
+            figures.push((format!("stage.{name}.acceleration"), axis.acceleration, [1e-3, 1e4]));
+            figures.push((format!("stage.{name}.speed"), axis.speed, [1e-4, 100.0]));
+            let length = axis.travel[1] - axis.travel[0];
+            figures.push((format!("stage.{name}: the length of `travel`"), length, [0.1, 1e4]));
+        }
         for Lens { focal, crack, spacing, block } in &self.lenses {
             figures.push((String::from("lenses.focal"), *focal, [1.0, 2000.0]));
             figures.extend(crack.map(|size| (String::from("lenses.crack"), size, [1e-3, 1.0])));
@@ -391,11 +422,23 @@ impl Machine {
         Clock::of(self.laser.rate, self.drive.profile, axes)
     }
 
+    /// The ticks in which the stage carries the block from field to field, mm.
+    pub fn carried(&self, from: [f64; 2], to: [f64; 2]) -> u64 {
+        let Some(stage) = self.stage else { return 0 };
+        let time = |axis: Axis, way: f64| {
+            let limits = Limits::metric(axis.acceleration, axis.speed);
+            self.drive.profile.fastest(way.abs(), limits).time
+        };
+        let time = time(stage.x, to[0] - from[0]).max(time(stage.y, to[1] - from[1]));
+        u64::from(crate::clock::ticks(time, self.laser.rate))
+    }
+
     /// What its axes are called in machine files.
     fn names(&self) -> [&'static str; 3] {
         match self.kind {
             Kind::Xyz => ["x", "y", "z"],
             Kind::Polar => ["arm", "table", "z"],
+            Kind::Galvo => ["u", "v", "z"],
         }
     }
 
@@ -409,6 +452,7 @@ impl Machine {
         match self.kind {
             Kind::Xyz => [linear("X", x), linear("Y", y), linear("Z", z)],
             Kind::Polar => [turning("A", false, x), turning("C", true, y), linear("Z", z)],
+            Kind::Galvo => [linear("U", x), linear("V", y), linear("Z", z)],
         }
     }
 

@@ -5,10 +5,11 @@ use crate::fly::Run;
 use crate::machine::{Coordinate, Format, Machine};
 
 /// The program of pulses at `axes` (steps of the machine's coordinates), in their order, in `blocks` equal blocks of `block` (mm);
-/// those of `runs` are fired in motion.
+/// those of `runs` are fired in motion. `fields` are those of a scanner: the first pulse of each, and its middle.
 pub fn write(
     axes: &[Point],
     runs: &[Run],
+    fields: &[(usize, [i32; 2])],
     machine: &Machine,
     (block, blocks): ([f64; 3], u32),
 ) -> Vec<u8> {
@@ -47,7 +48,7 @@ pub fn write(
                 text.whole(u64::from(blocks));
             }
             text.end();
-            text.numbered_pulses(axes, runs, machine);
+            text.numbered_pulses(axes, runs, fields, machine);
         }
     }
     text.0
@@ -92,7 +93,15 @@ impl Text {
         self.word(command);
     }
 
-    fn numbered_pulses(&mut self, axes: &[Point], runs: &[Run], machine: &Machine) {
+    fn numbered_pulses(
+        &mut self,
+        axes: &[Point],
+        runs: &[Run],
+        fields: &[(usize, [i32; 2])],
+        machine: &Machine,
+    ) {
+        let mut fields = fields.iter().peekable();
+        let mut center = [0; 2];
         let coordinates = machine.coordinates();
         let late = machine.laser.delay * 1e-6 * machine.laser.rate;
         let mut number = 2;
@@ -103,6 +112,16 @@ impl Text {
         let mut runs = runs.iter().peekable();
         let mut moving: Option<&Run> = None;
         for (i, &at) in axes.iter().enumerate() {
+            if let Some((_, middle)) = fields.next_if(|(first, _)| *first == i) {
+                center = *middle;
+                command(self, "FIELD");
+                for (word, at) in [" X", " Y"].into_iter().zip(center) {
+                    self.word(word);
+                    self.length(at);
+                }
+                self.end();
+            }
+            let at = [at[0] - center[0], at[1] - center[1], at[2]];
             if let Some(run) = runs.next_if(|run| run.first == i) {
                 command(self, "RUN");
                 for (of, speed) in coordinates.iter().zip(run.speed) {

@@ -240,6 +240,14 @@ pub fn steps(run: &Run, machine: &Machine) -> Vec<u64> {
         let way = [0, 1, 2].map(|axis| b[axis].round() - a[axis].round());
         ticks[next] = clock.between(way, leaves, enters);
     }
+    // From field to field the stage moves, while the mirrors lead the beam to its place in the next one.
+    for pair in run.fields.windows(2) {
+        let ((_, _, from), (next, _, to)) = (pair[0], pair[1]);
+        let Some((before, after)) = between(next as usize) else { continue };
+        let inside = |at: [f64; 3], center: [f64; 2]| [at[0] - center[0], at[1] - center[1], at[2]];
+        let mirrors = step(inside(before.at, from), inside(after.at, to));
+        ticks[next as usize] = mirrors.max(machine.carried(from, to));
+    }
     for stops in run.stops.chunk_by(|a, b| a.pulses == b.pulses) {
         let next = stops[0].pulses as usize;
         let Some((before, after)) = between(next) else { continue };
@@ -316,7 +324,28 @@ fn apart(
 
 /// Every axis stays within its travel, wherever it stops.
 fn travels(run: &Run, task: &Task, findings: &mut Findings) {
-    let pulses = run.pulses.iter().map(|pulse| (pulse.line, pulse.at.map(Some)));
+    let pulses = run.pulses.iter().enumerate().map(|(i, pulse)| {
+        let begun = run.fields.partition_point(|(first, _, _)| *first as usize <= i);
+        let center = begun.checked_sub(1).map_or([0.0; 2], |field| run.fields[field].2);
+        let [x, y, z] = pulse.at;
+        // What a subtraction leaves of whole µm.
+        let whole =
+            |value: f64| if run.fields.is_empty() { value } else { (value * 1e6).round() / 1e6 };
+        (pulse.line, [whole(x - center[0]), whole(y - center[1]), z].map(Some))
+    });
+    for (_, line, center) in &run.fields {
+        let stage = task.machine.stage.iter().flat_map(|stage| [("X", stage.x), ("Y", stage.y)]);
+        for ((name, axis), at) in stage.zip(center) {
+            let [low, high] = axis.travel;
+            if !(low..=high).contains(at) {
+                let message = format!(
+                    "{name}{at:.3} of the stage is beyond its travel from {low} to {high} mm"
+                );
+                let found = Diagnostic::error(Rule::Travel, message).line(*line);
+                findings.push(found.help("take a smaller block, or move the body"));
+            }
+        }
+    }
     let stops = run.stops.iter().map(|stop| (stop.line, stop.at));
     // Where the axes begin to gain the speed of a motion, and where they stand when they have braked.
     let clock = task.machine.clock();

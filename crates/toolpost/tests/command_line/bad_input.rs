@@ -450,6 +450,7 @@ const READERS: &[(&str, &str, &str)] = &[
         "in.toml",
         "glass simulate out.prg -m in.toml",
     ),
+    ("PULSES", "in.prg", "glass simulate in.prg -m glass-xyz-100hz"),
     ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
     ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
     ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),
