@@ -122,6 +122,43 @@ fn both_coolants_and_a_probe_are_written_and_what_mach3_does_not_do_is_refused()
     }
 }
 
+/// Loops, a subprogram, compensation by the tool table and holes, written for a mill: as motions of an arm.
+#[test]
+fn the_example_is_made_by_robots() {
+    let text = std::fs::read(root().join("examples/flange.nc")).unwrap();
+    let tool = |number, radius: f64| control::ToolData {
+        number,
+        name: String::new(),
+        radius,
+        length: 45.0,
+    };
+    let setup = Setup { tools: vec![tool(1, 6.0), tool(2, 3.3)], ..Setup::default() };
+    let from = machine::load_origin("fanuc-31i").unwrap();
+    let program = nc::read(&from, setup, "flange.nc", &text).unwrap().program;
+    for robot in ["universal-ur5e", "fanuc-lrmate-200id-mill", "abb-irb120-mill"] {
+        let machine = machine::load(robot).unwrap();
+        let text = post::write(&program, &machine).unwrap().text;
+        let report = proof::prove(&program, &machine, "flange", &text, &Default::default());
+        assert!(report.proven, "{robot}: {:#?}", report.mismatches);
+        // Around the flange at its two depths.
+        assert!(report.compared.arcs >= 2, "{robot}");
+    }
+}
+
+/// A clamp is one of a rotary axis, which a robot does not have.
+#[test]
+fn a_clamp_is_left_out_on_a_robot_with_a_warning() {
+    let text = "N1 G54 G90 G71\nN2 T1 D1\nN3 S3000 M3\nN4 M27 M29\nN5 G0 X10 Y0 Z20 A0 C0\nN6 G1 Z-1 F300\nN7 X20\nN8 G0 Z20\nN9 M30\n";
+    let from = machine::load_origin("sinumerik-840d-table-ac").unwrap();
+    let program = nc::read(&from, Setup::default(), "old.mpf", text.as_bytes()).unwrap().program;
+    assert!(program.records.iter().any(|record| matches!(record.op, Op::Clamp(_))));
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    let output = post::write(&program, &machine).unwrap();
+    assert!(output.warnings.iter().any(|found| found.rule.name() == "clamp"));
+    let report = proof::prove(&program, &machine, "old.src", &output.text, &Default::default());
+    assert!(report.proven, "{:#?}", report.mismatches);
+}
+
 /// The example goes round a flange of R 42 by `G41`, in two depths by a loop and a subprogram, and drills
 /// six holes on R 30 by a loop.
 #[test]

@@ -18,7 +18,9 @@ use machine::limits::Limits;
 use machine::{Cell, Machine, Word};
 use minijinja::value::Value;
 use plan::{Act, Kind, Motion, Position, Step, plan};
-use program::{Coolant, CutBox, Diagnostic, Outcome, OutputValue, Program, Rule, Spindle, Tool};
+use program::{
+    Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Rule, Spindle, Tool,
+};
 use rapid::{Leg, Way, Ways};
 use std::f64::consts::TAU;
 
@@ -86,6 +88,11 @@ pub(crate) fn write(
                        at the robot do not change the size of what is cut";
         let found = Diagnostic::warning(Rule::CompensatedPath, message);
         walk.findings.warn(found.help("a robot has no compensation").line(line));
+    }
+    for record in program.records.iter().filter(|record| matches!(record.op, Op::Clamp(_))) {
+        let message = "a clamp of a rotary axis is left out: a robot has none";
+        let found = Diagnostic::warning(Rule::Clamp, message).help("nothing to do");
+        walk.findings.warn(found.line(record.line));
     }
     let warnings = walk.findings.finish(machine.capabilities.lowering_tolerance)?;
     let (text, blocks) = walk.writer.finish();

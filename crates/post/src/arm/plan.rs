@@ -304,6 +304,8 @@ impl<'a> Walk<'a, '_> {
             | Op::SurfaceSpeed(None)
             | Op::Frame(_)
             | Op::Preselect(_)
+            // A robot has no rotary axes that a clamp would hold: see `write`.
+            | Op::Clamp(_)
             | Op::EndOfOperation
             | Op::End => {}
             Op::OptionalStop if self.machine.leaves_out("optional_stop") => {}
@@ -324,7 +326,6 @@ impl<'a> Walk<'a, '_> {
             | Op::WorkOffset(_)
             | Op::WorkOffsetData(_)
             | Op::Surface(_)
-            | Op::Clamp(_)
             | Op::Input(_)
             | Op::Auxiliary(_)
             | Op::ThreadWire

@@ -199,6 +199,8 @@ impl Walk<'_> {
             | Op::Preselect(_)
             | Op::Operation(_)
             | Op::EndOfOperation
+            // Of rotary axes, which no arm has.
+            | Op::Clamp(_)
             | Op::Comment(_)
             | Op::Message(_) => {}
             Op::Thread(_)
@@ -212,7 +214,6 @@ impl Walk<'_> {
             | Op::WorkOffset(_)
             | Op::WorkOffsetData(_)
             | Op::Surface(_)
-            | Op::Clamp(_)
             | Op::Auxiliary(_)
             | Op::ThreadWire
             | Op::CutWire

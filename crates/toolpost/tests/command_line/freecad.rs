@@ -39,6 +39,26 @@ fn the_example_is_posted_and_proven_and_its_operations_are_named() {
     assert!(folder.run(&["show", "bracket.json"]).out.contains("Profile, Bore, Drilling"));
 }
 
+#[test]
+fn the_example_is_posted_and_proven_on_robots_of_each_language() {
+    let folder = folder();
+    let robots = [
+        ("kuka-kr6-r900", "HALT"),
+        ("universal-ur5e", "popup("),
+        ("fanuc-lrmate-200id-mill", "PAUSE ;"),
+        ("abb-irb120-mill", "Stop;"),
+    ];
+    for (robot, stop) in robots {
+        let said = folder.run(&["post", "bracket.json", "-o", "out.prog", "-m", robot]);
+        assert_eq!(said.code, 0, "{said:?}");
+        // It mills and drills: both tools are put in by hand, and nobody has to ask for that.
+        assert!(said.err.contains("tool-by-hand"), "{said:?}");
+        assert_eq!(folder.read("out.prog").matches(stop).count(), 2, "{robot}");
+        let prove = ["prove", "out.prog", "--against", "bracket.json", "-m", robot];
+        assert_eq!(folder.run(&prove).code, 0, "{robot}");
+    }
+}
+
 /// The second `G1` of the profile goes to X-3 Y32.
 #[test]
 fn a_proof_that_fails_names_operation_and_command() {
