@@ -57,6 +57,8 @@ struct PlanePaths {
     parallel: Vec<Element>,
     /// The path of the centre.
     ways: Vec<PlaneMove>,
+    /// The way out as the program says it.
+    exit: Option<Element>,
     radius: f64,
     /// 1 where the tool is on the left, -1 where it is on the right.
     left: f64,
@@ -95,9 +97,10 @@ pub(crate) fn compare(
     let ways: Vec<PlaneMove> = path.iter().copied().filter(in_plane).collect();
     let parallel = contour.iter().map(|way| parallel_of(way, left * radius));
     let parallel = parallel.collect::<Result<_, _>>()?;
+    let exit = stretch.exit.and_then(|piece| flat(&piece, axis, 0).ok()).map(|way| way.element);
     let Slack { along: slack, chord } = slack;
     let mut paths =
-        PlanePaths { contour, parallel, ways, radius, left, slack, chord, along: Vec::new() };
+        PlanePaths { contour, parallel, ways, exit, radius, left, slack, chord, along: Vec::new() };
     paths.compare()?;
     paths.keeps_off()?;
     paths.pieces(&path, stretch.pieces.len())
@@ -344,8 +347,8 @@ impl PlanePaths {
             let neighbours = (from.max(2) - 1)..=(to + 1).min(count);
             let neighbours: Vec<usize> = neighbours.map(|k| number[k - 1]).collect();
             let lead = match i {
-                i if i < first => Some(start),
-                i if i > last => Some(end),
+                i if i < first => Some((start, Some(self.contour[0].element))),
+                i if i > last => Some((end, self.exit)),
                 _ => None,
             };
             boxes.near(&way.element, self.radius, &mut near);
@@ -361,15 +364,18 @@ impl PlanePaths {
         Ok(())
     }
 
-    /// A way against an element that is none of its `own`; a way in or out may come as near as its outer end is.
+    /// A way against an element that is none of its `own`; a way in or out may come as near as its outer end is, or as the program says.
     fn apart(
         &self,
         way: &PlaneMove,
         other: &PlaneMove,
         own: &[PlaneMove],
-        lead: Option<Vec2>,
+        lead: Option<(Vec2, Option<Element>)>,
     ) -> Result<(), Fault> {
-        let least = lead.map_or(self.radius, |end| other.element.nearest(end).1.min(self.radius));
+        let least = lead.map_or(self.radius, |(end, said)| {
+            let said = said.map_or(f64::INFINITY, |said| said.distance(&other.element, NOWHERE));
+            other.element.nearest(end).1.min(said).min(self.radius)
+        });
         let enough = least - self.slack_of(way);
         let is_above = low(way) > high(other) + self.slack;
         if is_above || way.element.distance(&other.element, NOWHERE) >= enough {
