@@ -506,6 +506,17 @@ fn the_tool_that_is_in_the_spindle_is_not_asked_for_again() {
     assert_eq!(text.matches("HALT").count(), 3, "{text}");
 }
 
+/// The source goes by rapid to where the tool is already: over a hole at its retract height, within rounding.
+#[test]
+fn a_rapid_to_where_the_tool_is_already_is_no_motion() {
+    let over_a_hole = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/20,20,45.38191\n\
+CYCLE/DRILL,FEDTO,4,MMPM,150,RAPTO,3,RTRCTO,45.381891\nGOTO/20,20,0\nGOTO/40,20.0001,0\nCYCLE/OFF\nRAPID\nGOTO/40,20,45.3818\n\
+RAPID\nGOTO/20,20,80\nFINI\n";
+    for name in machine::library::names(machine::library::ROBOTS) {
+        proven(&source(over_a_hole), &machine::load(name).unwrap());
+    }
+}
+
 /// Other files of cutter-location data: each is proven, or refused before anything is written.
 #[test]
 fn no_file_of_cutter_location_data_fails_its_own_proof_on_the_robot() {

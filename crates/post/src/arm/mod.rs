@@ -33,6 +33,9 @@ mod corner {
 /// By how much the word of a feed may round it, as a part of it.
 const ROUGH: f64 = 0.05;
 
+/// Joints that differ by less are the same, radians.
+const SAME_JOINTS: f64 = 1e-5;
+
 /// The words of a pose: where the tip is, and the orientation in each form that a control may place.
 pub(crate) struct PoseWords {
     pub(crate) tip: [WordName; 3],
@@ -442,7 +445,9 @@ impl<'a> Walk<'a> {
     fn rapid(&mut self, motion: &Motion) -> Outcome {
         let Some(tool) = self.tool else { return Ok(()) };
         let apart = self.here.tool.translation.distance(motion.end.tool.translation);
-        if self.here.joints == motion.end.joints && apart < self.machine.resolution() {
+        let turns = self.here.joints.iter().zip(motion.end.joints).map(|(a, b)| (a - b).abs());
+        // What is less than a step of the words is no motion.
+        if apart < self.machine.resolution() && turns.fold(0.0, f64::max) < SAME_JOINTS {
             return Ok(());
         }
         let Some(route) = self.ways.route(&tool, &self.here, &motion.end, false) else {

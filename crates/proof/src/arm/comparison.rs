@@ -42,6 +42,8 @@ struct Standing {
     tool: Frame,
     /// Whether it is there, or as far off as joints leave an arm that is not measured.
     exact: bool,
+    /// Whether joints have led it there.
+    by_joints: bool,
 }
 
 /// How tools are changed.
@@ -339,9 +341,9 @@ impl<'a> Comparison<'a> {
         let short = from.point().distance(to.point()) < self.machine.resolution()
             && angle_between(from.axis(), to.axis()) < 1e-5;
         short
-            && self
-                .standing
-                .is_some_and(|standing| self.off(&standing.tool, to).0 <= 2.0 * self.tip(false))
+            && self.standing.is_some_and(|standing| {
+                self.off(&standing.tool, to).0 <= 2.0 * self.tip(standing.by_joints)
+            })
     }
 
     /// The tool of the program in the frame of the source.

@@ -24,7 +24,7 @@ impl Comparison<'_> {
         };
         let at = base.inverse() * self.arm.flange(&joints) * tool;
         let exact = self.arm.unmeasured() == 0.0;
-        let before = self.standing.replace(Standing { joints, tool: at, exact });
+        let before = self.standing.replace(Standing { joints, tool: at, exact, by_joints: true });
         self.is_home = home;
         let Some(before) = before else {
             return match home {

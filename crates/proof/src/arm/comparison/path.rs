@@ -263,7 +263,7 @@ impl Comparison<'_> {
         checked.note_limit(limit);
         checked.note_wrist(wrist);
         checked.speed_percent = checked.speed_percent.max(100.0 * speed);
-        self.standing = Some(Standing { joints, tool: end, exact: true });
+        self.standing = Some(Standing { joints, tool: end, exact: true, by_joints: false });
         self.is_home = false;
         Ok(())
     }
