@@ -452,6 +452,11 @@ fn tools_are_put_in_by_hand_at_a_stop_where_no_program_changes_them() {
             warnings.iter().filter(|found| found.rule.name() == "tool-by-hand").collect();
         assert_eq!((by_hand.len(), by_hand[0].line), (1, 3), "{name}");
         assert!(by_hand[0].help.contains("tool_change"), "{name}");
+        // The source states the length of the second one alone.
+        let length = warnings.iter().filter(|found| found.rule.name() == "tool-length");
+        let length: Vec<_> =
+            length.map(|found| (found.line, found.message.contains("50 mm"))).collect();
+        assert_eq!(length, [(3, true)], "{name}");
         let rule_of = |damaged: &str| {
             assert_ne!(damaged, text, "{name}");
             let report = proof_of(&source, &machine, damaged);

@@ -363,6 +363,15 @@ impl<'a> Walk<'a> {
             let help = "`tool_change` below [cell], where a program changes tools";
             self.findings
                 .warn(Diagnostic::warning(Rule::ToolByHand, message).help(help).line(line));
+            if let (None, Some(length)) = (tool.length, self.cell.tool_length) {
+                let message = format!(
+                    "the source states no length of tool {}: it has to stand {length} mm out of the spindle, as `tool_length` of the cell says",
+                    tool.number
+                );
+                let help = "LENGTH in the source's tool call, as it has been measured";
+                let found = Diagnostic::warning(Rule::ToolLength, message).help(help);
+                self.findings.warn(found.line(line));
+            }
         }
         self.load(tool)
     }
