@@ -247,7 +247,8 @@ impl<'m> Job<'m> {
             within_reach(&cloud, &blocks)?;
         }
         let health = parts.health;
-        let pulses = cloud.len() as u64 * u64::from(settings.blocks);
+        let turns = machine.polar.map_or(1, |_| u64::from(settings.blocks));
+        let pulses = cloud.len() as u64 * turns;
         if pulses > machine.program.points {
             let message = format!(
                 "{pulses} points are more than the {} that {} holds",
@@ -338,8 +339,10 @@ impl<'m> Job<'m> {
         let first = own(&axes);
         self.cloud = own(cloud);
         let mut axes = first.clone();
-        for block in 1..settings.blocks {
-            let turned = on_table.map_or(0, |blocks| blocks.turned(block));
+        for (block, blocks) in
+            on_table.iter().flat_map(|blocks| (1..blocks.count).map(move |i| (i, blocks)))
+        {
+            let turned = blocks.turned(block);
             axes.extend(first.iter().map(|[a, b, z]| [*a, b + turned, *z]));
         }
         let runs = if machine.program.runs { fly::runs(&axes, &clock) } else { Vec::new() };
@@ -424,7 +427,7 @@ fn on_machine(machine: &Machine, settings: &Settings) -> Result<(), Vec<Diagnost
             format!("{} has places for {most} blocks, not {}", machine.title, settings.blocks);
         return Err(error(Rule::GlassBlock, message, "take fewer --blocks"));
     }
-    if let Some(message) = machine.polar.and_then(|table| table.refuses(settings.placing.block)) {
+    if let Some(message) = machine.refuses(settings.placing.block, settings.blocks) {
         return Err(error(Rule::GlassBlock, message, "take smaller blocks"));
     }
     if machine.stage.is_some() && settings.order != Order::Fastest {

@@ -151,9 +151,20 @@ pub struct Laser {
     pub wavelength: f64,
     /// Diameter of the beam at the lens, mm.
     pub beam: f64,
+    /// Equal beams, each over a block of its own: all fire at once.
+    #[serde(default = "one")]
+    pub channels: u32,
+    /// Distance of those beams along X, mm; of several only.
+    #[serde(default)]
+    pub channel_distance: f64,
     /// From the place at which a pulse in motion is asked for until it fires, µs.
     #[serde(default)]
     pub delay: f64,
+}
+
+/// A laser has one beam where nothing else is said.
+fn one() -> u32 {
+    1
 }
 
 /// What holds for every axis.
@@ -326,6 +337,13 @@ impl Machine {
                 return Err(format!("two lenses have f = {} mm: leave one out", lens.focal));
             }
         }
+        if self.laser.channels > 1
+            && (self.kind != Kind::Xyz || self.program.format != Format::Numbered)
+        {
+            return Err(String::from(
+                "laser.channels is for kind = \"xyz\" with the numbered format, which says how many are open",
+            ));
+        }
         if self.stage.is_some() != (self.kind == Kind::Galvo) {
             return Err(String::from(
                 "[stage.x] and [stage.y] are for kind = \"galvo\", which needs them",
@@ -359,12 +377,14 @@ impl Machine {
 
     /// Every figure with its name, and from what to what it may be.
     fn figures(&self) -> Vec<(String, f64, [f64; 2])> {
-        let Laser { rate, wavelength, beam, delay } = self.laser;
+        let Laser { rate, wavelength, beam, channels, channel_distance, delay } = self.laser;
         let mut figures = vec![
             (String::from("laser.rate"), rate, [0.1, 1e6]),
             (String::from("laser.wavelength"), wavelength, [100.0, 20_000.0]),
             (String::from("laser.beam"), beam, [0.1, 100.0]),
             (String::from("laser.delay"), delay, [0.0, 1e4]),
+            (String::from("laser.channels"), f64::from(channels), [1.0, 64.0]),
+            (String::from("laser.channel_distance"), channel_distance, [0.0, 5000.0]),
         ];
         if let Some(Table { distance, arm, offset, radius, blocks, .. }) = self.polar {
             let lengths =
@@ -456,9 +476,23 @@ impl Machine {
         }
     }
 
+    /// Why blocks of these sides do not lie side by side under its beams or on its table; `None` where they do.
+    pub fn refuses(&self, block: [f64; 3], count: u32) -> Option<String> {
+        if let Some(table) = self.polar {
+            return table.refuses(block);
+        }
+        let Laser { channel_distance, .. } = self.laser;
+        (count > 1 && block[0] > channel_distance).then(|| {
+            format!(
+                "blocks of {} mm do not lie side by side under beams {channel_distance} mm apart",
+                block[0]
+            )
+        })
+    }
+
     /// How many equal blocks it can make at most.
     pub fn blocks(&self) -> u32 {
-        self.polar.map_or(1, |table| table.blocks)
+        self.polar.map_or(self.laser.channels, |table| table.blocks)
     }
 }
 

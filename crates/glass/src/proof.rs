@@ -100,7 +100,9 @@ fn side_by_side(task: &Task) -> (Vec<Point>, i32) {
         let shift = apart * block as i32;
         task.cloud.iter().map(move |[x, y, z]| [x + shift, *y, *z])
     };
-    ((0..task.blocks).flat_map(moved).collect(), apart)
+    // Beams side by side make the same points in each block.
+    let made = if task.machine.polar.is_some() { task.blocks } else { 1 };
+    ((0..made).flat_map(moved).collect(), apart)
 }
 
 /// Compares the pulses of `run` with `task`.

@@ -260,6 +260,30 @@ fn a_program_that_is_edited_is_proven_against_the_body_again() {
 }
 
 #[test]
+fn beams_side_by_side_make_equal_blocks_at_once() {
+    let four = Machine::read(library("glass-xyz-50hz").unwrap(), "").unwrap();
+    let with = |blocks| make(vec![body()], &k9(), &four, &Settings { blocks, ..settings() });
+    let (one, two) = (with(1).unwrap(), with(2).unwrap());
+    assert!(two.proven && two.findings.is_empty(), "{:?}", two.findings);
+    // The same pulses in the same time; the first line says how many beams are open.
+    assert_eq!(two.report.proof, one.report.proof);
+    let [one, two] = [one, two].map(|made| String::from_utf8(made.text).unwrap());
+    let head = two.lines().next().unwrap();
+    assert_eq!(head.strip_suffix(" BLOCKS 2"), one.lines().next());
+    assert_eq!(two.split_once('\n').unwrap().1, one.split_once('\n').unwrap().1);
+    // A program for another number of blocks, and blocks that do not fit.
+    let found = job::prove(two.into(), vec![body()], &k9(), &four, &settings()).unwrap();
+    assert_eq!(found.findings[0].rule, "glass-block");
+    assert!(with(5).unwrap_err()[0].message.contains("places for 4 blocks"));
+    let mut wide = Settings { blocks: 2, ..settings() };
+    wide.placing.block[0] = 101.0;
+    let found = make(vec![body()], &k9(), &four, &wide).unwrap_err();
+    assert!(found[0].message.contains("beams 100 mm apart"), "{}", found[0]);
+    let points = library("glass-xyz-50hz").unwrap().replace("\"numbered\"", "\"points\"");
+    assert!(Machine::read(&points, "").unwrap_err().message.contains("laser.channels"));
+}
+
+#[test]
 fn programs_that_a_controller_would_not_take_are_refused() {
     let cloud = [[10_000, 10_000, 15_000]];
     let refused = |text: &str, format| {
