@@ -210,7 +210,7 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
     let axes = machine.coordinates();
     let names = axes.map(|axis| axis.word);
     // From the trigger to the pulse the axes go on.
-    let late = machine.laser.delay * 1e-6 * machine.laser.rate;
+    let late = machine.late();
     let mut moving: Option<Moving> = None;
     let mut run = Run::default();
     let mut promised: Option<u64> = None;

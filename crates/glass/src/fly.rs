@@ -45,20 +45,22 @@ fn longest(axes: &[Point], first: usize, clock: &Clock) -> Option<Run> {
     (count >= FEWEST && moves && clock.allows(speed)).then_some(Run { first, count, speed })
 }
 
-/// The runs of an order at which the axes stand at `axes`, where they save ticks.
-pub fn runs(axes: &[Point], clock: &Clock) -> Vec<Run> {
+/// The runs of an order at which the axes stand at `axes`, where they save ticks; `steps` are those of a mm or degree of each axis, and
+/// the trigger leads by `late` ticks.
+pub fn runs(axes: &[Point], steps: [f64; 3], late: f64, clock: &Clock) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut at = 0;
     while at + FEWEST <= axes.len() {
-        let Some(run) = longest(axes, at, clock) else {
+        let Some(mut run) = longest(axes, at, clock) else {
             at += 1;
             continue;
         };
+        run.speed = stated(run.speed, steps);
         let last = runs.last().filter(|before| before.first + before.count == at).copied();
         let part = &axes[at.saturating_sub(1)..(at + run.count + 1).min(axes.len())];
         let own = Run { first: at - at.saturating_sub(1), ..run };
         let before = last.map_or([0.0; 3], |last| last.speed);
-        if ticks(part, &[own], before, clock) < ticks(part, &[], before, clock) {
+        if ticks(part, &[own], before, late, clock) < ticks(part, &[], before, late, clock) {
             at += run.count;
             runs.push(run);
         } else {
@@ -69,40 +71,46 @@ pub fn runs(axes: &[Point], clock: &Clock) -> Vec<Run> {
     runs
 }
 
-/// The ticks of all steps of an order with its `runs`; the first place is passed at the speed `before`.
-pub fn ticks(axes: &[Point], runs: &[Run], before: [f64; 3], clock: &Clock) -> u64 {
+/// The ticks of all steps of an order with its `runs`; the first place is passed at the speed `before`. A run's trigger leads by
+/// `late` ticks, and its motion is that of its first place and its speed, as a program has them.
+pub fn ticks(axes: &[Point], runs: &[Run], before: [f64; 3], late: f64, clock: &Clock) -> u64 {
+    let led = |at: usize, speed: [f64; 3]| {
+        [0, 1, 2].map(|axis| (f64::from(axes[at][axis]) - speed[axis] * late).round())
+    };
     let mut runs = runs.iter().peekable();
     let mut sum = 0;
     let mut leaves = before;
-    let mut end = 0;
-    let mut enters = |at: usize| runs.next_if(|run| run.first == at).copied();
-    let mut own = enters(0);
-    for at in 1..axes.len() {
-        if let Some(run) = own {
-            leaves = run.speed;
-            end = run.first + run.count;
-            own = None;
-        }
-        if at < end {
-            sum += clock.passed(way(axes[at - 1], axes[at]), leaves);
+    let mut place = axes.first().map_or([0.0; 3], |at| at.map(f64::from));
+    let mut moving: Option<Run> = None;
+    for at in 0..axes.len() {
+        if let Some(run) = moving.filter(|run| at < run.first + run.count) {
+            let passed = clock.passed(way(axes[at - 1], axes[at]), run.speed);
+            sum += passed;
+            place = [0, 1, 2].map(|axis| place[axis] + run.speed[axis] * passed as f64);
             continue;
         }
-        own = enters(at);
-        let arrives = own.map_or([0.0; 3], |run| run.speed);
-        sum += step(axes[at - 1], axes[at], leaves, arrives, clock);
-        leaves = [0.0; 3];
+        moving = runs.next_if(|run| run.first == at).copied();
+        let enters = moving.map_or([0.0; 3], |run| run.speed);
+        let to = led(at, enters);
+        if at > 0 {
+            sum += match leaves == [0.0; 3] && enters == [0.0; 3] {
+                true => u64::from(clock.step(axes[at - 1], axes[at])),
+                false => {
+                    let way = [0, 1, 2].map(|axis| to[axis] - place[axis].round());
+                    clock.between(way, leaves, enters)
+                }
+            };
+        }
+        (leaves, place) = (enters, to);
     }
     sum
 }
 
-/// The ticks of a step between places that the axes leave and reach at these speeds, steps for each tick.
-pub fn step(from: Point, to: Point, leaves: [f64; 3], enters: [f64; 3], clock: &Clock) -> u64 {
-    if leaves == [0.0; 3] && enters == [0.0; 3] {
-        return u64::from(clock.step(from, to));
-    }
-    clock.between(way(from, to), leaves, enters)
-}
-
 fn way(from: Point, to: Point) -> [f64; 3] {
     [0, 1, 2].map(|axis| f64::from(to[axis]) - f64::from(from[axis]))
+}
+
+/// A speed in steps for each tick as a program can say it: nine decimals of a mm or degree.
+pub fn stated(speed: [f64; 3], steps: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| (speed[axis] / steps[axis] * 1e9).round() / 1e9 * steps[axis])
 }

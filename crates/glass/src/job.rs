@@ -158,7 +158,7 @@ pub fn make(
     let mut job = Job::new(shapes, material, machine, settings)?;
     let Ordered { axes, runs, fields } = job.order();
     let clock = machine.clock();
-    let mut planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], &clock);
+    let mut planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], machine.late(), &clock);
     for pair in fields.windows(2) {
         let ((_, from), (next, to)) = (pair[0], pair[1]);
         let mm = |at: [i32; 2]| at.map(|value| f64::from(value) * 1e-3);
@@ -345,7 +345,11 @@ impl<'m> Job<'m> {
             let turned = blocks.turned(block);
             axes.extend(first.iter().map(|[a, b, z]| [*a, b + turned, *z]));
         }
-        let runs = if machine.program.runs { fly::runs(&axes, &clock) } else { Vec::new() };
+        let runs = if machine.program.runs {
+            fly::runs(&axes, machine.coordinates().map(|of| of.steps()), machine.late(), &clock)
+        } else {
+            Vec::new()
+        };
         Ordered { axes, runs, fields }
     }
 

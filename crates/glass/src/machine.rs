@@ -490,6 +490,11 @@ impl Machine {
         })
     }
 
+    /// How many ticks pass from the trigger of a pulse until it fires.
+    pub fn late(&self) -> f64 {
+        self.laser.delay * 1e-6 * self.laser.rate
+    }
+
     /// How many equal blocks it can make at most.
     pub fn blocks(&self) -> u32 {
         self.polar.map_or(self.laser.channels, |table| table.blocks)

@@ -103,7 +103,7 @@ impl Text {
         let mut fields = fields.iter().peekable();
         let mut center = [0; 2];
         let coordinates = machine.coordinates();
-        let late = machine.laser.delay * 1e-6 * machine.laser.rate;
+        let late = machine.late();
         let mut number = 2;
         let mut command = |text: &mut Text, name| {
             text.numbered(number, name);

@@ -217,7 +217,7 @@ pub fn steps(run: &Run, machine: &Machine) -> Vec<u64> {
     let mut ticks: Vec<u64> = run.pulses.iter().take(1).map(|_| 1).collect();
     ticks.par_extend(run.pulses.par_windows(2).map(straight));
     // Into a motion at constant speed the axes gain it, out of it they brake.
-    let late = machine.laser.delay * 1e-6 * machine.laser.rate;
+    let late = machine.late();
     let mut ends: Vec<(usize, [f64; 3], [f64; 3])> = Vec::new();
     for Motion { first, count, speed } in &run.motions {
         let (before, after) = (*first as usize, (first + count) as usize);

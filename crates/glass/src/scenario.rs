@@ -5,7 +5,7 @@
 
 use crate::clock::Clock;
 use crate::cloud::{self, Point};
-use crate::fly::Run;
+use crate::fly::{self, Run};
 use crate::machine::{Machine, Table};
 use crate::polar::{Branch, Polar, Pose};
 use glam::{DVec2, DVec3};
@@ -245,7 +245,7 @@ impl Blocks<'_> {
         plan: &mut Plan,
     ) {
         let steps = self.machine.coordinates().map(|of| of.steps());
-        let speed = [speed[0] * steps[0], speed[1] * steps[1], 0.0];
+        let speed = fly::stated([speed[0] * steps[0], speed[1] * steps[1], 0.0], steps);
         let skips = |pair: &(i64, u32), next: &(i64, u32)| {
             let ticks = next.0 - pair.0;
             let way = speed.map(|speed| speed * ticks as f64);
