@@ -56,6 +56,7 @@ mod hole;
 pub mod isolation;
 pub mod job;
 pub mod kicad;
+mod linking;
 mod merge;
 pub mod model;
 mod operation;

@@ -83,6 +83,8 @@ pub struct Isolated {
     pub slots: Vec<Slot>,
     /// Copper that stays between conductors, and in slots.
     pub unreached: Region,
+    /// What the middle of the tool stays out of, but for cuts down the middle of gaps.
+    pub around: Region,
     /// Whether the paths go around all copper together, and none is between conductors.
     pub is_around_all: bool,
     /// Which conductors the cuts down the middle of gaps leave in pieces.
@@ -132,7 +134,8 @@ impl Isolation {
         }
         let severed = severed(copper, &middles, width)?;
         paths.append(&mut middles);
-        Ok(Isolated { paths, narrow: gaps.narrow, slots, unreached, is_around_all, severed })
+        let narrow = gaps.narrow;
+        Ok(Isolated { paths, narrow, slots, unreached, around, is_around_all, severed })
     }
 
     /// What the middle of the tool stays out of, and all passes around the copper.

@@ -116,11 +116,14 @@ impl Outline {
             Direction::Climb => &reversed,
             Direction::Conventional | Direction::Either => parts,
         };
-        let level = |&depth: &f64| {
-            parts.iter().map(move |part| Segment {
-                element: part.element,
-                depth: if part.tab { depth.min(top) } else { depth },
-            })
+        let whole = tabs::whole(parts);
+        let level = |&depth: &f64| -> Vec<Segment> {
+            // Above the tabs there are none.
+            if depth <= top {
+                return whole.iter().map(|element| Segment { element: *element, depth }).collect();
+            }
+            let depth = |part: &tabs::Part| if part.tab { top } else { depth };
+            parts.iter().map(|part| Segment { element: part.element, depth: depth(part) }).collect()
         };
         Cut::Path(depths.iter().flat_map(level).collect())
     }

@@ -3,7 +3,7 @@
 use crate::Path;
 use crate::report::{Outcome, fault};
 use crate::setting::{self, shown};
-use geom::{Element, Vec2};
+use geom::{Element, Turn, Vec2};
 use program::{Diagnostic, Rule};
 
 /// More tabs than this are a mistake.
@@ -27,6 +27,8 @@ pub struct Tabs {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
     pub(super) element: Element,
+    /// Which element of the contour it is a piece of.
+    pub(super) of: usize,
     /// Whether it is over a tab.
     pub(super) tab: bool,
 }
@@ -172,7 +174,7 @@ fn nearest(even: f64, length: f64, straight: &[(f64, f64)]) -> f64 {
 pub(super) fn parted(contour: &Path, spans: &[(f64, f64)], start: Vec2) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let mut begun = 0.0;
-    for element in contour.elements() {
+    for (of, element) in contour.elements().iter().enumerate() {
         let length = element.length();
         let ends = spans.iter().flat_map(|(from, to)| [*from, *to]);
         let inner = ends.map(|end| (end - begun) / length).filter(|t| *t > 0.0 && *t < 1.0);
@@ -180,7 +182,7 @@ pub(super) fn parted(contour: &Path, spans: &[(f64, f64)], start: Vec2) -> Vec<P
         for to in inner.chain([1.0]) {
             let middle = begun + length * (from + to) / 2.0;
             let tab = spans.iter().any(|(from, to)| *from < middle && middle < *to);
-            parts.push(Part { element: element.part(from, to), tab });
+            parts.push(Part { element: element.part(from, to), of, tab });
             from = to;
         }
         begun += length;
@@ -193,4 +195,16 @@ pub(super) fn parted(contour: &Path, spans: &[(f64, f64)], start: Vec2) -> Vec<P
     let first = first.map_or(0, |(i, _)| i);
     parts.rotate_left(first);
     parts
+}
+
+/// The elements of which `parts` are pieces, where they follow each other: what is cut above the tabs.
+pub(super) fn whole(parts: &[Part]) -> Vec<Element> {
+    let joined = |pieces: &[Part]| {
+        let [first, .., last] = pieces else { return pieces.first().map(|piece| piece.element) };
+        let sweep =
+            pieces.iter().filter_map(|piece| piece.element.turn).map(|turn| turn.sweep).sum();
+        let turn = first.element.turn.map(|turn| Turn { sweep, ..turn });
+        Some(Element { end: last.element.end, turn, ..first.element })
+    };
+    parts.chunk_by(|a, b| a.of == b.of).filter_map(joined).collect()
 }

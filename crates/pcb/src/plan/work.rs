@@ -6,6 +6,7 @@ use crate::gerber::Image;
 use crate::isolation::{
     Direction, Fate, Isolated, Isolation, Narrow, NarrowGap, Severed, Slot, severed,
 };
+use crate::linking;
 use crate::outline::{Outline, Tabs};
 use crate::setting::shown;
 use crate::tour::Tour;
@@ -143,14 +144,24 @@ impl Worker<'_> {
         crate::setting::step("the step of the isolation", step, settings.depth)?;
         let depths = depths(settings.depth, step);
         let width = bit.cutter.width(settings.depth);
-        let paths = match settings.isolate {
-            Isolate::Contours => self.around(work, copper, bit.cutter)?,
-            Isolate::Middle => self.between(work, copper, board, width)?,
+        let running = &self.asked.running;
+        // As far as the tool cuts while it would come up, go on and come down.
+        let down = running.approach + settings.depth;
+        let detour = running.travel + running.feed * down / running.plunge;
+        let (lines, dots) = match settings.isolate {
+            Isolate::Contours => {
+                let (paths, around) = self.around(work, copper, bit.cutter)?;
+                let (lines, dots) = merged(&linking::trails(&paths, detour));
+                (linking::linked(&lines, &around, detour), dots)
+            }
+            Isolate::Middle => {
+                merged(&linking::trails(&self.between(work, copper, board, width)?, detour))
+            }
         };
         work.operations.push(Operation {
             name: format!("isolation, {}", bit.name),
             tool: bit,
-            cuts: along(&paths, width, &depths),
+            cuts: cuts(&lines, &dots, width, &depths),
         });
         if self.asked.clearing.clear.is_empty() {
             return Ok(());
@@ -163,13 +174,13 @@ impl Worker<'_> {
         Ok(())
     }
 
-    /// The paths around copper.
+    /// The paths around copper, and what the middle of the tool stays out of.
     fn around(
         &self,
         work: &mut Work,
         copper: &Copper,
         cutter: Cutter,
-    ) -> Result<Vec<Path>, Vec<Diagnostic>> {
+    ) -> Result<(Vec<Path>, Region), Vec<Diagnostic>> {
         let settings = &self.asked.isolation;
         let isolation = Isolation {
             cutter,
@@ -180,13 +191,13 @@ impl Worker<'_> {
             narrow: settings.narrow,
         };
         let isolated = isolation.isolate(copper, None)?;
-        let Isolated { paths, narrow, slots, unreached, is_around_all, severed } = isolated;
+        let Isolated { paths, narrow, slots, unreached, around, is_around_all, severed } = isolated;
         let width = isolation.width();
         self.narrow(work, copper, &narrow, width, is_around_all)?;
         self.slots(work, copper, &slots, width);
         tell_severed(work, copper, &severed);
         work.rest.push(unreached);
-        Ok(paths)
+        Ok((paths, around))
     }
 
     /// Tells of gaps that are too narrow; refuses where nothing would be apart: all nets stay joined, and no path is
@@ -630,6 +641,12 @@ fn net(copper: &Copper, island: usize) -> String {
 
 /// Cuts along `paths` at each depth, in an order of short travel. A path without length is a dot.
 fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
+    let (lines, dots) = merged(paths);
+    cuts(&lines, &dots, width, depths)
+}
+
+/// Paths in few elements, and where those are that have no length.
+fn merged(paths: &[Path]) -> (Vec<Path>, Vec<Vec2>) {
     let mut lines = Vec::with_capacity(paths.len());
     let mut dots = Vec::new();
     let merged: Vec<Option<Path>> =
@@ -640,14 +657,19 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
             None => dots.push(path.start()),
         }
     }
+    (lines, dots)
+}
+
+/// Cuts along `lines` and at `dots` at each depth, in an order of short travel.
+fn cuts(lines: &[Path], dots: &[Vec2], width: f64, depths: &[f64]) -> Vec<Cut> {
     let tour = Tour { from: Vec2::ZERO, to: None, reversible: true };
-    let mut lines = tour.of_paths(&lines);
+    let mut lines = tour.of_paths(lines);
     if depths.len() == 1 {
         // Deeper, a way that is not closed any more would be cut the other way round.
         lines = crate::joined(&lines, width, JOINED);
     }
     let at = lines.last().map_or(Vec2::ZERO, Path::end);
-    let order = Tour { from: at, ..tour }.of_points(&dots);
+    let order = Tour { from: at, ..tour }.of_points(dots);
     let depth = depths.iter().copied().fold(0.0, f64::max);
     let dot = |at: &Vec2| Cut::Hole { at: *at, depth, peck: None };
     let dots = order.into_iter().filter_map(|index| dots.get(index)).map(dot);

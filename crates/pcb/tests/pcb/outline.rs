@@ -111,6 +111,8 @@ fn tabs_are_on_straight_pieces_and_keep_their_width() {
             .all(|segment| [0.6, 0.8, 1.2, 1.8].iter().any(|d| (segment.depth - d).abs() < 1e-9))
     );
     assert!(path[0].depth < 0.7);
+    // Above the tabs the four sides and corners are whole.
+    assert_eq!(path.iter().filter(|segment| segment.depth == 0.6).count(), 8);
     // Each tab is 5 mm by 2 mm less two half circles of the tool.
     let left = swept(&cut, 0.5).difference(&swept(&cut, 1.7)).unwrap();
     assert_eq!(left.islands().len(), 4);

@@ -348,6 +348,22 @@ fn a_narrow_gap_is_left_out_or_cut_down_its_middle() {
 }
 
 #[test]
+fn contours_near_each_other_are_cut_without_lifting_the_tool() {
+    let folder = small();
+    // Squares of 2 mm, 0.5 mm apart, and one 5.5 mm away.
+    front(&folder, "D12*\nX2000Y5000D03*\nX4500Y5000D03*\nX7000Y5000D03*\nX14500Y5000D03*\n");
+    let tool = ["--tool", "0.2", "--only", "front"];
+    let made = Made::of(&folder, "board", "grbl-3018", &tool);
+    assert_eq!(made.holes("front").len(), 2);
+    // Around each 8 mm and a circle of 0.1 mm; the 0.3 mm between two paths forth and back.
+    let right = 4.0 * (8.0 + 0.1 * TAU) + 2.0 * 2.0 * 0.3;
+    assert!((made.length("front") - right).abs() < 0.02, "{} for {right}", made.length("front"));
+    // In two depths too, and between nets in the middle: four lines that meet nowhere.
+    let deep = Made::of(&folder, "board", "grbl-3018", &[&tool[..], &["--step", "0.05"]].concat());
+    assert!((deep.length("front") - 2.0 * right).abs() < 0.04, "{}", deep.length("front"));
+}
+
+#[test]
 fn slots_within_a_net_and_a_tool_that_one_can_buy_are_named() {
     let folder = small();
     // A plane of 8 x 6 mm with a slot of 0.3 mm, 5 mm long, and a pad far away.

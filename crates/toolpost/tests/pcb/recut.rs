@@ -112,8 +112,9 @@ impl Made {
         }
         let cut = self.cut(side, &none, 0.0);
         // No copper is cut that is farther than a bite from its edge.
-        let thinned = copper.within(&self.cut(side, &none, self.bite)).area();
-        assert!(thinned < 1e-6, "{}: {thinned} mm² of copper are cut", file.display());
+        let thinned = copper.within(&self.cut(side, &none, self.bite));
+        let (area, file) = (thinned.area(), file.display());
+        assert!(area < 1e-6, "{file}: {area} mm² of copper are cut, first {:?}", thinned.first());
         self.nets(side, &image, &copper, &cut);
         assert!(cut.area() > 0.0);
     }

@@ -155,6 +155,12 @@ impl Lines {
         self.lines.iter().flatten().map(|(from, to)| to - from).sum::<f64>() * self.step
     }
 
+    /// The middle of its first span.
+    pub fn first(&self) -> Option<Vec2> {
+        let (line, spans) = self.lines.iter().enumerate().find(|(_, spans)| !spans.is_empty())?;
+        Some(Vec2::new((spans[0].0 + spans[0].1) / 2.0, self.y(line)))
+    }
+
     /// Of each span the number of the piece that it is part of: spans of neighbouring lines that lie over
     /// each other are in one piece.
     pub fn pieces(&self) -> Pieces {
