@@ -1,6 +1,7 @@
 //! What every comparison needs to know: the machine, the tolerances, the length of the tool.
 
 use crate::resolved_pose::{PartialPose, ResolvedPose};
+use crate::state::CornerLimits;
 use crate::tolerance::Applied;
 use control::Position;
 use machine::Machine;
@@ -10,6 +11,7 @@ use machine::Machine;
 pub(crate) struct Gauge<'a> {
     pub machine: &'a Machine,
     pub allowed: Applied,
+    pub corners: CornerLimits,
     /// mm, where the source says it.
     pub tool_length: Option<f64>,
     /// Whether the axes go together in a rapid, on a straight line.

@@ -252,35 +252,60 @@ pub(crate) fn wrong_spindle(wanted: Spindle, is: Spindle) -> Difference {
 /// No source asks for less at corners, mm: most programs have no words for it.
 const CLOSEST: f64 = 0.001;
 
+/// What the machine's file says of corners: its options are looked up once for a proof, not for each cut.
+#[derive(Clone, Copy)]
+pub(crate) struct CornerLimits {
+    /// Its tolerance of the path, mm.
+    own: f64,
+    /// The most that the control may be let leave the path in a cut, mm.
+    most: f64,
+    /// The same between rapids, mm.
+    corridor: f64,
+    /// What the control does where a program says nothing; `None` where its reader is not known.
+    unsaid: Option<Corners>,
+}
+
+impl CornerLimits {
+    /// Those of a machine.
+    pub fn of(machine: &Machine) -> CornerLimits {
+        let own = machine.path_tolerance();
+        CornerLimits {
+            own,
+            most: own.max(machine.roughing_tolerance()),
+            corridor: machine.capabilities.rapid_corridor,
+            unsaid: Dialect::named(&machine.reader).map(Dialect::corners),
+        }
+    }
+}
+
 /// By how much the control may leave the path at corners of cuts: as the source says, and no more than the machine's file.
 pub(crate) fn corners(
-    machine: &Machine,
+    limits: &CornerLimits,
     wanted: &ExpectedState,
     running: &Running,
 ) -> Option<Difference> {
-    let (own, most) = (machine.path_tolerance(), most_at_corners(machine));
     let asked = match wanted.path {
-        PathMode::AsSetUp => return rounded(machine, running, own, OWN),
+        PathMode::AsSetUp => return rounded(limits, running, limits.own, OWN),
         PathMode::ExactStop | PathMode::ExactPath => 0.0,
         PathMode::Blend(asked) => asked,
     };
     let asked = asked.max(CLOSEST);
-    match asked < most {
-        true => rounded(machine, running, asked, SOURCE),
-        false => rounded(machine, running, most, OWN),
+    match asked < limits.most {
+        true => rounded(limits, running, asked, SOURCE),
+        false => rounded(limits, running, limits.most, OWN),
     }
 }
 
 /// A control that is told to follow the path of cuts more closely than the source asks for: that is slower, and right.
 pub(crate) fn closer_than_asked(
-    machine: &Machine,
+    limits: &CornerLimits,
     wanted: &ExpectedState,
     running: &Running,
 ) -> Option<String> {
     let (PathMode::Blend(asked), PathMode::Blend(is)) = (wanted.path, running.path) else {
         return None;
     };
-    let asked = asked.max(CLOSEST).min(most_at_corners(machine));
+    let asked = asked.max(CLOSEST).min(limits.most);
     (is + 1e-6 < asked).then(|| {
         format!(
             "the control keeps to the path within {} mm, the source asks for {} mm: the cuts are slower",
@@ -290,23 +315,17 @@ pub(crate) fn closer_than_asked(
     })
 }
 
-/// By how much the control may leave the path at corners of rapids, which may be as far from their way as elsewhere.
-pub(crate) fn rapid_corners(machine: &Machine, running: &Running) -> Option<Difference> {
-    let (most, corridor) = (most_at_corners(machine), machine.capabilities.rapid_corridor);
-    match corridor > most {
-        true => rounded(machine, running, corridor, CORRIDOR),
-        false => rounded(machine, running, most, OWN),
+/// The same at corners of rapids, which may be as far from their way as elsewhere.
+pub(crate) fn rapid_corners(limits: &CornerLimits, running: &Running) -> Option<Difference> {
+    match limits.corridor > limits.most {
+        true => rounded(limits, running, limits.corridor, CORRIDOR),
+        false => rounded(limits, running, limits.most, OWN),
     }
 }
 
 /// By how much the control may leave the path at corners of a rapid that it goes by feed.
-pub(crate) fn fed_rapid_corners(machine: &Machine, running: &Running) -> Option<Difference> {
-    rounded(machine, running, most_at_corners(machine), OWN)
-}
-
-/// The most that a control may be let leave the path, mm.
-fn most_at_corners(machine: &Machine) -> f64 {
-    machine.path_tolerance().max(machine.roughing_tolerance())
+pub(crate) fn fed_rapid_corners(limits: &CornerLimits, running: &Running) -> Option<Difference> {
+    rounded(limits, running, limits.most, OWN)
 }
 
 /// Who says how far corners may be cut, and where.
@@ -317,19 +336,18 @@ const OWN: Says = ("the machine file", "`path_tolerance` in [options]");
 const CORRIDOR: Says = ("the machine file", "`rapid_corridor` in [capabilities], at rapids");
 
 fn rounded(
-    machine: &Machine,
+    limits: &CornerLimits,
     running: &Running,
     allowed: f64,
     (who, place): Says,
 ) -> Option<Difference> {
-    let as_set_up = machine.path_tolerance();
     let most = match running.path {
         PathMode::ExactStop | PathMode::ExactPath => 0.0,
         PathMode::Blend(most) => most,
-        PathMode::AsSetUp => match Dialect::named(&machine.reader)?.corners() {
+        PathMode::AsSetUp => match limits.unsaid? {
             Corners::Followed => 0.0,
             // What its operator has set, the machine's file says.
-            Corners::AsSetUp if as_set_up > 0.0 => as_set_up,
+            Corners::AsSetUp if limits.own > 0.0 => limits.own,
             Corners::AsSetUp | Corners::Unbounded => f64::INFINITY,
         },
     };

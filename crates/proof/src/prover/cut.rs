@@ -131,14 +131,13 @@ impl Prover<'_> {
         let rounding = self.gauge.slack(to);
         self.check_set_up(to.line);
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
-        let machine = self.gauge.machine;
         let found = [
             state::spindle_and_coolant(allowed, wanted, running),
             state::taper(allowed, wanted, running),
-            state::corners(machine, wanted, running),
+            state::corners(&self.gauge.corners, wanted, running),
             feed,
         ];
-        let closer = state::closer_than_asked(machine, wanted, running);
+        let closer = state::closer_than_asked(&self.gauge.corners, wanted, running);
         let in_plane = to.place.is_across(self.here.place.tip, rounding);
         if let Some(message) = closer {
             let message = format!("source line {}: {message}", self.cursor.line);

@@ -22,7 +22,7 @@ use crate::machine_pose::PossiblePositions;
 use crate::pace::{self, Compared, Pace};
 use crate::report::{Excursion, Report, TravelChecked};
 use crate::resolved_pose::{Number, PartialPose, ResolvedPose};
-use crate::state::{self, Difference, Running};
+use crate::state::{self, CornerLimits, Difference, Running};
 use crate::tolerance::{Applied, Tolerances};
 use crate::travel::Travel;
 use crate::{arc, line, stops};
@@ -123,6 +123,7 @@ impl<'a> Prover<'a> {
         let gauge = Gauge {
             machine,
             allowed,
+            corners: CornerLimits::of(machine),
             tool_length: cursor.tool_length(),
             straight_rapids: machine.has_straight_rapids(),
         };

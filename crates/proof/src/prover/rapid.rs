@@ -52,7 +52,7 @@ impl Prover<'_> {
         if !matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed > 0.0) {
             self.differs(to.line, (Rule::Feed, "no feed in mm/min is set".into()));
         }
-        self.check(to.line, state::fed_rapid_corners(self.gauge.machine, &self.running));
+        self.check(to.line, state::fed_rapid_corners(&self.gauge.corners, &self.running));
         if done {
             self.approached(to)?;
             self.arrive(to);

@@ -100,7 +100,7 @@ impl Prover<'_> {
 
     /// Holds the rounding of corners of rapids, which goes through the part where one of the two ends is not beyond all cuts.
     pub(super) fn check_rapid_corners(&mut self, to: &ResolvedPose) {
-        let found = state::rapid_corners(self.gauge.machine, &self.running);
+        let found = state::rapid_corners(&self.gauge.corners, &self.running);
         if found.is_none() || self.gauge.machine.wire.is_some() {
             return;
         }
