@@ -78,6 +78,9 @@ struct Edge {
     ends: [usize; 2],
 }
 
+/// A path, or `None` where the tool is lifted, and whether it is gone along backwards.
+type Along = (Option<usize>, bool);
+
 impl Graph {
     fn node(&mut self, at: Vec2) -> usize {
         let cell = [at.x, at.y].map(|value| (value / ONE).round() as i64);
@@ -125,7 +128,7 @@ impl Graph {
             }
             let Some(first) = odd.first().or(nodes.first()) else { continue };
             let mut around = self.around(*first);
-            let is_lift = |step: &(Option<usize>, bool)| step.0.is_none();
+            let is_lift = |step: &Along| step.0.is_none();
             let lift = around.iter().position(is_lift).unwrap_or(0);
             around.rotate_left(lift);
             trails.extend(around.split(is_lift).filter(|trail| !trail.is_empty()).map(|trail| {
@@ -136,9 +139,9 @@ impl Graph {
     }
 
     /// The way around that has each edge of a piece once (Hierholzer); its edges are used up.
-    fn around(&mut self, from: usize) -> Vec<(Option<usize>, bool)> {
+    fn around(&mut self, from: usize) -> Vec<Along> {
         let mut used = vec![false; self.edges.len()];
-        let mut stack: Vec<(usize, Option<(Option<usize>, bool)>)> = vec![(from, None)];
+        let mut stack: Vec<(usize, Option<Along>)> = vec![(from, None)];
         let mut around = Vec::new();
         while let Some((node, _)) = stack.last().copied() {
             let next = loop {
