@@ -880,18 +880,15 @@ impl<'a> Conversion<'a> {
     /// It cuts so.
     fn moves_empty(&mut self, action: &Action) -> Outcome<bool> {
         let Some(line) = self.emptied else { return Ok(false) };
-        match action {
-            Action::Rapid(_) => {
-                self.tool_at = ToolPosition::Unknown;
-                Ok(true)
-            }
-            _ if action.position().is_none() => Ok(false),
-            _ => {
-                let message =
-                    format!("cuts without a tool: line {line} has emptied the spindle (T0)");
-                Err(refuse(Rule::Tool, message, "call a tool before the cut"))
-            }
+        if matches!(action, Action::Rapid(_)) {
+            self.tool_at = ToolPosition::Unknown;
+            return Ok(true);
         }
+        if action.position().is_none() {
+            return Ok(false);
+        }
+        let message = format!("cuts without a tool: line {line} has emptied the spindle (T0)");
+        Err(refuse(Rule::Tool, message, "call a tool before the cut"))
     }
 
     /// Gives a tool that is called by its name a number that no other tool has.

@@ -32,11 +32,11 @@ fn what_the_program_needs_may_not_be_switched_off() {
     for (name, needed, free) in [
         (
             "generic-3axis-fanuc",
-            &[("G43", "rapid-feed"), ("S3000 M3", "spindle"), ("G1 Z-2", "rapid-feed")][..],
+            &[("G43", "length-offset"), ("S3000 M3", "spindle"), ("G1 Z-2", "rapid-feed")][..],
             "M5",
         ),
-        ("generic-3axis-haas", &[("G43", "rapid-feed"), ("T2 M6", "tool")], "M5"),
-        ("linuxcnc-mill", &[("G43", "rapid-feed"), ("G64", "path-tolerance")], "M5"),
+        ("generic-3axis-haas", &[("G43", "length-offset"), ("T2 M6", "length-offset")], "M5"),
+        ("linuxcnc-mill", &[("G43", "length-offset"), ("G64", "path-tolerance")], "M5"),
         ("mach3-mill", &[("G61", "path-tolerance")], "M5"),
         ("generic-3axis-sinumerik", &[("S3000 M3", "spindle"), ("G1 Z-2", "rapid-feed")], "M5"),
         ("generic-3axis-heidenhain", &[("L Z-2", "path")], "M5"),

@@ -361,11 +361,23 @@ fn between_cuts(machine: &Machine, text: &str, words: &[&str]) -> String {
     .unwrap();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let at = cuts[1] - 1;
-    // HEIDENHAIN numbers every block.
-    let number = lines[at].split_once(' ').filter(|_| text.contains("BEGIN PGM"));
-    let number = number.map_or(String::new(), |(number, _)| format!("{number} "));
     for word in words.iter().rev() {
-        lines.insert(at, format!("{number}{word}"));
+        lines.insert(at, (*word).to_owned());
+    }
+    if !text.contains("BEGIN PGM") {
+        return lines.join("\n") + "\n";
+    }
+    // HEIDENHAIN numbers every block, and counts one that goes on in further lines once.
+    let (mut number, mut goes_on) = (0, false);
+    for line in &mut lines {
+        let bare = line.split_once(' ').filter(|(word, _)| word.parse::<u32>().is_ok());
+        let words = bare.map_or(line.as_str(), |(_, words)| words).to_owned();
+        let ends = !words.ends_with('~');
+        if !goes_on {
+            *line = format!("{number} {words}");
+            number += 1;
+        }
+        goes_on = !ends;
     }
     lines.join("\n") + "\n"
 }

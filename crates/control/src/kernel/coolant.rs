@@ -25,11 +25,7 @@ impl Coolants {
     ///
     /// # Errors
     /// Whether it ends what `running` says, or runs next to it, only the builder of the machine knows.
-    pub fn behind(
-        &self,
-        running: Coolant,
-        switch: CoolantSwitch,
-    ) -> Result<Coolant, Box<Doubtful>> {
+    pub fn behind(&self, running: Coolant, switch: CoolantSwitch) -> Result<Coolant, Doubtful> {
         let on = match switch {
             CoolantSwitch::Flood => Coolant::Flood,
             CoolantSwitch::Mist => Coolant::Mist,
@@ -41,12 +37,12 @@ impl Coolants {
                 else {
                     return Ok(Coolant::Off);
                 };
-                return Err(Box::new(Doubtful {
+                return Err(Doubtful {
                     message: format!(
                         "this leaves the coolant through the tool on, which has a function of its own to end it (M{number})"
                     ),
                     help: format!("write M{number}"),
-                }));
+                });
             }
         };
         match (running, on) {
@@ -56,11 +52,11 @@ impl Coolants {
                 Ok(Coolant::FloodAndMist)
             }
             _ if running == on => Ok(running),
-            _ => Err(Box::new(Doubtful {
+            _ => Err(Doubtful {
                 message: "one coolant runs already: whether both then run is up to the machine"
                     .into(),
                 help: format!("write M{} first", self.ends(running)),
-            })),
+            }),
         }
     }
 
@@ -74,16 +70,16 @@ impl Coolants {
     ///
     /// # Errors
     /// Such a coolant runs.
-    pub fn allow_change(&self, running: Coolant) -> Result<(), Box<Doubtful>> {
+    pub fn allow_change(&self, running: Coolant) -> Result<(), Doubtful> {
         if !self.is_builders(running) {
             return Ok(());
         }
-        Err(Box::new(Doubtful {
+        Err(Doubtful {
             message: "the tool is changed while a coolant runs that the machine's builder has added: whether the change ends it, only \
                       the builder knows"
                 .into(),
             help: format!("write M{} before the tool change", self.ends(running)),
-        }))
+        })
     }
 
     /// The number of the M function that ends what runs.

@@ -77,10 +77,26 @@ impl Prover<'_> {
             self.differs(line, state::wrong_spindle(self.cursor.wanted.spindle, is));
         }
         let (wanted, is, here) = (self.cursor.wanted.spindle, self.running.spindle, self.here);
-        let alike = state::same_spindle(&self.gauge.allowed, wanted, is);
-        if !alike && self.is_near(&here) && !self.may_leave_so(wanted, is, None) {
+        if !self.is_between(is) && self.is_near(&here) && !self.may_leave_so(wanted, is, None) {
             self.contact.switched = Some((line, is));
         }
+    }
+
+    /// Whether the spindle turns as it has turned, or as the source has switched it since the last motion: the direction of one of
+    /// these with the speed of another, where a program says them in two blocks.
+    fn is_between(&self, is: Spindle) -> bool {
+        let known = || {
+            let switched = self.cursor.switched().iter().copied();
+            switched.chain([self.contact.turned, self.cursor.wanted.spindle])
+        };
+        let with_speed = |of: Spindle| match is {
+            Spindle::Off => of,
+            Spindle::Clockwise(_) => Spindle::Clockwise(state::speed(of)),
+            Spindle::CounterClockwise(_) => Spindle::CounterClockwise(state::speed(of)),
+        };
+        let as_fast = |of| state::same_spindle(&self.gauge.allowed, with_speed(of), is);
+        let same_way = |of| std::mem::discriminant(&of) == std::mem::discriminant(&is);
+        known().any(same_way) && known().any(as_fast)
     }
 
     /// Whether the spindle may be as it `is` on the way out, where the source wants it otherwise.

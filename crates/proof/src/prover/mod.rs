@@ -301,7 +301,10 @@ impl<'a> Prover<'a> {
             Action::Dwell(seconds) => {
                 let allowed = self.gauge.allowed.dwell_s;
                 let dwell = self.gauge.machine.spindle.dwell;
-                if running.waits_for_spindle(*seconds, dwell, allowed) {
+                // Of two dwells alike, one of the source's and one for a spindle that may have been started anew, this is the source's.
+                let is_due = matches!(self.cursor.step, Step::Dwell(due) if (due - seconds).abs() <= allowed);
+                let is_sources = is_due && running.runs_up == 0.0;
+                if !is_sources && running.waits_for_spindle(*seconds, dwell, allowed) {
                     return Ok(());
                 }
                 return self.happens(line, Step::Dwell(*seconds));

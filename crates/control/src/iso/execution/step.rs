@@ -313,7 +313,7 @@ impl Step<'_, '_, '_> {
 
     /// Switches the coolant as the block says.
     fn switch_coolant(&mut self, switch: CoolantSwitch) -> Result<(), Fault> {
-        let doubt = |doubt: Box<Doubtful>| {
+        let doubt = |doubt: Doubtful| {
             self.block.at_group(Group::Coolant, Rule::Coolant, doubt.message).help(doubt.help)
         };
         let coolant = self.coolants.behind(self.state.coolant, switch).map_err(doubt)?;

@@ -337,8 +337,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     fn switch_coolant(&mut self, s: &Scanner, switch: CoolantSwitch) -> Outcome {
-        let doubt =
-            |doubt: Box<Doubtful>| s.error_block(Rule::Coolant, doubt.message).help(doubt.help);
+        let doubt = |doubt: Doubtful| s.error_block(Rule::Coolant, doubt.message).help(doubt.help);
         self.set_coolant(self.coolants().behind(self.coolant, switch).map_err(doubt)?)
     }
 

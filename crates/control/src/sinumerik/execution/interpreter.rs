@@ -68,7 +68,7 @@ fn is_own(m: u32) -> bool {
 }
 
 /// Why a block that switches or leaves on a coolant is refused.
-fn refused(source: &Source, doubt: Box<Doubtful>) -> Box<Diagnostic> {
+fn refused(source: &Source, doubt: Doubtful) -> Box<Diagnostic> {
     let mut error = source.block_error(Rule::Coolant, doubt.message);
     error.help = doubt.help;
     error
