@@ -129,11 +129,18 @@ impl PlanePaths {
             {
                 (j, part[1]) = (j + 1, to);
             }
-            match last {
-                None => self.way_in(i, part)?,
-                Some((before, earlier)) => self.corner(k, [before, i], [earlier, part])?,
-            }
-            self.same_height(k, j)?;
+            let before = match last {
+                None => {
+                    self.way_in(i, part)?;
+                    0
+                }
+                Some((before, earlier)) => {
+                    self.corner(k, [before, i], [earlier, part])?;
+                    before + 1
+                }
+            };
+            self.between_heights(before..i, [k - 1, k])?;
+            self.same_height(k, [i, j])?;
             self.along.push([i, j]);
             (last, next) = (Some((j, part)), j + 1);
         }
@@ -453,12 +460,47 @@ impl PlanePaths {
         }
     }
 
-    fn same_height(&self, k: usize, i: usize) -> Result<(), Fault> {
-        let (wanted, is) = (self.contour[k].heights[1], self.ways[i].heights[1]);
-        if (wanted - is).abs() <= self.slack {
+    /// Along element `k`, on the ways from `i` to `j`, the tool goes evenly from its one height to the other: over the length that is
+    /// left of it at its corners, as controls do.
+    fn same_height(&self, k: usize, [i, j]: [usize; 2]) -> Result<(), Fault> {
+        let [from, to] = self.contour[k].heights;
+        let ways = &self.ways[i..=j];
+        let whole: f64 = ways.iter().map(|way| way.element.length()).sum();
+        let mut done = 0.0;
+        for way in ways {
+            let wanted = |done: f64| from + (to - from) * done / whole;
+            let begins = wanted(done);
+            done += way.element.length();
+            for (wanted, is) in [begins, wanted(done)].into_iter().zip(way.heights) {
+                self.at_height(way, [wanted; 2], is)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Between two elements the tool is no higher and no lower than where the one ends and the other begins; on the way in, than where
+    /// that begins.
+    fn between_heights(
+        &self,
+        ways: std::ops::Range<usize>,
+        [before, after]: [usize; 2],
+    ) -> Result<(), Fault> {
+        let ([start, end], begins) = (self.contour[before].heights, self.contour[after].heights[0]);
+        let start = if before == 0 { start } else { end };
+        let range = [start.min(end).min(begins), start.max(end).max(begins)];
+        for way in &self.ways[ways] {
+            way.heights.into_iter().try_for_each(|is| self.at_height(way, range, is))?;
+        }
+        Ok(())
+    }
+
+    fn at_height(&self, way: &PlaneMove, [low, high]: [f64; 2], is: f64) -> Result<(), Fault> {
+        let off = if is > high { is - high } else { is - low };
+        if (low..=high).contains(&is) || off.abs() <= self.slack {
             return Ok(());
         }
-        Err((self.ways[i].line, format!("the tool ends {} mm too high", Number(is - wanted))))
+        let (by, how) = (Number(off.abs()), if off > 0.0 { "high" } else { "low" });
+        Err((way.line, format!("the tool goes {by} mm too {how}")))
     }
 }
 
@@ -684,6 +726,23 @@ mod tests {
         polygon[1].0 = [32.5, 5.0];
         polygon[2] = ([35.0, 2.5], None);
         assert_eq!(judged(&polygon), Ok(()));
+    }
+
+    /// Each point on its own lower or higher than the contour is there: where it begins, around a corner, at its end.
+    #[test]
+    fn a_path_at_another_height_is_refused() {
+        let slack = Slack { along: 0.003, chord: 0.0 };
+        let good = pieces([-20.0, 0.0], &PATH);
+        for at in 0..5 {
+            for lift in [-8.0, 0.01] {
+                let mut path = good.clone();
+                path[at].to.tip.z += lift;
+                path[at + 1].from.tip.z += lift;
+                let (line, how) = compare(&stretch(), &path, 5.0, 1.0, slack).unwrap_err();
+                assert!(how.contains("mm too"), "{at}: {how}");
+                assert!([path[at].line, path[at + 1].line].contains(&line), "{at}: {line}");
+            }
+        }
     }
 
     #[test]
