@@ -111,6 +111,14 @@ fn what_the_builder_has_added_ends_by_its_own_function_alone() {
         coolants(Dialect::Klartext, BUILDERS, "TOOL CALL 1 Z S1000\nM26\nTOOL CALL 2 Z S1000"),
         Err("coolant")
     );
+    // Those of Haas itself, as its machine files name them, end with the tool change and the program.
+    let haas = CoolantFunctions {
+        through: Some(88),
+        through_off: Some(89),
+        ..CoolantFunctions::default()
+    };
+    let own = coolants(Dialect::Haas, haas, "T1\nM88\nM6\nM88\nM30");
+    assert!(own.is_ok_and(|all| all.ends_with(&[Coolant::Off])));
     let usual = coolants(Dialect::LinuxCnc, CoolantFunctions::default(), "M8\nM30");
     assert_eq!(usual, Ok(vec![Coolant::Flood, Coolant::Off]));
 }

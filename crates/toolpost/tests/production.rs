@@ -229,9 +229,19 @@ fn coolant_through_the_tool_is_ended_by_its_own_function_on_every_mill() {
                 COOLNT/OFF\nGOTO/5,0,-1\nCOOLNT/THRU\nGOTO/9,0,-1\nRAPID\nGOTO/0,0,20\nSTOP\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-2\nRAPID\nGOTO/0,0,20\n\
                 LOADTL/2\nCUTTER/8,0\nSPINDL/800,RPM,CLW\nCOOLNT/THRU\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,20\nFINI\n";
     let source = source::apt::read("c.cls", text.as_bytes(), &Default::default()).unwrap().program;
-    for mill in ["sinumerik", "fanuc", "heidenhain", "linuxcnc"] {
+    for mill in [
+        "generic-3axis-sinumerik",
+        "generic-3axis-fanuc",
+        "generic-3axis-haas",
+        "generic-3axis-heidenhain",
+        "generic-3axis-linuxcnc",
+        "fanuc-table-bc",
+        "haas-umc-750",
+        "dmu50-heidenhain",
+        "sinumerik-840d-traori",
+    ] {
         let own = machine(&format!(
-            "extends = \"generic-3axis-{mill}\"\n[coolant]\nthrough = 26\nthrough_off = 27\n[blocks]\ncoolant_through = \"{{{{N}}}} M26\"\n"
+            "extends = \"{mill}\"\n[coolant]\nthrough = 26\nthrough_off = 27\n[blocks]\ncoolant_through = \"{{{{N}}}} M26\"\n"
         ));
         let text = written(&source, &own);
         let ends: Vec<usize> = text.match_indices("M27").map(|(at, _)| at).collect();

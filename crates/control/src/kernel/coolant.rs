@@ -94,7 +94,7 @@ impl Coolants {
     }
 
     fn is_builders(&self, running: Coolant) -> bool {
-        let CoolantFunctions { flood, mist, through, off: _, through_off: _ } = self.functions;
+        let CoolantFunctions { flood, mist, through, off: _, through_off } = self.functions;
         match running {
             Coolant::Off => false,
             Coolant::Flood => flood.is_some_and(|number| number != 8),
@@ -102,7 +102,11 @@ impl Coolants {
             Coolant::FloodAndMist => {
                 self.is_builders(Coolant::Flood) || self.is_builders(Coolant::Mist)
             }
-            Coolant::Through => through.is_some(),
+            // That of the control itself is ended by its own function.
+            Coolant::Through => {
+                through.is_some()
+                    && (self.ends_through.is_none() || through_off != self.ends_through)
+            }
         }
     }
 }

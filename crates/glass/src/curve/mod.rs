@@ -1,6 +1,6 @@
 //! Curves: their readers (DXF, HPGL), and points along them.
 //!
-//! A curve is kept as corners so near to each other that their chords leave it by no more than [`FINE`] of its drawing. Points
+//! A curve is kept as corners so near to each other that their chords leave it by no more than `FINE` of its drawing. Points
 //! follow one another at equal chords, so that neighbours on a bent curve are no nearer than on a straight one.
 
 mod dxf;

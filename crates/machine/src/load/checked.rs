@@ -378,6 +378,14 @@ impl CheckedSheet {
         }
         let simultaneous = orientation.simultaneous.unwrap_or(OrientationMode::Fixed);
         let positioned = orientation.positioned.unwrap_or(simultaneous);
+        let is_clamp = |axis: &RotaryAxis| {
+            let clamp = axis.clamp.map_or([None; 2], |clamp| [Some(clamp.open), Some(clamp.close)]);
+            clamp.into_iter().flatten().any(|number| coolant.switch(number).is_some())
+        };
+        if let (Some(place), true) = (&rotary_place, rotary.iter().any(is_clamp)) {
+            let message = "an M function of a clamp is one of [coolant] too";
+            return Err(wrong(place, message));
+        }
         if let Some(place) = rotary_place.filter(|_| rotary.iter().any(|axis| axis.clamp.is_some()))
         {
             check_clamps(&place, &rotary, [simultaneous, positioned], &self.blocks)?;

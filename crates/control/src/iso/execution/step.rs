@@ -604,6 +604,10 @@ impl Step<'_, '_, '_> {
         if self.facts.functions.stop_switches_off {
             self.turn(Spindle::Off);
             self.reset_coolant();
+            // A coolant that the builder has added goes on, or not.
+            if self.state.is_running() {
+                self.actions.push(Action::Risk(Risk::STOP_RUNNING.into()));
+            }
         }
     }
 
