@@ -30,6 +30,8 @@ pub(crate) struct Running {
     pub taper: f64,
     pub length_offset: Option<u32>,
     pub work_offset: Option<WorkOffset>,
+    /// Whether another work offset counts since the last move, with Z not at home.
+    pub moves_on: bool,
     /// Work offset and register of the length in the last motion that had those of the source, since the tool change.
     pub last_offsets: Option<(Option<WorkOffset>, Option<u32>)>,
     pub cycle: Option<Cycle>,
@@ -60,6 +62,7 @@ impl Running {
             work_offset: dialect
                 .filter(|dialect| !dialect.may_keep_work_offset())
                 .and_then(Dialect::work_offset_at_reset),
+            moves_on: false,
             last_offsets: None,
             cycle: None,
             path: PathMode::AsSetUp,

@@ -402,9 +402,22 @@ impl PlanePaths {
         let points = samples(&way.element).chain(ends.into_iter().map(|t| way.element.at(t)));
         let near = points.filter_map(|point| {
             let (t, near) = other.element.nearest(point);
-            (near < enough && self.faces(other, t, own, point)).then_some(near)
+            let counts = self.faces(other, t, own, point) && !self.is_cut_away(other, t, own);
+            (near < enough && counts).then_some(near)
         });
         self.holds_off(near.fold(f64::INFINITY, f64::min), least, way, other.line)
+    }
+
+    /// Whether the contour crosses itself, and one of its `own` elements has the tool on that side of it where the other lies: what runs on
+    /// there past the crossing (a way in or out beyond a corner) bounds nothing.
+    fn is_cut_away(&self, other: &PlaneMove, t: f64, own: &[PlaneMove]) -> bool {
+        let at = other.element.at(t);
+        own.iter().any(|way| {
+            let (nearest, _) = way.element.nearest(at);
+            let aside = way.element.tangent(nearest).perp_dot(at - way.element.at(nearest));
+            aside * self.left > self.slack
+                && way.element.meets(&other.element, NOWHERE).next().is_some()
+        })
     }
 
     /// Whether the contour, where the tool at `point` touches it, is on that side of an element on which the tool goes along it.
@@ -743,6 +756,31 @@ mod tests {
                 assert!([path[at].line, path[at + 1].line].contains(&line), "{at}: {line}");
             }
         }
+    }
+
+    /// Around a square from outside, beginning and ending past the corner at (0, 0): the usual way to leave no mark there.
+    #[test]
+    fn a_contour_that_begins_and_ends_past_its_corner_is_taken() {
+        let side = Compensation::Left(None);
+        let terms = Terms { source_line: 1, side, radius: Some(5.0), tool_length: None };
+        let ends = [[0.0, -8.0], [0.0, 50.0], [50.0, 50.0], [50.0, 0.0], [-8.0, 0.0]];
+        let contour = pieces([-30.0, -8.0], &ends.map(|end| (end, None)));
+        let stretch = CompensatedMoves { terms, before: 0, pieces: contour, exit: None };
+        let path: [End; 9] = [
+            ([-5.0, -8.0], None),
+            ([-5.0, 50.0], None),
+            ([0.0, 55.0], Some(([0.0, 50.0], true))),
+            ([50.0, 55.0], None),
+            ([55.0, 50.0], Some(([50.0, 50.0], true))),
+            ([55.0, 0.0], None),
+            ([50.0, -5.0], Some(([50.0, 0.0], true))),
+            ([-8.0, -5.0], None),
+            ([-30.0, -8.0], None),
+        ];
+        let slack = Slack { along: 0.003, chord: 0.0 };
+        let judged =
+            |path: &[End]| compare(&stretch, &pieces([-30.0, -8.0], path), 5.0, 1.0, slack);
+        assert!(judged(&path).is_ok(), "{:?}", judged(&path));
     }
 
     #[test]

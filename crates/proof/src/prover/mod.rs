@@ -353,6 +353,9 @@ impl<'a> Prover<'a> {
             Action::PathMode(mode) => running.path = *mode,
             Action::LengthOffset(register) => running.length_offset = *register,
             Action::WorkOffset(offset) => {
+                if running.work_offset.is_some_and(|before| before != *offset) {
+                    running.moves_on = self.has_stood && !self.raised;
+                }
                 running.work_offset = Some(*offset);
                 let position = Position { point: Vec3::NAN, ..self.here.position };
                 self.here = self.gauge.station(line, position);

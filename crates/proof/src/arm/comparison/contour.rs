@@ -95,6 +95,8 @@ impl Comparison<'_> {
         let Some(gathered) = &mut self.gathered else { return Ok(()) };
         let found =
             centre::compare(&contour.moves, &gathered.pieces, contour.radius, contour.left, slack);
+        let most = contour.moves.pieces.len();
+        let found = found.and_then(|belongs| one_way_in_and_out(belongs, most, &gathered.pieces));
         let belongs = match found {
             Ok(belongs) => belongs,
             Err(fault) => {
@@ -152,6 +154,23 @@ impl Comparison<'_> {
             _ => Ok(()),
         }
     }
+}
+
+/// The way in, and the way out behind the `count` pieces of the contour, are one block each, as the source has them.
+fn one_way_in_and_out(
+    belongs: Vec<usize>,
+    count: usize,
+    pieces: &[Piece],
+) -> Result<Vec<usize>, centre::Fault> {
+    for (of, what) in [(0, "to"), (count, "off")] {
+        if let Some((_, piece)) =
+            belongs.iter().zip(pieces).filter(|(belongs, _)| **belongs == of).nth(1)
+        {
+            let message = format!("the way {what} the contour has a further point");
+            return Err((piece.line, message));
+        }
+    }
+    Ok(belongs)
 }
 
 /// Where a motion of the arm goes.
