@@ -30,7 +30,12 @@ fuzz_target!(|data: &[u8]| {
             // A step that leaves a few points, however large the drawing is.
             let size = all.map(|corner| corner.abs().max_element()).fold(1.0, f64::max);
             let corners = curves.curves.iter().map(|curve| &curve.corners[..]).take(20);
-            Layers::default().points(corners, size / 10.0, 1.0, glass::fill::direction(2, [0.0; 3]));
+            Layers::default().points(
+                corners,
+                size / 10.0,
+                1.0,
+                glass::fill::direction(2, [0.0; 3]),
+            );
         }
         Ok(Shape::Picture(_)) => unreachable!("no form of this reader is one"),
         Err(found) => assert!(found.is_error() && !found.help.is_empty()),

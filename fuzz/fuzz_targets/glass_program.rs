@@ -19,9 +19,11 @@ const FORMS: [&str; 5] = [
 fuzz_target!(|data: &[u8]| {
     let Some((first, text)) = data.split_first() else { return };
     let form = FORMS[usize::from(*first) % FORMS.len()];
-    let machine = library("glass-xyz-100hz")
-        .expect("it is there")
-        .replacen("numbered\"", &format!("{form}\""), 1);
+    let machine = library("glass-xyz-100hz").expect("it is there").replacen(
+        "numbered\"",
+        &format!("{form}\""),
+        1,
+    );
     let machine = Machine::read(&machine, "fuzz.toml").expect("it is one");
     let lens = machine.lens(70.0).expect("it has one");
     let task = Task {
