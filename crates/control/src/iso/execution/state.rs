@@ -322,6 +322,7 @@ impl State {
             is_reported,
             cut,
             length_is_suspended,
+            rigid,
             // The block says them itself, or the short path asks for them.
             motion: _,
             inches: _,
@@ -360,7 +361,6 @@ impl State {
             spindle: _,
             speed: _,
             surface: _,
-            rigid: _,
             coolant: _,
             work_offset: _,
             purpose: _,
@@ -372,7 +372,7 @@ impl State {
             rounds_corners: _,
             ended: _,
         } = self;
-        !(*incremental || *diameter || *length_is_suspended)
+        !(*incremental || *diameter || *length_is_suspended || *rigid)
             && polar.is_none()
             && cycle.is_none()
             && nurbs.is_none()
