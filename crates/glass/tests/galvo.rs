@@ -1,19 +1,16 @@
 //! Scanners: fields, their borders, and programs.
 
 mod bodies;
+mod common;
 
 use bodies::sphere;
-use glam::DVec3;
+use common::k9;
 use toolpost_glass::cloud::Point;
 use toolpost_glass::control::read;
-use toolpost_glass::curve::Layers;
-use toolpost_glass::fill::{Fill, Filling};
-use toolpost_glass::job::{Made, Order, Placing, Settings, make};
+use toolpost_glass::job::{Made, Order, Settings, make};
 use toolpost_glass::machine::{Machine, library};
-use toolpost_glass::material::{TABLE, find};
 use toolpost_glass::mesh::Shape;
-use toolpost_glass::optics::Ray;
-use toolpost_glass::order::{Effort, Shadow};
+use toolpost_glass::order::Shadow;
 use toolpost_glass::stitch::fields;
 
 const SHADOW: Shadow = Shadow { slope: 0.0235, radius: 67.5 };
@@ -25,32 +22,11 @@ fn machine(field: f64) -> Machine {
 }
 
 fn settings() -> Settings {
-    Settings {
-        placing: Placing {
-            block: [20.0, 20.0, 20.0],
-            margin: 2.0,
-            scale: None,
-            fit: false,
-            turn: [0.0; 3],
-            mirror: [false; 3],
-            shift: [0.0; 3],
-        },
-        blocks: 1,
-        focal: 70.0,
-        spacing: None,
-        filling: Filling { fill: Fill::Surface, step: None, direction: DVec3::Z },
-        layers: Layers::default(),
-        ray: Ray::Marginal,
-        order: Order::Fastest,
-        effort: Effort { rounds: 1, tries: 100, until: None },
-        seed: 1,
-        accept_shadowed: false,
-    }
+    common::settings([20.0, 20.0, 20.0], 100)
 }
 
 fn made(shape: Shape, machine: &Machine) -> Made {
-    let k9 = find(TABLE, "", "k9", 532.0).unwrap();
-    make(vec![shape], &k9, machine, &settings()).unwrap_or_else(|found| panic!("{found:?}"))
+    make(vec![shape], &k9(), machine, &settings()).unwrap_or_else(|found| panic!("{found:?}"))
 }
 
 /// A wall of columns 0.13 mm apart: every point is above the one below it, on both sides of every border.
@@ -126,8 +102,7 @@ fn programs_of_a_scanner_that_cannot_be_are_refused() {
     refused("kind = \"galvo\"", "kind = \"xyz\"", "[stage.x]");
     refused("speed = 0.2\n[stage.y]", "speed = -1\n[stage.y]", "stage.x.speed");
     refused("points = 10000000", "points = 10\nruns = true", "program.runs");
-    let k9 = find(TABLE, "", "k9", 532.0).unwrap();
     let by_layers = Settings { order: Order::Layers(None), ..settings() };
-    let found = make(vec![Shape::Mesh(sphere(1.0, 20))], &k9, &machine, &by_layers).unwrap_err();
+    let found = make(vec![Shape::Mesh(sphere(1.0, 20))], &k9(), &machine, &by_layers).unwrap_err();
     assert_eq!(found[0].rule.name(), "glass-block");
 }

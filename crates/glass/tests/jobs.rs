@@ -1,18 +1,17 @@
 //! From a body to a proven program, and programs that are wrong and refused.
 
 mod bodies;
+mod common;
 
 use bodies::sphere;
+use common::k9;
 use toolpost_glass::cloud::{Point, distances};
 use toolpost_glass::control::read;
 use toolpost_glass::curve::{self, Layers, read as read_curves};
-use toolpost_glass::fill::{Fill, Filling};
 use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
-use toolpost_glass::material::{Material, TABLE, find};
 use toolpost_glass::mesh::{Mesh, Shape};
 use toolpost_glass::optics::Ray;
-use toolpost_glass::order::Effort;
 use toolpost_glass::proof::{Proof, Task, prove};
 
 fn machine(format: &str) -> Machine {
@@ -25,35 +24,8 @@ fn machine(format: &str) -> Machine {
     .unwrap()
 }
 
-fn k9() -> Material {
-    find(TABLE, "", "k9", 532.0).unwrap()
-}
-
 fn settings() -> Settings {
-    let placing = Placing {
-        block: [20.0, 20.0, 30.0],
-        margin: 2.0,
-        scale: None,
-        fit: false,
-        turn: [0.0; 3],
-        mirror: [false; 3],
-        shift: [0.0; 3],
-    };
-    let effort = Effort { rounds: 1, tries: 500, until: None };
-    let (order, ray) = (Order::Fastest, Ray::Marginal);
-    Settings {
-        placing,
-        blocks: 1,
-        focal: 70.0,
-        spacing: None,
-        filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },
-        layers: Layers::default(),
-        ray,
-        order,
-        effort,
-        seed: 1,
-        accept_shadowed: false,
-    }
+    common::settings([20.0, 20.0, 30.0], 500)
 }
 
 fn made(shape: Shape, format: &str, settings: &Settings) -> Made {

@@ -1,15 +1,14 @@
 //! Photographs, black and white pictures and depth maps.
 
+mod common;
+
+use common::k9;
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, LumaA, RgbImage};
 use std::io::Cursor;
 use toolpost_glass::cloud::{Point, distances, squared};
-use toolpost_glass::curve::Layers;
-use toolpost_glass::fill::{Fill, Filling};
-use toolpost_glass::job::{Made, Order, Placing, Settings, make};
+use toolpost_glass::job::{Made, Settings, make};
 use toolpost_glass::machine::{Machine, library};
-use toolpost_glass::material::{TABLE, find};
 use toolpost_glass::mesh::Shape;
-use toolpost_glass::optics::Ray;
 use toolpost_glass::order::Effort;
 use toolpost_glass::picture::{self, Manner, Plane, Setting, light};
 
@@ -39,31 +38,11 @@ fn engraved(
     shape: Shape,
     change: impl Fn(&mut Settings),
 ) -> Result<Made, Vec<program::Diagnostic>> {
-    let placing = Placing {
-        block: [20.0, 20.0, 30.0],
-        margin: 2.0,
-        scale: None,
-        fit: false,
-        turn: [0.0; 3],
-        mirror: [false; 3],
-        shift: [0.0; 3],
-    };
-    let mut settings = Settings {
-        placing,
-        blocks: 1,
-        focal: 70.0,
-        spacing: None,
-        filling: Filling { fill: Fill::Surface, step: None, direction: glam::DVec3::Z },
-        layers: Layers::default(),
-        ray: Ray::Marginal,
-        order: Order::Fastest,
-        effort: Effort { rounds: 0, tries: 0, until: None },
-        seed: 1,
-        accept_shadowed: false,
-    };
+    let effort = Effort { rounds: 0, tries: 0, until: None };
+    let mut settings = Settings { effort, ..common::settings([20.0, 20.0, 30.0], 0) };
     change(&mut settings);
     let machine = Machine::read(library("glass-xyz-100hz").unwrap(), "").unwrap();
-    make(vec![shape], &find(TABLE, "", "k9", 532.0).unwrap(), &machine, &settings)
+    make(vec![shape], &k9(), &machine, &settings)
 }
 
 fn cloud(shape: Shape) -> Vec<Point> {

@@ -1,19 +1,17 @@
 //! The polar machine: from a body to a proven program, point by point, along arcs and along tracks; and pulses in motion.
 
 mod bodies;
+mod common;
 
 use bodies::sphere;
+use common::k9;
 use glam::DVec3;
 use toolpost_glass::cloud::distances;
 use toolpost_glass::control::read;
-use toolpost_glass::curve::Layers;
-use toolpost_glass::fill::{Fill, Filling};
-use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
+use toolpost_glass::fill::Fill;
+use toolpost_glass::job::{self, Made, Order, Settings, make};
 use toolpost_glass::machine::{Machine, library};
-use toolpost_glass::material::{Material, TABLE, find};
 use toolpost_glass::mesh::Shape;
-use toolpost_glass::optics::Ray;
-use toolpost_glass::order::Effort;
 use toolpost_glass::scenario::Scenario;
 
 fn polar(from: &str, to: &str) -> Machine {
@@ -26,32 +24,8 @@ fn plain() -> Machine {
     polar("arm = 135", "arm = 135")
 }
 
-fn k9() -> Material {
-    find(TABLE, "", "k9", 532.0).unwrap()
-}
-
 fn settings(blocks: u32, order: Order) -> Settings {
-    Settings {
-        placing: Placing {
-            block: [50.0, 50.0, 30.0],
-            margin: 2.0,
-            scale: None,
-            fit: false,
-            turn: [0.0; 3],
-            mirror: [false; 3],
-            shift: [0.0; 3],
-        },
-        blocks,
-        focal: 70.0,
-        spacing: None,
-        filling: Filling { fill: Fill::Surface, step: None, direction: DVec3::Z },
-        layers: Layers::default(),
-        ray: Ray::Marginal,
-        order,
-        effort: Effort { rounds: 1, tries: 200, until: None },
-        seed: 1,
-        accept_shadowed: false,
-    }
+    Settings { blocks, order, ..common::settings([50.0, 50.0, 30.0], 200) }
 }
 
 fn made(shape: Shape, machine: &Machine, settings: &Settings) -> Made {

@@ -27,7 +27,7 @@ const BEYOND: f64 = 2e-4;
 /// How far the radii at the ends of an arc of the source may differ, as a part of them.
 const RADII: f64 = 0.01;
 
-/// Points of a way at which it is held against an element near it.
+/// At so many points a part of the path is compared with an element near it.
 const SAMPLES: u32 = 16;
 
 /// `program` with the path of the tool's centre in the place of each contour that compensation offsets, and where the first one begins;
@@ -111,20 +111,28 @@ const OFF_BEFORE: &str = "CUTCOM/OFF and a straight move in the plane before it"
 
 impl Walk {
     fn record(&mut self, record: &Record) -> Outcome {
-        match &record.op {
-            Op::Compensation(side) => return self.switch(record.line, *side),
-            Op::Tool(tool) => self.radius = tool.cutting_radius(),
-            _ => {}
+        if let Op::Compensation(side) = &record.op {
+            return self.switch(record.line, *side);
+        }
+        if let Op::Tool(tool) = &record.op {
+            self.radius = tool.cutting_radius();
         }
         if self.section.is_some() && !self.within(record)? {
             return Ok(());
         }
-        match &record.op {
-            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => {
-                self.here = record.op.pose().copied();
-            }
-            Op::Tool(_) | Op::Home | Op::WorkOffset(_) => self.here = None,
-            _ => {}
+        let leaves_it_unknown = matches!(
+            record.op,
+            Op::Tool(_)
+                | Op::Home
+                | Op::WorkOffset(_)
+                | Op::Probe(_)
+                | Op::Joints(_)
+                | Op::MachineMove(_)
+        );
+        match record.op.pose() {
+            Some(pose) => self.here = Some(*pose),
+            None if leaves_it_unknown => self.here = None,
+            None => {}
         }
         self.records.push(record.clone());
         Ok(())

@@ -31,7 +31,7 @@ pub(crate) struct Running {
     pub length_offset: Option<u32>,
     pub work_offset: Option<WorkOffset>,
     /// Whether another work offset counts since the last move, with Z not at home.
-    pub moves_on: bool,
+    pub offset_changed: bool,
     /// Work offset and register of the length in the last motion that had those of the source, since the tool change.
     pub last_offsets: Option<(Option<WorkOffset>, Option<u32>)>,
     pub cycle: Option<Cycle>,
@@ -62,7 +62,7 @@ impl Running {
             work_offset: dialect
                 .filter(|dialect| !dialect.may_keep_work_offset())
                 .and_then(Dialect::work_offset_at_reset),
-            moves_on: false,
+            offset_changed: false,
             last_offsets: None,
             cycle: None,
             path: PathMode::AsSetUp,
@@ -299,7 +299,7 @@ pub(crate) fn corners(
     }
 }
 
-/// A control that is told to follow the path of cuts more closely than the source asks for: that is slower, and right.
+/// What a program says that follows the path of cuts more closely than the source asks for: that is slower, and right.
 pub(crate) fn closer_than_asked(
     limits: &CornerLimits,
     wanted: &ExpectedState,

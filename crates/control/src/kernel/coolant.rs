@@ -20,6 +20,17 @@ pub(crate) struct Doubtful {
     pub help: String,
 }
 
+impl Doubtful {
+    /// Why an M function, as the program shows it, is none of coolant: the control uses it itself.
+    pub fn of_the_control(shown: &str) -> Doubtful {
+        let message = format!(
+            "{shown} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
+        );
+        let help = "name the M function that switches the coolant of this machine in [coolant]";
+        Doubtful { message, help: help.into() }
+    }
+}
+
 impl Coolants {
     /// What runs behind this function.
     ///

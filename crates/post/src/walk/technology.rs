@@ -53,7 +53,7 @@ impl AxisPositions {
     }
 }
 
-/// No control is told to follow the path more closely than this, mm, but to keep to it.
+/// The least tolerance that is written, mm: below it the control is asked for the exact path.
 const CLOSEST: f64 = 0.001;
 
 /// A way of the tip below this, mm, is none: the tool turns about its tip, and F is the speed of its axes.

@@ -7,9 +7,10 @@ use geom::{Arc, Vec3};
 use machine::Machine;
 use program::lowering::feed_per_minute;
 use program::{
-    CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Outcome,
-    Output, PathMode, Pose, Program, Rule, Spindle, Tool,
+    ArcTo, CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op,
+    Outcome, Output, PathMode, Pose, Program, Rule, Spindle, Tool,
 };
+use std::rc::Rc;
 
 /// How far the radii at the ends of a source's arc may differ, as a part of them.
 const RADII: f64 = 0.01;
@@ -38,7 +39,7 @@ pub(super) enum Step {
     Line(Pose, Pose),
     Arc(Box<Arc>, Pose),
     /// The tool's centre along a contour, from the way in to the way out.
-    Contour(Box<Contour>),
+    Contour(Rc<Contour>),
     /// By rapid to a place on the axis of the hole whose last depth is this pose: above it, by no more than [`REENTRY`].
     Above(Pose),
     Home,
@@ -152,11 +153,7 @@ impl Walk<'_> {
             }
             Op::Arc(to) => {
                 let from = self.start()?;
-                let radius = from.point().distance(to.circle.center());
-                let arc = to.circle.arc(from.point(), to.end.point(), radius * RADII);
-                let arc = arc.map_err(|_| {
-                    Diagnostic::error(Rule::Arc, "the ends of the arc are not on its circle")
-                })?;
+                let arc = arc_to(&from, to)?;
                 self.cut(arc.length())?;
                 self.push(line, Step::Arc(Box::new(arc), to.end));
                 self.here = Some(to.end);
@@ -282,11 +279,7 @@ impl Walk<'_> {
             }
             Op::Arc(to) if begun && !leaves => {
                 let from = self.start()?;
-                let radius = from.point().distance(to.circle.center());
-                let arc = to.circle.arc(from.point(), to.end.point(), radius * RADII);
-                let arc = arc.map_err(|_| {
-                    Diagnostic::error(Rule::Arc, "the ends of the arc are not on its circle")
-                })?;
+                let arc = arc_to(&from, to)?;
                 self.cut(arc.length())?;
                 self.piece(line, (from, to.end), Some(arc));
                 self.here = Some(to.end);
@@ -359,7 +352,7 @@ impl Walk<'_> {
         let moves =
             CompensatedMoves { terms, before: 0, pieces, exit: exit.map(|(_, piece)| piece) };
         let contour = Contour { moves, radius, left, states, end };
-        self.push(line, Step::Contour(Box::new(contour)));
+        self.push(line, Step::Contour(Rc::new(contour)));
         self.here = Some(end);
         Ok(())
     }
@@ -439,6 +432,17 @@ fn across(piece: &Piece, axis: Vec3) -> Vec3 {
         None => piece.to.tip - piece.from.tip,
     };
     axis.cross(along).normalize_or_zero()
+}
+
+/// The arc of the source from a pose.
+///
+/// # Errors
+/// Its ends are not on its circle.
+fn arc_to(from: &Pose, to: &ArcTo) -> Outcome<Arc> {
+    let radius = from.point().distance(to.circle.center());
+    to.circle.arc(from.point(), to.end.point(), radius * RADII).map_err(|_| {
+        Diagnostic::error(Rule::Arc, "the ends of the arc are not on its circle").into()
+    })
 }
 
 fn unproven<T>(what: &str) -> Outcome<T> {

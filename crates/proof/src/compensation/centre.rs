@@ -400,23 +400,25 @@ impl PlanePaths {
             .flat_map(|point| reach(point).into_iter().chain([way.element.nearest(point).0]))
             .collect();
         let points = samples(&way.element).chain(ends.into_iter().map(|t| way.element.at(t)));
+        let crosses =
+            |way: &&PlaneMove| way.element.meets(&other.element, NOWHERE).next().is_some();
+        let crossing: Vec<&PlaneMove> = own.iter().filter(crosses).collect();
         let near = points.filter_map(|point| {
             let (t, near) = other.element.nearest(point);
-            let counts = self.faces(other, t, own, point) && !self.is_cut_away(other, t, own);
+            let is_cut_away = self.is_cut_away(other.element.at(t), &crossing);
+            let counts = self.faces(other, t, own, point) && !is_cut_away;
             (near < enough && counts).then_some(near)
         });
         self.holds_off(near.fold(f64::INFINITY, f64::min), least, way, other.line)
     }
 
-    /// Whether the contour crosses itself, and one of its `own` elements has the tool on that side of it where the other lies: what runs on
-    /// there past the crossing (a way in or out beyond a corner) bounds nothing.
-    fn is_cut_away(&self, other: &PlaneMove, t: f64, own: &[PlaneMove]) -> bool {
-        let at = other.element.at(t);
-        own.iter().any(|way| {
-            let (nearest, _) = way.element.nearest(at);
-            let aside = way.element.tangent(nearest).perp_dot(at - way.element.at(nearest));
+    /// Whether a place of an element is on that side of one `crossing` it on which the tool goes along that one: what runs on there past
+    /// the crossing (a way in or out beyond a corner) bounds nothing.
+    fn is_cut_away(&self, at: Vec2, crossing: &[&PlaneMove]) -> bool {
+        crossing.iter().any(|way| {
+            let (t, _) = way.element.nearest(at);
+            let aside = way.element.tangent(t).perp_dot(at - way.element.at(t));
             aside * self.left > self.slack
-                && way.element.meets(&other.element, NOWHERE).next().is_some()
         })
     }
 

@@ -354,7 +354,7 @@ impl<'a> Prover<'a> {
             Action::LengthOffset(register) => running.length_offset = *register,
             Action::WorkOffset(offset) => {
                 if running.work_offset.is_some_and(|before| before != *offset) {
-                    running.moves_on = self.has_stood && !self.raised;
+                    running.offset_changed = self.has_stood && !self.raised;
                 }
                 running.work_offset = Some(*offset);
                 let position = Position { point: Vec3::NAN, ..self.here.position };

@@ -90,9 +90,9 @@ impl Prover<'_> {
         if to.position.point.z.is_nan() || self.gauge.machine.wire.is_some() {
             return;
         }
-        let moves_on = std::mem::take(&mut self.running.moves_on) && !self.raised;
+        let offset_changed = std::mem::take(&mut self.running.offset_changed) && !self.raised;
         let found = state::on_the_way(self.gauge.machine, &self.cursor.wanted, &self.running);
-        if moves_on && found.is_none() {
+        if offset_changed && found.is_none() {
             let message = "goes on in another work offset where Z has not been home: how high the tool stands there, nobody knows";
             self.differs(to.line, (Rule::Home, message.into()));
         }

@@ -3,6 +3,7 @@
 use super::block::{Block, Fault, Word};
 use super::words::{Group, index};
 use crate::iso::dialects::facts::Language;
+use crate::kernel::coolant::Doubtful;
 use program::{Diagnostic, Rule};
 
 impl Block<'_> {
@@ -93,12 +94,11 @@ impl Block<'_> {
     pub(super) fn taken_for_coolant(&self, word: &Word) -> Fault {
         let (start, end) = (word.start as usize, word.end as usize);
         let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
-        let message = format!(
-            "{shown} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
-        );
-        let fault = Diagnostic::error(Rule::Coolant, message);
-        let help = "name the M function that switches the coolant of this machine in [coolant]";
-        fault.help(help).at(self.line, self.text, start, end).into()
+        let Doubtful { message, help } = Doubtful::of_the_control(&shown);
+        Diagnostic::error(Rule::Coolant, message)
+            .help(help)
+            .at(self.line, self.text, start, end)
+            .into()
     }
 
     #[cold]

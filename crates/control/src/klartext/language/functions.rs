@@ -3,6 +3,7 @@
 use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
 use crate::kernel::Outcome;
+use crate::kernel::coolant::Doubtful;
 use program::{CoolantFunctions, CoolantSwitch, Rule};
 
 /// An M function with what belongs to it.
@@ -141,11 +142,7 @@ impl Function {
         let whole = (number.fract() == 0.0).then_some(number as u32);
         if let Some(switch) = whole.and_then(|number| stated.switch(number)) {
             if vocabulary().any(|n| is(&n) && !matches!(n, 8 | 9)) {
-                let message = format!(
-                    "M{number} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
-                );
-                let help =
-                    "name the M function that switches the coolant of this machine in [coolant]";
+                let Doubtful { message, help } = Doubtful::of_the_control(&format!("M{number}"));
                 return Err(s.error(Rule::Coolant, word.span, message).help(help).into());
             }
             return Ok(Function::Coolant(switch));

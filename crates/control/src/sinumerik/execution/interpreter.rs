@@ -248,14 +248,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         for m in block.m.iter().flatten() {
             let is_coolant = self.settings.coolant.switch(*m).is_some();
             if is_coolant && is_own(*m) && !COOLANT.contains(m) {
-                let message = format!(
-                    "M{m} is a function of the control itself, and [coolant] of the machine file takes it for coolant"
-                );
-                let mut error = source.block_error(Rule::Coolant, message);
-                error.help =
-                    "name the M function that switches the coolant of this machine in [coolant]"
-                        .into();
-                return Err(error);
+                return Err(refused(source, Doubtful::of_the_control(&format!("M{m}"))));
             }
             let is_known = match COOLANT.contains(m) {
                 true => self.coolant_of(*m).is_some(),
