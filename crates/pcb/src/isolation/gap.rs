@@ -105,6 +105,9 @@ pub(crate) fn decide(gaps: &mut [NarrowGap], others: &[Path], width: f64) {
         }
     }
     let cut: Vec<Path> = cuts(gaps).cloned().collect();
+    if cut.is_empty() {
+        return;
+    }
     let swept = Swept::new(others.iter().chain(&cut), width);
     for gap in gaps.iter_mut().filter(|gap| gap.fate == Fate::Joined) {
         if is_covered(gap, &swept) {
