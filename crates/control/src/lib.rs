@@ -275,6 +275,9 @@ pub struct Settings {
     pub rotary_by_sign: Option<bool>,
     /// Which of A, B and C turn a table.
     pub table: [bool; 3],
+    /// Where they turn it, in the order from the part to the bed, as the control has measured it; `None` where that or the
+    /// work zero is not known, or an axis turns the head as well.
+    pub table_axes: Option<Vec<TableAxis>>,
     /// Whether X, Y and Z under `G43.4` count in the frame of the part with the table at 0, however the table is turned
     /// when it comes, where that is known (FANUC).
     pub table_frame_at_zero: Option<bool>,
@@ -311,6 +314,19 @@ pub struct Settings {
     pub orientation_tolerance: f64,
     /// What the operator has set up.
     pub setup: Setup,
+}
+
+/// A rotary axis that carries the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TableAxis {
+    /// Its place in the order A, B, C.
+    pub index: usize,
+    /// A point of it, mm, from the zero of the first work offset with the table at 0.
+    pub point: Vec3,
+    /// The unit vector about which the table turns, right-handed, while its position grows.
+    pub axis: Vec3,
+    /// Its position where the table is at 0, degrees.
+    pub offset: f64,
 }
 
 /// The M functions by which a program switches the kinematics of a LinuxCNC (`switchkins`, remapped).
@@ -429,6 +445,7 @@ impl Settings {
             dwell_p_milliseconds: None,
             rotary_by_sign: None,
             table: [false; 3],
+            table_axes: None,
             table_frame_at_zero: None,
             sets_work_offsets: false,
             auxiliary: Vec::new(),

@@ -3,8 +3,9 @@
 
 mod common;
 
+use geom::Vec3;
 use program::{Coolant, Diagnostic, Feed, Spindle};
-use toolpost_control::{Action, Dialect, Kinematics, Orientation, Position, Settings};
+use toolpost_control::{Action, Dialect, Kinematics, Orientation, Position, Settings, TableAxis};
 
 /// What a program does on a machine with B and C.
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
@@ -252,11 +253,70 @@ fn g234_of_haas_keeps_the_tool_tip_and_ends_by_g49() {
         ("G234 H1 X0. Y0. Z50.\nG53 G0 Z0.", "machine-position"),
         ("G234 H1 X0. Y0. Z50.\nG91 G28 Z0.", "machine-position"),
         ("G234 H1 X0. Y0. Z50.\nG81 Z-5. R2. F100.", "cycle"),
-        ("G254", "unknown-word"),
+        // Nobody knows where the table turns.
+        ("G254", "dynamic-offset"),
     ] {
         let found = run(Dialect::Haas, &format!("{START}{blocks}\nM30\n")).unwrap_err();
         assert_eq!(found.rule.name(), rule, "{blocks}");
     }
+}
+
+/// Haas, "G254 - Dynamic Work Offset (DWO)" (UMC-750 manual p. 40): X, Y and Z count from the work zero as the table has carried
+/// it. By hand: B turns about a line 100 mm below the zero, against the right hand: B30 takes the zero to X -100 sin 30°,
+/// Z -100 (1 - cos 30°).
+#[test]
+fn g254_of_haas_carries_the_work_zero_with_the_table() {
+    const START: &str = "G21 G90 G94 G17 G98 G54\nT1 M6\nS500 M3\nG53 G0 Z0.\nG0 B30. C0.\n";
+    let axes = [
+        TableAxis { index: 2, point: Vec3::new(0.0, 0.0, -100.0), axis: -Vec3::Z, offset: 0.0 },
+        TableAxis { index: 1, point: Vec3::new(0.0, 0.0, -100.0), axis: -Vec3::Y, offset: 0.0 },
+    ];
+    let haas = Settings {
+        table_axes: Some(axes.to_vec()),
+        ..Settings::new(Dialect::Haas, [false, true, true])
+    };
+    let run = |text: &str| common::ops(&haas, "p.nc", &format!("{START}{text}\nM30\n"));
+    let cuts = |text: &str| -> Vec<Position> {
+        let actions = run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let cut = |action| if let Action::Line(to) = action { Some(to) } else { None };
+        actions.into_iter().filter_map(cut).collect()
+    };
+    let approach = "G0 X0. Y0.\nG43 H1 Z50.\n";
+    let cut = "G1 X10. Y20. Z30. F100.";
+    let carried = Vec3::new(-50.0, 0.0, -100.0 * (1.0 - 30f64.to_radians().cos()));
+    let [plain] = cuts(&format!("{approach}{cut}"))[..] else { panic!() };
+    let [dynamic] = cuts(&format!("G254\n{approach}{cut}\nG53 G0 Z0.\nG255"))[..] else { panic!() };
+    assert_eq!(plain.point, Vec3::new(10.0, 20.0, 30.0));
+    assert!(dynamic.point.distance(plain.point + carried) < 1e-12, "{dynamic:?}");
+    assert_eq!(dynamic.orientation, plain.orientation);
+    // Behind G255 the zero is where it was set up.
+    let after = cuts(&format!("G254\nG255\n{approach}{cut}"));
+    assert_eq!(after, [plain]);
+    // What stood there before says nothing of X, Y and Z behind it.
+    let unsaid = cuts(&format!("{approach}G254\nG1 X5. F100.\nG255"));
+    assert!(unsaid[0].point.y.is_nan() && unsaid[0].point.z.is_nan(), "{unsaid:?}");
+    for blocks in [
+        "G254 X0.",
+        "G254\nG0 B0.",
+        "G254\nG53 G0 B0.",
+        "G254\nG55",
+        "G254\nG52 X5.",
+        "G254\nG92 X5.",
+        "G254\nG68 X0. Y0. R30.",
+        "G254\nG51 X0. Y0. P2.",
+        "G254\nG101 X0.",
+        "G254\nG234 H1 X0. Y0. Z50.",
+        "G254\nG10 L2 P1 X0.",
+        "G254\nG91 G28 Z0.",
+        "G55\nG254",
+        "G52 X5.\nG254",
+        "G234 H1 X0. Y0. Z50.\nG254",
+    ] {
+        let found = run(blocks).expect_err(blocks);
+        assert_eq!(found.rule.name(), "dynamic-offset", "{blocks}: {found}");
+    }
+    let unturned = common::ops(&haas, "p.nc", "G21 G90 G94 G17 G54\nG53 G0 Z0.\nG254\nM30\n");
+    assert!(unturned.unwrap_err().message.contains("how the table stands"));
 }
 
 /// Out of a tilted plane the reference position is reached before `G49` and `G69`; where the tool then stands in the

@@ -85,6 +85,15 @@ impl Machine {
         (tip - zero, self.axis_at(degrees))
     }
 
+    /// How far the table has carried the work zero with the rotary axes at `degrees`, mm, along the axes of the machine.
+    pub fn carried_zero(&self, degrees: [f64; 3]) -> Vec3 {
+        let zero = self.work_zero.unwrap_or(Vec3::ZERO);
+        let carried = self.on(Mount::Table).rev().fold(zero, |p, axis| {
+            axis.point + rotate(p - axis.point, axis.axis, axis.turned(degrees[axis.index()]))
+        });
+        carried - zero
+    }
+
     /// The tool axis (unit vector, work frame) for positions of the rotary axes in degrees.
     pub fn axis_at(&self, degrees: [f64; 3]) -> Vec3 {
         let tool = self

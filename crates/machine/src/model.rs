@@ -306,6 +306,8 @@ pub enum OrientationMode {
     Vectors,
     /// A tilted plane of work: `CYCLE800`, `G68.2`, `PLANE SPATIAL`.
     TiltedPlane,
+    /// Rotary positions, linear positions of the machine from the work zero as the table has carried it: Haas `G254`.
+    DynamicOffset,
 }
 
 /// What a control can do; what it cannot is lowered.

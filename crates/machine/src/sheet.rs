@@ -192,7 +192,7 @@ sheet!(RotarySheet "rotary" {
 });
 
 sheet!(merged OrientationSheet "orientation" {
-    simultaneous: OrientationMode, "", "How the tool axis is written while it turns in the cut: fixed, machine-angles, tool-center-angles, vectors, tilted-plane.";
+    simultaneous: OrientationMode, "", "How the tool axis is written while it turns in the cut: fixed, machine-angles, tool-center-angles, vectors, tilted-plane, dynamic-offset.";
     positioned: OrientationMode, "", "The same while it stands still (3+2); as `simultaneous` where it is missing.";
     tolerance: Tolerance, "mm", "How far the tool tip may leave the line between two points before a point is added.";
 });

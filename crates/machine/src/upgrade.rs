@@ -92,7 +92,8 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
     }
     let orientation = machine.orientation;
     let writes = |mode| [orientation.simultaneous, orientation.positioned].contains(&mode);
-    let turns_axes = writes(OrientationMode::MachineAngles);
+    let turns_axes =
+        writes(OrientationMode::MachineAngles) || writes(OrientationMode::DynamicOffset);
     let follows_tip = writes(OrientationMode::ToolCenterAngles);
     let tilts = writes(OrientationMode::TiltedPlane);
     let turns_table = machine.rotary.iter().any(|axis| axis.on == Mount::Table);

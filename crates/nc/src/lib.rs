@@ -37,7 +37,8 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 use control::{
-    Action, Dialect, Ending, Event, FeedPath, Orientation, Position, Risk, Settings, Setup, Wire,
+    Action, Dialect, Ending, Event, FeedPath, Orientation, Position, Risk, Settings, Setup,
+    TableAxis, Wire,
 };
 use geom::{Arc, Vec3};
 use machine::{LengthOffset, Machine, Mount, RotaryFeed};
@@ -93,6 +94,24 @@ pub fn settings(machine: &Machine, setup: Setup) -> Outcome<Settings> {
     Ok(settings_in(dialect, machine, setup))
 }
 
+/// Where the table of `machine` turns, as its control has measured it; `None` where the file does not say it.
+fn table_axes(machine: &Machine) -> Option<Vec<TableAxis>> {
+    let zero = machine.work_zero?;
+    let mut axes: Vec<TableAxis> = Vec::new();
+    for axis in machine.rotary.iter().rev() {
+        if axis.on != Mount::Table || !axis.is_placed {
+            return None;
+        }
+        axes.push(TableAxis {
+            index: axis.index(),
+            point: axis.point - zero,
+            axis: axis.axis * axis.sign,
+            offset: axis.offset,
+        });
+    }
+    Some(axes)
+}
+
 /// The settings of a virtual control with the axes of `machine` that reads `dialect`, as [`settings`].
 pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Settings {
     let (mut rotary, mut table, mut modulo) = ([false; 3], [false; 3], [None; 3]);
@@ -114,6 +133,7 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
         dwell_p_milliseconds: machine.settings.dwell_p_milliseconds,
         rotary_by_sign: machine.settings.rotary_by_sign,
         table,
+        table_axes: table_axes(machine),
         table_frame_at_zero: machine.settings.table_frame_at_zero,
         sets_work_offsets: machine.settings.sets_work_offsets,
         operator_parameters: machine.operator_parameters.clone(),

@@ -124,7 +124,7 @@ impl Walk<'_> {
         if let Kind::Plain | Kind::Machine = self.place.kind {
             let degrees = self.place.degrees().unwrap_or_default();
             for &sway in self.sways(arc.end) {
-                let up = Vec3::Z * sway;
+                let up = Vec3::Z * sway + self.place.carried();
                 let local = Arc { start: local.start + up, end: local.end + up, ..local };
                 self.limits.arc(&local, degrees, self.tool_length(), self.line)?;
             }

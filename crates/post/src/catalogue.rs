@@ -117,6 +117,8 @@ names! {
         LookAheadOff Block "look_ahead_off", "", "Before what look-ahead must not be on for: a hole cycle, a thread, a probing move, a tool change, a turn of the rotary axes, a work offset, the end.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on. A block that places {{X}} {{Y}} {{Z}} is the first move under it, from home to above all cuts.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
+        DynamicOffsetOn Block "dynamic_offset_on", "", "The table carries the work zero along from here on, as it stands.";
+        DynamicOffsetOff Block "dynamic_offset_off", "", "The work zero is where it was set up again.";
         ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that has no such word: its program cuts one opening.";
         CutWire Block "cut_wire", "", "Where the wire is cut (wire EDM).";
         CycleDrill Block "cycle_drill", "", "Definition of a drilling cycle. A definition that places {{X}} drills the first hole itself.";

@@ -2,6 +2,7 @@
 //! tool center point control by angles or vectors, or the positions of the machine's own axes.
 
 use crate::catalogue::{BlockName, WordName};
+use crate::motion::hangs_on;
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, place_value};
 use crate::tilt::Solution;
 use crate::walk::{Outcome, Walk, motion, refuse};
@@ -43,6 +44,8 @@ pub(crate) struct CoordinateMode {
     origin: Vec3,
     /// Whether tool-centre control goes on with the next move.
     pub(crate) begins: bool,
+    /// How far the table has carried the zero from which positions of the axes count, mm, while the dynamic offset is on.
+    carried: Option<Vec3>,
     /// Whether a rotary axis that the block places has to turn.
     pub(crate) turned: bool,
     /// Whether nothing has moved since the control stopped keeping the tip, or since a tilted plane went off.
@@ -60,6 +63,7 @@ impl CoordinateMode {
             solutions: Vec::new(),
             origin: Vec3::ZERO,
             begins: false,
+            carried: None,
             turned: false,
             just_off: [false; 2],
         }
@@ -71,8 +75,18 @@ impl CoordinateMode {
         place_value(home, self.turned, tilted, self.just_off)
     }
 
+    /// How far the zero from which positions of the axes count lies from where it was set up, mm.
+    pub(crate) fn carried(&self) -> Vec3 {
+        self.carried.unwrap_or(Vec3::ZERO)
+    }
+
     pub(crate) fn degrees(&self) -> Option<[f64; 3]> {
         self.degrees
+    }
+
+    /// Whether a rotary axis stands off 0, or nobody knows where it stands.
+    fn is_turned(&self) -> bool {
+        self.degrees != Some([0.0; 3])
     }
 
     pub(crate) fn turn_to(&mut self, degrees: [f64; 3]) {
@@ -147,6 +161,7 @@ impl Route {
             OrientationMode::Fixed | OrientationMode::TiltedPlane => None,
             OrientationMode::ToolCenterAngles
             | OrientationMode::Vectors
+            | OrientationMode::DynamicOffset
             | OrientationMode::MachineAngles => Some(plan::plan(machine, degrees, targets)?),
         };
         Ok(Route { records: count, mode, turning, plan })
@@ -252,9 +267,14 @@ impl Walk<'_> {
             },
             (Kind::Plain, OrientationMode::TiltedPlane) => same(axis, Vec3::Z),
             (Kind::Tilted(_, tilted), OrientationMode::TiltedPlane) => same(*tilted, axis),
+            (Kind::Machine, OrientationMode::DynamicOffset) => {
+                self.stands_at(stop) && self.place.carried.is_some() == self.place.is_turned()
+            }
             (Kind::ToolCenter, OrientationMode::ToolCenterAngles)
             | (Kind::Vectors, OrientationMode::Vectors)
-            | (Kind::Machine, OrientationMode::MachineAngles) => {
+            | (Kind::Machine, OrientationMode::MachineAngles)
+                if self.place.carried.is_none() =>
+            {
                 // Between cuts that turn the axes go along with the rapid; otherwise they turn alone.
                 (stop.turning && (!stop.first || cut)) || self.stands_at(stop)
             }
@@ -300,6 +320,7 @@ impl Walk<'_> {
             OrientationMode::TiltedPlane => self.tilt(axis)?,
             mode @ (OrientationMode::ToolCenterAngles
             | OrientationMode::Vectors
+            | OrientationMode::DynamicOffset
             | OrientationMode::MachineAngles) => {
                 self.rotate(stop.step.map(|step| step.degrees), stop.turning)?;
                 self.place.kind = match mode == OrientationMode::ToolCenterAngles {
@@ -307,8 +328,11 @@ impl Walk<'_> {
                     false if mode == OrientationMode::Vectors => Kind::Vectors,
                     false => Kind::Machine,
                 };
-                if mode != OrientationMode::MachineAngles {
+                if matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
                     self.tool_center_on()?;
+                }
+                if mode == OrientationMode::DynamicOffset {
+                    self.dynamic_offset_on()?;
                 }
             }
         }
@@ -352,6 +376,20 @@ impl Walk<'_> {
         self.required(BlockName::ToolCenterOn)
     }
 
+    /// The table carries the zero along, as it stands; at 0 it has carried it nowhere.
+    fn dynamic_offset_on(&mut self) -> Outcome {
+        if !self.place.is_turned() {
+            return Ok(());
+        }
+        let degrees = self.place.degrees.unwrap_or_default();
+        if let Some(unsaid) = self.machine.unsaid(degrees, self.tool_length()) {
+            return Err(hangs_on(unsaid));
+        }
+        self.required(BlockName::DynamicOffsetOn)?;
+        self.place.carried = Some(self.machine.carried_zero(degrees));
+        Ok(())
+    }
+
     fn tool_center_off(&mut self) -> Outcome {
         if matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.required(BlockName::ToolCenterOff)?;
@@ -372,6 +410,13 @@ impl Walk<'_> {
         self.go_out()?;
         match self.place.kind {
             Kind::Bare => {}
+            Kind::Machine if self.place.carried.is_some() => {
+                self.leave_part()?;
+                self.required(BlockName::DynamicOffsetOff)?;
+                self.place.carried = None;
+                self.place.kind = Kind::Bare;
+                self.lose_position();
+            }
             Kind::Plain | Kind::Machine => {
                 if !self.machine.rotary.is_empty() {
                     self.place.kind = Kind::Bare;

@@ -331,7 +331,8 @@ impl Walk<'_> {
             Kind::Tilted(into, _) => into.transform_point3(point),
             Kind::Machine => {
                 let degrees = self.place.degrees().unwrap_or_default();
-                self.machine.linear_for(point, degrees, self.tool_length().unwrap_or(0.0))
+                let length = self.tool_length().unwrap_or(0.0);
+                self.machine.linear_for(point, degrees, length) - self.place.carried()
             }
         }
     }
@@ -358,7 +359,7 @@ impl Walk<'_> {
             Kind::Bare | Kind::Plain => self.position.said(),
             Kind::Machine => match self.machine.unsaid(degrees, length) {
                 Some(unsaid) => return Err(hangs_on(unsaid)),
-                None => self.position.said(),
+                None => self.position.said() + self.place.carried(),
             },
             // The control knows what its file does not say; the proof reports what was not checked.
             Kind::ToolCenter | Kind::Vectors => {
@@ -395,7 +396,7 @@ impl Walk<'_> {
 
 /// The positions of the axes depend on what nobody has stated.
 #[cold]
-fn hangs_on(unsaid: Unsaid) -> Box<Diagnostic> {
+pub(crate) fn hangs_on(unsaid: Unsaid) -> Box<Diagnostic> {
     let message = format!("{unsaid} is not stated: the positions of all axes depend on it");
     refuse(unsaid.rule(), message).help(unsaid.way_out()).into()
 }

@@ -256,11 +256,15 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
             OrientationMode::TiltedPlane => {
                 ("tilted-plane", &[B::Retract, B::PlaneTilt, B::PlaneTiltOff])
             }
+            OrientationMode::DynamicOffset => (
+                "dynamic-offset",
+                &[B::Retract, B::Rotate, B::DynamicOffsetOn, B::DynamicOffsetOff],
+            ),
         };
         let why = format!("`orientation.{key}` is \"{name}\"");
         for &block in blocks {
             // The axes turn away from the part, and the way of writing is switched: an empty block does neither.
-            let switches = [B::ToolCenterOn, B::PlaneTilt].contains(&block);
+            let switches = [B::ToolCenterOn, B::PlaneTilt, B::DynamicOffsetOn].contains(&block);
             if !templates.has(block) || (switches && machine.leaves_out(block.name())) {
                 let message = format!("the block `{}` is missing: {why}", block.name());
                 let help = format!("write the block, or let `{key}` be what the blocks can write");
@@ -279,6 +283,7 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
             OrientationMode::MachineAngles
             | OrientationMode::ToolCenterAngles
             | OrientationMode::TiltedPlane
+            | OrientationMode::DynamicOffset
             | OrientationMode::Fixed => Vec::new(),
         };
         let turns = (B::Rotate, &letters[..]);

@@ -347,7 +347,7 @@ fn what_a_program_leaves_on_is_refused_on_the_machines_of_the_library() {
             "fanuc-table-bc",
             &["G68.2 X0. Y0. Z0. I0. J30. K0.", "G43.4 H2", "G41 D1", "G43 H1", "G66 P1"],
         ),
-        ("haas-umc-750", &["G234 H2", "G55", "G154 P3", "G41 D1", "G91"]),
+        ("haas-umc-750", &["G234 H2", "G254", "G55", "G154 P3", "G41 D1", "G91"]),
         (
             "dmu50-heidenhain",
             &[

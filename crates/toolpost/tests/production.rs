@@ -255,6 +255,34 @@ fn coolant_through_the_tool_is_ended_by_its_own_function_on_every_mill() {
     }
 }
 
+/// Under G254 a program does not depend on where the part is clamped: the table turns about another place of it, and no block
+/// changes. Without G254 the same blocks lead elsewhere, and behind it the table may not turn.
+#[test]
+fn a_haas_carries_the_work_zero_with_its_table() {
+    let source = sample("five-axes");
+    let haas = |height: f64| {
+        machine(&format!(
+            "extends = \"haas-umc-750\"\nwork_zero = [-381, -254, {height}]\n[orientation]\npositioned = \"dynamic-offset\"\n"
+        ))
+    };
+    let (high, low) = (haas(-300.0), haas(-350.0));
+    let text = written(&source, &high);
+    assert_eq!(text, written(&source, &low));
+    assert!(text.contains("B45. C45.\nG254\n"), "{text}");
+    assert!(text.contains("G53 G0 Z0.\nG255\n"), "{text}");
+    let damaged = |from: &str, to: &str| rules(&source, &high, &text.replacen(from, to, 1));
+    assert_ne!(damaged("G254\n", ""), [""; 0]);
+    assert_eq!(damaged("G255\n", ""), ["dynamic-offset"]);
+    assert_eq!(damaged("G254\n", "G55\nG254\n"), ["dynamic-offset"]);
+    assert_eq!(damaged("G0 B45. C45.\nG254\n", "G254\nG0 B45. C45.\n"), ["dynamic-offset"]);
+    let umc = std::fs::read_to_string(root().join("machines/haas-umc-750.toml")).unwrap();
+    let nowhere = machine(
+        &umc.replace("point = [-381, -254, -400]", "").replace("machine-angles", "dynamic-offset"),
+    );
+    let refused = post::write(&source, &nowhere).unwrap_err();
+    assert_eq!(refused[0].rule.name(), "kinematics", "{refused:?}");
+}
+
 /// Setting 52 ("G83 Retract Above R"): chips are cleared above R, where Z has to have room for it.
 #[test]
 fn a_haas_clears_chips_above_r_as_far_as_setting_52_says() {

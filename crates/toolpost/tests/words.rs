@@ -290,11 +290,11 @@ const TAKEN: &[(&str, &str, &str)] = &[
         "G0 G1 G9 G15 G17 G21 G40 G43 G50 G54 G60 G61 G62 G64 G67 G69 G80 G90 G94 G97 G98 G99 M3 M8 \
          M48",
     ),
-    // The same; G103; M89 ends what is not on.
+    // The same; G103; G255 and M89 end what is not on.
     (
         "generic-3axis-haas",
         "examples/plate.cls",
-        "G0 G1 G9 G17 G21 G40 G43 G50 G54 G60 G61 G64 G67 G69 G80 G90 G94 G97 G98 G99 G103 M3 M8 M48 \
+        "G0 G1 G9 G17 G21 G40 G43 G50 G54 G60 G61 G64 G67 G69 G80 G90 G94 G97 G98 G99 G103 G255 M3 M8 M48 \
          M89",
     ),
     // The same; M48 and M50 to M53 give overrides and feed hold back; M70 to M73 keep modes.

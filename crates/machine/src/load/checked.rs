@@ -241,7 +241,9 @@ fn check_clamps(
         rotary.iter().all(|axis| text.contains(&format!("{{{{{}}}}}", axis.letter)))
     };
     let by_words = |mode| match mode {
-        OrientationMode::MachineAngles | OrientationMode::ToolCenterAngles => true,
+        OrientationMode::MachineAngles
+        | OrientationMode::ToolCenterAngles
+        | OrientationMode::DynamicOffset => true,
         OrientationMode::TiltedPlane => blocks.get("plane_tilt").is_some_and(turned_by),
         OrientationMode::Fixed | OrientationMode::Vectors => false,
     };
@@ -249,7 +251,7 @@ fn check_clamps(
         true => Ok(()),
         false => Err(wrong(
             place,
-            "axes with clamps are written as positions (machine-angles or tool-center-angles), or turned by words of \
+            "axes with clamps are written as positions (machine-angles, tool-center-angles or dynamic-offset), or turned by words of \
              the block `plane_tilt`: with vectors, and where a tilted plane turns them, no word says when they turn",
         )),
     }

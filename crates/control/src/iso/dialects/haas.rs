@@ -49,6 +49,8 @@ const G_WORDS: &[GRow] = &[
     (1540, Group::WorkOffset, G::FurtherOffset { most: 99 }),
     (1870, Group::OneShot, G::Smoothness),
     (2340, Group::Length, G::ToolCenter),
+    (2540, Group::DynamicOffset, G::DynamicOffset(true)),
+    (2550, Group::DynamicOffset, G::DynamicOffset(false)),
 ];
 
 const M_WORDS: &[MRow] = &[
@@ -75,14 +77,6 @@ const REFUSED_G: &[Refused] = &[
     (1500, "pocket milling calls a contour in a subprogram; write its moves"),
     (1840, "tapping out of the vertical is not followed"),
     (1740, "tapping out of the vertical is not followed"),
-    (
-        2540,
-        "the dynamic work offset is not followed; write positions for the table as it stands, or G234",
-    ),
-    (
-        2550,
-        "the dynamic work offset is not followed; write positions for the table as it stands, or G234",
-    ),
 ];
 
 const WORDS: Dictionary = mill(b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)

@@ -31,6 +31,9 @@ const LOCAL: Risk = Risk::left_on(
 const TILT: Risk = Risk::left_on("ends in a tilted plane", "write G69 before the end");
 const TOOL_CENTER: Risk =
     Risk::left_on("ends while the control keeps the tool tip", "write G49 before the end");
+/// `M30` ends it, a stop by hand may not: the manual asks for `G255` right behind its use.
+const DYNAMIC_OFFSET: Risk =
+    Risk::left_on("ends while the table carries the work zero", "write G255 before the end");
 const KINEMATICS: Risk = Risk::left_on(
     "ends with the kinematics of the tip",
     "switch to the kinematics of the axes before the end",
@@ -77,6 +80,7 @@ impl State {
             (self.frames.local != [0.0; 6], LOCAL),
             (self.tilt != Tilt::None, TILT),
             (matches!(self.length, Length::Center(_)), TOOL_CENTER),
+            (self.frames.carried.is_some(), DYNAMIC_OFFSET),
             (self.kinematics == Kinematics::Tip, KINEMATICS),
             (self.polar.is_some(), POLAR),
             (self.surface.is_some(), SURFACE),

@@ -242,6 +242,8 @@ pub(crate) struct Frames {
     pub transform: Transform,
     /// The tilted plane, once it is reached.
     pub tilt: Option<Frame>,
+    /// By how much the table has moved the zero, mm, along the axes of the machine, while the dynamic offset is on.
+    pub carried: Option<Vec3>,
 }
 
 impl Frames {
@@ -262,6 +264,7 @@ impl Frames {
             local: [0.0; 6],
             transform: Transform::NONE,
             tilt: None,
+            carried: None,
         };
         frames.index(number);
         frames
@@ -297,6 +300,9 @@ impl Frames {
         }
         if let Some(tilt) = self.tilt {
             frame *= tilt;
+        }
+        if let Some(carried) = self.carried {
+            frame = Frame::from_translation(carried) * frame;
         }
         let rotary = [3, 4, 5].map(|i| offset.slide[i] + shift[i]);
         ProgramFrame { frame, rotary, same: frame == Frame::IDENTITY && rotary == [0.0; 3] }
@@ -365,6 +371,15 @@ impl Frames {
     /// Whether coordinates are mirrored, scaled, turned or tilted.
     pub(super) fn is_transformed(&self) -> bool {
         self.transform != Transform::NONE || self.tilt.is_some()
+    }
+
+    /// Whether the program has moved or turned no zero, so that coordinates are those of the active work offset.
+    pub(super) fn is_plain(&self) -> bool {
+        let stays = |offset: &Offset| offset.frame() == Frame::IDENTITY;
+        self.offset().is_none_or(stays)
+            && !self.is_transformed()
+            && [self.shift, self.local] == [[0.0; 6]; 2]
+            && self.lost.is_none()
     }
 
     /// Writes a work offset (`G10 L2`): the given values replace those of before, or with `add` are

@@ -99,6 +99,7 @@ impl Step<'_, '_, '_> {
             | G::Diameter(_)
             | G::SurfaceSpeed(_)
             | G::Dwell
+            | G::DynamicOffset(_)
             | G::LookAhead { .. }
             | G::MacroCall { .. }
             | G::CancelMacroCall => self.go(),

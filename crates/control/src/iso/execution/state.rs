@@ -10,7 +10,7 @@ use crate::event::{Orientation, Position};
 use crate::iso::dialects::facts::Facts;
 use crate::iso::language::words::{FeedMode, Motion, Plane, Side};
 use crate::kernel::compensation::Terms;
-use crate::{Settings, Units};
+use crate::{Settings, TableAxis, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Purpose, Spindle, WorkOffset};
 
@@ -69,6 +69,8 @@ pub(crate) struct State {
     pub rotary_by_sign: Option<bool>,
     /// Which of A, B and C turn a table.
     pub table: [bool; 3],
+    /// Where they turn it, in the order from the part to the bed, where that is known.
+    pub table_axes: Option<Vec<TableAxis>>,
     /// Whether `G43.4` counts in the frame of the part with the table at 0, where that is known (FANUC).
     pub table_frame_at_zero: Option<bool>,
     /// Whether programs of this machine write work offsets.
@@ -236,6 +238,7 @@ impl State {
             dwell_p_milliseconds: settings.dwell_p_milliseconds,
             rotary_by_sign: settings.rotary_by_sign,
             table: settings.table,
+            table_axes: settings.table_axes.clone(),
             table_frame_at_zero: settings.table_frame_at_zero,
             sets_work_offsets: settings.sets_work_offsets,
             frames: Frames::new(work_offset, all_zero, facts.offsets.turn),
@@ -349,6 +352,7 @@ impl State {
             rotary_by_sign: _,
             rotary_at_zero: _,
             table: _,
+            table_axes: _,
             table_frame_at_zero: _,
             sets_work_offsets: _,
             registers: _,

@@ -93,12 +93,14 @@ impl Step<'_, '_, '_> {
             self.speed()?;
         }
         self.tool()?;
+        self.keeps_dynamic_offset()?;
         if more {
             self.spindle_and_coolant()?;
             self.neutral_m()?;
             self.kinematics()?;
             self.dwell()?;
             self.modes()?;
+            self.dynamic_offset()?;
         }
         self.motion()?;
         self.holds_suspended_length();

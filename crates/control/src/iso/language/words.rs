@@ -72,6 +72,8 @@ pub enum G {
     SurfaceSpeed(bool),
     /// `G4`.
     Dwell,
+    /// The work zero that turns with the table, on or off.
+    DynamicOffset(bool),
     /// `G28`.
     Home,
     /// `G30`.
@@ -425,11 +427,13 @@ pub enum Group {
     Wire,
     /// M: which kinematics are on.
     Kinematics,
+    /// The work zero that turns with the table.
+    DynamicOffset,
 }
 
 impl Group {
     /// How many groups there are.
-    pub(in crate::iso) const COUNT: usize = Group::Kinematics as usize + 1;
+    pub(in crate::iso) const COUNT: usize = Group::DynamicOffset as usize + 1;
 
     /// The bit of the group in a set of groups.
     pub(in crate::iso) const fn bit(self) -> u32 {
@@ -485,7 +489,7 @@ pub(in crate::iso) const fn set(letters: &[u8]) -> u32 {
 /// The words of one dialect, found by number.
 pub struct Dictionary {
     /// By ten times the number.
-    g: [Option<(Group, G)>; 2400],
+    g: [Option<(Group, G)>; 2600],
     /// By the number.
     m: [Option<(Group, M)>; 500],
     refused_g: &'static [Refused],
@@ -507,7 +511,7 @@ impl Dictionary {
     /// No words, with these letters; a block has `longest` bytes at most, blanks and comments apart.
     pub const fn new(letters: &[u8], longest: usize) -> Dictionary {
         Dictionary {
-            g: [None; 2400],
+            g: [None; 2600],
             m: [None; 500],
             refused_g: &[],
             refused_m: &[],
