@@ -50,13 +50,13 @@ impl Node {
 pub(crate) type Row = Vec<Node>;
 
 /// The joints of a sample, with the turn at a step, in a posture; and what it costs to be there.
-type Place = Option<(Joints, f32)>;
+type Candidate = Option<(Joints, f32)>;
 
 /// The nodes at the start of a cut, at a sample.
 pub(crate) fn start(job: &Job, sample: usize, steps: usize) -> Row {
-    places(job, &job.samples[sample], steps)
+    candidates(job, &job.samples[sample], steps)
         .into_iter()
-        .map(|place| match place {
+        .map(|candidate| match candidate {
             Some((joints, cost)) => {
                 Node { cost, end: joints.map(|q| q as f32), ..Node { cost: 0.0, ..Node::DEAD } }
             }
@@ -73,25 +73,25 @@ pub(crate) fn rows(job: &Job, knots: &[usize], steps: usize) -> Vec<Row> {
 
 fn follow(job: &Job, run: &[Range<usize>], steps: usize) -> Vec<Row> {
     let Some(first) = run.first() else { return Vec::new() };
-    let mut here = places(job, &job.samples[first.start], steps);
+    let mut here = candidates(job, &job.samples[first.start], steps);
     let mut rows = Vec::with_capacity(run.len());
     for interval in run {
         let mut row: Row = here
             .iter()
-            .map(|place| match place {
+            .map(|candidate| match candidate {
                 Some(_) => Node { cost: 0.0, ..Node::DEAD },
                 None => Node::DEAD,
             })
             .collect();
         for sample in &job.samples[interval.start + 1..=interval.end] {
-            let next = places(job, sample, steps);
+            let next = candidates(job, sample, steps);
             for ((node, from), to) in row.iter_mut().zip(&here).zip(&next) {
                 advance(node, from, to, sample.time, job);
             }
             here = next;
         }
-        for (node, place) in row.iter_mut().zip(&here) {
-            match place {
+        for (node, candidate) in row.iter_mut().zip(&here) {
+            match candidate {
                 Some((joints, _)) => node.end = joints.map(|q| q as f32),
                 None => *node = Node::DEAD,
             }
@@ -102,7 +102,7 @@ fn follow(job: &Job, run: &[Range<usize>], steps: usize) -> Vec<Row> {
 }
 
 /// One sample further, in `time`.
-fn advance(node: &mut Node, from: &Place, to: &Place, time: f64, job: &Job) {
+fn advance(node: &mut Node, from: &Candidate, to: &Candidate, time: f64, job: &Job) {
     let (Some((from, _)), Some((to, cost)), false) = (from, to, node.is_dead()) else {
         *node = Node::DEAD;
         return;
@@ -130,20 +130,20 @@ pub(crate) fn share(arm: &Arm, joint: usize, change: f64, time: f64) -> f64 {
 }
 
 /// All joints of a sample: eight postures of each step.
-fn places(job: &Job, sample: &Sample, steps: usize) -> Vec<Place> {
-    let mut places = Vec::with_capacity(steps * POSTURES);
+fn candidates(job: &Job, sample: &Sample, steps: usize) -> Vec<Candidate> {
+    let mut candidates = Vec::with_capacity(steps * POSTURES);
     for step in 0..steps {
         let solutions = job.arm.inverse(&job.frame(sample, step as f64 * job.step_angle()), 0.0);
         for posture in Posture::ALL {
             let joints = solutions.get(posture);
-            places.push(
+            candidates.push(
                 joints.and_then(|joints| {
                     Some((*joints, cost_at(job.arm, joints, job.settings).ok()?))
                 }),
             );
         }
     }
-    places
+    candidates
 }
 
 /// What it costs to be at these joints, at most some tens.

@@ -1,7 +1,7 @@
 //! The path of the tool's centre along a contour, for machines that offset nothing: parallel to each line and arc at the radius of the
 //! tool, around outer corners by an arc about the corner, from the crossing of both parallels at inner ones.
 //!
-//! What switches compensation on is a straight way to the first element's parallel, what switches it off one from the end of the last.
+//! What switches compensation on is a straight segment to the first element's parallel, what switches it off one from the end of the last.
 //! Where the tool does not fit, the contour is refused: at an arc that is too small, between neighbours, or in a neck whose two sides lie
 //! anywhere along it.
 
@@ -87,7 +87,7 @@ struct Section {
     radius: f64,
     /// The tool; the plane is across it.
     axis: Vec3,
-    /// Where the way in ends, once it has come.
+    /// Where the lead-in ends, once it has come.
     lead: Option<Move>,
     items: Vec<Item>,
     /// Whether compensation is off, from the next move in the plane on.
@@ -183,7 +183,7 @@ impl Walk {
         Ok(())
     }
 
-    /// A record while compensation is on, or on its way out; whether it is then to be written as it is.
+    /// A record while compensation is on, or in its lead-out; whether it is then to be written as it is.
     fn within(&mut self, record: &Record) -> Outcome<bool> {
         let (Some(section), Some(here)) = (&mut self.section, self.here) else { return Ok(true) };
         let line = record.line;
@@ -197,7 +197,7 @@ impl Walk {
                 section.upright(to)?;
                 let heights = [section.height(here.point()), section.height(to.point())];
                 if step.length() <= NOWHERE {
-                    // Before the way in nothing is offset.
+                    // Before the lead-in nothing is offset.
                     if section.lead.is_none() {
                         return Ok(true);
                     }
@@ -292,7 +292,7 @@ impl Walk {
         }
     }
 
-    /// Writes the path of the centre, and the way out to a pose.
+    /// Writes the path of the centre, and the lead-out to a pose.
     fn finish(&mut self, exit: Option<(u32, Pose)>) -> Outcome {
         let Some(section) = self.section.take() else { return Ok(()) };
         if let Some(lead) = section.lead {
@@ -342,9 +342,9 @@ impl Section {
     /// Writes the path of the centre behind `records`; where it ends.
     fn write(&self, lead: &Move, records: &mut Vec<Record>) -> Outcome<Pose> {
         let moves: Vec<Move> = self.items.iter().filter_map(Item::as_move).collect();
-        let ways = self.ways(&moves)?;
+        let segments = self.segments(&moves)?;
         let pose = |at: Vec2, height: f64| Pose::new(self.point(at, height), self.axis);
-        let Some(first) = ways.first() else {
+        let Some(first) = segments.first() else {
             let message = "cutter compensation is on and off again with no contour between";
             let help = "leave it out, or give the contour behind the move that switches it on";
             return Err(Diagnostic::error(Rule::Compensation, message)
@@ -355,9 +355,9 @@ impl Section {
         let (mut at, mut height) = (first.element.start, lead.heights[1]);
         let to = pose(at, height)?;
         records.push(Record { line: lead.line, op: Op::Line(to) });
-        let mut ways = ways.iter();
+        let mut segments = segments.iter();
         for item in &self.items {
-            let way = match item {
+            let segment = match item {
                 Item::Record(record) => {
                     records.push(record.clone());
                     continue;
@@ -367,19 +367,19 @@ impl Section {
                     records.push(Record { line: *line, op: Op::Line(pose(at, height)?) });
                     continue;
                 }
-                Item::Move(_) => ways.next(),
+                Item::Move(_) => segments.next(),
             };
-            let Some(way) = way else { continue };
-            if let Some(around) = &way.around {
+            let Some(segment) = segment else { continue };
+            if let Some(around) = &segment.around {
                 let op = self.op(around, height)?;
-                records.push(Record { line: way.line, op });
+                records.push(Record { line: segment.line, op });
             }
-            height = way.height;
-            at = way.element.end;
+            height = segment.height;
+            at = segment.element.end;
             // Nothing of an element may be left between its neighbours' corners.
-            if way.element.length() > NOWHERE {
-                let op = self.op(&way.element, height)?;
-                records.push(Record { line: way.line, op });
+            if segment.element.length() > NOWHERE {
+                let op = self.op(&segment.element, height)?;
+                records.push(Record { line: segment.line, op });
             }
         }
         Ok(pose(at, height)?)
@@ -396,7 +396,7 @@ impl Section {
     }
 
     /// The parallels of the elements, cut off or joined at the corners.
-    fn ways(&self, moves: &[Move]) -> Outcome<Vec<CenterMove>> {
+    fn segments(&self, moves: &[Move]) -> Outcome<Vec<CenterMove>> {
         let mut parallel = Vec::with_capacity(moves.len());
         for step in moves {
             let Some(element) = step.element.parallel(self.left * self.radius) else {
@@ -439,21 +439,21 @@ impl Section {
             };
             (parts[k - 1][1], parts[k][0]) = (crossing.on_first, crossing.on_next);
         }
-        let mut ways = Vec::with_capacity(moves.len());
+        let mut segments = Vec::with_capacity(moves.len());
         for (k, step) in moves.iter().enumerate() {
             let [from, to] = parts[k];
             if from > to + 1e-9 {
                 return self.too_thick(step.line, "between the neighbours of this element");
             }
-            ways.push(CenterMove {
+            segments.push(CenterMove {
                 line: step.line,
                 around: around[k],
                 element: parallel[k].part(from, to),
                 height: step.heights[1],
             });
         }
-        self.keeps_off(moves, &ways)?;
-        Ok(ways)
+        self.keeps_off(moves, &segments)?;
+        Ok(segments)
     }
 
     fn too_thick<T>(&self, line: u32, what: &str) -> Outcome<T> {
@@ -462,9 +462,9 @@ impl Section {
         Err(Diagnostic::error(Rule::Compensation, message).help(help).line(line).into())
     }
 
-    /// No way comes nearer than the radius to another element that faces it.
-    fn keeps_off(&self, moves: &[Move], ways: &[CenterMove]) -> Outcome {
-        // By where they begin along X: what begins behind the end of a way is not near it.
+    /// No segment comes nearer than the radius to another element that faces it.
+    fn keeps_off(&self, moves: &[Move], segments: &[CenterMove]) -> Outcome {
+        // By where they begin along X: what begins behind the end of a segment is not near it.
         let mut order: Vec<(usize, Vec2, Vec2)> = moves
             .iter()
             .enumerate()
@@ -474,8 +474,8 @@ impl Section {
             })
             .collect();
         order.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
-        for (k, way) in ways.iter().enumerate() {
-            for element in way.around.iter().chain([&way.element]) {
+        for (k, segment) in segments.iter().enumerate() {
+            for element in segment.around.iter().chain([&segment.element]) {
                 let (low, high) = element.extents();
                 let (low, high) = (low - self.radius, high + self.radius);
                 for (i, from, to) in order.iter().take_while(|(_, from, _)| from.x <= high.x) {
@@ -485,7 +485,7 @@ impl Section {
                     }
                     let step = &moves[*i];
                     let top = step.heights[0].max(step.heights[1]);
-                    let is_above = moves[k].heights[0].min(way.height) > top + NEAR;
+                    let is_above = moves[k].heights[0].min(segment.height) > top + NEAR;
                     if is_above || element.distance(&step.element, NOWHERE) >= self.radius - NEAR {
                         continue;
                     }
@@ -495,7 +495,7 @@ impl Section {
                     let mut points = points;
                     if points.any(|at| self.cuts_into(&step.element, &moves[k], at)) {
                         let what = format!("between this element and that of line {}", step.line);
-                        return self.too_thick(way.line, &what);
+                        return self.too_thick(segment.line, &what);
                     }
                 }
             }
@@ -503,12 +503,15 @@ impl Section {
         Ok(())
     }
 
-    /// Where a way is nearest to an element, or crosses it, and up to where on both sides of that the tool cuts into it.
-    fn within(&self, way: &Element, other: &Element) -> impl Iterator<Item = f64> {
-        let nearest = way.closest(other).0;
-        let near: Vec<f64> =
-            way.meets(other, NOWHERE).chain([nearest]).map(|point| way.nearest(point).0).collect();
-        let cuts = |t: f64| other.nearest(way.at(t)).1 < self.radius - NEAR;
+    /// Where a segment is nearest to an element, or crosses it, and up to where on both sides of that the tool cuts into it.
+    fn within(&self, segment: &Element, other: &Element) -> impl Iterator<Item = f64> {
+        let nearest = segment.closest(other).0;
+        let near: Vec<f64> = segment
+            .meets(other, NOWHERE)
+            .chain([nearest])
+            .map(|point| segment.nearest(point).0)
+            .collect();
+        let cuts = |t: f64| other.nearest(segment.at(t)).1 < self.radius - NEAR;
         let last = |from: f64, end: f64| {
             let (mut inside, mut outside) = (from, end);
             if cuts(end) {
@@ -615,7 +618,7 @@ mod tests {
         (0..count).map(element).collect()
     }
 
-    /// Between the points of a way and a contour, looked at point by point.
+    /// Between the points of a segment and a contour, looked at point by point.
     fn nearest(element: &Element, contour: &[Element]) -> f64 {
         let points = (0..=200).map(|i| element.at(f64::from(i) / 200.0));
         let near = |point: Vec2| contour.iter().map(move |other| other.nearest(point).1);
@@ -631,24 +634,24 @@ mod tests {
             let contour = contour(&mut chance, most);
             let radius = chance.between(0.2, 6.0);
             let left = if chance.next() < 0.5 { 1.0 } else { -1.0 };
-            let Ok(ways) = section(radius, left).ways(&moves(&contour)) else {
+            let Ok(segments) = section(radius, left).segments(&moves(&contour)) else {
                 tight += 1;
                 continue;
             };
             made += 1;
             let mut before: Option<Vec2> = None;
-            for (k, way) in ways.iter().enumerate() {
-                for element in way.around.iter().chain([&way.element]) {
+            for (k, segment) in segments.iter().enumerate() {
+                for element in segment.around.iter().chain([&segment.element]) {
                     // One path, whose parts begin where those before end.
                     if let Some(before) = before.filter(|_| element.length() > NOWHERE) {
                         assert!(before.distance(element.start) <= JOINED, "{contour:?}");
                     }
                     before = Some(element.end);
                 }
-                let off = contour[k].nearest(way.element.at(0.5)).1;
+                let off = contour[k].nearest(segment.element.at(0.5)).1;
                 assert!((off - radius).abs() <= BEYOND + 1e-9, "{off} {radius} {contour:?}");
                 // A contour that comes back over itself from behind is cut by what it says itself.
-                for element in way.around.iter().chain([&way.element]) {
+                for element in segment.around.iter().chain([&segment.element]) {
                     for i in 0..=100 {
                         let at = element.at(f64::from(i) / 100.0);
                         let touched = contour[k].at(contour[k].nearest(at).0);
@@ -679,9 +682,9 @@ mod tests {
             let lines = corners.windows(2).map(|pair| Element::line(pair[0], pair[1]));
             let contour: Vec<Element> = lines.collect();
             let radius = chance.between(0.1, 30.0);
-            let ways = section(radius, 1.0).ways(&moves(&contour)).unwrap();
-            for way in &ways {
-                for element in way.around.iter().chain([&way.element]) {
+            let segments = section(radius, 1.0).segments(&moves(&contour)).unwrap();
+            for segment in &segments {
+                for element in segment.around.iter().chain([&segment.element]) {
                     let near = nearest(element, &contour);
                     assert!((near - radius).abs() < BEYOND, "{near} {radius} {contour:?}");
                 }
@@ -702,15 +705,15 @@ mod tests {
                 FRAC_PI_2,
             ),
         ];
-        let ways = section(3.0, 1.0).ways(&moves(&contour)).unwrap();
-        assert!(ways.iter().all(|way| way.around.is_none()));
-        assert_eq!(ways[0].element.end, Vec2::new(17.0, 3.0));
+        let segments = section(3.0, 1.0).segments(&moves(&contour)).unwrap();
+        assert!(segments.iter().all(|segment| segment.around.is_none()));
+        assert_eq!(segments[0].element.end, Vec2::new(17.0, 3.0));
         assert_eq!(
-            (ways[1].element.start, ways[1].element.end),
+            (segments[1].element.start, segments[1].element.end),
             (Vec2::new(17.0, 3.0), Vec2::new(17.0, 12.0))
         );
-        assert!(ways[2].element.end.distance(Vec2::new(12.0, 17.0)) < 1e-12);
-        let refused = section(8.0, 1.0).ways(&moves(&contour)).unwrap_err();
+        assert!(segments[2].element.end.distance(Vec2::new(12.0, 17.0)) < 1e-12);
+        let refused = section(8.0, 1.0).segments(&moves(&contour)).unwrap_err();
         assert_eq!(refused.line, 3, "{refused}");
     }
 }

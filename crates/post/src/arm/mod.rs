@@ -21,7 +21,7 @@ use plan::{Act, Kind, Motion, Position, Step, plan};
 use program::{
     Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Rule, Spindle, Tool,
 };
-use rapid::{Leg, Way, Ways};
+use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::f64::consts::TAU;
 
 /// Entries of the code word `corner`.
@@ -128,7 +128,7 @@ struct Walk<'a> {
     scope: Scope,
     findings: Findings,
     limits: Limits<'a>,
-    ways: Ways<'a>,
+    rapids: RapidPlanner<'a>,
     sent: Sent,
     /// What the source wants in cuts.
     spindle: Spindle,
@@ -196,7 +196,7 @@ impl<'a> Walk<'a> {
             scope,
             findings: Findings::default(),
             limits: Limits::new(machine),
-            ways: Ways {
+            rapids: RapidPlanner {
                 arm,
                 cell,
                 can: &machine.capabilities,
@@ -383,7 +383,7 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         let end = self.at_joints(&tool, &home);
-        let Some(route) = self.ways.route(&tool, &self.here, &end, true) else {
+        let Some(route) = self.rapids.route(&tool, &self.here, &end, true) else {
             let message = "the way home by the joints comes too near to what is cut";
             let help =
                 "end with a rapid that lifts the tool off the part, or change `home` below [cell]";
@@ -410,14 +410,14 @@ impl<'a> Walk<'a> {
     }
 
     /// Goes by rapid along a route.
-    fn follow(&mut self, route: &[Leg]) -> Outcome {
-        for leg in route {
-            match leg.way {
-                Way::Joints => self.joints(&leg.end.joints)?,
-                Way::Straight(feed) => {
+    fn follow(&mut self, route: &[RapidSegment]) -> Outcome {
+        for segment in route {
+            match segment.path {
+                RapidPath::Joints => self.joints(&segment.end.joints)?,
+                RapidPath::Straight(feed) => {
                     self.correct()?;
                     self.feed(feed)?;
-                    self.straight(&leg.end, 0.0)?;
+                    self.straight(&segment.end, 0.0)?;
                 }
             }
         }
@@ -459,7 +459,7 @@ impl<'a> Walk<'a> {
         if apart < self.machine.resolution() && turns.fold(0.0, f64::max) < SAME_JOINTS {
             return Ok(());
         }
-        let Some(route) = self.ways.route(&tool, &self.here, &motion.end, false) else {
+        let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, false) else {
             let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut, and straight the \
                            posture or a turn of a joint would not fit";
             let help = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";

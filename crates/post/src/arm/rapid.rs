@@ -19,8 +19,8 @@ const LEAP: f64 = 0.2;
 /// The part of a joint's speed that a straight rapid uses at the most.
 const SPEED: f64 = 0.8;
 
-/// What is needed to look for ways.
-pub(super) struct Ways<'a> {
+/// What is needed to find the path of a rapid.
+pub(super) struct RapidPlanner<'a> {
     pub(super) arm: &'a Arm,
     pub(super) cell: &'a Cell,
     pub(super) can: &'a Capabilities,
@@ -31,7 +31,7 @@ pub(super) struct Ways<'a> {
 
 /// How a rapid goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Way {
+pub(super) enum RapidPath {
     /// By the joints.
     Joints,
     /// Straight, at so many mm/min.
@@ -40,40 +40,40 @@ pub(super) enum Way {
 
 /// A part of a rapid.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Leg {
-    pub(super) way: Way,
+pub(super) struct RapidSegment {
+    pub(super) path: RapidPath,
     pub(super) end: Position,
 }
 
-/// How far beyond all cuts the tool is lifted, on top of the clearance, mm: the first that gives a way is taken.
-const LIFTS: [f64; 5] = [2.0, 10.0, 30.0, 80.0, 200.0];
+/// How far beyond all cuts the tool is retracted, on top of the clearance, mm: the first that gives a path is taken.
+const RETRACTS: [f64; 5] = [2.0, 10.0, 30.0, 80.0, 200.0];
 
-impl Ways<'_> {
+impl RapidPlanner<'_> {
     /// How the arm goes from one position to another, where it can: by its joints, or straight, or up along the tool, by its joints, and
-    /// down along the tool. `free` is for a way that no line of the source leads.
+    /// down along the tool. `free` is for a path that no line of the source gives.
     pub(super) fn route(
         &self,
         tool: &Frame,
         from: &Position,
         to: &Position,
         free: bool,
-    ) -> Option<Vec<Leg>> {
+    ) -> Option<Vec<RapidSegment>> {
         let line = [from.tool.translation, to.tool.translation];
         if self.is_clear(tool, [&from.joints, &to.joints], (!free).then_some(line)) {
-            return Some(vec![Leg { way: Way::Joints, end: *to }]);
+            return Some(vec![RapidSegment { path: RapidPath::Joints, end: *to }]);
         }
         if !free && let Some(feed) = self.straight(tool, from, to) {
-            return Some(vec![Leg { way: Way::Straight(feed), end: *to }]);
+            return Some(vec![RapidSegment { path: RapidPath::Straight(feed), end: *to }]);
         }
-        LIFTS.into_iter().find_map(|lift| {
-            let (start, up) = self.lifted(tool, from, lift)?;
-            let (end, down) = self.lifted(tool, to, lift)?;
+        RETRACTS.into_iter().find_map(|height| {
+            let (start, up) = self.retracted(tool, from, height)?;
+            let (end, down) = self.retracted(tool, to, height)?;
             if !self.is_clear(tool, [&start.joints, &end.joints], None) {
                 return None;
             }
-            let up = up.map(|feed| Leg { way: Way::Straight(feed), end: start });
-            let down = down.map(|feed| Leg { way: Way::Straight(feed), end: *to });
-            let across = Leg { way: Way::Joints, end };
+            let up = up.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: start });
+            let down = down.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: *to });
+            let across = RapidSegment { path: RapidPath::Joints, end };
             Some(up.into_iter().chain([across]).chain(down).collect())
         })
     }
@@ -84,9 +84,14 @@ impl Ways<'_> {
     }
 
     /// The position beyond all cuts along the tool's own axis, and the feed to go between it and `at`; none where it is that.
-    fn lifted(&self, tool: &Frame, at: &Position, lift: f64) -> Option<(Position, Option<f64>)> {
+    fn retracted(
+        &self,
+        tool: &Frame,
+        at: &Position,
+        beyond_cuts: f64,
+    ) -> Option<(Position, Option<f64>)> {
         let axis = -at.tool.matrix3.z_axis;
-        let beyond = self.cuts.reach(axis) + self.clearance() + lift;
+        let beyond = self.cuts.reach(axis) + self.clearance() + beyond_cuts;
         let height = beyond - at.tool.translation.dot(axis);
         if height <= 0.0 || height.is_nan() {
             return Some((*at, None));
