@@ -9,7 +9,7 @@ use geom::region::{Region, Ring};
 use geom::{Element, Vec2, Vec3};
 use glam::DVec2;
 use pcb::board::Axis;
-use pcb::plan::Place;
+use pcb::plan::Problem;
 use pcb::{Copper, Hole, HoleShape};
 use program::Program;
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ pub struct BoardPicture<'a> {
     /// How wide each tool cuts, mm, in the order of their calls.
     pub widths: &'a [f64],
     /// Where something is not as it should be, the worst first.
-    pub problems: &'a [Place],
+    pub problems: &'a [Problem],
     /// What stays that should not; it is shaded.
     pub rest: &'a [Region],
     /// The line about which the board is turned over, where it is.
@@ -210,8 +210,8 @@ impl Drawn {
         lines(out, self.rapids, RAPID, 0.7, "stroke-dasharray=\"50 35\"");
         turning(out, picture, view);
         area(out, self.rest, PROBLEM, PROBLEM);
-        for place in picture.problems.iter().take(LEGEND.1) {
-            let at = view.at(place.at.extend(0.0));
+        for problem in picture.problems.iter().take(LEGEND.1) {
+            let at = view.at(problem.at.extend(0.0));
             let _ = writeln!(
                 out,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{MARK}\" stroke=\"{PROBLEM}\" stroke-width=\"1.6\"/>",
@@ -353,8 +353,8 @@ fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2
     if !picture.problems.is_empty() {
         let text = format!("{} PLACES TO LOOK AT", picture.problems.len());
         entry(out, &format!("stroke=\"{PROBLEM}\" stroke-width=\"2\""), &text, "");
-        for Place { at: place, what, .. } in picture.problems.iter().take(LEGEND.1) {
-            let where_ = format!("X{:.2} Y{:.2}", place.x, place.y);
+        for Problem { at, what, .. } in picture.problems.iter().take(LEGEND.1) {
+            let where_ = format!("X{:.2} Y{:.2}", at.x, at.y);
             entry(out, "stroke=\"none\"", &where_, what);
         }
     }
@@ -365,7 +365,7 @@ mod tests {
     use super::*;
     use geom::region::Fill;
     use pcb::job::{Heights, program};
-    use pcb::plan::PlaceKind;
+    use pcb::plan::ProblemKind;
     use pcb::{Cut, Cutter, Operation, Segment, Tool};
 
     #[test]
@@ -390,9 +390,9 @@ mod tests {
             holes: &[hole],
             program: &program,
             widths: &[1.0],
-            problems: &[Place {
+            problems: &[Problem {
                 at: Vec2::splat(12.0),
-                kind: PlaceKind::Joined,
+                kind: ProblemKind::Joined,
                 what: "too narrow".into(),
             }],
             rest: &[],

@@ -469,7 +469,7 @@ impl Shop<'_> {
             holes: &board.holes,
             program: &toolpath.program,
             widths: &widths,
-            problems: &work.places,
+            problems: &work.problems,
             rest: &work.rest,
             turning: self.is_turned.then_some(*axis),
         };

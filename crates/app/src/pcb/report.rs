@@ -5,12 +5,12 @@ use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
 use pcb::board::{Axis, Face};
-use pcb::plan::{Part, Place, Settings};
+use pcb::plan::{Part, Problem, Settings};
 use program::Diagnostic;
 use serde_json::{Value, json};
 
-/// The most places that a summary lists.
-const MOST_PLACES: usize = 10;
+/// The most problems that a summary lists.
+const MOST_PROBLEMS: usize = 10;
 
 /// What is reported: in rows for a person, in JSON for a machine.
 pub struct Report {
@@ -56,14 +56,14 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         let why = left.findings().next().map_or_else(String::new, |found| found.message);
         ("left out", format!("{}.nc: {why}", left.part.name()))
     }));
-    let places = programs
+    let problems = programs
         .iter()
-        .flat_map(|made| made.work.places.iter().map(|place| (made.name.as_str(), place)));
-    let shown = |(name, Place { at, what, .. }): (&str, &Place)| {
+        .flat_map(|made| made.work.problems.iter().map(|problem| (made.name.as_str(), problem)));
+    let shown = |(name, Problem { at, what, .. }): (&str, &Problem)| {
         format!("{name}, X{:.3} Y{:.3}: {what}", at.x, at.y)
     };
-    rows.extend(places.clone().take(MOST_PLACES).map(|place| ("look at", shown(place))));
-    let more = places.clone().count().saturating_sub(MOST_PLACES);
+    rows.extend(problems.clone().take(MOST_PROBLEMS).map(|problem| ("look at", shown(problem))));
+    let more = problems.clone().count().saturating_sub(MOST_PROBLEMS);
     if more > 0 {
         rows.push(("", format!("{more} places more, in the report and the pictures")));
     }
@@ -157,7 +157,7 @@ impl Program {
     }
 
     fn describe(&self) -> Value {
-        let place = |Place { at, kind, what }: &Place| json!({ "x": at.x, "y": at.y, "kind": kind.name(), "what": what });
+        let problem = |Problem { at, kind, what }: &Problem| json!({ "x": at.x, "y": at.y, "kind": kind.name(), "what": what });
         let account = &self.posted.account;
         let mut data = account.data.clone();
         if let Some(data) = data.as_object_mut() {
@@ -171,7 +171,7 @@ impl Program {
         }
         data["operations"] =
             json!(self.work.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
-        data["places"] = self.work.places.iter().map(place).collect();
+        data["places"] = self.work.problems.iter().map(problem).collect();
         data["warnings"] = json!(account.findings);
         data
     }

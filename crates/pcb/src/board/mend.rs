@@ -199,7 +199,7 @@ fn is_slim(face: &Ring) -> Result<bool, RegionError> {
     Ok(Region::inside([face], Fill::NonZero)?.offset(-SLIM / 2.0)?.is_empty())
 }
 
-/// A warning about lines that are no part of the edge, to 1 µm: doubled ones beside it, and ends that stand out.
+/// A warning about lines that are no part of the edge, to 1 µm: doubled ones next to it, and ends that stand out.
 fn drawn_over(elements: &[Element], index: &Index) -> Option<Diagnostic> {
     let off = |element: &&Element| {
         [0.0, 0.25, 0.5, 0.75, 1.0]

@@ -7,7 +7,7 @@ mod work;
 
 pub use settings::*;
 pub use setup::Setup;
-pub use work::{Place, PlaceKind, Work};
+pub use work::{Problem, ProblemKind, Work};
 
 use crate::Board;
 use crate::board::{Artwork, Face, Layer};

@@ -37,27 +37,27 @@ pub struct Work {
     /// Tool by tool.
     pub operations: Vec<Operation>,
     /// Places to look at; of each kind the worst first.
-    pub places: Vec<Place>,
+    pub problems: Vec<Problem>,
     /// What stays that should not.
     pub rest: Vec<Region>,
     /// What is odd about it.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// A place to look at.
+/// A place with a problem, to be looked at.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct Problem {
     /// Where, mm.
     pub at: Vec2,
     /// Why.
-    pub kind: PlaceKind,
+    pub kind: ProblemKind,
     /// What is there.
     pub what: String,
 }
 
-/// Why a place is to be looked at.
+/// What the problem is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlaceKind {
+pub enum ProblemKind {
     /// Two nets stay joined.
     Joined,
     /// A slot within a net is not cut.
@@ -70,15 +70,15 @@ pub enum PlaceKind {
     NotMade,
 }
 
-impl PlaceKind {
+impl ProblemKind {
     /// What it is called in reports.
     pub fn name(self) -> &'static str {
         match self {
-            PlaceKind::Joined => "joined",
-            PlaceKind::Slot => "slot",
-            PlaceKind::Bitten => "bitten",
-            PlaceKind::Severed => "severed",
-            PlaceKind::NotMade => "not-made",
+            ProblemKind::Joined => "joined",
+            ProblemKind::Slot => "slot",
+            ProblemKind::Bitten => "bitten",
+            ProblemKind::Severed => "severed",
+            ProblemKind::NotMade => "not-made",
         }
     }
 }
@@ -224,7 +224,7 @@ impl Worker<'_> {
                 "{} are {width:.3} mm apart over {length:.2} mm, left out: they stay joined here",
                 nets(gap)
             );
-            work.places.push(Place { at: gap.at, kind: PlaceKind::Joined, what });
+            work.problems.push(Problem { at: gap.at, kind: ProblemKind::Joined, what });
         }
         if let Some(widest) = joined.first().map(|gap| gap.widest_cut()) {
             let mut help = self.fitting(widest);
@@ -259,7 +259,7 @@ impl Worker<'_> {
                 gap.length,
                 gap.thinned(width)
             );
-            work.places.push(Place { at: gap.at, kind: PlaceKind::Bitten, what });
+            work.problems.push(Problem { at: gap.at, kind: ProblemKind::Bitten, what });
         }
         let message = format!(
             "{}: cut down the middle, {:.2} mm in all, which takes at most {:.3} mm from either side, at X {:.3} Y {:.3}",
@@ -284,7 +284,7 @@ impl Worker<'_> {
             let what = format!(
                 "a slot of {net} is {width:.3} mm wide over {length:.2} mm: the tool does not go in"
             );
-            work.places.push(Place { at: *at, kind: PlaceKind::Slot, what });
+            work.problems.push(Problem { at: *at, kind: ProblemKind::Slot, what });
         }
         let Some(longest) = slots.first() else { return };
         let message = format!(
@@ -445,7 +445,11 @@ impl Worker<'_> {
         for (low, high) in &missing {
             let what =
                 format!("a cut-out of {} is not cut: the tool is too wide", size((*low, *high)));
-            work.places.push(Place { at: low.midpoint(*high), kind: PlaceKind::NotMade, what });
+            work.problems.push(Problem {
+                at: low.midpoint(*high),
+                kind: ProblemKind::NotMade,
+                what,
+            });
         }
         let at = low.midpoint(high);
         let message = format!(
@@ -505,7 +509,7 @@ impl Worker<'_> {
         for island in rest.islands() {
             let (low, high) = island.outer().extents();
             let (at, what) = (low.midpoint(high), what.to_owned());
-            work.places.push(Place { at, kind: PlaceKind::NotMade, what });
+            work.problems.push(Problem { at, kind: ProblemKind::NotMade, what });
         }
         work.rest.push(rest.clone());
         if !rest.is_empty() {
@@ -618,7 +622,7 @@ fn tell_severed(work: &mut Work, copper: &Copper, severed: &[Severed]) {
             0 => format!("nothing is left of {net}, by a cut down the middle of a gap"),
             _ => format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
         };
-        work.places.push(Place { at: *at, kind: PlaceKind::Severed, what });
+        work.problems.push(Problem { at: *at, kind: ProblemKind::Severed, what });
     }
     if let Some(first) = severed.first() {
         let message = format!(
