@@ -80,16 +80,16 @@ impl<'a> Inverse<'a> {
     /// [`Unreachable`] where no position brings the tool along `axis`.
     pub fn solve(&self, axis: Vec3) -> Result<Solutions, Unreachable> {
         let Inverse { machine, zero, chain } = self;
-        let bearings = chain.bearings(axis)?;
+        let angles = chain.rotary_angles(axis)?;
         let mut degrees = [0, 1].map(|family| {
-            let turns = chain.solution(&bearings, family);
-            let held = if bearings.free() { zero[chain.places[0]] } else { turns[0].degrees() };
+            let turns = chain.solution(&angles, family);
+            let held = if angles.free() { zero[chain.places[0]] } else { turns[0].degrees() };
             chain.spread([held, turns[1].degrees()])
         });
         if machine.misses_preference(degrees[0]) && !machine.misses_preference(degrees[1]) {
             degrees.swap(0, 1);
         }
-        let free = (bearings.free() && chain.links > 0).then_some(chain.places[0]);
+        let free = (angles.free() && chain.links > 0).then_some(chain.places[0]);
         Ok(Solutions { degrees, free })
     }
 }
@@ -232,7 +232,7 @@ impl Chain {
     }
 
     /// Solves for the tool axis `v`, a unit vector.
-    pub(crate) fn bearings(&self, v: Vec3) -> Result<RotaryAngles, Unreachable> {
+    pub(crate) fn rotary_angles(&self, v: Vec3) -> Result<RotaryAngles, Unreachable> {
         match &self.solver {
             Solver::Fixed { tool, still } => {
                 within(angle_between(*tool, v))?;
@@ -247,13 +247,13 @@ impl Chain {
                 let around = Turn::of_radians(v.dot(*y).atan2(v.dot(*x)));
                 Ok(RotaryAngles { around, inner: *still, ..RotaryAngles::default() })
             }
-            Solver::Two(pair) => pair.bearings(v),
+            Solver::Two(pair) => pair.rotary_angles(v),
         }
     }
 
     /// The positions of the outer and the inner axis in solution `family` (0 or 1).
-    pub(crate) fn solution(&self, bearings: &RotaryAngles, family: usize) -> [Turn; 2] {
-        let RotaryAngles { around, inner, outer } = *bearings;
+    pub(crate) fn solution(&self, angles: &RotaryAngles, family: usize) -> [Turn; 2] {
+        let RotaryAngles { around, inner, outer } = *angles;
         let turned = match &self.solver {
             Solver::Two(Pair { in_plane, .. }) if family == 0 => {
                 [around.minus(outer), in_plane.minus(inner)]
@@ -320,7 +320,7 @@ impl Pair {
 
     /// Where the tool axis goes when the inner axis turns it, c, makes the angle of v with k₁ and the
     /// angle of Z with k₂, so c = α k₁ + β k₂ ± γ k₁ × k₂ with one γ for both solutions.
-    fn bearings(&self, v: Vec3) -> Result<RotaryAngles, Unreachable> {
+    fn rotary_angles(&self, v: Vec3) -> Result<RotaryAngles, Unreachable> {
         let mut along = v.dot(self.k1);
         let (x, y) = (v.dot(self.x), v.dot(self.y));
         let free = x * x + y * y < ANGLE_EPSILON * ANGLE_EPSILON * self.s2;

@@ -100,7 +100,7 @@ impl Machine {
 }
 
 impl RotaryPose {
-    /// The stance after `i` of `count` equal steps to `to`.
+    /// The pose after `i` of `count` equal steps to `to`.
     fn toward(&self, to: &RotaryPose, i: usize, count: usize) -> RotaryPose {
         let part = i as f64 / count as f64;
         let mut degrees = self.degrees;

@@ -205,16 +205,16 @@ impl Walk<'_> {
     /// between as keep the tool tip on the line.
     fn turning_line(&mut self, from: RotaryPose, to: RotaryPose, length: f64) -> Outcome {
         let tolerance = self.machine.orientation.tolerance;
-        let stances = self.machine.linearise(from, to, self.tool_length(), tolerance)?;
-        let count = stances.len();
+        let poses = self.machine.linearise(from, to, self.tool_length(), tolerance)?;
+        let count = poses.len();
         let (length_of_tool, start) = (self.tool_length().unwrap_or(0.0), from.degrees);
         let start = self.machine.linear_for(from.tip, start, length_of_tool);
         let mut here = AxisPositions { linear: self.rounded(start), degrees: from.degrees };
         // The way of the tip for which no block was written: its axes have not changed by a step.
         let mut owed = 0.0;
-        for stance in stances {
-            self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
-            let degrees = self.place.degrees().unwrap_or(stance.degrees);
+        for pose in poses {
+            self.aim_at(pose.tip, Vec3::Z, Some(pose.degrees));
+            let degrees = self.place.degrees().unwrap_or(pose.degrees);
             let there = AxisPositions { linear: self.rounded(self.position.said()), degrees };
             let way = here.to(&there);
             let length = length / count as f64 + owed;

@@ -86,7 +86,7 @@ impl Walk<'_> {
                 self.rapid_at_once(&corner, stop)?;
                 self.rapid_at_once(pose, stop)
             }
-            RapidMoves::Pieces(stances) => self.in_pieces(pose, &stances),
+            RapidMoves::Pieces(poses) => self.in_pieces(pose, &poses),
             RapidMoves::Feed => self.by_feed(pose, stop),
             RapidMoves::Home => self.by_home(pose, stop),
         }
@@ -135,15 +135,16 @@ impl Walk<'_> {
             return true;
         }
         let (a, b, axis) = (from.point(), to.point(), to.axis());
-        let stances = match &self.place.kind {
+        let solutions = match &self.place.kind {
             Kind::Bare | Kind::Plain => vec![[0.0; 3]],
             Kind::ToolCenter | Kind::Machine => self.place.degrees().into_iter().collect(),
-            Kind::Tilted(..) | Kind::Vectors => self.stances(axis, stop),
+            Kind::Tilted(..) | Kind::Vectors => self.solutions(axis, stop),
         };
         let corridor = USED * machine.capabilities.rapid_corridor;
-        let tips: Vec<Vec3> = stances.iter().flat_map(|at| machine.wandering(a, b, *at)).collect();
+        let tips: Vec<Vec3> =
+            solutions.iter().flat_map(|at| machine.wandering(a, b, *at)).collect();
         let is_straight = tips.iter().all(|tip| nearest_on_segment(a, b, *tip).1 <= corridor);
-        !stances.is_empty() && (is_straight || tips.iter().all(|tip| self.is_beyond(*tip, axis)))
+        !solutions.is_empty() && (is_straight || tips.iter().all(|tip| self.is_beyond(*tip, axis)))
     }
 
     /// How far `pose` has to go out along its axis to be beyond all cuts, mm.
@@ -236,11 +237,11 @@ impl Walk<'_> {
         if machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
             return vec![axis];
         }
-        self.stances(axis, stop).into_iter().map(|degrees| machine.up_at(degrees)).collect()
+        self.solutions(axis, stop).into_iter().map(|degrees| machine.up_at(degrees)).collect()
     }
 
     /// Degrees of A, B, C with the tool along `axis`: both solutions, where the control chooses.
-    fn stances(&self, axis: Vec3, stop: &Stop) -> Vec<[f64; 3]> {
+    fn solutions(&self, axis: Vec3, stop: &Stop) -> Vec<[f64; 3]> {
         match stop.step {
             Some(step) => vec![self.written(step.degrees)],
             None if self.machine.rotary.is_empty() => vec![[0.0; 3]],
@@ -330,7 +331,7 @@ impl Walk<'_> {
             return Ok(());
         }
         let top = Vec3::new(0.0, 0.0, home - measured - zero.z);
-        for degrees in self.stances(axis, stop) {
+        for degrees in self.solutions(axis, stop) {
             if machine.unsaid(degrees, length).is_some() {
                 continue;
             }
@@ -403,10 +404,10 @@ impl Walk<'_> {
         self.follow(true)
     }
 
-    fn in_pieces(&mut self, pose: &Pose, stances: &[RotaryPose]) -> Outcome {
+    fn in_pieces(&mut self, pose: &Pose, poses: &[RotaryPose]) -> Outcome {
         self.switch_plane(pose.axis())?;
-        for stance in stances {
-            self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
+        for piece in poses {
+            self.aim_at(piece.tip, Vec3::Z, Some(piece.degrees));
             self.rapid_block()?;
         }
         self.position.go_to(*pose);
@@ -518,8 +519,7 @@ impl Walk<'_> {
         let most = (0..3).map(|i| (there.degrees[i] - degrees[i]).abs()).fold(0.0, f64::max);
         let count = (most / SAMPLE).ceil().max(8.0) as usize;
         let measured = length.unwrap_or(0.0);
-        let ends =
-            [here, there].map(|stance| machine.linear_for(stance.tip, stance.degrees, measured));
+        let ends = [here, there].map(|end| machine.linear_for(end.tip, end.degrees, measured));
         let corridor = USED * machine.capabilities.rapid_corridor;
         let (mut at_once, mut in_pieces) = (true, true);
         let mut before = (true, true);
@@ -544,9 +544,9 @@ impl Walk<'_> {
             return Ok(RapidMoves::AtOnce);
         }
         if in_pieces {
-            let stances = machine.linearise(here, there, length, corridor)?;
-            if stances.len() <= MOST_PIECES {
-                return Ok(RapidMoves::Pieces(stances.collect()));
+            let poses = machine.linearise(here, there, length, corridor)?;
+            if poses.len() <= MOST_PIECES {
+                return Ok(RapidMoves::Pieces(poses.collect()));
             }
         }
         Ok(RapidMoves::Home)

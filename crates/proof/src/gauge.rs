@@ -19,8 +19,8 @@ pub(crate) struct Gauge<'a> {
 }
 
 impl Gauge<'_> {
-    /// The place that a block says.
-    pub fn station(&self, line: u32, position: Position) -> ResolvedPose {
+    /// What a block says, and where that is.
+    pub fn resolve(&self, line: u32, position: Position) -> ResolvedPose {
         ResolvedPose {
             line,
             position,
@@ -28,15 +28,15 @@ impl Gauge<'_> {
         }
     }
 
-    /// How far the tip may be from where it should be at `station`, mm.
-    pub fn slack(&self, station: &ResolvedPose) -> f64 {
-        self.allowed.tip(self.machine, &station.position, &station.place, self.tool_length)
+    /// How far the tip may be from where it should be at `pose`, mm.
+    pub fn slack(&self, pose: &ResolvedPose) -> f64 {
+        self.allowed.tip(self.machine, &pose.position, &pose.place, self.tool_length)
     }
 
-    /// Whether `station` is at `place`: tip and axis. Never where a coordinate is not known.
-    pub fn at(&self, station: &ResolvedPose, place: &PartialPose) -> bool {
-        let (tip, axis) = station.place.apart(place);
-        tip <= self.slack(station) && axis <= self.allowed.axis_degrees
+    /// Whether `pose` is at `place`: tip and axis. Never where a coordinate is not known.
+    pub fn at(&self, pose: &ResolvedPose, place: &PartialPose) -> bool {
+        let (tip, axis) = pose.place.apart(place);
+        tip <= self.slack(pose) && axis <= self.allowed.axis_degrees
     }
 
     /// Whether two places of the program are one: each is rounded for itself.
@@ -45,9 +45,9 @@ impl Gauge<'_> {
         tip <= self.slack(a) + self.slack(b) && axis <= 2.0 * self.allowed.axis_degrees
     }
 
-    /// How far `station` stands above `place` along its axis, where it stands on that axis.
-    pub fn height_over(&self, place: &PartialPose, station: &ResolvedPose) -> Option<f64> {
-        let (height, aside) = place.above(station.place.tip);
-        (aside <= self.slack(station)).then_some(height)
+    /// How far `pose` stands above `place` along its axis, where it stands on that axis.
+    pub fn height_over(&self, place: &PartialPose, pose: &ResolvedPose) -> Option<f64> {
+        let (height, aside) = place.above(pose.place.tip);
+        (aside <= self.slack(pose)).then_some(height)
     }
 }

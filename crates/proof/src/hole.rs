@@ -44,32 +44,31 @@ const LARGEST_GAP: f64 = 2.0;
 const REST: f64 = 1e-3;
 
 impl Hole<'_> {
-    /// Whether `station` stands over the hole, at the R plane or higher.
-    pub fn is_over(&self, station: &ResolvedPose) -> bool {
-        let aligned = station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees;
-        let height = self.gauge.height_over(self.point, station);
-        aligned && height.is_some_and(|h| h >= self.cycle.clearance - self.gauge.slack(station))
+    /// Whether `pose` stands over the hole, at the R plane or higher.
+    pub fn is_over(&self, pose: &ResolvedPose) -> bool {
+        let aligned = pose.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees;
+        let height = self.gauge.height_over(self.point, pose);
+        aligned && height.is_some_and(|h| h >= self.cycle.clearance - self.gauge.slack(pose))
     }
 
     /// Whether a move goes down next to the hole, with the tool along its axis. What is not known is not.
     pub fn off_axis_and_down(&self, from: &ResolvedPose, to: &ResolvedPose) -> bool {
-        let aligned = |station: &ResolvedPose| {
-            station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees
-        };
+        let aligned =
+            |pose: &ResolvedPose| pose.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees;
         let ((high, _), (low, _)) =
             (self.point.above(from.place.tip), self.point.above(to.place.tip));
         // Both ends are rounded, each for itself.
         let slack = self.gauge.slack(from) + self.gauge.slack(to);
-        let aside = |station: &ResolvedPose| self.point.above(station.place.tip).1 > slack;
+        let aside = |pose: &ResolvedPose| self.point.above(pose.place.tip).1 > slack;
         aligned(from) && aligned(to) && high - low > slack && (aside(from) || aside(to))
     }
 
-    /// The height of a station on the axis of the hole.
-    fn height(&self, station: &ResolvedPose) -> Result<f64, String> {
-        let angle = station.place.apart(self.point).1;
+    /// The height of a pose on the axis of the hole.
+    fn height(&self, pose: &ResolvedPose) -> Result<f64, String> {
+        let angle = pose.place.apart(self.point).1;
         within("tilts the tool in the hole", angle, self.gauge.allowed.axis_degrees, "°")?;
-        let (height, aside) = self.point.above(station.place.tip);
-        within("leaves the axis of the hole", aside, self.gauge.slack(station), "mm")?;
+        let (height, aside) = self.point.above(pose.place.tip);
+        within("leaves the axis of the hole", aside, self.gauge.slack(pose), "mm")?;
         Ok(height)
     }
 
@@ -280,7 +279,7 @@ impl Drilled {
             Orientation::Rotary { degrees, tool_center: true } => gauge.machine.axis_at(degrees),
             Orientation::Rotary { .. } => Vec3::Z,
         };
-        let moved = |by: Vec3| gauge.station(line, Position { point: pose.point + by, ..*pose });
+        let moved = |by: Vec3| gauge.resolve(line, Position { point: pose.point + by, ..*pose });
         let at = |height: f64| moved(along * height);
         let tip = |by: Vec3| moved(by).place.tip;
         let above =
@@ -301,16 +300,16 @@ impl Drilled {
     /// Which of them is elsewhere.
     pub fn place(&self, hole: &Hole, ends: bool) -> Result<(), String> {
         let cycle = hole.cycle;
-        for (what, station, height) in [
+        for (what, reached, height) in [
             ("bottom of the hole", &self.bottom, -cycle.depth),
             ("R plane", &self.r_plane, cycle.clearance),
             ("retract level", &self.retracted, cycle.retract),
         ] {
             let should = hole.point.lifted(height);
             let counts = ends || height != cycle.retract;
-            if counts && !hole.gauge.at(station, &should) {
-                let apart = Number(station.place.tip.distance(should.tip));
-                let (is, should): (&PartialPose, _) = (&station.place, should);
+            if counts && !hole.gauge.at(reached, &should) {
+                let apart = Number(reached.place.tip.distance(should.tip));
+                let (is, should): (&PartialPose, _) = (&reached.place, should);
                 return Err(format!("has the {what} at {is}, but should at {should}: {apart} mm"));
             }
         }

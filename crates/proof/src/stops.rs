@@ -1,4 +1,4 @@
-//! The stops of a rapid on its way: axis by axis, and lifts along the tool axis.
+//! The stops of a rapid on its way: axis by axis, and retracts along the tool axis.
 
 use crate::gauge::Gauge;
 use crate::resolved_pose::ResolvedPose;
@@ -34,22 +34,22 @@ pub(crate) fn explain<'s>(
     let above = |base: &ResolvedPose, stop: &ResolvedPose| {
         lifted(gauge, base, stop).then(|| base.place.above(stop.place.tip).0)
     };
-    let mut lift = Retract::default();
+    let mut retract = Retract::default();
     let (mut left, mut came) = (start, end);
     let mut middle = stops;
     while let [first, rest @ ..] = middle {
         let Some(height) = above(start, first) else { break };
-        lift.left_mm = lift.left_mm.max(height);
+        retract.left_mm = retract.left_mm.max(height);
         (left, middle) = (first, rest);
     }
     while let [rest @ .., last] = middle {
         let Some(height) = above(end, last) else { break };
-        lift.came_mm = lift.came_mm.max(height);
+        retract.came_mm = retract.came_mm.max(height);
         (came, middle) = (last, rest);
     }
     match middle.iter().find(|stop| !corner(gauge, stop, left, came, free)) {
         Some(stop) => Err(stop),
-        None => Ok(lift),
+        None => Ok(retract),
     }
 }
 
@@ -82,7 +82,7 @@ fn corner(
     end: &ResolvedPose,
     free: bool,
 ) -> bool {
-    let rotary = |station: &ResolvedPose| match station.position.orientation {
+    let rotary = |pose: &ResolvedPose| match pose.position.orientation {
         Orientation::Rotary { degrees, tool_center } => Some((degrees, tool_center)),
         Orientation::Axis(_) => None,
     };

@@ -95,11 +95,11 @@ const TURNS: usize = 4;
 /// Of a singular target: here the free axis turns to where it is needed next.
 const TURN: u32 = 1 << 31;
 
-/// A target while its operation is planned: its bearings, and for each state the state of the target
+/// A target while its operation is planned: its rotary angles, and for each state the state of the target
 /// before from which it is reached best; once that is settled, its own state.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    bearings: RotaryAngles,
+    angles: RotaryAngles,
     link: u32,
 }
 
@@ -151,7 +151,7 @@ impl Plan {
     /// The positions settled for a target that is not singular.
     fn settled(&self, cell: &Cell) -> [f64; 2] {
         let (family, turn) = (cell.link as usize / TURNS, cell.link as usize % TURNS);
-        let base = self.chain.solution(&cell.bearings, family);
+        let base = self.chain.solution(&cell.angles, family);
         [0, 1].map(|k| {
             let first = self.axes[k].first(base[k].degrees());
             self.axes[k].position(first, self.turns[turn][k])
@@ -160,8 +160,8 @@ impl Plan {
 
     /// The position of the inner axis in a singular pose, where both solutions have the same, in the
     /// turn nearest to `from`; `None` where its travel has none.
-    fn inner(&self, bearings: &RotaryAngles, from: f64) -> Option<f64> {
-        let first = self.axes[1].first(self.chain.solution(bearings, 0)[1].degrees());
+    fn inner(&self, angles: &RotaryAngles, from: f64) -> Option<f64> {
+        let first = self.axes[1].first(self.chain.solution(angles, 0)[1].degrees());
         let far = |position: f64| self.axes[1].way(from, position).abs();
         let positions = (0..TURNS).map(|turn| self.axes[1].position(first, turn as f64));
         let within = positions.filter(|position| position.is_finite());
@@ -188,10 +188,10 @@ impl Steps<'_> {
     fn singular(&self, cell: &Cell) -> [f64; 2] {
         let mut outer = self.last[0];
         if cell.link & TURN != 0 {
-            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free());
+            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.angles.free());
             outer = next.map_or(outer, |cell| self.plan.settled(cell)[0]);
         }
-        [outer, self.plan.inner(&cell.bearings, self.last[1]).unwrap_or(self.last[1])]
+        [outer, self.plan.inner(&cell.angles, self.last[1]).unwrap_or(self.last[1])]
     }
 }
 
@@ -208,7 +208,7 @@ impl Iterator for Steps<'_> {
             self.last = self.wound(first.pair);
             rewind = Some(self.plan.chain.spread(self.last));
         }
-        let pair = if cell.bearings.free() { self.singular(cell) } else { self.plan.settled(cell) };
+        let pair = if cell.angles.free() { self.singular(cell) } else { self.plan.settled(cell) };
         self.last = self.wound(pair);
         self.index += 1;
         Some(Step { degrees: self.plan.chain.spread(self.last), rewind })

@@ -111,8 +111,8 @@ impl<'a> Search<'a> {
         let mut front = Box::new(Front::empty());
         if let Some(degrees) = start {
             front.axis = machine.axis_at(degrees);
-            let bearings = plan.chain.bearings(front.axis);
-            front.singular = bearings.map_or(true, |b| b.free());
+            let angles = plan.chain.rotary_angles(front.axis);
+            front.singular = angles.map_or(true, |angles| angles.free());
             (front.states[0], front.cost[0]) = ([0, 1].map(|k| axes[k].base(held[k])), 0.0);
         }
         Search {
@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
                     .into());
             }
             if arc || (last == target.axis && target.kind == TargetKind::Feed) {
-                if cell.bearings.free() && !arc {
+                if cell.angles.free() && !arc {
                     self.may_turn(index, false);
                 }
                 self.plan.cells.push(Cell { link: SAME, ..cell });
@@ -148,18 +148,18 @@ impl<'a> Search<'a> {
             }
         }
         self.last = Some(target.axis);
-        let bearings =
-            self.plan.chain.bearings(target.axis).map_err(|e| unreachable(target, &e))?;
-        let mut cell = Cell { bearings, link: SAME };
+        let angles =
+            self.plan.chain.rotary_angles(target.axis).map_err(|e| unreachable(target, &e))?;
+        let mut cell = Cell { angles, link: SAME };
         // The move to the first target is no cut, unless it follows on the operation before.
         let approach = target.kind == TargetKind::Rapid || (index == 0 && !self.known);
-        if bearings.free() {
+        if angles.free() {
             if approach || (self.front.singular && target.kind == TargetKind::Feed) {
                 self.may_turn(index, approach);
             }
-            self.pass(target, &bearings)?;
+            self.pass(target, &angles)?;
         } else {
-            cell.link = self.advance(target, &bearings, approach)?;
+            cell.link = self.advance(target, &angles, approach)?;
         }
         self.plan.cells.push(cell);
         Ok(())
@@ -174,12 +174,12 @@ impl<'a> Search<'a> {
     }
 
     /// Continues the best sequences to a singular target: the outer axis holds.
-    fn pass(&mut self, target: &Target, bearings: &RotaryAngles) -> Result<(), Box<Diagnostic>> {
-        if self.plan.inner(bearings, 0.0).is_none() {
-            return Err(self.out_of_travel(target, bearings));
+    fn pass(&mut self, target: &Target, angles: &RotaryAngles) -> Result<(), Box<Diagnostic>> {
+        if self.plan.inner(angles, 0.0).is_none() {
+            return Err(self.out_of_travel(target, angles));
         }
         for (state, cost) in self.front.states.iter_mut().zip(&mut self.front.cost) {
-            let inner = self.plan.inner(bearings, state[1]).filter(|_| exists(state));
+            let inner = self.plan.inner(angles, state[1]).filter(|_| exists(state));
             if let Some(inner) = inner {
                 *cost += self.plan.axes[1].travel(state[1], inner);
                 state[1] = inner;
@@ -193,12 +193,12 @@ impl<'a> Search<'a> {
     fn advance(
         &mut self,
         target: &Target,
-        bearings: &RotaryAngles,
+        angles: &RotaryAngles,
         approach: bool,
     ) -> Result<u32, Box<Diagnostic>> {
-        self.plan.states(bearings, &mut self.next.states);
+        self.plan.states(angles, &mut self.next.states);
         if !self.next.states.iter().any(exists) {
-            return Err(self.out_of_travel(target, bearings));
+            return Err(self.out_of_travel(target, angles));
         }
         (self.next.axis, self.next.singular, self.next.margin) = (target.axis, false, 0.0);
         // Before a rapid the free axis turns in that rapid, at the latest.
@@ -251,9 +251,10 @@ impl<'a> Search<'a> {
             // The free axis comes in where it is needed.
             front.states = next.states;
             front.states.iter_mut().for_each(|state| state[1] = left[1]);
-        } else if let (false, Ok(bearings)) = (self.opened, self.plan.chain.bearings(front.axis)) {
+        } else if let (false, Ok(angles)) = (self.opened, self.plan.chain.rotary_angles(front.axis))
+        {
             // Of the pose before the operation only the state taken was looked at so far.
-            self.plan.states(&bearings, &mut front.states);
+            self.plan.states(&angles, &mut front.states);
         }
         for (state, cost) in front.states.iter().zip(&mut front.cost) {
             // Of sequences of the same length the one that leaves most travel on both sides.
@@ -281,7 +282,7 @@ impl<'a> Search<'a> {
         let mut state = self.front.best() as u32;
         let mut rewinds = self.plan.rewinds.iter_mut().zip(&self.turns_back).rev().peekable();
         for (index, cell) in self.plan.cells.iter_mut().enumerate().rev() {
-            if cell.bearings.free() {
+            if cell.angles.free() {
                 continue;
             }
             let before = (cell.link >> (BITS * state)) & (STATES as u32 - 1);
@@ -295,13 +296,13 @@ impl<'a> Search<'a> {
         self.plan
     }
 
-    fn out_of_travel(&self, target: &Target, bearings: &RotaryAngles) -> Box<Diagnostic> {
+    fn out_of_travel(&self, target: &Target, angles: &RotaryAngles) -> Box<Diagnostic> {
         let needs: Vec<String> = (0..self.plan.chain.families())
             .map(|family| {
-                let turns = self.plan.chain.solution(bearings, family);
+                let turns = self.plan.chain.solution(angles, family);
                 let degrees = self.plan.chain.spread(turns.map(|turn| turn.degrees()));
                 let axes = self.machine.rotary.iter();
-                let free = bearings.free().then_some(self.plan.chain.places[0]);
+                let free = angles.free().then_some(self.plan.chain.places[0]);
                 axes.filter(|axis| Some(axis.index()) != free)
                     .map(|axis| format!("{} {:.3}", axis.letter, degrees[axis.index()]))
                     .collect::<Vec<_>>()
@@ -362,11 +363,11 @@ impl Front {
 
 impl Plan {
     /// Writes the states that the travel leaves into `states`.
-    fn states(&self, bearings: &RotaryAngles, states: &mut States) {
+    fn states(&self, angles: &RotaryAngles, states: &mut States) {
         for (family, states) in
             states.chunks_exact_mut(TURNS).enumerate().take(self.chain.families())
         {
-            let base = self.chain.solution(bearings, family);
+            let base = self.chain.solution(angles, family);
             let first = [0, 1].map(|k| self.axes[k].first(base[k].degrees()));
             for (state, turns) in states.iter_mut().zip(&self.turns).take(self.in_turns) {
                 *state = [0, 1].map(|k| self.axes[k].position(first[k], turns[k]));

@@ -180,32 +180,32 @@ impl PlanePaths {
 
     /// Along which part of element `k` the centre runs on `way`, as lengths along the parallel, mm.
     fn covered(&self, k: usize, way: &Element) -> Option<[f64; 2]> {
-        let leg = &self.parallel[k];
-        let [from, to] = match (leg.turn, way.turn) {
+        let parallel = &self.parallel[k];
+        let [from, to] = match (parallel.turn, way.turn) {
             (None, None) => {
-                let along = leg.tangent(0.0);
+                let along = parallel.tangent(0.0);
                 let place = |point: Vec2| {
-                    let from = point - leg.start;
+                    let from = point - parallel.start;
                     (from.dot(along), from.perp_dot(along).abs())
                 };
                 let ((from, off), (to, other)) = (place(way.start), place(way.end));
                 (off.max(other) <= self.slack).then_some([from, to])?
             }
             (Some(turn), Some(other)) => {
-                let radius = leg.start.distance(turn.center);
+                let radius = parallel.start.distance(turn.center);
                 let off = |point: Vec2| (point.distance(turn.center) - radius).abs();
                 let apart =
                     turn.center.distance(other.center).max(off(way.start)).max(off(way.end));
                 if apart > self.slack || turn.sweep * other.sweep <= 0.0 {
                     return None;
                 }
-                let (spoke, to) = (leg.start - turn.center, way.start - turn.center);
+                let (spoke, to) = (parallel.start - turn.center, way.start - turn.center);
                 let angle = spoke.angle_to(to) * turn.sweep.signum();
                 [angle * radius, (angle + other.sweep.abs()) * radius]
             }
             // A chord.
             (Some(turn), None) => {
-                let radius = leg.start.distance(turn.center);
+                let radius = parallel.start.distance(turn.center);
                 let off = |point: Vec2| (point.distance(turn.center) - radius).abs();
                 let sag = radius - turn.center.distance(way.at(0.5));
                 let ends = off(way.start).max(off(way.end));
@@ -215,7 +215,7 @@ impl PlanePaths {
                 let angle = |from: Vec2, to: Vec2| {
                     (from - turn.center).angle_to(to - turn.center) * turn.sweep.signum()
                 };
-                let from = angle(leg.start, way.start);
+                let from = angle(parallel.start, way.start);
                 let step = angle(way.start, way.end);
                 if step <= 0.0 {
                     return None;
@@ -224,8 +224,8 @@ impl PlanePaths {
             }
             (None, Some(_)) => return None,
         };
-        let shared = to.min(leg.length()) - from.max(0.0);
-        (shared > self.slack.min(leg.length() / 4.0)).then_some([from, to])
+        let shared = to.min(parallel.length()) - from.max(0.0);
+        (shared > self.slack.min(parallel.length() / 4.0)).then_some([from, to])
     }
 
     /// From way `i` along one element to way `j` along the next, `k`.
@@ -454,15 +454,15 @@ impl PlanePaths {
 
     /// Each point of element `k` along which the centre does not run, from and to in mm, is one from which `other` keeps the tool.
     fn left_out(&self, k: usize, [from, to]: [f64; 2], other: &Element) -> Result<(), Fault> {
-        let leg = &self.parallel[k];
-        let length = leg.length();
+        let parallel = &self.parallel[k];
+        let length = parallel.length();
         if to - from <= self.slack || length <= 0.0 {
             return Ok(());
         }
         // Where both part, rounding moves the crossing along them.
         let reached = |i: u32| {
             let part = (f64::from(i) + 0.5) / f64::from(SAMPLES);
-            let point = leg.at((from + part * (to - from)) / length);
+            let point = parallel.at((from + part * (to - from)) / length);
             other.nearest(point).1 > self.radius + self.slack
         };
         match (0..SAMPLES).any(reached) {
@@ -749,10 +749,10 @@ mod tests {
         let slack = Slack { along: 0.003, chord: 0.0 };
         let good = pieces([-20.0, 0.0], &PATH);
         for at in 0..5 {
-            for lift in [-8.0, 0.01] {
+            for height in [-8.0, 0.01] {
                 let mut path = good.clone();
-                path[at].to.tip.z += lift;
-                path[at + 1].from.tip.z += lift;
+                path[at].to.tip.z += height;
+                path[at + 1].from.tip.z += height;
                 let (line, how) = compare(&stretch(), &path, 5.0, 1.0, slack).unwrap_err();
                 assert!(how.contains("mm too"), "{at}: {how}");
                 assert!([path[at].line, path[at + 1].line].contains(&line), "{at}: {line}");

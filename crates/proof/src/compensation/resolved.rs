@@ -122,7 +122,7 @@ impl Run<'_> {
         else {
             return;
         };
-        let to = gauge.station(line, *position);
+        let to = gauge.resolve(line, *position);
         let here = ResolvedPose { place: from, ..to };
         let arc = arc.and_then(|arc| crate::arc::of_block(&gauge, &here, arc));
         self.path.push(Piece { line, from, to: to.place, arc });

@@ -123,7 +123,7 @@ impl Prover<'_> {
 
     /// A rapid across a tilted plane, to the line along the tool axis through `position`, at a height that nobody knows.
     pub(super) fn across(&mut self, line: u32, position: &Position) -> Outcome {
-        let to = self.gauge.station(line, *position);
+        let to = self.gauge.resolve(line, *position);
         let ups = self.ups(&to);
         let is_level = is_along(&self.gauge, &ups, to.place.axis);
         let wrong = if self.here.place.known() || self.gauge.machine.wire.is_some() {
@@ -150,13 +150,13 @@ impl Prover<'_> {
         }
         let ups = self.ups(to);
         let is_above = ups.iter().all(|up| self.short_below(to, *up) <= self.gauge.slack(to));
-        let start = self.leg.start.unwrap_or(self.here);
+        let start = self.progress.start.unwrap_or(self.here);
         let begins = is_above
             && !ups.is_empty()
-            && stops::explain(&self.gauge, &start, &self.leg.stops, to, free).is_ok();
+            && stops::explain(&self.gauge, &start, &self.progress.stops, to, free).is_ok();
         if begins {
-            self.leg.start = Some(*to);
-            self.leg.stops.clear();
+            self.progress.start = Some(*to);
+            self.progress.stops.clear();
         }
         begins
     }
@@ -216,7 +216,7 @@ impl Prover<'_> {
     /// its tip, mm.
     fn short_below(&mut self, to: &ResolvedPose, up: Vec3) -> f64 {
         let point = Vec3::select(to.position.point.is_nan_mask(), Vec3::ZERO, to.position.point);
-        let place = self.gauge.station(to.line, Position { point, ..to.position }).place;
+        let place = self.gauge.resolve(to.line, Position { point, ..to.position }).place;
         self.needed(up, place.axis) - place.tip.dot(up)
     }
 
@@ -278,11 +278,11 @@ impl Prover<'_> {
                 && (a.point.x - b.point.x).abs() <= SAME
                 && (a.point.y - b.point.y).abs() <= SAME;
         }
-        let across = |station: &ResolvedPose| {
-            let Orientation::Rotary { degrees, .. } = station.position.orientation else {
+        let across = |pose: &ResolvedPose| {
+            let Orientation::Rotary { degrees, .. } = pose.position.orientation else {
                 return None;
             };
-            let pose = self.gauge.machine_pose(&station.position, degrees).ok()?;
+            let pose = self.gauge.machine_pose(&pose.position, degrees).ok()?;
             Some(pose.linear.truncate()).filter(|axes| axes.is_finite())
         };
         matches!((across(&self.here), across(to)), (Some(a), Some(b)) if a.distance(b) <= slack)

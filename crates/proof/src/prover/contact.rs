@@ -106,7 +106,7 @@ impl Prover<'_> {
         let stops_in_hole = goal.is_some_and(
             |goal| matches!(goal.kind, Kind::Hole(cycle) if cycle.kind == CycleKind::Bore),
         );
-        if is == Spindle::Off && stops_in_hole && self.leg.hole.over {
+        if is == Spindle::Off && stops_in_hole && self.progress.hole.over {
             // Whether it stands where it has to, the comparison of the hole says.
             return true;
         }

@@ -13,13 +13,13 @@ impl Prover<'_> {
         }
         let followed = match (&goal.kind, block) {
             (Kind::Arc(arc), Some(block)) => {
-                arc::follow(&self.gauge, arc, goal, self.leg.t, block, &here, to)
+                arc::follow(&self.gauge, arc, goal, self.progress.t, block, &here, to)
             }
             (Kind::Arc(arc), None) => {
-                arc::follow_chord(&self.gauge, arc, goal, self.leg.t, &here, to)
+                arc::follow_chord(&self.gauge, arc, goal, self.progress.t, &here, to)
             }
             (_, Some(_)) => Err("makes an arc where the source has a line".into()),
-            (_, None) => line::follow(&self.gauge, goal, self.leg.t, &here, to),
+            (_, None) => line::follow(&self.gauge, goal, self.progress.t, &here, to),
         };
         let Followed { t, path_mm, left_mm } = followed.map_err(|how| {
             let message = format!("goes to {} and {how}; the source goes to {}", to.place, goal.to);
@@ -28,8 +28,8 @@ impl Prover<'_> {
         let (rounding, source) = (self.gauge.slack(to), goal.length());
         let done = self.gauge.at(to, &goal.to) && left_mm <= arc::PAST * rounding;
         // What is left by rounding is not made good by the next cut.
-        let way = (if done { 1.0 } else { t } - self.leg.t) * source;
-        self.leg.t = t;
+        let way = (if done { 1.0 } else { t } - self.progress.t) * source;
+        self.progress.t = t;
         let feed = self.feed_of(to, block.map(Arc::length), way, source);
         self.check_cut(to, feed, block.is_some());
         self.report.deviations.path_mm.note(path_mm, self.cursor.line, to.line);
@@ -45,8 +45,8 @@ impl Prover<'_> {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let first = goal.from.is_none() || goal.tool_change;
         let straight = block.is_none() && self.gauge.at(to, &goal.to);
-        let start = self.leg.start.unwrap_or(self.here);
-        let explained = stops::explain(&self.gauge, &start, &self.leg.stops, to, true).is_ok();
+        let start = self.progress.start.unwrap_or(self.here);
+        let explained = stops::explain(&self.gauge, &start, &self.progress.stops, to, true).is_ok();
         if !(first && straight && explained) {
             let message = format!(
                 "feeds to {} from a place that is not known; the source goes to {}",

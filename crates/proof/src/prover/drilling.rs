@@ -5,7 +5,7 @@ use program::Rule;
 
 impl Prover<'_> {
     /// A single move while the source drills.
-    pub(super) fn hole_move(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
+    pub(super) fn hole_move(&mut self, motion: MotionKind, to: &ResolvedPose) -> Outcome {
         let Step::Move(ExpectedMotion { kind: Kind::Hole(cycle), to: point, .. }) =
             &self.cursor.step
         else {
@@ -14,31 +14,31 @@ impl Prover<'_> {
         let (gauge, cycle, point) = (self.gauge, *cycle, *point);
         let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
         let here = self.here;
-        if !self.leg.hole.over {
-            if gait == MotionKind::Rapid && !hole.is_over(to) {
+        if !self.progress.hole.over {
+            if motion == MotionKind::Rapid && !hole.is_over(to) {
                 return self.stop_at(to);
             }
-            if gait == MotionKind::Rapid {
+            if motion == MotionKind::Rapid {
                 self.approached(to)?;
                 self.comes_from_above(&hole, Some(to))?;
-                self.leg.stops.clear();
-                self.leg.hole.over = true;
+                self.progress.stops.clear();
+                self.progress.hole.over = true;
                 return Ok(());
             }
             if !hole.is_over(&here) {
                 let message = format!("feeds to {}, but the hole is at {point}", to.place);
                 return Err(self.lost_at(to.line, Rule::Hole, &message));
             }
-            self.leg.hole.over = true;
+            self.progress.hole.over = true;
         }
         let stopped = self.running.spindle == Spindle::Off;
-        let run = &mut self.leg.hole;
-        let done = match gait {
+        let run = &mut self.progress.hole;
+        let done = match motion {
             MotionKind::Rapid => run.rapid(&hole, &here, to, stopped),
             MotionKind::Feed => run.feed(&hole, &here, to),
         }
         .map_err(|how| self.lost_at(to.line, Rule::Hole, &how))?;
-        if gait == MotionKind::Feed {
+        if motion == MotionKind::Feed {
             self.check_drilling(to.line, cycle.feed, self.running.feed);
         }
         if done {
@@ -67,7 +67,7 @@ impl Prover<'_> {
         let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
         self.unclamped(line, &pose.orientation);
         let drilled = Drilled::new(&gauge, line, pose, own);
-        if self.leg.hole.begun(&cycle) {
+        if self.progress.hole.begun(&cycle) {
             return Err(self.lost_at(
                 line,
                 Rule::Hole,
@@ -90,24 +90,24 @@ impl Prover<'_> {
         self.check_drilling(line, cycle.feed, own.feed.or(self.running.feed));
         let summary = &mut self.report.program;
         summary.cutting_length_mm += own.clearance + own.depth;
-        let stations = [&drilled.bottom, &drilled.r_plane, &drilled.retracted];
-        let stations = stations.into_iter().chain(&drilled.cleared);
-        for station in stations.clone() {
-            summary.include(&station.position);
+        let poses = [&drilled.bottom, &drilled.r_plane, &drilled.retracted];
+        let poses = poses.into_iter().chain(&drilled.cleared);
+        for reached in poses.clone() {
+            summary.include(&reached.position);
         }
         let over = self.here.place.tip.distance(drilled.r_plane.place.tip);
         let out = drilled.bottom.place.tip.distance(drilled.retracted.place.tip);
         summary.rapid_length_mm += if over.is_nan() { out } else { over + out };
-        for station in stations {
-            self.hold_travel(station, None);
+        for reached in poses {
+            self.hold_travel(reached, None);
         }
         self.contact.drilled(cycle.kind);
         self.standing.arrive(&pose.orientation);
         self.here = drilled.retracted;
         self.stands_at(&drilled.retracted);
         if below {
-            self.leg.hole.drilled(&cycle);
-            self.leg.stops.clear();
+            self.progress.hole.drilled(&cycle);
+            self.progress.stops.clear();
         } else {
             self.arrive(&drilled.retracted);
         }
@@ -145,8 +145,8 @@ impl Prover<'_> {
     /// Whether the way to a hole goes down nowhere but over it: as a canned cycle goes, for what the
     /// tool was drawn back from may stand between the holes.
     fn comes_from_above(&self, hole: &Hole, to: Option<&ResolvedPose>) -> Outcome {
-        let mut last = self.leg.start.unwrap_or(self.here);
-        for stop in self.leg.stops.iter().chain(to) {
+        let mut last = self.progress.start.unwrap_or(self.here);
+        for stop in self.progress.stops.iter().chain(to) {
             if hole.off_axis_and_down(&last, stop) {
                 let message = format!("goes down by rapid to {}, next to the hole", stop.place);
                 return Err(self.lost_at(stop.line, Rule::Hole, &message));

@@ -80,11 +80,12 @@ impl Prover<'_> {
         ) = (&self.cursor.step, &event)
         {
             let hole = Hole { gauge: &self.gauge, point: to, cycle };
-            if self.leg.hole.dwell(&hole, &self.here, *seconds) {
+            if self.progress.hole.dwell(&hole, &self.here, *seconds) {
                 return Ok(());
             }
         }
-        if self.leg.t == 0.0 && self.leg.stops.is_empty() && self.leg.left.is_none() {
+        if self.progress.t == 0.0 && self.progress.stops.is_empty() && self.progress.left.is_none()
+        {
             self.pass_left_out(|_| false);
         }
         if let Step::Unproven(what) = self.cursor.step {
@@ -151,7 +152,7 @@ impl Prover<'_> {
     /// Whether the source has a tool change here, or nothing before. Goes there past motions that may
     /// be left out.
     pub(super) fn at_tool_change(&mut self) -> bool {
-        if self.leg.t > 0.0 || self.leg.hole.over {
+        if self.progress.t > 0.0 || self.progress.hole.over {
             return false;
         }
         if !self.cursor.at_tool_change() {

@@ -63,7 +63,7 @@ pub struct Prover<'a> {
     /// Where the rotary axes stand.
     standing: PossiblePositions<'a>,
     travel: Travel,
-    leg: MotionProgress,
+    progress: MotionProgress,
     /// What the cuts have taken, where the number behind F does not say it.
     pace: Pace,
     report: Report,
@@ -107,7 +107,7 @@ enum MotionKind {
     Feed,
 }
 
-/// The most stops that a rapid may have: a corner for each of five axes, and lifts.
+/// The most stops that a rapid may have: a corner for each of five axes, and retracts.
 const MOST_STOPS: usize = 16;
 
 /// A coordinate of a block counts as repeated below this, mm.
@@ -135,7 +135,7 @@ impl<'a> Prover<'a> {
             source,
             statistics: None,
             cuts: None,
-            here: gauge.station(0, unknown),
+            here: gauge.resolve(0, unknown),
             standing: PossiblePositions::new(machine),
             travel: Travel::new(machine),
             gauge,
@@ -144,7 +144,7 @@ impl<'a> Prover<'a> {
             contact: contact::Contact::new(),
             compensation: Compensation::Off,
             trail: None,
-            leg: MotionProgress::default(),
+            progress: MotionProgress::default(),
             pace: Pace::default(),
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
@@ -209,7 +209,7 @@ impl<'a> Prover<'a> {
         if !self.lost {
             self.pass_left_out(|_| false);
             self.miss_events(0);
-            let stop = self.nearest_stop().filter(|_| self.leg.left.is_none());
+            let stop = self.nearest_stop().filter(|_| self.progress.left.is_none());
             match (&self.cursor.step, stop) {
                 (Step::End, _) => {}
                 (Step::Unproven(what), _) => {
@@ -248,7 +248,7 @@ impl<'a> Prover<'a> {
             Part::End => return trail.close(),
             Part::Side(_) | Part::Other => return,
         };
-        let to = self.gauge.station(event.line, *position);
+        let to = self.gauge.resolve(event.line, *position);
         let arc = arc.and_then(|arc| arc::of_block(&self.gauge, &self.here, arc));
         let terms = Terms {
             source_line: self.cursor.line,
@@ -358,7 +358,7 @@ impl<'a> Prover<'a> {
                 }
                 running.work_offset = Some(*offset);
                 let position = Position { point: Vec3::NAN, ..self.here.position };
-                self.here = self.gauge.station(line, position);
+                self.here = self.gauge.resolve(line, position);
             }
             Action::Cycle(cycle) => running.cycle = Some(**cycle),
             Action::CycleOff => {
@@ -392,7 +392,7 @@ impl<'a> Prover<'a> {
     fn motion(
         &mut self,
         line: u32,
-        gait: MotionKind,
+        motion: MotionKind,
         position: &Position,
         arc: Option<&ArcTo>,
     ) -> Outcome {
@@ -403,59 +403,59 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
-        if gait == MotionKind::Rapid {
+        if motion == MotionKind::Rapid {
             self.pace = Pace::default();
         }
         let is_up = position.point.z.is_nan();
-        if is_up && gait == MotionKind::Rapid && self.turns_by_words(&position.orientation) {
+        if is_up && motion == MotionKind::Rapid && self.turns_by_words(&position.orientation) {
             self.check_height(line);
         }
         self.measured(line, position)?;
-        let to = self.gauge.station(line, *position);
+        let to = self.gauge.resolve(line, *position);
         let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
         if block == Some(None) {
             return Err(self.lost_at(line, Rule::Arc, "makes no arc"));
         }
         let block = block.flatten();
-        self.count(gait, &to, arc, block.as_ref());
+        self.count(motion, &to, arc, block.as_ref());
         self.hold_travel(&to, block.as_ref());
-        if self.leg.left.is_none() {
+        if self.progress.left.is_none() {
             let gauge = self.gauge;
             self.pass_left_out(|goal| {
                 let alike = match goal.kind {
-                    Kind::Rapid => gait == MotionKind::Rapid,
-                    Kind::Line => gait == MotionKind::Feed && block.is_none(),
-                    Kind::Arc(_) => gait == MotionKind::Feed,
+                    Kind::Rapid => motion == MotionKind::Rapid,
+                    Kind::Line => motion == MotionKind::Feed && block.is_none(),
+                    Kind::Arc(_) => motion == MotionKind::Feed,
                     Kind::Hole(_) | Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => false,
                 };
                 alike && gauge.at(&to, &goal.to)
             });
         }
-        if gait == MotionKind::Rapid || self.leg.left.is_some() || !self.is_cutting() {
+        if motion == MotionKind::Rapid || self.progress.left.is_some() || !self.is_cutting() {
             self.check_contact(line, Some(&to));
             self.check_offsets(&to);
         }
-        if gait == MotionKind::Rapid && self.goes_nowhere_yet(&to) {
+        if motion == MotionKind::Rapid && self.goes_nowhere_yet(&to) {
             return Ok(());
         }
         self.miss_events(line);
-        let wrong_way = if gait == MotionKind::Rapid { self.wrong_way(&to) } else { None };
-        if gait == MotionKind::Rapid {
+        let wrong_way = if motion == MotionKind::Rapid { self.wrong_way(&to) } else { None };
+        if motion == MotionKind::Rapid {
             self.check_rapid_corners(&to);
         }
         let outcome = match &self.cursor.step {
             Step::Move(goal) => match &goal.kind {
-                Kind::Rapid => self.rapid(gait, &to),
+                Kind::Rapid => self.rapid(motion, &to),
                 Kind::Line | Kind::Arc(_)
-                    if gait == MotionKind::Rapid || self.leg.left.is_some() =>
+                    if motion == MotionKind::Rapid || self.progress.left.is_some() =>
                 {
-                    self.excursion(gait, &to)
+                    self.excursion(motion, &to)
                 }
                 Kind::Line | Kind::Arc(_) => self.cut(&to, block.as_ref()),
                 Kind::Hole(_) if block.is_some() => {
                     Err(self.lost_at(line, Rule::Hole, "makes an arc where the source has a hole"))
                 }
-                Kind::Hole(_) => self.hole_move(gait, &to),
+                Kind::Hole(_) => self.hole_move(motion, &to),
                 kind @ (Kind::Thread(_) | Kind::Probe { .. }) => {
                     let message = format!("moves where the source {}", single::does(kind));
                     Err(self.lost_at(line, Rule::SingleBlock, &message))
@@ -475,7 +475,7 @@ impl<'a> Prover<'a> {
             | Step::Input(_)
             | Step::Auxiliary(_)
             | Step::WorkOffsetData(_)
-            | Step::End => self.closing(gait, &to),
+            | Step::End => self.closing(motion, &to),
         };
         if let (Ok(()), Some(found)) = (&outcome, wrong_way) {
             self.found(found);
@@ -499,7 +499,7 @@ impl<'a> Prover<'a> {
                 self.found(found);
             }
         } else if stops::lifted(&self.gauge, &self.here, to) && self.stops_next() {
-            self.leg.away.get_or_insert(self.here);
+            self.progress.away.get_or_insert(self.here);
         } else if !self.cursor.leaves_part() || !stops::lifted(&self.gauge, &self.here, to) {
             return false;
         }
@@ -524,10 +524,14 @@ impl<'a> Prover<'a> {
     fn comes_back(&mut self) {
         let Step::Move(goal) = &self.cursor.step else { return };
         let cuts = matches!(goal.kind, Kind::Line | Kind::Arc(_));
-        let away = self.leg.away.take().filter(|_| self.leg.homed && cuts && goal.from.is_some());
+        let away = self
+            .progress
+            .away
+            .take()
+            .filter(|_| self.progress.homed && cuts && goal.from.is_some());
         if let Some(away) = away {
-            self.leg.left = Some(away);
-            self.leg.stops.push(self.here);
+            self.progress.left = Some(away);
+            self.progress.stops.push(self.here);
         }
     }
 
@@ -588,7 +592,10 @@ impl<'a> Prover<'a> {
     /// Passes motions that the tool need not make: those shorter than the resolution of the machine,
     /// at whose end it already is. Stops before one that `wanted` asks for.
     fn pass_left_out(&mut self, wanted: impl Fn(&ExpectedMotion) -> bool) {
-        while self.leg.stops.is_empty() && self.leg.left.is_none() && !self.leg.hole.over {
+        while self.progress.stops.is_empty()
+            && self.progress.left.is_none()
+            && !self.progress.hole.over
+        {
             let Step::Move(goal) = &self.cursor.step else { return };
             let slack = self.gauge.slack(&self.here);
             let short = match &goal.kind {
@@ -601,7 +608,7 @@ impl<'a> Prover<'a> {
                 return;
             }
             self.report.compared.left_out += 1;
-            self.pace.owe((1.0 - self.leg.t) * goal.length());
+            self.pace.owe((1.0 - self.progress.t) * goal.length());
             self.advance();
         }
     }
@@ -627,33 +634,33 @@ impl<'a> Prover<'a> {
 
     fn advance(&mut self) {
         // What happens between two motions brings Z nowhere.
-        self.leg.homed &= !matches!(self.cursor.step, Step::Move(_));
+        self.progress.homed &= !matches!(self.cursor.step, Step::Move(_));
         self.cursor.advance();
         self.enter();
     }
 
     /// Makes ready for the step at hand.
     fn enter(&mut self) {
-        self.leg.t = 0.0;
-        self.leg.start = Some(self.here);
-        self.leg.stops.clear();
-        self.leg.left = None;
+        self.progress.t = 0.0;
+        self.progress.start = Some(self.here);
+        self.progress.stops.clear();
+        self.progress.left = None;
         self.comes_back();
         // On the way to a tool change the last tool is still in the spindle.
         if self.running.tool.is_none() || !self.cursor.at_tool_change() {
             self.gauge.tool_length = self.cursor.tool_length();
         }
         if let Step::Move(ExpectedMotion { kind: Kind::Hole(cycle), .. }) = &self.cursor.step {
-            self.leg.hole.restart(cycle);
+            self.progress.hole.restart(cycle);
         } else {
-            self.leg.hole.over = false;
+            self.progress.hole.over = false;
         }
     }
 
     /// Adds a move to the totals of the program.
     fn count(
         &mut self,
-        gait: MotionKind,
+        motion: MotionKind,
         to: &ResolvedPose,
         arc: Option<&ArcTo>,
         block: Option<&Arc>,
@@ -669,7 +676,7 @@ impl<'a> Prover<'a> {
         lean.into_iter().for_each(|uv| summary.include_lean(uv));
         let length = block.map_or(self.here.place.tip.distance(to.place.tip), Arc::length);
         if length.is_finite() {
-            match gait {
+            match motion {
                 MotionKind::Rapid => summary.rapid_length_mm += length,
                 MotionKind::Feed => summary.cutting_length_mm += length,
             }

@@ -5,12 +5,12 @@ use program::{Axes, Rule};
 
 impl Prover<'_> {
     /// A move while the source goes by rapid.
-    pub(super) fn rapid(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
+    pub(super) fn rapid(&mut self, motion: MotionKind, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
-        if gait == MotionKind::Feed {
+        if motion == MotionKind::Feed {
             let from_a_place = self.here.place.known() && goal.from.is_some();
             let straight = self.gauge.straight_rapids;
-            if !straight && from_a_place && self.leg.stops.is_empty() {
+            if !straight && from_a_place && self.progress.stops.is_empty() {
                 return self.rapid_by_feed(to);
             }
             return Err(match self.nearest_stop() {
@@ -39,16 +39,14 @@ impl Prover<'_> {
     /// A rapid of the source by feed, which is straight where a rapid of the machine is not.
     fn rapid_by_feed(&mut self, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
-        let Followed { t, .. } = line::follow(&self.gauge, goal, self.leg.t, &self.here, to)
+        let Followed { t, .. } = line::follow(&self.gauge, goal, self.progress.t, &self.here, to)
             .map_err(|how| {
-                let message = format!(
-                    "goes to {} and {how}; the source goes to {} by rapid",
-                    to.place, goal.to
-                );
-                self.lost_at(to.line, Rule::Path, &message)
-            })?;
+            let message =
+                format!("goes to {} and {how}; the source goes to {} by rapid", to.place, goal.to);
+            self.lost_at(to.line, Rule::Path, &message)
+        })?;
         let done = self.gauge.at(to, &goal.to);
-        self.leg.t = t;
+        self.progress.t = t;
         if !matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed > 0.0) {
             self.differs(to.line, (Rule::Feed, "no feed in mm/min is set".into()));
         }
@@ -66,21 +64,22 @@ impl Prover<'_> {
         if matches!(&self.cursor.step, Step::Move(goal) if goal.tool_change || goal.homed) {
             return false;
         }
-        let goes_on = |(t, length): &(f64, f64)| (self.leg.t - t) * length <= self.gauge.slack(to);
-        let on_the_way = self.on_the_way(to).filter(|_| self.leg.stops.is_empty());
+        let goes_on =
+            |(t, length): &(f64, f64)| (self.progress.t - t) * length <= self.gauge.slack(to);
+        let on_the_way = self.on_the_way(to).filter(|_| self.progress.stops.is_empty());
         let Some((t, _)) = on_the_way.filter(goes_on) else { return false };
-        self.leg.t = t;
-        self.leg.start = Some(*to);
+        self.progress.t = t;
+        self.progress.start = Some(*to);
         true
     }
 
     /// Keeps a stop of a rapid until its end explains it.
     pub(super) fn stop_at(&mut self, to: &ResolvedPose) -> Outcome {
-        if self.leg.stops.len() >= MOST_STOPS {
+        if self.progress.stops.len() >= MOST_STOPS {
             let stop = self.nearest_stop().unwrap_or(*to);
             return Err(self.lost_at(stop.line, Rule::EndPoint, &self.not_reached(&stop)));
         }
-        self.leg.stops.push(*to);
+        self.progress.stops.push(*to);
         Ok(())
     }
 
@@ -118,18 +117,18 @@ impl Prover<'_> {
         }
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let free = goal.free(self.gauge.allowed.axis_degrees);
-        if goal.homed && !self.leg.homed {
+        if goal.homed && !self.progress.homed {
             let message = "does not go home in Z before this, as the source does";
             return Err(self.lost_at(to.line, Rule::Home, message));
         }
-        if self.leg.stops.is_empty() {
+        if self.progress.stops.is_empty() {
             return Ok(());
         }
-        let start = self.leg.start.unwrap_or(self.here);
-        match stops::explain(&self.gauge, &start, &self.leg.stops, to, free) {
-            Ok(lift) => {
-                if self.leg.homed && !free || lift.left_mm > 0.0 && lift.came_mm > 0.0 {
-                    self.note_excursion(to, lift.left_mm);
+        let start = self.progress.start.unwrap_or(self.here);
+        match stops::explain(&self.gauge, &start, &self.progress.stops, to, free) {
+            Ok(retract) => {
+                if self.progress.homed && !free || retract.left_mm > 0.0 && retract.came_mm > 0.0 {
+                    self.note_excursion(to, retract.left_mm);
                 }
                 Ok(())
             }
@@ -144,9 +143,9 @@ impl Prover<'_> {
     }
 
     /// A move off the path of a cut, or back to it.
-    pub(super) fn excursion(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
+    pub(super) fn excursion(&mut self, motion: MotionKind, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
-        let Some(left) = self.leg.left else {
+        let Some(left) = self.progress.left else {
             if goal.from.is_none() {
                 return self.stop_at(to);
             }
@@ -154,14 +153,14 @@ impl Prover<'_> {
                 let message = "goes by rapid where the source feeds";
                 return Err(self.lost_at(to.line, Rule::RapidFeed, message));
             }
-            self.leg.left = Some(self.here);
+            self.progress.left = Some(self.here);
             return self.stop_at(to);
         };
-        if gait == MotionKind::Feed && goal.tool_change && !self.here.place.known() {
+        if motion == MotionKind::Feed && goal.tool_change && !self.here.place.known() {
             return self.cut_from_nowhere(to, None);
         }
         if self.gauge.meet(to, &left) {
-            let last = self.leg.stops.last().copied().unwrap_or(left);
+            let last = self.progress.stops.last().copied().unwrap_or(left);
             if !self.comes_down(&last, to) {
                 return Err(self.lost_at(
                     to.line,
@@ -169,19 +168,19 @@ impl Prover<'_> {
                     "comes back, but not along the tool axis",
                 ));
             }
-            let lift =
-                stops::explain(&self.gauge, &left, &self.leg.stops, to, true).map_err(|stop| {
+            let retract = stops::explain(&self.gauge, &left, &self.progress.stops, to, true)
+                .map_err(|stop| {
                     let message = format!("stops by rapid at {}, away from the path", stop.place);
                     self.lost_at(stop.line, Rule::RapidStop, &message)
                 })?;
-            self.note_excursion(to, lift.left_mm);
-            self.leg.left = None;
-            self.leg.homed = false;
-            self.leg.stops.clear();
+            self.note_excursion(to, retract.left_mm);
+            self.progress.left = None;
+            self.progress.homed = false;
+            self.progress.stops.clear();
             return Ok(());
         }
-        if gait == MotionKind::Feed {
-            let line = self.leg.stops.first().map_or(to.line, |stop| stop.line);
+        if motion == MotionKind::Feed {
+            let line = self.progress.stops.first().map_or(to.line, |stop| stop.line);
             let message = "leaves the cut by rapid and does not come back to where it left";
             return Err(self.lost_at(line, Rule::RapidFeed, message));
         }
@@ -201,7 +200,7 @@ impl Prover<'_> {
     }
 
     pub(super) fn note_excursion(&mut self, to: &ResolvedPose, lift_mm: f64) {
-        let first = self.leg.stops.first().map_or(to.line, |stop| stop.line);
+        let first = self.progress.stops.first().map_or(to.line, |stop| stop.line);
         self.report.excursion(Excursion {
             source_line: self.cursor.line,
             first_program_line: first,
@@ -228,7 +227,7 @@ impl Prover<'_> {
         self.pass_left_out(|goal| goal.free(axis_degrees));
         let (first, free, holding) = match &self.cursor.step {
             Step::Move(goal) => {
-                let free = goal.free(axis_degrees) && self.leg.left.is_none();
+                let free = goal.free(axis_degrees) && self.progress.left.is_none();
                 (
                     goal.from.is_none() && !goal.homed,
                     free,
@@ -249,7 +248,7 @@ impl Prover<'_> {
         };
         let z = axes.contains(Axes::Z);
         let is_up = self.here.position.point.z.is_nan();
-        let retracted = is_up || self.leg.homed;
+        let retracted = is_up || self.progress.homed;
         if !first && !retracted && !z {
             return Err(self.lost_at(
                 line,
@@ -258,7 +257,7 @@ impl Prover<'_> {
             ));
         }
         let up = axes == Axes::Z && (is_up || self.hangs_down() || self.clear_of_part());
-        if !first && !free && (!up || self.leg.hole.over) {
+        if !first && !free && (!up || self.progress.hole.over) {
             return Err(self.lost_at(
                 line,
                 Rule::Home,
@@ -273,17 +272,17 @@ impl Prover<'_> {
             let message = "Z goes home together with other axes, not before them";
             self.report.warn(Diagnostic::warning(Rule::Home, message).line(line));
         }
-        if holding && !first && self.leg.left.is_none() {
-            self.leg.left = Some(self.here);
+        if holding && !first && self.progress.left.is_none() {
+            self.progress.left = Some(self.here);
         }
         if z && self.stops_next() && self.here.place.known() {
-            self.leg.away.get_or_insert(self.here);
+            self.progress.away.get_or_insert(self.here);
         }
         if z {
             self.leaves_for_home(line);
             self.forget_lifts();
         }
-        self.leg.homed |= z;
+        self.progress.homed |= z;
         self.raised |= z;
         self.over = None;
         let mut pose = self.here.position;
@@ -304,12 +303,12 @@ impl Prover<'_> {
         if (0..3).any(|i| axes.contains(Axes::rotary(i))) {
             self.standing.forget();
         }
-        let to = self.gauge.station(line, pose);
-        if self.leg.left.is_some() {
+        let to = self.gauge.resolve(line, pose);
+        if self.progress.left.is_some() {
             self.stop_at(&to)?;
-        } else if self.leg.stops.is_empty() {
+        } else if self.progress.stops.is_empty() {
             // The way begins at home: the height where it left is none of its own any more.
-            self.leg.start = Some(to);
+            self.progress.start = Some(to);
         }
         self.here = to;
         Ok(())
@@ -317,10 +316,10 @@ impl Prover<'_> {
 
     /// Forgets the stops of a rapid on the way to home, where they lead out along the tool axis: the way begins at home.
     fn forget_lifts(&mut self) {
-        let base = self.leg.start.unwrap_or(self.here);
+        let base = self.progress.start.unwrap_or(self.here);
         let lifts = |stop: &ResolvedPose| stops::lifted(&self.gauge, &base, stop);
-        if self.leg.left.is_none() && self.leg.stops.iter().all(lifts) {
-            self.leg.stops.clear();
+        if self.progress.left.is_none() && self.progress.stops.iter().all(lifts) {
+            self.progress.stops.clear();
         }
     }
 
@@ -348,9 +347,9 @@ impl Prover<'_> {
     }
 
     /// A move after the last motion of the source: away along the tool axis.
-    pub(super) fn closing(&mut self, gait: MotionKind, to: &ResolvedPose) -> Outcome {
+    pub(super) fn closing(&mut self, motion: MotionKind, to: &ResolvedPose) -> Outcome {
         let lifts = stops::lifted(&self.gauge, &self.here, to);
-        match gait == MotionKind::Rapid && lifts {
+        match motion == MotionKind::Rapid && lifts {
             true => Ok(()),
             false => {
                 let message = format!("goes to {} after the last motion of the source", to.place);
@@ -362,7 +361,7 @@ impl Prover<'_> {
     /// Whether a move turns rotary axes alone, while the machine is at home.
     pub(super) fn turns_at_home(&self, to: &ResolvedPose) -> bool {
         let (a, b) = (self.here.position.point, to.position.point);
-        b.z.is_nan() && self.leg.homed && (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
+        b.z.is_nan() && self.progress.homed && (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
     }
 
     /// The stop that comes nearest to where the source goes.
@@ -372,7 +371,7 @@ impl Prover<'_> {
             let apart = stop.place.tip.distance(goal.to.tip);
             if apart.is_nan() { f64::INFINITY } else { apart }
         };
-        self.leg.stops.iter().min_by(|a, b| far(a).total_cmp(&far(b))).copied()
+        self.progress.stops.iter().min_by(|a, b| far(a).total_cmp(&far(b))).copied()
     }
 
     pub(super) fn not_reached(&self, stop: &ResolvedPose) -> String {

@@ -38,9 +38,9 @@ impl Prover<'_> {
             Kind::Rapid => (goal.from.map(|from| (from, goal.to)), goal.to),
             // What comes from above is looked at with the hole, and a straight block goes as its ends say.
             Kind::Hole(_) if !turns => return self.wrong_dog_leg(&here, to),
-            Kind::Hole(_) if self.leg.hole.over => return None,
+            Kind::Hole(_) if self.progress.hole.over => return None,
             Kind::Hole(cycle) => (None, goal.to.lifted(cycle.clearance)),
-            Kind::Line | Kind::Arc(_) => (None, self.leg.left.map_or(from, |left| left.place)),
+            Kind::Line | Kind::Arc(_) => (None, self.progress.left.map_or(from, |left| left.place)),
             Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => return None,
         };
         let way = StraightPath { gauge: &gauge, straight };

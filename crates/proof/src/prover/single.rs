@@ -7,7 +7,7 @@ use program::Rule;
 impl Prover<'_> {
     /// A thread or a probing move of the program.
     pub(super) fn single(&mut self, line: u32, pose: &Position, is: Kind) -> Outcome {
-        let to = self.gauge.station(line, *pose);
+        let to = self.gauge.resolve(line, *pose);
         self.count(MotionKind::Feed, &to, None, None);
         self.hold_travel(&to, None);
         self.standing.arrive(&to.position.orientation);
@@ -39,7 +39,7 @@ impl Prover<'_> {
             }
         };
         let (here, goes_to) = (self.here, goal.to);
-        if !here.place.known() || !self.leg.stops.is_empty() {
+        if !here.place.known() || !self.progress.stops.is_empty() {
             let message = format!("{} from a place where the source does not", does(&is));
             return Err(self.lost_at(line, Rule::SingleBlock, &message));
         }
@@ -66,7 +66,7 @@ impl Prover<'_> {
         if matches!(is, Kind::Probe { .. }) {
             let (from, moved) = (here.position.point, &mut end.position.point);
             *moved = Vec3::select(moved.cmpeq(from), *moved, Vec3::splat(f64::NAN));
-            end = self.gauge.station(line, end.position);
+            end = self.gauge.resolve(line, end.position);
         }
         self.arrive(&end);
         self.stands_at(&to);

@@ -140,7 +140,7 @@ impl Comparison<'_> {
                 );
             }
         };
-        // Both legs of the corner are left within the distance: no point between is farther from them than half of it.
+        // Both sides of the corner are left within the distance: no point between is farther from them than half of it.
         let own = self.machine.path_tolerance();
         let allowed = expected.state.corner.map_or(own, |wanted| wanted.min(own));
         let distance = rounding.distance;

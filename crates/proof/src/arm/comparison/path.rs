@@ -47,12 +47,12 @@ impl Comparison<'_> {
             return self.correct(motion, start, path);
         }
         let Some(expected) = self.expected.get(self.next).cloned() else {
-            return self.lift(motion, start, path, from_corner);
+            return self.retract(motion, start, path, from_corner);
         };
         let cuts = match &expected.step {
             Step::Rapid(from, to) => {
                 if !self.arrives(end, to, false) {
-                    return self.lift(motion, start, path, from_corner);
+                    return self.retract(motion, start, path, from_corner);
                 }
                 self.is_rapid_path(&start, &at, (from.as_ref(), to), length)?;
                 self.report.compared.rapids += 1;
@@ -81,7 +81,7 @@ impl Comparison<'_> {
             | Step::Dwell(_)
             | Step::Stop
             | Step::Output(_)
-            | Step::Input(_) => return self.lift(motion, start, path, from_corner),
+            | Step::Input(_) => return self.retract(motion, start, path, from_corner),
         };
         if cuts {
             self.in_cut(&expected)?;
@@ -112,11 +112,11 @@ impl Comparison<'_> {
         self.pass(start, path, (motion, false))
     }
 
-    /// A straight way up along the tool's own axis, between two steps of the source.
+    /// A straight retract up along the tool's own axis, between two steps of the source.
     ///
     /// # Errors
     /// It is none.
-    fn lift(
+    fn retract(
         &mut self,
         motion: &ArmMove,
         start: Standing,
