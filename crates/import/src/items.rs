@@ -24,7 +24,7 @@ pub(crate) enum Role {
     /// `G0`, `G1`.
     Motion,
     /// A coordinate, or a place that only the other system knows; whether along Z.
-    Place {
+    Coordinate {
         z: bool,
     },
     /// `G28`, `G30`, `G53`: the coordinates of the line are those of the machine.
@@ -67,9 +67,9 @@ pub(crate) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
             Piece::Home { z } if cut.comment.is_none() => {
                 // An address before it is its own.
                 cut.address();
-                cut.push(String::new(), Role::Place { z: *z });
+                cut.push(String::new(), Role::Coordinate { z: *z });
             }
-            Piece::Home { .. } => cut.push(String::new(), Role::Unknown(PLACE)),
+            Piece::Home { .. } => cut.push(String::new(), Role::Unknown(HOME)),
             Piece::Unknown(text, why) => cut.push(text.clone(), Role::Unknown(why)),
         }
     }
@@ -92,15 +92,15 @@ fn bind(items: &mut [Item]) {
     }
     for item in items {
         item.role = match item.role {
-            Role::Place { .. } if item.text.is_empty() => Role::Unknown(PLACE),
+            Role::Coordinate { .. } if item.text.is_empty() => Role::Unknown(HOME),
             Role::Spindle | Role::Feed if item.text.contains('{') => Role::Unknown(NOT_HERE),
-            Role::Place { .. } | Role::Spindle | Role::Feed | Role::Length => Role::Other,
+            Role::Coordinate { .. } | Role::Spindle | Role::Feed | Role::Length => Role::Other,
             ref role => role.clone(),
         };
     }
 }
 
-const PLACE: &str = "a home or a safe height is not known where a program of ours is written";
+const HOME: &str = "a home or a safe height is not known where a program of ours is written";
 const OUTSIDE: &str = "outside of a comment a control would take it for words";
 const NOT_HERE: &str = "has no value here";
 const SIGNS: &str = "holds signs that a block of ours cannot";
@@ -245,8 +245,8 @@ fn role(word: &str) -> Role {
         ('M', 7 | 8) => Role::Coolant,
         ('M', 0 | 1) => Role::Stop,
         ('M', 2 | 30) => Role::End,
-        ('X' | 'Y' | 'A' | 'B' | 'C', _) => Role::Place { z: false },
-        ('Z', _) => Role::Place { z: true },
+        ('X' | 'Y' | 'A' | 'B' | 'C', _) => Role::Coordinate { z: false },
+        ('Z', _) => Role::Coordinate { z: true },
         ('F', _) => Role::Feed,
         ('T', _) => Role::Unknown("calls a tool of its own"),
         ('G', 4) => Role::Unknown("is a dwell, and the toolpath says where the tool dwells"),

@@ -164,15 +164,15 @@ impl Writing<'_> {
         let any =
             |items: &[Item], role: fn(&Role) -> bool| items.iter().any(|item| role(&item.role));
         rest.reference = any(&items, |role| *role == Role::Reference);
-        if !rest.reference && any(&items, |role| matches!(role, Role::Place { .. })) {
-            let up = any(&items, |role| *role == Role::Place { z: true });
+        if !rest.reference && any(&items, |role| matches!(role, Role::Coordinate { .. })) {
+            let up = any(&items, |role| *role == Role::Coordinate { z: true });
             let message = match up {
                 true => "the way to a home or safe height is the control's own way up",
                 false => "no move to a home position: the toolpath determines where the tool goes",
             };
             self.findings.otherwise(number, message);
             items.retain(|item| {
-                !matches!(item.role, Role::Place { .. } | Role::Motion | Role::Feed)
+                !matches!(item.role, Role::Coordinate { .. } | Role::Motion | Role::Feed)
             });
         }
         self.take_spindle(&mut items, number);

@@ -10,9 +10,9 @@ use std::f64::consts::PI;
 /// How far a given point may lie off its contour, mm.
 const ON: f64 = 0.01;
 
-/// Stations closer than this are one, mm: a corner that both contours have is not cut twice, though each
+/// Points closer than this are one, mm: a corner that both contours have is not cut twice, though each
 /// is rounded by itself.
-const STATION: f64 = 1e-3;
+const SAME_POINT: f64 = 1e-3;
 
 impl Path {
     /// Move by move, as blocks with `X Y U V` and pairs of programs written block for block are. A
@@ -73,17 +73,17 @@ impl Path {
             held.push((below.find(p, s, "lower")?, above.find(q, t, "upper")?));
         }
         held.push((below.total(), above.total()));
-        let mut stations = vec![(0.0, 0.0)];
+        let mut pairs = vec![(0.0, 0.0)];
         for span in held.windows(2) {
-            between(&below, &above, span[0], span[1], &mut stations);
+            between(&below, &above, span[0], span[1], &mut pairs);
         }
         let (mut low, mut high) = (Vec::new(), Vec::new());
-        for station in stations.windows(2) {
-            low.push(below.part(station[0].0, station[1].0));
-            high.push(above.part(station[0].1, station[1].1));
+        for pair in pairs.windows(2) {
+            low.push(below.part(pair[0].0, pair[1].0));
+            high.push(above.part(pair[0].1, pair[1].1));
         }
-        // Stations fall on corners by rounding only.
-        let gap = 10.0 * STATION;
+        // Points fall on corners by rounding only.
+        let gap = 10.0 * SAME_POINT;
         let path = Path::leaning(Contour::joined(low, gap)?, Contour::joined(high, gap)?);
         uncrossed(&path)?;
         Ok(path)
@@ -134,8 +134,8 @@ impl<'a> ArcLength<'a> {
 
     /// The corners between `from` and `to`, as fractions of the length between them.
     fn corners(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
-        let first = self.ends.partition_point(|end| *end <= from + STATION);
-        let inner = self.ends.iter().skip(first).take_while(move |end| **end < to - STATION);
+        let first = self.ends.partition_point(|end| *end <= from + SAME_POINT);
+        let inner = self.ends.iter().skip(first).take_while(move |end| **end < to - SAME_POINT);
         inner.map(move |end| (end - from) / (to - from))
     }
 
@@ -147,9 +147,9 @@ impl<'a> ArcLength<'a> {
         let length = element.length();
         let start = self.ends[i] - length;
         let parameter = |along: f64| {
-            if along - start < 2.0 * STATION {
+            if along - start < 2.0 * SAME_POINT {
                 0.0
-            } else if self.ends[i] - along < 2.0 * STATION {
+            } else if self.ends[i] - along < 2.0 * SAME_POINT {
                 1.0
             } else {
                 (along - start) / length
@@ -164,13 +164,13 @@ impl<'a> ArcLength<'a> {
     }
 }
 
-/// Adds the stations of one span: the corners of both contours, each once, and the end of the span.
+/// Adds the pairs of points of one span, as lengths along both contours: the corners of both contours, each once, and the end of the span.
 fn between(
     below: &ArcLength,
     above: &ArcLength,
     from: (f64, f64),
     to: (f64, f64),
-    stations: &mut Vec<(f64, f64)>,
+    pairs: &mut Vec<(f64, f64)>,
 ) {
     let (low, high) = (to.0 - from.0, to.1 - from.1);
     let mut parts: Vec<f64> =
@@ -179,13 +179,13 @@ fn between(
     let longer = low.max(high);
     let mut last = 0.0;
     for part in parts {
-        if (part - last) * longer > STATION && (1.0 - part) * longer > STATION {
-            stations.push((from.0 + part * low, from.1 + part * high));
+        if (part - last) * longer > SAME_POINT && (1.0 - part) * longer > SAME_POINT {
+            pairs.push((from.0 + part * low, from.1 + part * high));
             last = part;
         }
     }
     if longer >= SAME {
-        stations.push(to);
+        pairs.push(to);
     }
 }
 

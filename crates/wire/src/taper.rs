@@ -143,14 +143,14 @@ impl Kept<'_> {
     fn beyond(
         &self,
         i: usize,
-        onward: bool,
+        forward: bool,
         same: impl Fn(usize) -> Option<f64>,
     ) -> Option<(usize, f64)> {
         let n = self.lower.elements().len();
         let mut between = 0.0;
         for away in 1..n {
-            let j = if onward { i + away } else { i + n - away };
-            if !self.lower.is_closed() && (n > j) != onward {
+            let j = if forward { i + away } else { i + n - away };
+            if !self.lower.is_closed() && (n > j) != forward {
                 return None;
             }
             match same(j % n) {

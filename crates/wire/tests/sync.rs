@@ -56,7 +56,7 @@ fn one_end_may_stand_still() {
 }
 
 #[test]
-fn by_length_corners_of_both_contours_are_stations() {
+fn by_length_corners_of_both_contours_are_points() {
     // A square of 80 mm and a circle from the same side: each corner at a quarter of the length.
     let lower = polygon(&[(10.0, 0.0), (10.0, 10.0), (-10.0, 10.0), (-10.0, -10.0), (10.0, -10.0)]);
     let path = Path::by_length(&lower, &circle(5.0, 0.0)).unwrap();
@@ -74,8 +74,8 @@ fn given_points_are_held_and_between_them_length_counts() {
     let (lower, upper) = (square(10.0), square(20.0));
     let held = (Vec2::new(10.0, 10.0), Vec2::new(20.0, 0.0));
     let path = Path::by_points(&lower, &upper, &[held]).unwrap();
-    let station = path.elements().find(|(p, _)| p.end == held.0).unwrap();
-    assert!(station.1.end.distance(held.1) < 1e-9);
+    let segment = path.elements().find(|(p, _)| p.end == held.0).unwrap();
+    assert!(segment.1.end.distance(held.1) < 1e-9);
     let off = Path::by_points(&lower, &upper, &[(Vec2::ZERO, held.1)]).unwrap_err();
     assert_eq!(off.rule.name(), "sync-point");
     let later = (Vec2::new(-10.0, 10.0), Vec2::new(-20.0, 20.0));

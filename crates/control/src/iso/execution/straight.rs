@@ -36,11 +36,11 @@ impl StraightContinuation {
 }
 
 impl Control {
-    /// Executes a block of these words where it is a straight move behind what is `onward`, as
+    /// Executes a block of these words where it is a straight move behind another one, as `continuation` holds it, as
     /// [`Control::execute`] would. `None` where it is not: nothing has changed.
     pub(crate) fn go_on(
         &mut self,
-        onward: &StraightContinuation,
+        continuation: &StraightContinuation,
         words: &[Word],
     ) -> Option<Action> {
         let state = &mut self.state;
@@ -61,9 +61,9 @@ impl Control {
                         return None;
                     }
                     // Not -0.
-                    point[usize::from(word.letter - b'X')] = word.value * onward.unit + 0.0;
+                    point[usize::from(word.letter - b'X')] = word.value * continuation.unit + 0.0;
                 }
-                b'F' if onward.feed.is_some_and(|feed| feed.says_the_same_as(word)) => {}
+                b'F' if continuation.feed.is_some_and(|feed| feed.says_the_same_as(word)) => {}
                 b'N' if given == 0 && !word.point && word.value >= 0.0 => {}
                 _ => return None,
             }

@@ -49,7 +49,7 @@ pub(crate) struct Run<'a, 's> {
     /// The lines that have been read ahead.
     ahead: Ahead,
     /// The block before has moved, and straight moves go on behind it.
-    onward: Option<StraightContinuation>,
+    continuation: Option<StraightContinuation>,
     /// The block whose corner waits for the next one.
     pub(super) held: Option<WaitingCorner>,
     /// Where the events go.
@@ -83,7 +83,7 @@ impl<'a, 's> Run<'a, 's> {
             flows: false,
             over: false,
             ahead,
-            onward: None,
+            continuation: None,
             held: None,
             channel,
         }
@@ -145,11 +145,13 @@ impl<'a, 's> Run<'a, 's> {
 
     /// Whether the plain line `text` is a straight move behind another one: that has then been executed.
     fn goes_on(&mut self, text: &[u8]) -> bool {
-        let Some(onward) = &self.onward else { return false };
+        let Some(continuation) = &self.continuation else { return false };
         if text.len() > self.facts.words.longest {
             return false;
         }
-        let Some(action) = self.control.go_on(onward, self.ahead.words()) else { return false };
+        let Some(action) = self.control.go_on(continuation, self.ahead.words()) else {
+            return false;
+        };
         self.actions.push(action);
         true
     }
@@ -162,7 +164,7 @@ impl<'a, 's> Run<'a, 's> {
         line: u32,
         is_plain: bool,
     ) -> Result<(), Fault> {
-        self.onward = None;
+        self.continuation = None;
         if text.first() == Some(&b'%') && self.facts.syntax.percent {
             return self.percent(from, text, line);
         }
@@ -288,7 +290,7 @@ impl<'a, 's> Run<'a, 's> {
             return self.back(back);
         }
         if self.frame().modal.is_none() && self.held.is_none() {
-            self.onward = StraightContinuation::behind(&self.block, &self.control.state);
+            self.continuation = StraightContinuation::behind(&self.block, &self.control.state);
         }
         self.after_move()
     }

@@ -3,7 +3,7 @@
 use super::state::State;
 use crate::event::Action;
 use crate::kernel::Channel;
-use crate::ls::language::{Motion, Place, Position, Scan, Shape, Speed, Termination};
+use crate::ls::language::{Coordinates, Motion, Position, Scan, Shape, Speed, Termination};
 use crate::{ArmAction, ArmMove, ArmPath, Corner, Rounding, Turning};
 use program::{Feed, Outcome, Rule};
 use std::collections::HashMap;
@@ -17,19 +17,19 @@ impl State {
         positions: &HashMap<u32, Position>,
         channel: &mut Channel,
     ) -> Outcome {
-        let place = |number: u32| self.place(scan, positions, number);
-        let pose = |number: u32| match place(number)? {
-            Place::Pose(frame, posture) => Ok((frame, posture)),
-            Place::Joints(_) => {
+        let coordinates = |number: u32| self.coordinates(scan, positions, number);
+        let pose = |number: u32| match coordinates(number)? {
+            Coordinates::Pose(frame, posture) => Ok((frame, posture)),
+            Coordinates::Joints(_) => {
                 let message =
                     format!("P[{number}] has joints: a line or an arc to joints is not followed");
                 Err(scan.since(0, Rule::Unsupported, message))
             }
         };
         let (path, posture) = match motion.shape {
-            Shape::Joint(number) => match place(number)? {
-                Place::Joints(joints) => (ArmPath::Joints(joints), Default::default()),
-                Place::Pose(frame, posture) => (ArmPath::Point(frame), posture),
+            Shape::Joint(number) => match coordinates(number)? {
+                Coordinates::Joints(joints) => (ArmPath::Joints(joints), Default::default()),
+                Coordinates::Pose(frame, posture) => (ArmPath::Point(frame), posture),
             },
             Shape::Linear(number) => {
                 let (end, posture) = pose(number)?;
@@ -56,18 +56,18 @@ impl State {
 
     /// # Errors
     /// There is no such position, or it counts in other frames than those that are active: the controller stops.
-    fn place(
+    fn coordinates(
         &self,
         scan: &Scan,
         positions: &HashMap<u32, Position>,
         number: u32,
-    ) -> Outcome<Place> {
+    ) -> Outcome<Coordinates> {
         let Some(position) = positions.get(&number) else {
             let message = format!("the program has no position P[{number}]");
             return Err(scan.since(0, Rule::UnknownPosition, message));
         };
         match self.active == position.frames.map(Some) {
-            true => Ok(position.place),
+            true => Ok(position.coordinates),
             false => {
                 let [frame, tool] = position.frames;
                 let message = format!(

@@ -5,7 +5,7 @@ mod scan;
 mod statement;
 mod words;
 
-pub(super) use position::{Place, Position, positions};
+pub(super) use position::{Coordinates, Position, positions};
 pub(super) use scan::Scan;
 pub(super) use statement::{
     Frames, Motion, Shape, Speed, Statement, Sum, Termination, Value, read,

@@ -13,7 +13,7 @@ const MOST: u32 = 32_767;
 
 /// Where a position is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Place {
+pub(crate) enum Coordinates {
     /// As the controller shows the joints, degrees.
     Joints([f64; 6]),
     /// The tool in the user frame, and the posture that its letters and turns state.
@@ -23,7 +23,7 @@ pub(crate) enum Place {
 /// A position of the program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Position {
-    pub(crate) place: Place,
+    pub(crate) coordinates: Coordinates,
     /// Numbers of the user frame and of the tool in which it counts.
     pub(crate) frames: [u32; 2],
 }
@@ -152,22 +152,22 @@ impl Reading {
             let known: Vec<f64> = values.iter().flatten().copied().collect();
             <[f64; 6]>::try_from(known).ok()
         };
-        let place = match (all(&self.pose), all(&self.joints), self.posture) {
+        let coordinates = match (all(&self.pose), all(&self.joints), self.posture) {
             (None, Some(joints), None) if self.pose.iter().all(Option::is_none) => {
-                Place::Joints(joints)
+                Coordinates::Joints(joints)
             }
             (Some([x, y, z, w, p, r]), None, Some(posture))
                 if self.joints.iter().all(Option::is_none) =>
             {
                 let turns = [w, p, r].map(f64::to_radians);
                 let turn = Euler::FixedXyz.matrix(turns);
-                Place::Pose(Frame::from_mat3_translation(turn, Vec3::new(x, y, z)), posture)
+                Coordinates::Pose(Frame::from_mat3_translation(turn, Vec3::new(x, y, z)), posture)
             }
             _ => {
                 return refused("has neither six joints nor X, Y, Z, W, P, R with CONFIG");
             }
         };
-        Ok(Position { place, frames: [frame, tool] })
+        Ok(Position { coordinates, frames: [frame, tool] })
     }
 }
 

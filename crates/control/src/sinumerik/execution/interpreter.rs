@@ -313,8 +313,8 @@ impl<'a, 's> Interpreter<'a, 's> {
             self.state.rapids_together = Some(together);
             self.report_rapids(source)?;
         }
-        let lifts = block.rare.as_ref().is_some_and(|rare| rare.lifts);
-        if lifts || matches!(block.code(41), Some(Code::Lift)) {
+        let retracts = block.rare.as_ref().is_some_and(|rare| rare.retracts);
+        if retracts || matches!(block.code(41), Some(Code::Retract)) {
             self.emit(source, Action::Risk(Risk::STOP_RETRACT.into()))?;
         }
         if let Some(Code::Motion(motion)) = block.code(1) {
@@ -668,7 +668,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         match call.procedure {
             Procedure::NoMotion => Ok(()),
-            Procedure::Lift => self.emit(source, Action::Risk(Risk::STOP_RETRACT.into())),
+            Procedure::Retract => self.emit(source, Action::Risk(Risk::STOP_RETRACT.into())),
             Procedure::Group => group(source, call),
             Procedure::MasterSpindle => match call.number(source, 0)? {
                 None | Some(1.0) => Ok(()),

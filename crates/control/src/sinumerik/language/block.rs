@@ -61,7 +61,7 @@ pub(crate) const TOLERANCES: [&str; 3] = ["CTOL", "ADIS", "ADISPOS"];
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Rare {
     /// It says where axes go when the program is stopped.
-    pub lifts: bool,
+    pub retracts: bool,
     /// AP, degrees.
     pub polar_angle: Option<Coordinate>,
     /// RP.

@@ -26,7 +26,7 @@ pub(crate) enum Procedure {
     /// Nothing that moves an axis or changes where one goes.
     NoMotion,
     /// `POLFMASK` and its kin: which axes go where when the program is stopped.
-    Lift,
+    Retract,
     /// `MCALL` without a cycle.
     EndOfModalCall,
     /// A drilling cycle.
@@ -79,9 +79,9 @@ const PROCEDURES: &[(&str, Procedure)] = &[
     ("STOPRE", Procedure::NoMotion),
     // The raw part, for the control's picture.
     ("WORKPIECE", Procedure::NoMotion),
-    ("POLFA", Procedure::Lift),
-    ("POLFMASK", Procedure::Lift),
-    ("POLFMLIN", Procedure::Lift),
+    ("POLFA", Procedure::Retract),
+    ("POLFMASK", Procedure::Retract),
+    ("POLFMLIN", Procedure::Retract),
     ("SETMS", Procedure::MasterSpindle),
     ("RET", Procedure::Return),
     ("ENDPROC", Procedure::Return),

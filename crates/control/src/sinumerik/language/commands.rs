@@ -61,7 +61,7 @@ pub(crate) enum Code {
     /// the machine's tolerances, interpolation of the orientation between given ends.
     NoMotion,
     /// `LFON`: axes are lifted when the program is stopped.
-    Lift,
+    Retract,
     /// Known and not supported, with the reason.
     Unsupported(&'static str),
 }
@@ -355,7 +355,7 @@ pub(super) static COMMANDS: &[Command] = &[
     not("FLIN", 37, FEED_PROFILE),
     not("FCUB", 37, FEED_PROFILE),
     // 41, 46: whether a thread is left when the program stops, and the plane of that way
-    g("LFON", 41, Code::Lift),
+    g("LFON", 41, Code::Retract),
     same("LFOF", 41),
     same("LFTXT", 46),
     same("LFWP", 46),

@@ -35,8 +35,8 @@ pub(super) enum Setting {
     /// By how much an axis accelerates, jerks or is fast, percent.
     Dynamics,
     /// Where an axis goes when the program is stopped, how far and which way.
-    LiftTo,
-    Lift,
+    RetractTo,
+    Retract,
 }
 
 /// The addresses of several letters.
@@ -67,15 +67,15 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("ACCLIMA", Setting::Dynamics),
     ("JERKLIMA", Setting::Dynamics),
     ("VELOLIMA", Setting::Dynamics),
-    ("POLF", Setting::LiftTo),
-    ("DILF", Setting::Lift),
-    ("ALF", Setting::Lift),
+    ("POLF", Setting::RetractTo),
+    ("DILF", Setting::Retract),
+    ("ALF", Setting::Retract),
 ];
 
 /// Each address with a value.
 pub(super) fn vocabulary() -> impl Iterator<Item = String> {
     SETTINGS.iter().map(|(name, setting)| match setting {
-        Setting::Position | Setting::Dynamics | Setting::LiftTo => format!("{name}[X]=150"),
+        Setting::Position | Setting::Dynamics | Setting::RetractTo => format!("{name}[X]=150"),
         Setting::FeedReference => format!("{name}[C]=150"),
         _ => format!("{name}=1"),
     })
@@ -98,11 +98,11 @@ impl Reader<'_, '_> {
             Setting::Position => return self.positioning(start),
             Setting::FeedReference => return self.feed_reference(start),
             Setting::Dynamics => return self.dynamics(start, said),
-            Setting::LiftTo => {
+            Setting::RetractTo => {
                 self.indexed_axis()?;
                 // Absolute or by an increment: it moves nothing.
                 self.counted(false)?;
-                self.block.rare.get_or_insert_default().lifts = true;
+                self.block.rare.get_or_insert_default().retracts = true;
                 return Ok(());
             }
             _ => {}
@@ -139,8 +139,8 @@ impl Reader<'_, '_> {
                 rare.corner.replace(corner(value)).is_some()
             }
             Setting::Peak => rare(block, |r| &mut r.peak),
-            Setting::Lift => {
-                block.rare.get_or_insert_default().lifts = true;
+            Setting::Retract => {
+                block.rare.get_or_insert_default().retracts = true;
                 false
             }
             Setting::Angle => rare(block, |r| &mut r.angle),
@@ -151,7 +151,7 @@ impl Reader<'_, '_> {
             Setting::Position
             | Setting::FeedReference
             | Setting::Dynamics
-            | Setting::LiftTo
+            | Setting::RetractTo
             | Setting::PolarAngle
             | Setting::PolarRadius => false,
         };
