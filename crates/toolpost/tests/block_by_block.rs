@@ -17,7 +17,7 @@ use std::process::{Command, Stdio};
 
 /// How a tool goes to the end of a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
+enum MoveKind {
     Rapid,
     Feed,
     /// About a centre, mm, so many turns begun, counter-clockwise where above 0.
@@ -31,7 +31,7 @@ enum Way {
 /// A move of a block, and what is on while it runs.
 #[derive(Clone, Copy, Debug)]
 struct Move {
-    way: Way,
+    kind: MoveKind,
     /// mm; NaN where it is not known.
     end: Vec3,
     /// mm/min.
@@ -53,18 +53,18 @@ struct Reported {
 impl Reported {
     /// Nothing yet, the tool being at `start`.
     fn nothing(start: Vec3) -> Reported {
-        let (way, coolant) = (Way::Rapid, [false; 2]);
-        let now = Move { way, end: start, feed: 0.0, spindle: 0.0, coolant };
+        let (kind, coolant) = (MoveKind::Rapid, [false; 2]);
+        let now = Move { kind, end: start, feed: 0.0, spindle: 0.0, coolant };
         Reported { blocks: Blocks::new(), now }
     }
 
-    fn moves(&mut self, block: u32, way: Way, end: Vec3) {
-        (self.now.way, self.now.end) = (way, end);
+    fn moves(&mut self, block: u32, kind: MoveKind, end: Vec3) {
+        (self.now.kind, self.now.end) = (kind, end);
         self.blocks.entry(block).or_default().push(self.now);
     }
 
-    fn stays(&mut self, block: u32, way: Way) {
-        self.moves(block, way, self.now.end);
+    fn stays(&mut self, block: u32, kind: MoveKind) {
+        self.moves(block, kind, self.now.end);
     }
 }
 
@@ -111,9 +111,9 @@ fn theirs(folder: &Path, text: &str) -> Result<Blocks, String> {
             "SELECT_PLANE" => {
                 plane = ["XY", "YZ", "XZ"].iter().position(|p| rest.contains(p)).unwrap();
             }
-            "STRAIGHT_TRAVERSE" => reported.moves(number(), Way::Rapid, place()),
-            "STRAIGHT_FEED" => reported.moves(number(), Way::Feed, place()),
-            "RIGID_TAP" => reported.stays(number(), Way::Hole(numbers[2], 0.0)),
+            "STRAIGHT_TRAVERSE" => reported.moves(number(), MoveKind::Rapid, place()),
+            "STRAIGHT_FEED" => reported.moves(number(), MoveKind::Feed, place()),
+            "RIGID_TAP" => reported.stays(number(), MoveKind::Hole(numbers[2], 0.0)),
             "ARC_FEED" => {
                 // First and second axis of the plane (X Y, Y Z, Z X), then the one it rises along.
                 let turned = |a: f64, b: f64, c: f64| match plane {
@@ -124,12 +124,12 @@ fn theirs(folder: &Path, text: &str) -> Result<Blocks, String> {
                 let center = turned(numbers[2], numbers[3], f64::NAN);
                 reported.moves(
                     number(),
-                    Way::Arc(center, numbers[4] as i32),
+                    MoveKind::Arc(center, numbers[4] as i32),
                     turned(numbers[0], numbers[1], numbers[5]),
                 );
             }
-            "DWELL" => reported.stays(number(), Way::Dwell(numbers[0])),
-            "CHANGE_TOOL" => reported.stays(number(), Way::Tool(numbers[0] as u32)),
+            "DWELL" => reported.stays(number(), MoveKind::Dwell(numbers[0])),
+            "CHANGE_TOOL" => reported.stays(number(), MoveKind::Tool(numbers[0] as u32)),
             "SET_FEED_RATE" => reported.now.feed = numbers[0],
             "SET_SPINDLE_SPEED" => {
                 speed = numbers[1];
@@ -157,15 +157,15 @@ fn ours(machine: &Machine, text: &str) -> Blocks {
     let run = control::read(&settings, "p.ngc", text.as_bytes(), &mut |event| {
         let line = event.line;
         match &event.action {
-            Action::Rapid(to) => reported.moves(line, Way::Rapid, to.point),
-            Action::Line(to) => reported.moves(line, Way::Feed, to.point),
+            Action::Rapid(to) => reported.moves(line, MoveKind::Rapid, to.point),
+            Action::Line(to) => reported.moves(line, MoveKind::Feed, to.point),
             Action::Arc(arc) => {
                 let about = arc.normal.x + arc.normal.y + arc.normal.z;
                 let turns = (arc.turns as i32 + 1) * about.signum() as i32;
                 let axis = arc.normal.abs();
                 let center = arc.center + axis * f64::NAN;
                 let center = Vec3::select(axis.cmpgt(Vec3::splat(0.5)), center, arc.center);
-                reported.moves(line, Way::Arc(center, turns), arc.end.point);
+                reported.moves(line, MoveKind::Arc(center, turns), arc.end.point);
             }
             Action::Cycle(new) => cycle = Some(**new),
             Action::Hole(at) => {
@@ -174,14 +174,14 @@ fn ours(machine: &Machine, text: &str) -> Blocks {
                     reported.now.feed = own;
                 }
                 let end = at.point + Vec3::Z * cycle.retract;
-                reported.moves(line, Way::Hole(at.point.z - cycle.depth, cycle.dwell), end);
+                reported.moves(line, MoveKind::Hole(at.point.z - cycle.depth, cycle.dwell), end);
             }
             Action::MachineMove(to) => {
                 let z = to.linear[2].unwrap_or(f64::NAN);
-                reported.moves(line, Way::Rapid, Vec3::new(f64::NAN, f64::NAN, z));
+                reported.moves(line, MoveKind::Rapid, Vec3::new(f64::NAN, f64::NAN, z));
             }
-            Action::Dwell(seconds) => reported.stays(line, Way::Dwell(*seconds)),
-            Action::Tool(tool) => reported.moves(line, Way::Tool(tool.number), Vec3::NAN),
+            Action::Dwell(seconds) => reported.stays(line, MoveKind::Dwell(*seconds)),
+            Action::Tool(tool) => reported.moves(line, MoveKind::Tool(tool.number), Vec3::NAN),
             Action::Feed(Feed::PerMinute(feed)) => reported.now.feed = *feed,
             Action::Spindle(spindle) => {
                 reported.now.spindle = match *spindle {
@@ -212,29 +212,29 @@ fn ours(machine: &Machine, text: &str) -> Blocks {
 
 /// The moves of a block that drills, as one.
 fn as_hole(moves: &[Move]) -> Option<Move> {
-    let bottom = |m: &Move| if let Way::Hole(z, _) = m.way { z } else { m.end.z };
+    let bottom = |m: &Move| if let MoveKind::Hole(z, _) = m.kind { z } else { m.end.z };
     let bottom = moves.iter().map(bottom).fold(f64::INFINITY, f64::min);
-    let dwell = |m: &Move| if let Way::Dwell(seconds) = m.way { seconds } else { 0.0 };
-    let way = Way::Hole(bottom, moves.iter().map(dwell).sum());
-    moves.last().map(|last| Move { way, ..*last })
+    let dwell = |m: &Move| if let MoveKind::Dwell(seconds) = m.kind { seconds } else { 0.0 };
+    let kind = MoveKind::Hole(bottom, moves.iter().map(dwell).sum());
+    moves.last().map(|last| Move { kind, ..*last })
 }
 
 /// What a block of ours does otherwise than LinuxCNC, if anything. Places that are not known agree with any.
 fn difference(ours: &Move, theirs: &Move) -> Option<&'static str> {
     let near = |a: f64, b: f64| a.is_nan() || b.is_nan() || (a - b).abs() < 2e-4;
     let close = |a: Vec3, b: Vec3| near(a.x, b.x) && near(a.y, b.y) && near(a.z, b.z);
-    let same_way = match (ours.way, theirs.way) {
-        (Way::Arc(a, n), Way::Arc(b, m)) => close(a, b) && n == m,
-        (Way::Hole(a, t), Way::Hole(b, u)) => near(a, b) && near(t, u),
-        (Way::Dwell(a), Way::Dwell(b)) => near(a, b),
+    let same_way = match (ours.kind, theirs.kind) {
+        (MoveKind::Arc(a, n), MoveKind::Arc(b, m)) => close(a, b) && n == m,
+        (MoveKind::Hole(a, t), MoveKind::Hole(b, u)) => near(a, b) && near(t, u),
+        (MoveKind::Dwell(a), MoveKind::Dwell(b)) => near(a, b),
         (a, b) => a == b,
     };
-    let feeds = matches!(ours.way, Way::Feed | Way::Arc(..) | Way::Hole(..));
+    let feeds = matches!(ours.kind, MoveKind::Feed | MoveKind::Arc(..) | MoveKind::Hole(..));
     match () {
-        () if !same_way => Some("another way"),
+        () if !same_way => Some("another kind"),
         () if !close(ours.end, theirs.end) => Some("another end"),
         () if feeds && !near(ours.feed, theirs.feed) => Some("another feed"),
-        () if !matches!(ours.way, Way::Tool(_)) && !near(ours.spindle, theirs.spindle) => {
+        () if !matches!(ours.kind, MoveKind::Tool(_)) && !near(ours.spindle, theirs.spindle) => {
             Some("another spindle")
         }
         () if feeds && ours.coolant != theirs.coolant => Some("another coolant"),
@@ -267,7 +267,7 @@ fn linuxcnc_itself_does_in_each_block_what_the_proof_reads() {
             for block in blocks {
                 let moves = |all: &Blocks| all.get(&block).cloned().unwrap_or_default();
                 let (our, mut their) = (moves(&ours), moves(&theirs));
-                if let [Move { way: Way::Hole(..), .. }] = our[..] {
+                if let [Move { kind: MoveKind::Hole(..), .. }] = our[..] {
                     their = as_hole(&their).into_iter().collect();
                 }
                 let line = || text.lines().nth(block as usize - 1).unwrap_or_default().to_owned();

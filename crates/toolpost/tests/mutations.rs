@@ -743,9 +743,10 @@ impl Allowed<'_> {
             Act::Rapid(to) => {
                 let known = to.point.is_finite();
                 let slope = here.is_some_and(|here| {
-                    let leg =
-                        |leg: &[Position]| self.pose(&leg[0], &here) && self.pose(&leg[1], to);
-                    self.slopes(&here, to) && !way.windows(2).any(leg)
+                    let segment = |segment: &[Position]| {
+                        self.pose(&segment[0], &here) && self.pose(&segment[1], to)
+                    };
+                    self.slopes(&here, to) && !way.windows(2).any(segment)
                 });
                 here = Some(*to);
                 if slope || (known && !offset(step)) {
@@ -820,14 +821,14 @@ impl Allowed<'_> {
         };
         let off = 2.0 * self.proof.tip_mm + self.proof.linearisation_mm + self.proof.chord_mm;
         let on_the_way = |steps: &[Step], others: &[Step]| {
-            let (way, mut leg) = (points(others), 0);
+            let (way, mut segment) = (points(others), 0);
             steps.iter().zip(&points(steps)[1..]).all(|(step, point)| {
-                let near = |leg: &usize| {
-                    let distance = nearest_on_segment(way[*leg], way[leg + 1], *point).1;
-                    distance <= off && self.switched(&step.on, &others[*leg].on)
+                let near = |segment: &usize| {
+                    let distance = nearest_on_segment(way[*segment], way[segment + 1], *point).1;
+                    distance <= off && self.switched(&step.on, &others[*segment].on)
                 };
-                let found = (leg..others.len()).find(near);
-                leg = found.unwrap_or(leg);
+                let found = (segment..others.len()).find(near);
+                segment = found.unwrap_or(segment);
                 found.is_some()
             })
         };

@@ -25,8 +25,8 @@ struct Sample {
     line: u32,
 }
 
-/// A way of the program as the proof follows it, in machine coordinates; what is not known is NaN.
-struct Way {
+/// A segment of the program as the proof follows it, in machine coordinates; what is not known is NaN.
+struct PathSegment {
     line: u32,
     points: Vec<Vec3>,
 }
@@ -61,8 +61,8 @@ fn run(script: &Path, name: &str, text: &str, feed: u32) -> Vec<Sample> {
     samples.lines().skip(1).map(sample).collect()
 }
 
-/// The ways that our virtual control follows, in the machine coordinates of a control whose work zero is its own.
-fn followed(machine: &Machine, text: &str) -> Vec<Way> {
+/// The segments that our virtual control follows, in the machine coordinates of a control whose work zero is its own.
+fn followed(machine: &Machine, text: &str) -> Vec<PathSegment> {
     let settings = nc::settings(machine, control::Setup::default()).unwrap();
     let mut events: Vec<Event> = Vec::new();
     let keep = &mut |event: Event| {
@@ -70,7 +70,7 @@ fn followed(machine: &Machine, text: &str) -> Vec<Way> {
         Ok(())
     };
     control::read(&settings, "p.ngc", text.as_bytes(), keep).unwrap();
-    let (mut ways, mut here, mut length) = (Vec::new(), Vec3::NAN, Vec3::ZERO);
+    let (mut segments, mut here, mut length) = (Vec::new(), Vec3::NAN, Vec3::ZERO);
     let (mut cycle, mut spindle) = (None::<Cycle>, Spindle::Off);
     for Event { line, action } in events {
         let mut points = vec![here];
@@ -110,10 +110,10 @@ fn followed(machine: &Machine, text: &str) -> Vec<Way> {
         }
         if points.len() > 1 {
             here = points[points.len() - 1];
-            ways.push(Way { line, points });
+            segments.push(PathSegment { line, points });
         }
     }
-    ways
+    segments
 }
 
 /// How far `point` is from a line through `points`, mm; coordinates that are not known count for nothing.
@@ -134,8 +134,8 @@ fn apart(point: Vec3, points: &[Vec3]) -> f64 {
     pieces.fold(f64::INFINITY, f64::min)
 }
 
-/// How far the real axes leave the ways of the proof at the most, mm, and the line where they do.
-fn deviation(ways: &[Way], samples: &[Sample]) -> (f64, u32) {
+/// How far the real axes leave the segments of the proof at the most, mm, and the line where they do.
+fn deviation(segments: &[PathSegment], samples: &[Sample]) -> (f64, u32) {
     let mut worst = (0.0, 0);
     let mut note = |off: f64, line: u32| {
         if off > worst.0 {
@@ -144,20 +144,22 @@ fn deviation(ways: &[Way], samples: &[Sample]) -> (f64, u32) {
     };
     for sample in samples {
         // A line that is blended into the next may be reported as either; one that calls the tool goes where the machine likes.
-        let Some(at) = ways.iter().position(|way| way.line == sample.line) else { continue };
-        let last = ways.iter().rposition(|way| way.line == sample.line).unwrap();
-        let near = &ways[at.saturating_sub(2)..(last + 3).min(ways.len())];
-        let off = near.iter().map(|way| apart(sample.at, &way.points));
+        let Some(at) = segments.iter().position(|segment| segment.line == sample.line) else {
+            continue;
+        };
+        let last = segments.iter().rposition(|segment| segment.line == sample.line).unwrap();
+        let near = &segments[at.saturating_sub(2)..(last + 3).min(segments.len())];
+        let off = near.iter().map(|segment| apart(sample.at, &segment.points));
         note(off.fold(f64::INFINITY, f64::min), sample.line);
     }
-    for way in ways {
+    for segment in segments {
         let near: Vec<Vec3> = samples
             .iter()
-            .filter(|sample| sample.line.abs_diff(way.line) <= 4 || sample.line == 0)
+            .filter(|sample| sample.line.abs_diff(segment.line) <= 4 || sample.line == 0)
             .map(|sample| sample.at)
             .collect();
-        for &point in way.points.iter().skip(1).filter(|point| !point.is_nan()) {
-            note(apart(point, &near), way.line);
+        for &point in segment.points.iter().skip(1).filter(|point| !point.is_nan()) {
+            note(apart(point, &near), segment.line);
         }
     }
     worst
@@ -292,9 +294,9 @@ fn the_axes_of_a_real_control_are_where_the_proof_says() {
         let machine = mill(*path_tolerance);
         let text = posted(program, &machine);
         assert_eq!(prove(program, &machine, &text), Ok(()), "{name}\n{text}");
-        let ways = followed(&machine, &text);
+        let segments = followed(&machine, &text);
         let samples = run(&script, name, &text, *feed);
-        let (off, line) = deviation(&ways, &samples);
+        let (off, line) = deviation(&segments, &samples);
         assert!(off <= path_tolerance + ROUNDING, "{name}: {off} mm off at line {line}\n{text}");
     });
 }
@@ -351,13 +353,13 @@ fn the_axes_of_a_real_control_show_why_the_proof_refuses() {
     let machine = mill(0.01);
     let source = read("three-axes.cls");
     let text = posted(&source, &machine);
-    let ways = followed(&machine, &text);
+    let segments = followed(&machine, &text);
     each(&DAMAGES, |damage| {
         let damaged = (damage.edit)(&text);
         assert_ne!(damaged, text, "{}", damage.name);
         assert_eq!(prove(&source, &machine, &damaged), Err(damage.rule), "{}", damage.name);
         let samples = run(&script, &damage.name.replace([' ', '\''], "-"), &damaged, 20);
-        let (off, _) = deviation(&ways, &samples);
+        let (off, _) = deviation(&segments, &samples);
         assert!((damage.shows)(&samples, off), "{}: {off} mm", damage.name);
     });
 }

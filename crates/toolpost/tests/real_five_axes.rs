@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Beyond the path tolerance, mm: the words have four decimals, of degrees too, and the samples six.
 const ROUNDING: f64 = 0.002;
 
-/// How far a rapid may be from the straight way of the source, mm, and the tool axis from its way in the cut, degrees.
+/// How far a rapid may be from the straight line of the source, mm, and the tool axis from its own in the cut, degrees.
 const CORRIDOR: f64 = 0.1;
 const SWEEP: f64 = 1.001;
 
@@ -266,7 +266,7 @@ fn spot(mill: &Mill, sample: &Sample) -> Spot {
 }
 
 /// A motion of the source.
-struct Way {
+struct PathSegment {
     line: u32,
     cuts: bool,
     /// One point where nobody knows from where.
@@ -275,7 +275,7 @@ struct Way {
     axes: [Vec3; 2],
 }
 
-impl Way {
+impl PathSegment {
     /// How far `tip` is from it, mm, and at which part of it.
     fn apart(&self, tip: Vec3) -> (f64, f64) {
         let lengths: Vec<f64> = self.points.windows(2).map(|p| p[0].distance(p[1])).collect();
@@ -303,14 +303,14 @@ impl Way {
 }
 
 /// The motions of the source, holes as moves.
-fn ways(source: &Program) -> Vec<Way> {
+fn segments(source: &Program) -> Vec<PathSegment> {
     let (mut all, mut here, mut cycle, mut spindle) =
         (Vec::new(), None::<Pose>, None, Spindle::Off);
     let mut go = |line, cuts, points: Vec<Vec3>, to: Pose, here: &mut Option<Pose>| {
         let from = here.map_or(to.axis(), |pose| pose.axis());
         let start = here.map(|pose| pose.point());
         let points = start.into_iter().chain(points).collect();
-        all.push(Way { line, cuts, points, axes: [from, to.axis()] });
+        all.push(PathSegment { line, cuts, points, axes: [from, to.axis()] });
         *here = Some(to);
     };
     for record in &source.records {
@@ -368,7 +368,7 @@ struct Worst {
     axis: (f64, u32),
     /// How far a rapid is from the straight line, mm, where it is on it.
     rapid: (f64, u32),
-    /// Milliseconds in the cut, by rapid on the way, and clear of the part.
+    /// Milliseconds in the cut, by rapid on the line, and clear of the part.
     counts: [usize; 3],
 }
 
@@ -382,7 +382,7 @@ impl Worst {
 
 /// The walk along the source, millisecond by millisecond.
 struct Walk {
-    ways: Vec<Way>,
+    segments: Vec<PathSegment>,
     /// Every point of a cut.
     cuts: Vec<Vec3>,
     tolerance: f64,
@@ -394,25 +394,28 @@ struct Walk {
 
 impl Walk {
     fn new(source: &Program, tolerance: f64) -> Walk {
-        let ways = ways(source);
-        let points = ways.iter().filter(|way| way.cuts).flat_map(|way| way.points.iter().copied());
+        let segments = segments(source);
+        let points = segments
+            .iter()
+            .filter(|segment| segment.cuts)
+            .flat_map(|segment| segment.points.iter().copied());
         let cuts = points.collect();
-        Walk { ways, cuts, tolerance, at: 0, reached: false, worst: Worst::default() }
+        Walk { segments, cuts, tolerance, at: 0, reached: false, worst: Worst::default() }
     }
 
-    /// How far `spot` is from a motion, mm and degrees, where it is on it. Past a point of which nobody knows the way there
+    /// How far `spot` is from a motion, mm and degrees, where it is on it. Past a point to which nobody knows the path
     /// it goes between two milliseconds.
-    fn on(&self, way: &Way, here: &Spot, spot: &Spot) -> Option<(f64, f64)> {
-        let (off, part) = match way.points[..] {
+    fn on(&self, segment: &PathSegment, here: &Spot, spot: &Spot) -> Option<(f64, f64)> {
+        let (off, part) = match segment.points[..] {
             [point] => (geom::nearest_on_segment(here.tip, spot.tip, point).1, 1.0),
-            _ => way.apart(spot.tip),
+            _ => segment.apart(spot.tip),
         };
-        let [from, to] = way.axes;
-        let bend = match way.stands() {
+        let [from, to] = segment.axes;
+        let bend = match segment.stands() {
             true => geom::off_great_circle(from, to, spot.axis),
             false => angle_between(spot.axis, between(from, to, part)),
         };
-        let within = if way.cuts { self.tolerance } else { CORRIDOR };
+        let within = if segment.cuts { self.tolerance } else { CORRIDOR };
         (off <= within && bend.to_degrees() <= SWEEP).then_some((off, bend.to_degrees()))
     }
 
@@ -430,38 +433,39 @@ impl Walk {
                 && up.dot(axis) > -self.tolerance
                 && across.length() <= CORRIDOR
         };
-        let last = self.at.checked_sub(1).map(|last| &self.ways[last]);
-        let way = &self.ways[self.at];
+        let last = self.at.checked_sub(1).map(|last| &self.segments[last]);
+        let segment = &self.segments[self.at];
         let comes = last.is_some_and(|last| over(last.end(), last.axes[1]));
-        comes || over(way.end(), way.axes[1]) && (way.points.len() == 1 || !way.cuts)
+        comes
+            || over(segment.end(), segment.axes[1]) && (segment.points.len() == 1 || !segment.cuts)
     }
 
     /// The tool goes on from `here` to `spot`.
     fn step(&mut self, here: &Spot, spot: &Spot) -> Result<(), String> {
         loop {
-            let way = &self.ways[self.at];
+            let segment = &self.segments[self.at];
             let off = |place| geom::nearest_on_segment(here.tip, spot.tip, place).1;
-            let (passed, within) = (off(way.end()), self.tolerance.max(0.02));
-            let turned = angle_between(spot.axis, way.axes[1]).to_degrees();
+            let (passed, within) = (off(segment.end()), self.tolerance.max(0.02));
+            let turned = angle_between(spot.axis, segment.axes[1]).to_degrees();
             self.reached |= passed <= within && turned <= SWEEP;
-            let next = self.ways.get(self.at + 1);
-            // A rapid from elsewhere may pass the end of its way between two samples.
-            let passes = |next: &Way| !next.cuts && off(next.end()) <= within;
+            let next = self.segments.get(self.at + 1);
+            // A rapid from elsewhere may pass the end of its line between two samples.
+            let passes = |next: &PathSegment| !next.cuts && off(next.end()) <= within;
             let goes_on = self.reached
                 && next.is_some_and(|next| self.on(next, here, spot).is_some() || passes(next));
-            if !goes_on && let Some((off, bend)) = self.on(way, here, spot) {
+            if !goes_on && let Some((off, bend)) = self.on(segment, here, spot) {
                 // At a corner it is on the motion before or behind as well.
-                let next = [self.at.wrapping_sub(1), self.at + 1].map(|at| self.ways.get(at));
-                let next = next.into_iter().flatten().map(|way| way.apart(spot.tip).0);
+                let next = [self.at.wrapping_sub(1), self.at + 1].map(|at| self.segments.get(at));
+                let next = next.into_iter().flatten().map(|segment| segment.apart(spot.tip).0);
                 let off = next.fold(off, f64::min);
                 let worst = &mut self.worst;
-                if way.cuts {
-                    Worst::note(&mut worst.tip, off, way.line);
-                    Worst::note(&mut worst.axis, bend, way.line);
+                if segment.cuts {
+                    Worst::note(&mut worst.tip, off, segment.line);
+                    Worst::note(&mut worst.axis, bend, segment.line);
                 } else {
-                    Worst::note(&mut worst.rapid, off, way.line);
+                    Worst::note(&mut worst.rapid, off, segment.line);
                 }
-                worst.counts[usize::from(!way.cuts)] += 1;
+                worst.counts[usize::from(!segment.cuts)] += 1;
                 return Ok(());
             }
             if !goes_on && self.is_clear(spot) {
@@ -469,11 +473,11 @@ impl Walk {
                 return Ok(());
             }
             if !self.reached || next.is_none() {
-                let (off, _) = way.apart(spot.tip);
-                let kind = if way.cuts { "cut" } else { "rapid" };
+                let (off, _) = segment.apart(spot.tip);
+                let kind = if segment.cuts { "cut" } else { "rapid" };
                 return Err(format!(
                     "{spot:?} is {off} mm off the {kind} of source line {}",
-                    way.line
+                    segment.line
                 ));
             }
             (self.at, self.reached) = (self.at + 1, false);
@@ -511,9 +515,9 @@ fn compared(
         let step = walk.step(&from, &spot);
         step.map_err(|why| format!("millisecond {i}, program line {}: {why}", sample.line))?;
     }
-    match walk.at + 1 == walk.ways.len() && walk.reached {
+    match walk.at + 1 == walk.segments.len() && walk.reached {
         true => Ok(walk.worst),
-        false => Err(format!("it has come to source line {} only", walk.ways[walk.at].line)),
+        false => Err(format!("it has come to source line {} only", walk.segments[walk.at].line)),
     }
 }
 
@@ -544,7 +548,7 @@ fn leaning(tilt: f64, azimuth: f64) -> Vec3 {
     Vec3::new(tilt.sin() * azimuth.cos(), tilt.sin() * azimuth.sin(), tilt.cos()).normalize()
 }
 
-/// A job of tilted faces and holes, ridges over which the tool turns, some through the pole, and ways round and round.
+/// A job of tilted faces and holes, ridges over which the tool turns, some through the pole, and moves round and round.
 fn generated(seed: u64) -> Program {
     let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let mut job = Builder::new(format!("JOB {seed}"));
@@ -572,15 +576,15 @@ fn generated(seed: u64) -> Program {
             1 => {
                 let to =
                     if seed.is_multiple_of(3) { Vec3::Z * 2.0 - axis } else { dice.leaning(45.0) };
-                let (to, way) = (to.normalize(), dice.place() / 2.0);
+                let (to, across) = (to.normalize(), dice.place() / 2.0);
                 job.rapid(p(place + axis * 60.0), Some(a(axis))).unwrap();
                 job.rapid(p(place + axis * 2.0), Some(a(axis))).unwrap();
                 for i in 0..=12 {
                     let part = f64::from(i) / 12.0;
                     let now = between(axis, to, part);
-                    job.line(p(place + way * part), Some(a(now))).unwrap();
+                    job.line(p(place + across * part), Some(a(now))).unwrap();
                 }
-                job.rapid(p(place + way + to * 60.0), Some(a(to))).unwrap();
+                job.rapid(p(place + across + to * 60.0), Some(a(to))).unwrap();
             }
             2 => {
                 let (tilt, start) = (dice.number(5.0, 40.0), dice.number(0.0, 360.0));
