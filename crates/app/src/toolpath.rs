@@ -17,7 +17,7 @@ use source::apt::{self, Csys, Cutcom, SetUps};
 use std::path::{Path, PathBuf};
 
 /// What a source does not say itself: what an NC program was written for and what the operator has set up, and how
-/// records of cutter-location data are meant.
+/// statements of CL data are meant.
 #[derive(Clone, Debug, Default)]
 pub struct Origin {
     /// The source is an NC program of this control or machine: a name in the library, or the path of a file. A job of
@@ -398,7 +398,7 @@ impl Origin {
     /// Checks that what it says goes together for the source `file`.
     ///
     /// # Errors
-    /// It says how a control is set up and names none, or names one and says how records of cutter-location data are meant.
+    /// It says how a control is set up and names none, or names one and says how statements of CL data are meant.
     pub(crate) fn goes_with(&self, file: &str) -> Result<(), Stop> {
         if self.from.is_some() {
             return self.is_of_no_record(file);

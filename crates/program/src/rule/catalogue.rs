@@ -224,7 +224,7 @@ rules! {
         "have slots milled (`--hole-mill`), or divide the slot"
         "A slot of 3 m with a drill of 0.8 mm";
     CircleWithoutGoto "circle-without-goto" []
-        "A CIRCLE record has no GOTO that ends it."
+        "A CIRCLE statement has no GOTO that ends it."
         "add the GOTO that ends the arc"
         "`CIRCLE/0,0,0,0,0,1,10` and then `FINI`";
     Clamp "clamp" []
@@ -672,7 +672,7 @@ rules! {
         "make the operation anew: no name of a command may have a line break"
         "A command whose name has a line break";
     From "from" []
-        "A FROM record is the first position, and how the tool came there is not known."
+        "A FROM statement is the first position, and how the tool came there is not known."
         "check that the way there is free"
         "`FROM/0,0,100`";
     Gap "gap" []
@@ -785,7 +785,7 @@ rules! {
         "linuxcnc: `M66`";
     Insert "insert" []
         "INSERT text is passed on as a comment or a stop, not as code."
-        "use the records of cutter-location data for what the machine is to do"
+        "use the statements of cutter-location data for what the machine is to do"
         "`INSERT/M98 P100`";
     Internal "internal" []
         "The program met a state that should not be."
@@ -892,7 +892,7 @@ rules! {
         "nothing to do, if whole lines are meant"
         "`(stroke (width 0.1) (type dash))`";
     LineTooLong "line-too-long" []
-        "A record is longer than is read."
+        "A statement is longer than is read."
         "give cutter-location data in text form"
         "A binary file given as cutter-location data";
     Linearisation "linearisation" []
@@ -1000,8 +1000,8 @@ rules! {
         "correct the macro, or the values that %AD gives it"
         "`1000000x1000000x10`";
     Malformed "malformed" []
-        "A record is not written as its syntax says."
-        "correct the record, or write the file again from the CAM system"
+        "A statement is not written as its syntax says."
+        "correct the statement, or write the file again from the CAM system"
         "apt: `GOTO/1,2`";
     ManyCommands "many-commands" ["nc-many-commands"]
         "A block has two commands of which the control takes one."
@@ -1101,7 +1101,7 @@ rules! {
         "A slot of 0.6 mm with a cutter of 1 mm";
     NoCycle "no-cycle" ["cycle-missing"]
         "A hole has no cycle."
-        "give a CYCLE record before the first hole"
+        "give a CYCLE statement before the first hole"
         "A hole in front of the cycle, in a program that other software builds";
     NoDiameter "no-diameter" []
         "A tool of a drill file has no diameter."
@@ -1158,7 +1158,7 @@ rules! {
     NoStart "no-start" []
         "An arc has no known start."
         "give a move to the start point before the arc"
-        "apt: `CIRCLE/0,0,0,0,0,1,10`, `GOTO/0,10,0` as the first records";
+        "apt: `CIRCLE/0,0,0,0,0,1,10`, `GOTO/0,10,0` as the first statements";
     NoSuchPart "no-such-part" []
         "The board has nothing for a program, or for a tool, that is asked for."
         "ask for parts that the board has"
@@ -1170,7 +1170,7 @@ rules! {
     NoTool "no-tool" []
         "Something is cut, and no tool is given for it."
         "call the tool (LOAD/TOOL) before its first move; for a board give `--tool` or `--vee`"
-        "A cutter-location file whose first record is a cut";
+        "A cutter-location file whose first statement is a cut";
     NoUnit "no-unit" []
         "A length comes before the unit."
         "write the unit at the start of the file"
@@ -1930,7 +1930,7 @@ rules! {
     Truncated "truncated" []
         "The file is cut off."
         "write the file again from the CAM system: it may be cut off"
-        "A file that ends within a record";
+        "A file that ends within a statement";
     TurnHeight "turn-height" []
         "Rotary axes turn where the tool may meet the part."
         "report this with the toolpath, or set `safe_height` of the machine"

@@ -9,13 +9,13 @@ use super::Reader;
 use super::dialect::{Dialect, Turn};
 use super::frame::no_direction;
 use super::motion::Next;
-use super::record::Record;
 use super::report::{Fault, Outcome};
+use super::statement::Statement;
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between, direction};
 use program::{ArcTo, Circle, Diagnostic, Op, Pose, Program, Rule};
 use std::f64::consts::{PI, TAU};
 
-/// How far the ends of an arc, and the radius the record gives, may be from each other, mm. Files give
+/// How far the ends of an arc, and the radius the statement gives, may be from each other, mm. Files give
 /// four decimals: in mm the radii of the real ones differ by up to 0.00015, and an inch has 25.4.
 pub(super) const RADIUS_TOLERANCE: f64 = 0.005;
 
@@ -29,11 +29,11 @@ const SNAP: f64 = 1e-4;
 /// Ends of an arc nearer than this, mm, differ by rounding.
 const NEARLY: f64 = 0.002;
 
-/// A circle of a record, in the work frame.
+/// A circle of a statement, in the work frame.
 #[derive(Clone, Debug)]
 pub(super) struct CircleWord {
     center: Vec3,
-    /// As the record gives it.
+    /// As the statement gives it.
     axis: Vec3,
     radius: Option<f64>,
     /// `TIMES,n`: full turns in all.
@@ -43,27 +43,27 @@ pub(super) struct CircleWord {
 impl Reader {
     /// `CIRCLE/cx,cy,cz,i,j,k`, then `r`, and of Siemens NX and Makino tolerance, its share, and the
     /// tool's diameter and corner radius; `TIMES,n` for a helix. The next `GOTO` is the end.
-    pub(super) fn circle(&mut self, record: &Record) -> Outcome {
+    pub(super) fn circle(&mut self, statement: &Statement) -> Outcome {
         self.may_turn()?;
-        let first = usize::from(record.is(0, "CANON"));
-        let times = (first..record.fields.len()).find(|i| record.is(*i, "TIMES"));
-        let count = times.unwrap_or(record.fields.len()) - first;
+        let first = usize::from(statement.is(0, "CANON"));
+        let times = (first..statement.fields.len()).find(|i| statement.is(*i, "TIMES"));
+        let count = times.unwrap_or(statement.fields.len()) - first;
         if !matches!(count, 6..=11) {
             let message = format!("{count} values where a circle takes 6 to 11");
             return Err(Fault::new(Rule::Malformed, message)
                 .help("write CIRCLE/cx,cy,cz,i,j,k,r")
                 .fields(first, count));
         }
-        let center = self.setup.to_work.transform_point3(self.point(record, first)?);
-        let axis = Vec3::from_array(record.numbers(first + 3)?);
+        let center = self.setup.to_work.transform_point3(self.point(statement, first)?);
+        let axis = Vec3::from_array(statement.numbers(first + 3)?);
         let axis = direction(axis).ok_or_else(|| no_direction().fields(first + 3, 3))?;
         let radius = match count {
             6 => None,
-            _ => Some(self.length(record.number(first + 6, "the radius")?)?),
+            _ => Some(self.length(statement.number(first + 6, "the radius")?)?),
         };
         let times = match times {
             None => 1,
-            Some(i) => match record.number(i + 1, "the number of turns")? {
+            Some(i) => match statement.number(i + 1, "the number of turns")? {
                 n if n.fract() == 0.0 && (1.0..=1e4).contains(&n) => n as u32,
                 n => {
                     let message = format!("{n} turns cannot be made");
@@ -73,7 +73,7 @@ impl Reader {
         };
         let axis = self.setup.to_work.transform_vector3(axis);
         self.next = Next::Arc(Box::new(CircleWord { center, axis, radius, times }));
-        self.circle_at = record.line;
+        self.circle_at = statement.line;
         Ok(())
     }
 
@@ -101,24 +101,24 @@ impl Reader {
     }
 
     /// The arc of `circle` from where the tool is to `end`.
-    pub(super) fn arc(&mut self, record: &Record, circle: &CircleWord, end: Pose) -> Outcome {
+    pub(super) fn arc(&mut self, statement: &Statement, circle: &CircleWord, end: Pose) -> Outcome {
         self.circles = true;
         let normal = match self.dialect.turn().unwrap_or(Turn::RightHand) {
             Turn::RightHand => circle.axis,
             Turn::LeftHand => -circle.axis,
         };
-        self.arc_about(record, circle, normal, end)
+        self.arc_about(statement, circle, normal, end)
     }
 
     /// The arc of `circle` counter-clockwise about `normal`.
     fn arc_about(
         &mut self,
-        record: &Record,
+        statement: &Statement,
         circle: &CircleWord,
         normal: Vec3,
         end: Pose,
     ) -> Outcome {
-        self.prepare(record, true)?;
+        self.prepare(statement, true)?;
         let Some(start) = self.tip else {
             return Err(Fault::new(Rule::NoStart, "an arc, but from nowhere")
                 .help("add a GOTO to its start before the CIRCLE"));
@@ -154,18 +154,18 @@ impl Reader {
         }
         let turns = circle.times - 1;
         let to = ArcTo { end, circle: Circle::new(circle.center, arc.normal, turns)? };
-        self.push(record.line, Op::Arc(Box::new(to)));
+        self.push(statement.line, Op::Arc(Box::new(to)));
         self.arrive(end);
         self.last_arc = Some(start.point());
         Ok(())
     }
 
-    /// A further point of the arc that the last record made: the arc goes on to it. Whether there is
+    /// A further point of the arc that the last statement made: the arc goes on to it. Whether there is
     /// such an arc.
-    pub(super) fn lengthen_arc(&mut self, record: &Record) -> Result<bool, Box<Fault>> {
+    pub(super) fn lengthen_arc(&mut self, statement: &Statement) -> Result<bool, Box<Fault>> {
         let Some(start) = self.last_arc else { return Ok(false) };
-        record.count(&[3, 6], "x,y,z")?;
-        let point = self.setup.to_work.transform_point3(self.point(record, 0)?);
+        statement.count(&[3, 6], "x,y,z")?;
+        let point = self.setup.to_work.transform_point3(self.point(statement, 0)?);
         let Some(Op::Arc(to)) = self.program.records.last_mut().map(|r| &mut r.op) else {
             return Ok(false);
         };
@@ -187,14 +187,14 @@ impl Reader {
     /// Creo may list several points of an arc. In `GOTO`s of their own they could not be distinguished from
     /// chords, so a line of Creo to a further point of the circle it has just left is refused. The line
     /// back to its start is the chord that closes the contour: a full circle ends at its start in its
-    /// own record.
-    pub(super) fn not_on_the_arc(&mut self, record: &Record, pose: &Pose) -> Outcome {
+    /// own statement.
+    pub(super) fn not_on_the_arc(&mut self, statement: &Statement, pose: &Pose) -> Outcome {
         let (Dialect::Creo, Some(start)) = (self.dialect, self.last_arc) else { return Ok(()) };
         if start.distance(pose.point()) <= RADIUS_TOLERANCE {
             let message =
                 "a line to the start of the arc just cut: read as the chord that closes it";
             self.report.warn(
-                record,
+                statement,
                 Rule::ArcPoints,
                 message,
                 "check that no full circle is meant",
@@ -227,31 +227,31 @@ impl Reader {
     }
 
     /// `INDIRV/i,j,k`: the direction in which the next `TLON` sets out.
-    pub(super) fn indirv(&mut self, record: &Record) -> Outcome {
-        record.count(&[3], "INDIRV/i,j,k")?;
-        let towards = Vec3::from_array(record.numbers(0)?);
+    pub(super) fn indirv(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[3], "INDIRV/i,j,k")?;
+        let towards = Vec3::from_array(statement.numbers(0)?);
         self.towards = Some(self.work_axis(towards).map_err(|fault| fault.fields(0, 3))?);
         Ok(())
     }
 
     /// `TLON,GOFWD/(CIRCLE/cx,cy,cz,r),ON,(LINE/x0,y0,z0,x1,y1,z1)`, with `ON,2,INTOF` for `ON`: along
     /// the circle, setting out as `INDIRV` says, to the end of the line.
-    pub(super) fn tlon(&mut self, record: &Record) -> Outcome {
+    pub(super) fn tlon(&mut self, statement: &Statement) -> Outcome {
         self.may_turn()?;
         let syntax = "write TLON,GOFWD/(CIRCLE/cx,cy,cz,r),ON,(LINE/x0,y0,z0,x1,y1,z1)";
-        let count = record.fields.len();
-        let line = if record.is(7, "INTOF") { 8 } else { 6 };
-        let known = record.is(0, "CIRCLE")
-            && record.is(5, "ON")
-            && record.is(line, "LINE")
+        let count = statement.fields.len();
+        let line = if statement.is(7, "INTOF") { 8 } else { 6 };
+        let known = statement.is(0, "CIRCLE")
+            && statement.is(5, "ON")
+            && statement.is(line, "LINE")
             && count == line + 7;
         if !known {
             let message = "only a circle up to a line is known here";
             return Err(Fault::new(Rule::Unsupported, message).help(syntax));
         }
-        let center = self.setup.to_work.transform_point3(self.point(record, 1)?);
-        let radius = Some(self.length(record.number(4, "the radius")?)?);
-        let end = self.setup.to_work.transform_point3(self.point(record, line + 4)?);
+        let center = self.setup.to_work.transform_point3(self.point(statement, 1)?);
+        let radius = Some(self.length(statement.number(4, "the radius")?)?);
+        let end = self.setup.to_work.transform_point3(self.point(statement, line + 4)?);
         let (Some(start), Some(towards)) = (self.tip, self.towards.take()) else {
             return Err(Fault::new(
                 Rule::NoStart,
@@ -268,7 +268,7 @@ impl Reader {
         let normal = principal.into_iter().find(|a| a.distance(normal) < SNAP).unwrap_or(normal);
         self.next = Next::Line;
         let circle = CircleWord { center, axis: normal, radius, times: 1 };
-        self.arc_about(record, &circle, normal, Pose::new(end, self.axis)?)
+        self.arc_about(statement, &circle, normal, Pose::new(end, self.axis)?)
             .map_err(|fault| fault.fields(0, count))
     }
 }

@@ -1,17 +1,17 @@
 //! Hole cycles: `CYCLE/` and the points that follow.
 //!
-//! Heights count from the point of the hole along the tool axis, away from the part. The record gives
+//! Heights count from the point of the hole along the tool axis, away from the part. The statement gives
 //! them as couplets of a word and a value in any order (ISO 4343:2000).
 
 use super::motion::Next;
-use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
+use super::statement::{Field, Statement};
 use super::technology::{FeedUnit, is_dwell, speed_of};
 use super::{Dialect, Reader, Ready};
 use geom::Vec3;
 use program::{Cycle, CycleKind, Feed, Op, Pose, Rule, Spindle};
 
-/// What a minor word of a `CYCLE` record is about.
+/// What a minor word of a `CYCLE` statement is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     /// Depth of the bottom.
@@ -56,7 +56,7 @@ const PARTS: [(&str, Part); 17] = [
     ("ANGLE", Part::Angle),
 ];
 
-/// The words and values of a `CYCLE` record.
+/// The words and values of a `CYCLE` statement.
 #[derive(Default)]
 struct Parts {
     /// By [`Part`].
@@ -72,7 +72,7 @@ impl Parts {
     }
 }
 
-/// What the first words of a `CYCLE` record ask for.
+/// What the first words of a `CYCLE` statement ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Drill,
@@ -119,11 +119,11 @@ const OTHER_BORES: [(&str, &str); 3] = [
 /// The active cycle.
 #[derive(Clone, Debug)]
 pub(super) struct ActiveCycle {
-    /// Of its record.
+    /// Of its statement.
     line: u32,
-    /// As its record gives it; pitch, hand and a dwell in turns follow at each hole.
+    /// As its statement gives it; pitch, hand and a dwell in turns follow at each hole.
     cycle: Cycle,
-    /// Threads an inch of a tap, where the record gives them.
+    /// Threads an inch of a tap, where the statement gives them.
     threads: Option<f64>,
     /// Dwell in turns of the spindle.
     turns: Option<f64>,
@@ -136,7 +136,7 @@ pub(super) struct ActiveCycle {
 }
 
 impl ActiveCycle {
-    /// Line of its record.
+    /// Line of its statement.
     pub fn line(&self) -> u32 {
         self.line
     }
@@ -152,15 +152,15 @@ impl ActiveCycle {
 impl Reader {
     /// `CYCLE/kind,word,value,...`, `CYCLE/OFF`, `CYCLE/ON`; `CYCLE/INIT` and `CYCLE/CLEAR` of
     /// SolidWorks CAM before the kind.
-    pub(super) fn cycle_record(&mut self, record: &Record) -> Outcome {
+    pub(super) fn cycle_statement(&mut self, statement: &Statement) -> Outcome {
         self.no_pending_circle()?;
         self.ready = Ready::No;
         match () {
-            () if record.is(0, "OFF") => {
-                self.end_cycle(record);
+            () if statement.is(0, "OFF") => {
+                self.end_cycle(statement);
                 return Ok(());
             }
-            () if record.is(0, "ON") => {
+            () if statement.is(0, "ON") => {
                 let initial = self.tip.map(|tip| tip.point());
                 let last = self.cycle.take().or_else(|| self.last_cycle.take());
                 self.cycle = last.map(|last| ActiveCycle { initial, ..last });
@@ -169,10 +169,10 @@ impl Reader {
                     None => Err(Fault::new(Rule::Malformed, "no cycle has been given yet")),
                 };
             }
-            // Both say to which level the tool goes back between holes. The record that follows gives
+            // Both say to which level the tool goes back between holes. The statement that follows gives
             // RTRCTO, the higher of the two, and that is what is kept.
-            () if record.is(0, "INIT") || record.is(0, "CLEAR") => {
-                return record.count(&[1], "CYCLE/INIT or CYCLE/CLEAR").map(drop);
+            () if statement.is(0, "INIT") || statement.is(0, "CLEAR") => {
+                return statement.count(&[1], "CYCLE/INIT or CYCLE/CLEAR").map(drop);
             }
             () => {}
         }
@@ -183,28 +183,28 @@ impl Reader {
                                                                not at all",
             ));
         }
-        let active = self.define(record)?;
+        let active = self.define(statement)?;
         self.cycle = Some(active);
         Ok(())
     }
 
-    fn end_cycle(&mut self, record: &Record) {
+    fn end_cycle(&mut self, statement: &Statement) {
         let Some(mut active) = self.cycle.take() else { return };
         if active.written.take().is_some() {
-            self.push(record.line, Op::CycleOff);
+            self.push(statement.line, Op::CycleOff);
         }
         self.last_cycle = Some(active);
     }
 
-    /// The cycle that `record` describes.
-    fn define(&mut self, record: &Record) -> Result<ActiveCycle, Box<Fault>> {
-        let (words, kind) = self.kind(record)?;
-        if record.is(0, "TAP") && record.is(1, "FLOAT") {
+    /// The cycle that `statement` describes.
+    fn define(&mut self, statement: &Statement) -> Result<ActiveCycle, Box<Fault>> {
+        let (words, kind) = self.kind(statement)?;
+        if statement.is(0, "TAP") && statement.is(1, "FLOAT") {
             let help = "a floating holder takes it too; check which one holds the tap";
             let message = "TAP,FLOAT is written as any tap, with its pitch";
-            self.report.warn(record, Rule::TapHolder, message, help);
+            self.report.warn(statement, Rule::TapHolder, message, help);
         }
-        let parts = self.parts(record, words)?;
+        let parts = self.parts(statement, words)?;
         let clearance = parts.get(Part::Clearance).ok_or_else(|| {
             Fault::new(
                 Rule::NoClearPlane,
@@ -220,7 +220,7 @@ impl Reader {
         let retract = parts.get(Part::Retract).unwrap_or(clearance);
         if retract < clearance && !parts.to_initial {
             let help = "the tool goes back to the higher of the two";
-            self.report.warn(record, Rule::Retract, "RTRCTO is lower than RAPTO", help);
+            self.report.warn(statement, Rule::Retract, "RTRCTO is lower than RAPTO", help);
         }
         let kind = cycle_kind(kind, &parts)?;
         let (first_peck, peck) = (parts.get(Part::FirstPeck), parts.get(Part::Peck));
@@ -247,50 +247,50 @@ impl Reader {
             Some(active) => (active.initial, active.written),
             None => (self.tip.map(|tip| tip.point()), None),
         };
-        let (line, to_initial) = (record.line, parts.to_initial);
+        let (line, to_initial) = (statement.line, parts.to_initial);
         Ok(ActiveCycle { line, cycle, threads, turns, to_initial, initial, written })
     }
 
-    /// The words and values of `record` from field `i` on.
-    fn parts(&mut self, record: &Record, mut i: usize) -> Result<Parts, Box<Fault>> {
+    /// The words and values of `statement` from field `i` on.
+    fn parts(&mut self, statement: &Statement, mut i: usize) -> Result<Parts, Box<Fault>> {
         let mut parts = Parts::default();
-        while i < record.fields.len() {
-            if let Some(unit) = FeedUnit::of(record, i) {
-                let number = record.number(i + 1, "the feed")?;
+        while i < statement.fields.len() {
+            if let Some(unit) = FeedUnit::of(statement, i) {
+                let number = statement.number(i + 1, "the feed")?;
                 let feed = self.feed_of(number, unit).map_err(|fault| fault.fields(i + 1, 1))?;
                 parts.feed = Some(feed);
                 i += 2;
                 continue;
             }
-            if let Some(word) = ["OPTION", "CAM"].iter().find(|word| record.is(i, word)) {
+            if let Some(word) = ["OPTION", "CAM"].iter().find(|word| statement.is(i, word)) {
                 // Codes of one control (Siemens NX); OPTION may stand alone.
-                let has_value = matches!(record.fields.get(i + 1), Some(Field::Number(_)));
+                let has_value = matches!(statement.fields.get(i + 1), Some(Field::Number(_)));
                 if !has_value && *word == "CAM" {
-                    record.number(i + 1, "its value")?;
+                    statement.number(i + 1, "its value")?;
                 }
                 let message = format!("{word} of a cycle is not passed on");
                 let help = "check whether the job needs it";
-                self.report.warn(record, Rule::IgnoredWord, &message, help);
+                self.report.warn(statement, Rule::IgnoredWord, &message, help);
                 i += 1 + usize::from(has_value);
                 continue;
             }
-            let known = PARTS.iter().find(|(word, _)| record.is(i, word));
+            let known = PARTS.iter().find(|(word, _)| statement.is(i, word));
             let (word, mut part) = *known.ok_or_else(|| {
                 Fault::new(Rule::Unsupported, "this is not known of a cycle")
                     .help("write a word and its value: FEDTO, RAPTO, RTRCTO, INCR, DWELL, MMPM")
                     .fields(i, 1)
             })?;
-            if part == Part::Retract && record.is(i + 1, "AUTO") {
+            if part == Part::Retract && statement.is(i + 1, "AUTO") {
                 parts.to_initial = true;
                 i += 2;
                 continue;
             }
-            if part == Part::Dwell && record.is(i + 1, "REV") {
+            if part == Part::Dwell && statement.is(i + 1, "REV") {
                 part = Part::DwellTurns;
                 i += 1;
             }
-            let number = record.number(i + 1, "its value")?;
-            if matches!(record.fields.get(i + 2), Some(Field::Number(_))) {
+            let number = statement.number(i + 1, "its value")?;
+            if matches!(statement.fields.get(i + 2), Some(Field::Number(_))) {
                 return Err(
                     Fault::new(Rule::Unsupported, "one value is taken here").fields(i + 2, 1)
                 );
@@ -309,7 +309,7 @@ impl Reader {
                 part => part,
             };
             if let Some(earlier) = parts.get(part).or(parts.get(other)) {
-                self.twice(record, i, part, earlier != number)?;
+                self.twice(statement, i, part, earlier != number)?;
             }
             let slot = &mut parts.values[part as usize];
             // Of two heights from which to feed, the higher is safe.
@@ -320,21 +320,22 @@ impl Reader {
     }
 
     /// A part that is given twice: only two heights from which to feed make sense together.
-    fn twice(&mut self, record: &Record, field: usize, part: Part, differ: bool) -> Outcome {
+    fn twice(&mut self, statement: &Statement, field: usize, part: Part, differ: bool) -> Outcome {
         if part != Part::Clearance {
             return Err(Fault::new(Rule::Malformed, "this is given twice").fields(field, 2));
         }
         if differ {
             let help = "the tool feeds from the higher of the two";
-            self.report.warn(record, Rule::ClearPlane, "CLEAR and RAPTO are both given", help);
+            self.report.warn(statement, Rule::ClearPlane, "CLEAR and RAPTO are both given", help);
         }
         Ok(())
     }
 
     /// How many words name the cycle, and which it is.
-    fn kind(&self, record: &Record) -> Result<(usize, Kind), Box<Fault>> {
-        let matches = |words: &&[&str]| words.iter().enumerate().all(|(i, w)| record.is(i, w));
-        let other = OTHER_BORES.iter().find(|(word, _)| record.is(0, "BORE") && record.is(1, word));
+    fn kind(&self, statement: &Statement) -> Result<(usize, Kind), Box<Fault>> {
+        let matches = |words: &&[&str]| words.iter().enumerate().all(|(i, w)| statement.is(i, w));
+        let other =
+            OTHER_BORES.iter().find(|(word, _)| statement.is(0, "BORE") && statement.is(1, word));
         if let Some((word, reason)) = other {
             return Err(Fault::new(Rule::Unsupported, format!("BORE,{word} {reason}"))
                 .help("let the CAM system write BORE or BORE,DRAG, or the single moves")
@@ -346,7 +347,7 @@ impl Reader {
                 .help("cycles are DRILL, DEEP, DEEP2, BRKCHP, TAP, BORE, REAM, FACE, CSINK, THRU")
                 .fields(0, 1)
         })?;
-        if matches!(record.fields.get(words.len()), Some(Field::Number(_))) {
+        if matches!(statement.fields.get(words.len()), Some(Field::Number(_))) {
             return Err(self.by_position().fields(words.len(), 1));
         }
         Ok((words.len(), *kind))
@@ -426,7 +427,7 @@ impl Reader {
     }
 
     /// The cycle of `active` as it is at a hole here. A tap and a dwell in turns hang on the speed, the
-    /// hand and the feed, which are modal and may change after the record of the cycle and between two
+    /// hand and the feed, which are modal and may change after the statement of the cycle and between two
     /// holes.
     fn at_this_hole(&self, active: &ActiveCycle) -> Result<Cycle, Box<Fault>> {
         let mut cycle = active.cycle;
@@ -440,7 +441,7 @@ impl Reader {
     }
 
     /// One hole of the active cycle, at `pose`.
-    pub(super) fn hole(&mut self, record: &Record, pose: Pose) -> Outcome {
+    pub(super) fn hole(&mut self, statement: &Statement, pose: Pose) -> Outcome {
         let Some(active) = &self.cycle else { return Ok(()) };
         let mut cycle = self.at_this_hole(active)?;
         let axis = self.axis;
@@ -462,7 +463,7 @@ impl Reader {
                 active.written = Some(cycle);
             }
         }
-        self.push(record.line, Op::Hole(pose));
+        self.push(statement.line, Op::Hole(pose));
         self.arrive(pose);
         self.tip = Some(pose.at(pose.point() + axis * cycle.retract)?);
         Ok(())

@@ -1,6 +1,6 @@
 //! Which CAM system wrote a file, as its content shows, and what follows from that.
 
-use super::record::{Lines, is_blank};
+use super::statement::{Lines, is_blank};
 use std::fmt;
 
 /// The CAM system whose habits a file shows.
@@ -20,7 +20,7 @@ pub enum Dialect {
     Creo,
 }
 
-/// How an arc turns about the vector of its `CIRCLE` record.
+/// How an arc turns about the vector of its `CIRCLE` statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Turn {
     /// Counter-clockwise, seen against the vector: the right-hand rule.

@@ -3,8 +3,8 @@
 //! The frame in which the file's first coordinates stand is the work frame. A later one is resolved
 //! relative to it, so that all poses leave the reader in the work frame.
 
-use super::record::Record;
 use super::report::{Fault, Outcome};
+use super::statement::Statement;
 use super::{Csys, Dialect, Reader, SetUps};
 use geom::{Frame, INCH, Mat3, Vec3, direction};
 use program::{Op, Rule};
@@ -20,7 +20,7 @@ pub(super) const SKEW: f64 = 1e-3;
 
 /// Where the coordinates of the file stand.
 pub(super) struct Setup {
-    /// From the coordinates of the records to the work frame.
+    /// From the coordinates of the statements to the work frame.
     pub(super) to_work: Frame,
     /// Whether that is no change at all; spares the product on the fast path.
     pub(super) identity: bool,
@@ -108,13 +108,13 @@ fn frame_of_rows(rows: &[[f64; 4]]) -> Result<Frame, Box<Fault>> {
 
 impl Reader {
     /// `UNITS/MM`, `UNITS/INCHES`, `UNIT/MM`, `UNIT/IN`.
-    pub(super) fn units(&mut self, record: &Record) -> Outcome {
-        record.count(&[1], "UNITS/MM or UNITS/INCHES")?;
+    pub(super) fn units(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[1], "UNITS/MM or UNITS/INCHES")?;
         let mm = ["MM", "MMS", "MILLIMETER", "MILLIMETERS", "METRIC"];
         let inch = ["IN", "INCH", "INCHES"];
         let unit = match () {
-            () if mm.iter().any(|word| record.is(0, word)) => 1.0,
-            () if inch.iter().any(|word| record.is(0, word)) => INCH,
+            () if mm.iter().any(|word| statement.is(0, word)) => 1.0,
+            () if inch.iter().any(|word| statement.is(0, word)) => INCH,
             () => {
                 return Err(Fault::new(Rule::UnknownUnit, "this unit is not known")
                     .help("units are MM and INCHES")
@@ -133,7 +133,7 @@ impl Reader {
             let message = format!(
                 "line {read_in_mm} gives a length or a feed before line {} says the unit: is it in mm \
                  or in inches?",
-                record.line
+                statement.line
             );
             return Err(Fault::new(Rule::UnknownUnit, message)
                 .help("write the unit before the first length: at the head of the file"));
@@ -141,7 +141,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `value` of the record at hand, in the unit of the file, as mm.
+    /// `value` of the statement at hand, in the unit of the file, as mm.
     pub(super) fn mm(&self, value: f64) -> f64 {
         // Nothing is nothing in every unit.
         if !self.unit_known && value != 0.0 && self.unit_used.get() == 0 {
@@ -164,15 +164,15 @@ impl Reader {
     }
 
     /// Three values from field `first` on as a point or shift in mm.
-    pub(super) fn point(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
-        let mut point = record.numbers::<3>(first)?;
+    pub(super) fn point(&self, statement: &Statement, first: usize) -> Result<Vec3, Box<Fault>> {
+        let mut point = statement.numbers::<3>(first)?;
         for (i, value) in point.iter_mut().enumerate() {
             *value = self.length(*value).map_err(|fault| fault.fields(first + i, 1))?;
         }
         Ok(Vec3::from_array(point))
     }
 
-    /// Takes `base` as the frame of the records that follow and turns the tool axis to its Z.
+    /// Takes `base` as the frame of the statements that follow and turns the tool axis to its Z.
     fn set_up(&mut self, line: u32, base: Frame) {
         self.setup.base = base;
         self.reframe();
@@ -196,12 +196,12 @@ impl Reader {
     }
 
     /// `MSYS/ox,oy,oz,xx,xy,xz,yx,yy,yz`: the coordinate system of a Siemens NX operation.
-    pub(super) fn msys(&mut self, record: &Record) -> Outcome {
-        record.count(&[9], "MSYS/ox,oy,oz,xx,xy,xz,yx,yy,yz")?;
-        let x = Vec3::from_array(record.numbers(3)?);
-        let y = Vec3::from_array(record.numbers(6)?);
-        let frame = frame(self.point(record, 0)?, x, y).map_err(|fault| fault.fields(3, 6))?;
-        self.relative_set_up(record.line, frame);
+    pub(super) fn msys(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[9], "MSYS/ox,oy,oz,xx,xy,xz,yx,yy,yz")?;
+        let x = Vec3::from_array(statement.numbers(3)?);
+        let y = Vec3::from_array(statement.numbers(6)?);
+        let frame = frame(self.point(statement, 0)?, x, y).map_err(|fault| fault.fields(3, 6))?;
+        self.relative_set_up(statement.line, frame);
         Ok(())
     }
 
@@ -215,12 +215,12 @@ impl Reader {
     }
 
     /// `TRNTYP/WORLD,0,0,0`: the coordinates stay in the world, whatever `CSYS` says.
-    pub(super) fn trntyp(&mut self, record: &Record) -> Outcome {
-        record.count(&[1, 4], "TRNTYP/WORLD,0,0,0")?;
-        if !record.is(0, "WORLD") {
+    pub(super) fn trntyp(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[1, 4], "TRNTYP/WORLD,0,0,0")?;
+        if !statement.is(0, "WORLD") {
             return Err(Fault::new(Rule::Frame, "only TRNTYP/WORLD is known").fields(0, 1));
         }
-        if record.fields.len() == 4 && record.numbers::<3>(1)? != [0.0; 3] {
+        if statement.fields.len() == 4 && statement.numbers::<3>(1)? != [0.0; 3] {
             return Err(Fault::new(Rule::Frame, "a shift of the world is not known").fields(1, 3));
         }
         self.setup.world = true;
@@ -231,9 +231,9 @@ impl Reader {
     /// points and vectors are in the world already, and the set-up gives the plane of work; so it is also where the origin
     /// changes: read in the frame of each, set-ups of one part drill their holes in the same places, and read in the
     /// world the holes lie apart and within the stock.
-    pub(super) fn csys(&mut self, record: &Record) -> Outcome {
-        record.count(&[12], "CSYS/ and three rows of four values")?;
-        let values = record.numbers::<12>(0)?;
+    pub(super) fn csys(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[12], "CSYS/ and three rows of four values")?;
+        let values = statement.numbers::<12>(0)?;
         let rows: Vec<[f64; 4]> =
             values.chunks_exact(4).map(|r| [r[0], r[1], r[2], r[3]]).collect();
         let mut frame = frame_of_rows(&rows).map_err(|fault| fault.fields(0, 12))?;
@@ -255,25 +255,25 @@ impl Reader {
                 let length = self.length(frame.translation[i]);
                 frame.translation[i] = length.map_err(|fault| fault.fields(field, 1))?;
             }
-            self.relative_set_up(record.line, frame);
+            self.relative_set_up(statement.line, frame);
             return Ok(());
         }
         self.axis = frame.matrix3.z_axis;
-        self.write_plane(record.line, Frame::from_mat3(frame.matrix3));
+        self.write_plane(statement.line, Frame::from_mat3(frame.matrix3));
         Ok(())
     }
 
     /// `ORIGIN/x,y,z`: this point of the part is the zero of the coordinates that leave.
-    pub(super) fn origin(&mut self, record: &Record) -> Outcome {
-        record.count(&[3], "ORIGIN/x,y,z")?;
-        self.setup.origin = self.point(record, 0)?;
+    pub(super) fn origin(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[3], "ORIGIN/x,y,z")?;
+        self.setup.origin = self.point(statement, 0)?;
         self.reframe();
         Ok(())
     }
 
     /// `$$-> CSYS / ...` of Creo: the coordinate system of a sequence.
-    pub(super) fn creo_csys(&mut self, record: &Record) -> Outcome {
-        let system = record.numbers::<12>(1)?;
+    pub(super) fn creo_csys(&mut self, statement: &Statement) -> Outcome {
+        let system = statement.numbers::<12>(1)?;
         if *self.setup.creo_system.get_or_insert(system) == system {
             return Ok(());
         }
@@ -283,9 +283,9 @@ impl Reader {
     }
 
     /// `TRANS/x,y,z`: adds to the coordinates that follow.
-    pub(super) fn trans(&mut self, record: &Record) -> Outcome {
-        record.count(&[3], "TRANS/x,y,z")?;
-        self.setup.shift = self.point(record, 0)?;
+    pub(super) fn trans(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[3], "TRANS/x,y,z")?;
+        self.setup.shift = self.point(statement, 0)?;
         self.reframe();
         Ok(())
     }
@@ -293,16 +293,16 @@ impl Reader {
     /// `ROTATE/...`, `ROTABL/...`, `ROTHED/...`: a rotary axis sent to an angle. Only no rotation at all
     /// can be resolved: for any other the file does not say whether the coordinates turn with the table,
     /// and a file whose points have tool axes has no need of it.
-    pub(super) fn rotate(&mut self, record: &Record) -> Outcome {
-        let angles = record.fields.iter().filter_map(|field| match field {
-            super::record::Field::Number(angle) => Some(*angle),
+    pub(super) fn rotate(&mut self, statement: &Statement) -> Outcome {
+        let angles = statement.fields.iter().filter_map(|field| match field {
+            super::statement::Field::Number(angle) => Some(*angle),
             _ => None,
         });
         let angles: Vec<f64> = angles.collect();
         if angles == [0.0] {
             return Ok(());
         }
-        let word = super::text::decode(record.major);
+        let word = super::text::decode(statement.major);
         let message = format!(
             "{word} turns a rotary axis, and the file does not say what that does to the coordinates \
              after it"
@@ -312,7 +312,7 @@ impl Reader {
     }
 
     /// `HEAD/...`: another head of the machine. Where it holds the tool is not in the file.
-    pub(super) fn head(&mut self, _: &Record) -> Outcome {
+    pub(super) fn head(&mut self, _: &Statement) -> Outcome {
         let message = "HEAD changes to another head of the machine, and how that holds the tool is not in \
                        the file";
         Err(Fault::new(Rule::Unsupported, message).help(
@@ -323,11 +323,11 @@ impl Reader {
     /// `MULTAX/ON`, `MULTAX/OFF`. Without multi-axis output the tool stands along Z; in CATIA its axis is
     /// locked as it was in the last point before, and no `TLAXIS` says so (Dassault Systèmes, *Syntax of
     /// Generated APT Instructions*, MULTAX influence).
-    pub(super) fn multax(&mut self, record: &Record) -> Outcome {
-        record.count(&[0, 1], "MULTAX/ON or MULTAX/OFF")?;
+    pub(super) fn multax(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[0, 1], "MULTAX/ON or MULTAX/OFF")?;
         match () {
-            () if record.fields.is_empty() || record.is(0, "ON") => Ok(()),
-            () if record.is(0, "OFF") => {
+            () if statement.fields.is_empty() || statement.is(0, "ON") => Ok(()),
+            () if statement.is(0, "OFF") => {
                 if self.dialect == Dialect::Catia {
                     return Ok(());
                 }
@@ -339,9 +339,9 @@ impl Reader {
     }
 
     /// `TLAXIS/i,j,k`: the tool axis from here on.
-    pub(super) fn tlaxis(&mut self, record: &Record) -> Outcome {
-        record.count(&[3], "TLAXIS/i,j,k")?;
-        let axis = Vec3::from_array(record.numbers(0)?);
+    pub(super) fn tlaxis(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[3], "TLAXIS/i,j,k")?;
+        let axis = Vec3::from_array(statement.numbers(0)?);
         self.axis = self.work_axis(axis).map_err(|fault| fault.fields(0, 3))?;
         Ok(())
     }
@@ -355,9 +355,13 @@ impl Reader {
 
     /// Reads the remarks `$$*CATIA0`, a name, and three rows of a matrix: the axis system in which
     /// CATIA gives the coordinates that follow. Whether this remark was part of one.
-    pub(super) fn axis_system(&mut self, record: &Record, text: &str) -> Result<bool, Box<Fault>> {
+    pub(super) fn axis_system(
+        &mut self,
+        statement: &Statement,
+        text: &str,
+    ) -> Result<bool, Box<Fault>> {
         if text == "*CATIA0" {
-            self.setup.rows = Some((record.line, Vec::with_capacity(3)));
+            self.setup.rows = Some((statement.line, Vec::with_capacity(3)));
             return Ok(true);
         }
         let Some((_, rows)) = &mut self.setup.rows else { return Ok(false) };
@@ -380,7 +384,7 @@ impl Reader {
             self.setup.rows = None;
             frame.translation = frame.translation.to_array().map(|value| self.mm(value)).into();
             if self.dialect == Dialect::Catia {
-                self.relative_set_up(record.line, frame);
+                self.relative_set_up(statement.line, frame);
             }
         }
         Ok(true)

@@ -6,9 +6,9 @@
 //!
 //! What cannot be resolved is an error with file, line and column, never a guess and never left out
 //! silently. What is known not to matter for the program is ignored; what is not known is a warning,
-//! one a word. The records and the sources of their meaning are in `docs/sources/apt.md`.
+//! one a word. The statements and the sources of their meaning are in `docs/sources/apt.md`.
 //!
-//! From bytes to program: `record` finds lines and fields, `table` the handler of each major word,
+//! From bytes to program: `statement` finds lines and fields, `table` the handler of each major word,
 //! and the handlers are in `motion`, `arc`, `cycle`, `frame`, `technology` and `text`.
 
 mod arc;
@@ -17,8 +17,8 @@ mod dialect;
 mod frame;
 mod motion;
 mod number;
-mod record;
 mod report;
+mod statement;
 mod table;
 mod technology;
 mod text;
@@ -31,10 +31,10 @@ use geom::Vec3;
 use motion::Next;
 use program::{
     CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
-    Purpose, Record as Step, Rule, Spindle, Tool, encoding,
+    Purpose, Record, Rule, Spindle, Tool, encoding,
 };
-use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
+use statement::{Joiner, Line, Lines, is_blank};
 use std::cell::Cell;
 use technology::FeedUnit;
 
@@ -118,14 +118,14 @@ pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, 
             last = line;
             continue;
         }
-        if line.text.len() <= record::LONGEST && line.text.iter().all(|c| is_blank(*c)) {
+        if line.text.len() <= statement::LONGEST && line.text.iter().all(|c| is_blank(*c)) {
             continue;
         }
         last = line;
-        match joiner.record(line, &mut lines) {
-            Ok(record) => {
-                if let Err(fault) = reader.obey(&record) {
-                    reader.report.fault(&record, *fault);
+        match joiner.statement(line, &mut lines) {
+            Ok(statement) => {
+                if let Err(fault) = reader.obey(&statement) {
+                    reader.report.fault(&statement, *fault);
                 }
             }
             Err(error) => reader.report.error(*error),
@@ -137,7 +137,7 @@ pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, 
     reader.finish(text, last)
 }
 
-/// How far what a motion needs has been settled since the last record that could change it.
+/// How far what a motion needs has been settled since the last statement that could change it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ready {
     /// Not at all.
@@ -170,7 +170,7 @@ struct Reader {
     unit_assumed: bool,
     /// Line of the first value that was read before it has; 0 for none.
     unit_used: Cell<u32>,
-    /// Line of the record at hand.
+    /// Line of the statement at hand.
     line: u32,
     setup: Setup,
     /// The last point of the data, work frame; missing values and relative motion count from it.
@@ -188,7 +188,7 @@ struct Reader {
     towards: Option<Vec3>,
     /// Where the arc of the last motion starts, where that was one.
     last_arc: Option<Vec3>,
-    /// Whether the last record was a `GOTO`, which lines of coordinates may continue.
+    /// Whether the last statement was a `GOTO`, which lines of coordinates may continue.
     inside_goto: bool,
     /// Whether there is an arc of a `CIRCLE`, whose direction is a habit.
     circles: bool,
@@ -213,9 +213,9 @@ struct Reader {
     tool: Tool,
     /// Its record, until the first motion with it.
     tool_record: Option<usize>,
-    /// Line of the first record of the file that loads a tool.
+    /// Line of the first statement of the file that loads a tool.
     first_load: Option<u32>,
-    /// The first rapid, where it comes before that record.
+    /// The first rapid, where it comes before that statement.
     early: Option<Early>,
     /// What is said of the tool to come.
     next_tool: Tool,
@@ -237,7 +237,7 @@ struct Reader {
     stands: bool,
     no_feed: bool,
     ended: bool,
-    /// Some record was cutter-location data.
+    /// Some statement was cutter-location data.
     known: bool,
     /// The file is something else.
     hopeless: bool,
@@ -280,7 +280,7 @@ impl Reader {
             last_side: None,
             tool: Tool::default(),
             tool_record: None,
-            first_load: record::first_load(text),
+            first_load: statement::first_load(text),
             early: None,
             next_tool: Tool::default(),
             next_line: 0,
@@ -301,7 +301,7 @@ impl Reader {
 
     #[inline]
     fn push(&mut self, line: u32, op: Op) {
-        self.program.records.push(Step { line, op });
+        self.program.records.push(Record { line, op });
     }
 
     /// What can only be said at the end of `text`, of which `last` is the last line that was read.
@@ -337,13 +337,13 @@ impl Reader {
             number => d.at(number, last.text, 0, last.text.len()),
         };
         if !self.known {
-            let what = if last.number == 0 { "the file is empty" } else { "no record is known" };
+            let what = if last.number == 0 { "the file is empty" } else { "no statement is known" };
             let help = "cutter-location data (APT, .cls, .apt, .ncl) is expected";
             return self.report.error(Diagnostic::error(Rule::NotCldata, what).help(help));
         }
         if let Err(fault) = self.no_pending_circle() {
-            let record = record::Record::whole(last);
-            return self.report.fault(&record, *fault);
+            let statement = statement::Statement::whole(last);
+            return self.report.fault(&statement, *fault);
         }
         if self.point.is_none() {
             return self
@@ -351,14 +351,13 @@ impl Reader {
                 .error(Diagnostic::error(Rule::NoMotion, "nothing moves in this file"));
         }
         if self.setup.lacks_csys() {
-            let message =
-                "where coordinates stand is asked for by `csys`, and the file has no CSYS record";
+            let message = "where coordinates stand is asked for by `csys`, and the file has no CSYS statement";
             return self
                 .report
                 .error(Diagnostic::error(Rule::Frame, message).help("leave `--csys` out"));
         }
         if let (Some(early), Some(load)) = (&self.early, self.first_load) {
-            // What looked like a record was part of another one.
+            // What looked like a statement was part of another one.
             let message = format!("line {} moves, but line {load} loads no tool", early.line);
             let help = "add LOAD/TOOL,n before the first motion";
             return self

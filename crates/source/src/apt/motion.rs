@@ -1,10 +1,10 @@
-//! Records that move the tool.
+//! Statements that move the tool.
 
 use super::arc::CircleWord;
 use super::frame::{FARTHEST, SKEW};
 use super::number;
-use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
+use super::statement::{Field, Statement, is_blank};
 use super::{Dialect, Early, Reader, Ready};
 use geom::{ANGLE_EPSILON, Vec3};
 use program::{Feed, Op, Pose, Rule, Spindle};
@@ -21,7 +21,7 @@ pub(super) enum Next {
     Arc(Box<CircleWord>),
 }
 
-/// The values of a `GOTO` line in its plain shape, read without taking the record apart: three or six
+/// The values of a `GOTO` line in its plain shape, read without taking the statement apart: three or six
 /// numbers and nothing else.
 #[inline]
 pub(super) fn plain_goto(text: &[u8]) -> Option<([f64; 6], bool)> {
@@ -94,24 +94,24 @@ impl Reader {
     }
 
     /// `GOTO/x,y,z`, `GOTO/x,y,z,i,j,k`: a value left out stays.
-    pub(super) fn goto(&mut self, record: &Record) -> Outcome {
-        self.goto_from(record, 0)
+    pub(super) fn goto(&mut self, statement: &Statement) -> Outcome {
+        self.goto_from(statement, 0)
     }
 
     /// A `GOTO` whose values begin at field `first`.
-    pub(super) fn goto_from(&mut self, record: &Record, first: usize) -> Outcome {
+    pub(super) fn goto_from(&mut self, statement: &Statement, first: usize) -> Outcome {
         self.inside_goto = true;
-        let count = record.fields.len() - first.min(record.fields.len());
+        let count = statement.fields.len() - first.min(statement.fields.len());
         if count != 3 && count != 6 {
             let message = format!("{count} values where a point takes 3, or 6 with the tool axis");
             return Err(Fault::new(Rule::Malformed, message)
                 .help("write GOTO/x,y,z or GOTO/x,y,z,i,j,k")
                 .fields(first, count));
         }
-        let point = self.given_point(record, first)?;
-        let is_given = |i: usize| record.fields.get(i).is_some_and(|f| *f != Field::Blank);
+        let point = self.given_point(statement, first)?;
+        let is_given = |i: usize| statement.fields.get(i).is_some_and(|f| *f != Field::Blank);
         if (first + 3..first + 6).any(is_given) {
-            self.axis = self.given_axis(record, first + 3)?;
+            self.axis = self.given_axis(statement, first + 3)?;
         } else if self.axis_is_due() {
             let message = "the tool is tilted, and this system gives its axis in every GOTO: is it kept \
                            here, or along Z again?";
@@ -120,7 +120,7 @@ impl Reader {
                 .fields(first, count));
         }
         let pose = Pose::new(point, self.axis)?;
-        self.go(record, pose).map_err(|fault| fault.fields(first, count))
+        self.go(statement, pose).map_err(|fault| fault.fields(first, count))
     }
 
     /// Whether a `GOTO` without a vector leaves the tool axis in doubt. In the measured set-ups of
@@ -131,18 +131,18 @@ impl Reader {
     }
 
     /// The point at field `first`, in the work frame; a blank keeps the last value.
-    fn given_point(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
+    fn given_point(&self, statement: &Statement, first: usize) -> Result<Vec3, Box<Fault>> {
         let last = || Some(self.setup.to_work.inverse().transform_point3(self.point?));
         let mut point = [0.0; 3];
         for (i, value) in point.iter_mut().enumerate() {
-            *value = match record.fields.get(first + i) {
+            *value = match statement.fields.get(first + i) {
                 Some(Field::Blank) => last().map(|last| last[i]).ok_or_else(|| {
                     Fault::new(Rule::Malformed, "no earlier point has this value to keep")
                         .help("give all three coordinates of the first point")
                         .fields(first + i, 1)
                 })?,
                 _ => {
-                    let value = record.number(first + i, "a coordinate")?;
+                    let value = statement.number(first + i, "a coordinate")?;
                     self.length(value).map_err(|fault| fault.fields(first + i, 1))?
                 }
             };
@@ -151,12 +151,12 @@ impl Reader {
     }
 
     /// The tool axis at field `first`, in the work frame; a blank keeps the last value.
-    fn given_axis(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
-        let blank = |i: usize| record.fields.get(first + i) == Some(&Field::Blank);
+    fn given_axis(&self, statement: &Statement, first: usize) -> Result<Vec3, Box<Fault>> {
+        let blank = |i: usize| statement.fields.get(first + i) == Some(&Field::Blank);
         let mut axis = self.setup.to_work.inverse().transform_vector3(self.axis).to_array();
         for (i, value) in axis.iter_mut().enumerate() {
             if !blank(i) {
-                *value = record.number(first + i, "a value")?;
+                *value = statement.number(first + i, "a value")?;
             }
         }
         let axis = Vec3::from_array(axis);
@@ -172,24 +172,24 @@ impl Reader {
         self.work_axis(axis).map_err(|fault| fault.fields(first, 3))
     }
 
-    /// Goes to `pose` by rapid, line or arc, as the records before state.
-    fn go(&mut self, record: &Record, pose: Pose) -> Outcome {
+    /// Goes to `pose` by rapid, line or arc, as the statements before state.
+    fn go(&mut self, statement: &Statement, pose: Pose) -> Outcome {
         match std::mem::take(&mut self.next) {
-            Next::Arc(circle) => self.arc(record, &circle, pose),
+            Next::Arc(circle) => self.arc(statement, &circle, pose),
             Next::Rapid => {
-                self.prepare(record, false)?;
-                self.push(record.line, Op::Rapid(pose));
+                self.prepare(statement, false)?;
+                self.push(statement.line, Op::Rapid(pose));
                 self.arrive(pose);
                 Ok(())
             }
             Next::Line if self.cycle.is_some() => {
-                self.prepare(record, true)?;
-                self.hole(record, pose)
+                self.prepare(statement, true)?;
+                self.hole(statement, pose)
             }
             Next::Line => {
-                self.prepare(record, true)?;
-                self.not_on_the_arc(record, &pose)?;
-                self.push(record.line, Op::Line(pose));
+                self.prepare(statement, true)?;
+                self.not_on_the_arc(statement, &pose)?;
+                self.push(statement.line, Op::Line(pose));
                 self.arrive(pose);
                 Ok(())
             }
@@ -206,26 +206,26 @@ impl Reader {
     }
 
     /// What has to be settled before the tool moves; with `cut`, in the part.
-    pub(super) fn prepare(&mut self, record: &Record, cut: bool) -> Outcome {
+    pub(super) fn prepare(&mut self, statement: &Statement, cut: bool) -> Outcome {
         if self.ready == Ready::Cut || (self.ready == Ready::Rapid && !cut) {
             return Ok(());
         }
         if !self.unit_known && !std::mem::replace(&mut self.unit_assumed, true) {
             let help = "add UNITS/MM, or UNITS/INCHES where that is meant";
             let message = "the file does not say its unit: read as mm";
-            self.report.warn(record, Rule::UnknownUnit, message, help);
+            self.report.warn(statement, Rule::UnknownUnit, message, help);
             // Plain points after this one are not looked at one by one.
             if self.unit_used.get() == 0 {
-                self.unit_used.set(record.line);
+                self.unit_used.set(statement.line);
             }
         }
-        self.say_tolerance(record.line);
-        self.settle_tool(record, cut)?;
+        self.say_tolerance(statement.line);
+        self.settle_tool(statement, cut)?;
         if let Some((line, pose)) = self.from.take()
             && cut
         {
             let message = "the first motion from FROM is a cut: a rapid to FROM goes before it";
-            self.report.warn(record, Rule::From, message, "check that the path there is free");
+            self.report.warn(statement, Rule::From, message, "check that the path there is free");
             self.push(line, Op::Rapid(pose));
         }
         self.ready = Ready::Rapid;
@@ -250,17 +250,17 @@ impl Reader {
     }
 
     /// Makes sure that a tool is in the spindle, and that it is the one the operation names.
-    fn settle_tool(&mut self, record: &Record, cut: bool) -> Outcome {
+    fn settle_tool(&mut self, statement: &Statement, cut: bool) -> Outcome {
         if self.tool.number == 0 {
             if let Some(load) = self.first_load {
-                return self.move_before_load(record, cut, load);
+                return self.move_before_load(statement, cut, load);
             }
             let mut tool = std::mem::take(&mut self.next_tool);
             tool.number = 1;
-            let line = if self.next_line > 0 { self.next_line } else { record.line };
+            let line = if self.next_line > 0 { self.next_line } else { statement.line };
             let message = "the file loads no tool: the tool is taken as number 1";
             let help = "add LOAD/TOOL,n before the first motion";
-            self.report.warn(record, Rule::ToolNumber, message, help);
+            self.report.warn(statement, Rule::ToolNumber, message, help);
             self.change_tool(line, tool);
         }
         self.tool_record = None;
@@ -281,43 +281,45 @@ impl Reader {
     /// before it describes and loads the tool (Dassault Systèmes, *NC Data Options*, "Include GOTO for
     /// tool change"; example in *Syntax of Generated APT Instructions*). A rapid has no other meaning than where the tool is to be: with the first
     /// tool loaded before it, its tip is there. With which tool a cut is made is not known.
-    fn move_before_load(&mut self, record: &Record, cut: bool, load: u32) -> Outcome {
+    fn move_before_load(&mut self, statement: &Statement, cut: bool, load: u32) -> Outcome {
         if cut {
-            let message =
-                format!("line {} cuts before the first tool is loaded (line {load})", record.line);
+            let message = format!(
+                "line {} cuts before the first tool is loaded (line {load})",
+                statement.line
+            );
             return Err(Fault::new(Rule::ToolNumber, message)
                 .help("load the tool first, or make the motion a RAPID"));
         }
         if self.early.is_none() {
             let message = format!(
                 "line {} moves before the first tool is loaded (line {load}): the tool is loaded first",
-                record.line
+                statement.line
             );
             let help = "check that the path there is free with this tool";
-            self.report.warn(record, Rule::ToolNumber, &message, help);
-            let (line, records) = (record.line, self.program.records.len());
+            self.report.warn(statement, Rule::ToolNumber, &message, help);
+            let (line, records) = (statement.line, self.program.records.len());
             self.early = Some(Early { line, records, diameter: self.next_tool.diameter });
         }
         Ok(())
     }
 
     /// `FROM/x,y,z`, `FROM/x,y,z,i,j,k`: where the tool is. It is no motion.
-    pub(super) fn from(&mut self, record: &Record) -> Outcome {
-        let count = record.count(&[3, 6], "FROM/x,y,z or FROM/x,y,z,i,j,k")?;
-        let point = self.given_point(record, 0)?;
+    pub(super) fn from(&mut self, statement: &Statement) -> Outcome {
+        let count = statement.count(&[3, 6], "FROM/x,y,z or FROM/x,y,z,i,j,k")?;
+        let point = self.given_point(statement, 0)?;
         if count == 6 {
-            self.axis = self.given_axis(record, 3)?;
+            self.axis = self.given_axis(statement, 3)?;
         }
         let pose = Pose::new(point, self.axis)?;
         self.arrive(pose);
-        self.from = Some((record.line, pose));
+        self.from = Some((statement.line, pose));
         self.ready = Ready::No;
         Ok(())
     }
 
     /// `GODLTA/dx,dy,dz`, `GODLTA/dx,dy,dz,i,j,k`, `GODLTA/d` along the tool axis: relative motion.
-    pub(super) fn godlta(&mut self, record: &Record) -> Outcome {
-        let count = record.count(&[1, 3, 6], "GODLTA/dx,dy,dz or GODLTA/d")?;
+    pub(super) fn godlta(&mut self, statement: &Statement) -> Outcome {
+        let count = statement.count(&[1, 3, 6], "GODLTA/dx,dy,dz or GODLTA/d")?;
         let Some(last) = self.point else {
             return Err(Fault::new(Rule::NoStart, "a relative motion, but from nowhere")
                 .help("add FROM/x,y,z or an absolute GOTO before it"));
@@ -330,37 +332,37 @@ impl Reader {
             .help("write an absolute GOTO after CYCLE/OFF"));
         }
         let step = if count == 1 {
-            let along = record.number(0, "a distance")?;
+            let along = statement.number(0, "a distance")?;
             self.axis * self.length(along).map_err(|fault| fault.fields(0, 1))?
         } else {
-            self.setup.to_work.transform_vector3(self.point(record, 0)?)
+            self.setup.to_work.transform_vector3(self.point(statement, 0)?)
         };
         if count == 6 {
-            let axis = Vec3::from_array(record.numbers(3)?);
+            let axis = Vec3::from_array(statement.numbers(3)?);
             self.axis = self.work_axis(axis).map_err(|fault| fault.fields(3, 3))?;
         }
         let to = last + step;
         if to.abs().max_element() > FARTHEST {
             return Err(Fault::new(Rule::OutOfRange, "this leads beyond the farthest point"));
         }
-        self.go(record, Pose::new(to, self.axis)?)
+        self.go(statement, Pose::new(to, self.axis)?)
     }
 
     /// `RAPID`: the next motion is one.
-    pub(super) fn rapid(&mut self, record: &Record) -> Outcome {
+    pub(super) fn rapid(&mut self, statement: &Statement) -> Outcome {
         self.no_pending_circle()?;
-        record.count(&[0], "RAPID")?;
+        statement.count(&[0], "RAPID")?;
         self.next = Next::Rapid;
         Ok(())
     }
 
     /// `x,y,z` alone on a line: a further point of the `GOTO` before it, as Creo lists the points of
     /// an arc.
-    pub(super) fn further_point(&mut self, record: &Record) -> Outcome {
+    pub(super) fn further_point(&mut self, statement: &Statement) -> Outcome {
         if !self.inside_goto {
             return Err(Fault::new(Rule::Malformed, "a line of numbers, but no GOTO before it"));
         }
-        if self.lengthen_arc(record)? { Ok(()) } else { self.goto(record) }
+        if self.lengthen_arc(statement)? { Ok(()) } else { self.goto(statement) }
     }
 }
 
@@ -490,7 +492,7 @@ mod tests {
         // A further point of the circle in a GOTO of its own is refused; in a line of its own the arc goes on to it.
         assert!(behind("GOTO/1.5,0.5,0\n").contains("ArcPoints"), "{}", behind("GOTO/1.5,0.5,0\n"));
         assert!(!behind("1.5,0.5,0\n").contains("ArcPoints"), "{}", behind("1.5,0.5,0\n"));
-        // So is one behind a record that moves nothing.
+        // So is one behind a statement that moves nothing.
         assert!(
             behind("FEDRAT/50,MMPM\nGOTO/1.5,0.5,0\n").contains("ArcPoints"),
             "{}",

@@ -1,15 +1,15 @@
 //! Where the reader's findings gather: errors up to a cap, warnings one for each cause.
 
-use super::record::Record;
+use super::statement::Statement;
 use program::{Diagnostic, NoPose, Rule};
 
 /// After so many errors the reader gives up: what follows is mostly the echo of the first.
 const MAX_ERRORS: usize = 20;
 
-/// What a handler of a record gives back.
+/// What a handler of a statement gives back.
 pub(super) type Outcome = Result<(), Box<Fault>>;
 
-/// What is wrong with a record, before its place is known.
+/// What is wrong with a statement, before its place is known.
 #[derive(Debug)]
 pub(super) struct Fault {
     rule: Rule,
@@ -20,7 +20,7 @@ pub(super) struct Fault {
 }
 
 impl Fault {
-    /// A fault of `rule` in the record as a whole.
+    /// A fault of `rule` in the statement as a whole.
     pub(super) fn new(rule: Rule, message: impl Into<String>) -> Box<Fault> {
         Box::new(Fault { rule, message: message.into(), help: String::new(), fields: None })
     }
@@ -49,7 +49,7 @@ impl From<NoPose> for Box<Fault> {
 pub(super) struct Report {
     file: String,
     strict: bool,
-    /// In the order of their lines, as the record order gives it.
+    /// In the order of their lines.
     pub(super) errors: Vec<Diagnostic>,
     /// In the order of their first occurrence.
     pub(super) warnings: Vec<Diagnostic>,
@@ -66,11 +66,11 @@ impl Report {
         self.errors.len() >= MAX_ERRORS
     }
 
-    /// Adds an error in `record`.
+    /// Adds an error in `statement`.
     #[cold]
-    pub(super) fn fault(&mut self, record: &Record, fault: Fault) {
+    pub(super) fn fault(&mut self, statement: &Statement, fault: Fault) {
         let error = Diagnostic::error(fault.rule, fault.message).help(fault.help);
-        self.error(record.locate(error, fault.fields));
+        self.error(statement.locate(error, fault.fields));
     }
 
     /// Adds an error whose place is known, and the file's name to it.
@@ -81,12 +81,12 @@ impl Report {
         }
     }
 
-    /// Adds a warning of `rule` in `record`; one that was given before only counts. What is the same
+    /// Adds a warning of `rule` in `statement`; one that was given before only counts. What is the same
     /// says the message.
     #[cold]
-    pub(super) fn warn(&mut self, record: &Record, rule: Rule, message: &str, help: &str) {
+    pub(super) fn warn(&mut self, statement: &Statement, rule: Rule, message: &str, help: &str) {
         let warning = Diagnostic::warning(rule, message).help(help);
-        self.warning(record.locate(warning, None));
+        self.warning(statement.locate(warning, None));
     }
 
     /// As [`Report::warn`], for a warning whose place is known.

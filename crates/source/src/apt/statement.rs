@@ -1,15 +1,15 @@
-//! From bytes to records: lines, `$` continuation, major word and fields.
+//! From bytes to statements: lines, `$` continuation, major word and fields.
 //!
-//! A line ends with LF, CR LF or CR. A record is a line, and as many more as the `$` at their ends
+//! A line ends with LF, CR LF or CR. A statement is a line, and as many more as the `$` at their ends
 //! (or a comma at their ends) ask for. `$$` starts a remark. Blanks and control characters between
-//! the parts of a record mean nothing.
+//! the parts of a statement mean nothing.
 
 use super::number;
 use super::report::Fault;
 use super::table::takes_text;
 use program::{Diagnostic, Rule};
 
-/// The longest line and the longest joined record, bytes: a thousand times what any CAM system
+/// The longest line and the longest joined statement, bytes: a thousand times what any CAM system
 /// writes, and short enough that a file of one endless line costs no memory.
 pub(super) const LONGEST: usize = 1 << 16;
 
@@ -56,7 +56,7 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// The first line of `text` that begins a record which loads a tool.
+/// The first line of `text` that begins a statement which loads a tool.
 pub(super) fn first_load(text: &[u8]) -> Option<u32> {
     let loads = |line: &Line| {
         let first = line.text.iter().find(|c| !is_blank(**c));
@@ -71,19 +71,19 @@ pub(super) fn first_load(text: &[u8]) -> Option<u32> {
     Lines::of(text).find(loads).map(|line| line.number)
 }
 
-/// A field of a record: what stands between two commas.
+/// A field of a statement: what stands between two commas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Field {
     /// A number.
     Number(f64),
-    /// A word, at these bytes of the record.
+    /// A word, at these bytes of the statement.
     Word(usize, usize),
     /// Nothing.
     Blank,
 }
 
-/// A record: its major word and the fields after it.
-pub(super) struct Record<'r> {
+/// A statement: its major word and the fields after it.
+pub(super) struct Statement<'r> {
     /// Line on which it starts.
     pub(super) line: u32,
     /// Its whole text, joined where it ran over several lines.
@@ -92,18 +92,18 @@ pub(super) struct Record<'r> {
     pub(super) major: &'r [u8],
     /// What follows the major word and its slash, as written; where it begins in `text`.
     pub(super) body: (&'r [u8], usize),
-    /// The fields of the body; none where the record is text.
+    /// The fields of the body; none where the statement is text.
     pub(super) fields: &'r [Field],
     spans: &'r [(usize, usize)],
     pieces: &'r [(usize, Line<'r>)],
 }
 
-impl<'r> Record<'r> {
-    /// `line` as a record that is not taken apart.
-    pub(super) fn whole(line: Line<'r>) -> Record<'r> {
+impl<'r> Statement<'r> {
+    /// `line` as a statement that is not taken apart.
+    pub(super) fn whole(line: Line<'r>) -> Statement<'r> {
         let body = (line.text, 0);
         let major = b"";
-        Record {
+        Statement {
             line: line.number,
             text: line.text,
             major,
@@ -167,11 +167,11 @@ impl<'r> Record<'r> {
         if allowed.contains(&count) {
             return Ok(count);
         }
-        let message = format!("{count} values where this record takes {}", list(allowed));
+        let message = format!("{count} values where this statement takes {}", list(allowed));
         Err(Fault::new(Rule::Malformed, message).help(format!("write {syntax}")).fields(0, count))
     }
 
-    /// `diagnostic` placed at `fields` (first and how many) of this record, or at the record as a whole.
+    /// `diagnostic` placed at `fields` (first and how many) of this statement, or at the statement as a whole.
     pub(super) fn locate(
         &self,
         diagnostic: Diagnostic,
@@ -187,7 +187,7 @@ impl<'r> Record<'r> {
                 (from, to.max(from))
             }
         };
-        // The record may have been joined from several lines; the one on which the place begins is
+        // The statement may have been joined from several lines; the one on which the place begins is
         // shown.
         let piece = self.pieces.iter().rev().find(|(offset, _)| *offset <= start);
         match piece.or(self.pieces.first()) {
@@ -211,7 +211,7 @@ fn list(counts: &[usize]) -> String {
     }
 }
 
-/// Joins lines to records and takes them apart; its memory is used again for each.
+/// Joins lines to statements and takes them apart; its memory is used again for each.
 #[derive(Default)]
 pub(super) struct Joiner<'t> {
     joined: Vec<u8>,
@@ -221,15 +221,15 @@ pub(super) struct Joiner<'t> {
 }
 
 impl<'t> Joiner<'t> {
-    /// The record that starts on `first`; further lines are taken from `lines` as it asks for them.
+    /// The statement that starts on `first`; further lines are taken from `lines` as it asks for them.
     ///
     /// # Errors
     /// `malformed`, `line-too-long`; the place is in the diagnostic.
-    pub(super) fn record<'r>(
+    pub(super) fn statement<'r>(
         &'r mut self,
         first: Line<'t>,
         lines: &mut Lines<'t>,
-    ) -> Result<Record<'r>, Box<Diagnostic>>
+    ) -> Result<Statement<'r>, Box<Diagnostic>>
     where
         't: 'r,
     {
@@ -251,7 +251,7 @@ impl<'t> Joiner<'t> {
                 text = &self.joined;
             }
         }
-        let mut record = Record {
+        let mut statement = Statement {
             line: first.number,
             text,
             major: text.get(major.0..major.1).unwrap_or_default(),
@@ -261,37 +261,38 @@ impl<'t> Joiner<'t> {
             pieces: &self.pieces,
         };
         if is_text {
-            return Ok(record);
+            return Ok(statement);
         }
         // In a point a value left out stays, the last one too; elsewhere it is forgotten.
         let is_point = ["GOTO", "FROM", "CUTCOM"];
-        let open_end = is_point.iter().any(|w| record.major.eq_ignore_ascii_case(w.as_bytes()));
+        let open_end = is_point.iter().any(|w| statement.major.eq_ignore_ascii_case(w.as_bytes()));
         let result = split_fields(text, body, open_end, &mut self.fields, &mut self.spans);
-        record.fields = &self.fields;
-        record.spans = &self.spans;
+        statement.fields = &self.fields;
+        statement.spans = &self.spans;
         match result {
-            Ok(()) => Ok(record),
+            Ok(()) => Ok(statement),
             // What follows a word that is not known, or a directive, need not be made of fields.
-            Err(_) if free_text.is_none() || record.major == b"$$->" => Ok(record),
+            Err(_) if free_text.is_none() || statement.major == b"$$->" => Ok(statement),
             Err((from, to, message)) => {
-                record.spans = &[];
+                statement.spans = &[];
                 let spans = [(from, to)];
-                let record = Record { spans: &spans, ..record };
+                let statement = Statement { spans: &spans, ..statement };
                 let error = Diagnostic::error(Rule::Malformed, message)
                     .help("values are decimal numbers and words, with commas between them");
-                Err(Box::new(record.locate(error, Some((0, 1)))))
+                Err(Box::new(statement.locate(error, Some((0, 1)))))
             }
         }
     }
 
-    /// Appends the continuation lines of the record that starts on `first`.
+    /// Appends the continuation lines of the statement that starts on `first`.
     fn join(&mut self, first: Line<'t>, lines: &mut Lines<'t>) -> Result<(), Box<Diagnostic>> {
         loop {
             let Some(next) = lines.next() else {
                 let end = first.text.len();
-                let error = Diagnostic::error(Rule::Truncated, "the file ends inside this record")
-                    .help("the file is cut off: write it again")
-                    .at(first.number, first.text, 0, end);
+                let error =
+                    Diagnostic::error(Rule::Truncated, "the file ends inside this statement")
+                        .help("the file is cut off: write it again")
+                        .at(first.number, first.text, 0, end);
                 return Err(Box::new(error));
             };
             too_long(next)?;
@@ -314,14 +315,14 @@ fn too_long(line: Line) -> Result<(), Box<Diagnostic>> {
 
 #[cold]
 fn too_long_error(line: Line) -> Diagnostic {
-    Diagnostic::error(Rule::LineTooLong, format!("a record of more than {LONGEST} bytes"))
+    Diagnostic::error(Rule::LineTooLong, format!("a statement of more than {LONGEST} bytes"))
         .help("this is not cutter-location data in text form")
         .at(line.number, line.text, 0, 1)
 }
 
-/// How many bytes of a line belong to its record, and whether the next line does too. A `$` at the end
-/// continues it, `$$` ends it; a comma at the end continues it too, as CATIA's records are printed,
-/// where no record begins on the next line.
+/// How many bytes of a line belong to its statement, and whether the next line does too. A `$` at the end
+/// continues it, `$$` ends it; a comma at the end continues it too, as CATIA's statements are printed,
+/// where no statement begins on the next line.
 fn strip(text: &[u8], lines: &Lines) -> (usize, bool) {
     let end = memchr::memmem::find(text, b"$$").unwrap_or(text.len());
     let content = trim_end(&text[..end]);
@@ -366,7 +367,7 @@ fn head(text: &[u8]) -> Head {
     match text.get(start) {
         Some(b'$') if text[start..].starts_with(b"$$->") => return head(start + 4, start + 4),
         Some(b'$') if text[start..].starts_with(b"$$") => return head(start + 2, start + 2),
-        // Coordinates alone: further points of the record before.
+        // Coordinates alone: further points of the statement before.
         Some(b'0'..=b'9' | b'-' | b'+' | b'.') => return head(start, start),
         _ => {}
     }
@@ -375,7 +376,7 @@ fn head(text: &[u8]) -> Head {
     if let Some(found @ Head { free_text: Some(_), .. }) = by_slash {
         return found;
     }
-    // Words without a slash, and the old form of the text records: `PARTNO a name`.
+    // Words without a slash, and the old form of the text statements: `PARTNO a name`.
     let is_part = |c: &u8| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'_');
     let length = text[start..].iter().position(|c| !is_part(c)).unwrap_or(text.len() - start);
     let by_word = head(start + length.max(1).min(text.len() - start), start + length);

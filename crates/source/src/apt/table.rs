@@ -1,17 +1,17 @@
 //! The table from major word to handler. Each handler is headed by the syntax it takes.
 
 use super::Reader;
-use super::record::Record;
 use super::report::{Fault, Outcome};
+use super::statement::Statement;
 use program::Rule;
 
-/// What becomes of a record.
+/// What becomes of a statement.
 #[derive(Clone, Copy)]
 pub(super) enum Use {
     /// The handler takes it.
-    By(fn(&mut Reader, &Record) -> Outcome),
+    By(fn(&mut Reader, &Statement) -> Outcome),
     /// The handler takes it, and what follows the word is free text.
-    Text(fn(&mut Reader, &Record) -> Outcome),
+    Text(fn(&mut Reader, &Statement) -> Outcome),
     /// It says nothing that a program needs: display, tolerances already applied, bookkeeping.
     Ignored,
     /// As [`Use::Ignored`], with free text after the word.
@@ -42,7 +42,7 @@ pub(super) const WORDS: &[(&str, Use)] = &[
     ("CSYS", By(Reader::csys)),
     ("CUTCOM", By(Reader::cutcom)),
     ("CUTTER", By(Reader::cutter)),
-    ("CYCLE", By(Reader::cycle_record)),
+    ("CYCLE", By(Reader::cycle_statement)),
     ("DELAY", By(Reader::delay)),
     ("DISPLY", IgnoredText),
     ("END", By(Reader::fini)),
@@ -119,7 +119,7 @@ pub(super) const WORDS: &[(&str, Use)] = &[
 /// Private words of SolidWorks CAM: they describe tools for its own simulation.
 const PRIVATE: &[u8] = b"CSI_";
 
-/// What becomes of records with the major word `word`; `None` where it is not known.
+/// What becomes of statements with the major word `word`; `None` where it is not known.
 pub(super) fn find(word: &[u8]) -> Option<Use> {
     if word.get(..PRIVATE.len()).is_some_and(|head| head.eq_ignore_ascii_case(PRIVATE)) {
         return Some(IgnoredText);
@@ -138,65 +138,65 @@ pub(super) fn takes_text(word: &[u8]) -> Option<bool> {
 }
 
 impl Reader {
-    /// Obeys a record by the table.
-    pub(super) fn obey(&mut self, record: &Record) -> Outcome {
-        let known = find(record.major);
-        self.line = record.line;
-        if !record.major.is_empty() {
+    /// Obeys a statement by the table.
+    pub(super) fn obey(&mut self, statement: &Statement) -> Outcome {
+        let known = find(statement.major);
+        self.line = statement.line;
+        if !statement.major.is_empty() {
             self.inside_goto = false;
         }
         if let Some(By(_) | Text(_)) = known
             && self.ended
-            && record.major != b"$$"
-            && !record.major.eq_ignore_ascii_case(b"FINI")
+            && statement.major != b"$$"
+            && !statement.major.eq_ignore_ascii_case(b"FINI")
         {
-            return Err(Fault::new(Rule::AfterEnd, "a record after the end of the program")
+            return Err(Fault::new(Rule::AfterEnd, "a statement after the end of the program")
                 .help("post the programs of this file one by one"));
         }
         let ignored = !matches!(known, Some(By(_) | Text(_) | Refused));
-        if ignored && (0..record.fields.len()).any(|i| record.is(i, "GOTO")) {
-            let message = "a GOTO within a record that is ignored";
+        if ignored && (0..statement.fields.len()).any(|i| statement.is(i, "GOTO")) {
+            let message = "a GOTO within a statement that is ignored";
             return Err(Fault::new(Rule::Malformed, message).help("write it on a line of its own"));
         }
         match known {
             Some(By(handler) | Text(handler)) => {
                 self.known = true;
-                handler(self, record)
+                handler(self, statement)
             }
             Some(Ignored | IgnoredText) => {
                 self.known = true;
                 Ok(())
             }
             Some(NotPassedOn) => {
-                let word = super::text::decode(record.major);
+                let word = super::text::decode(statement.major);
                 let message = format!("{word} is not passed on");
                 let help = "check whether the job needs it";
-                self.report.warn(record, Rule::IgnoredWord, &message, help);
+                self.report.warn(statement, Rule::IgnoredWord, &message, help);
                 Ok(())
             }
             Some(Refused) => {
-                let word = super::text::decode(record.major);
+                let word = super::text::decode(statement.major);
                 let message = format!("{word} changes where the tool goes, and cannot be resolved");
                 Err(Fault::new(Rule::Unsupported, message)
                     .help("let the CAM system write points (GOTO) instead"))
             }
-            None => self.unknown(record),
+            None => self.unknown(statement),
         }
     }
 
     /// A word that is not known: one warning for each, but not without end.
-    fn unknown(&mut self, record: &Record) -> Outcome {
+    fn unknown(&mut self, statement: &Statement) -> Outcome {
         const RULE: Rule = Rule::UnknownWord;
         /// More different unknown words than any CAM system has of its own.
         const MAX_WORDS: usize = 20;
-        let mut parts = record.major.split(|c| b" \t,".contains(c));
+        let mut parts = statement.major.split(|c| b" \t,".contains(c));
         if parts.any(|part| !part.is_empty() && find(part).is_some()) {
-            return Err(Fault::new(Rule::Malformed, "this record does not begin with its word")
-                .help("a record is a word, a slash, and values with commas between them"));
+            return Err(Fault::new(Rule::Malformed, "this statement does not begin with its word")
+                .help("a statement is a word, a slash, and values with commas between them"));
         }
-        let word = super::text::decode(record.major.get(..40).unwrap_or(record.major));
-        let message = format!("the word {word} is not known and its records are ignored");
-        self.report.warn(record, RULE, &message, "check whether the job needs it");
+        let word = super::text::decode(statement.major.get(..40).unwrap_or(statement.major));
+        let message = format!("the word {word} is not known and its statements are ignored");
+        self.report.warn(statement, RULE, &message, "check whether the job needs it");
         if self.report.count_of(RULE) > MAX_WORDS {
             self.hopeless = true;
             let message = "too many words that are not cutter-location data";
@@ -206,10 +206,10 @@ impl Reader {
     }
 
     /// `MODE/...`, `SET/MODE,ABSOL`: only absolute coordinates of a mill are known.
-    pub(super) fn mode(&mut self, record: &Record) -> Outcome {
+    pub(super) fn mode(&mut self, statement: &Statement) -> Outcome {
         let foreign = ["INCR", "TURN", "LATHE", "WIRE"];
-        let word = |i: &usize| foreign.iter().any(|word| record.is(*i, word));
-        match (0..record.fields.len()).find(word) {
+        let word = |i: &usize| foreign.iter().any(|word| statement.is(*i, word));
+        match (0..statement.fields.len()).find(word) {
             Some(i) => Err(Fault::new(Rule::Unsupported, "coordinates in this mode are not known")
                 .fields(i, 1)),
             None => Ok(()),

@@ -1,13 +1,11 @@
 //! What the tool is and does besides moving: tool, feed, spindle, coolant, compensation, dwell, stop.
 
-use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
+use super::statement::{Field, Statement};
 use super::text::decode;
 use super::{Reader, Ready};
 use geom::INCH;
-use program::{
-    Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record as Step, Rule, Spindle, Tool,
-};
+use program::{Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record, Rule, Spindle, Tool};
 use std::f64::consts::PI;
 
 /// The largest number of a tool or an offset.
@@ -45,15 +43,15 @@ const FEED_UNITS: [(&str, FeedUnit); 8] = [
 ];
 
 impl FeedUnit {
-    /// The unit that field `index` of `record` names.
-    pub(super) fn of(record: &Record, index: usize) -> Option<FeedUnit> {
-        FEED_UNITS.iter().find(|(word, _)| record.is(index, word)).map(|(_, unit)| *unit)
+    /// The unit that field `index` of `statement` names.
+    pub(super) fn of(statement: &Statement, index: usize) -> Option<FeedUnit> {
+        FEED_UNITS.iter().find(|(word, _)| statement.is(index, word)).map(|(_, unit)| *unit)
     }
 }
 
 /// A whole number from `least` on as a number of a tool or register.
-fn whole(record: &Record, index: usize, least: f64, rule: Rule) -> Result<u32, Box<Fault>> {
-    let value = record.number(index, "a number")?;
+fn whole(statement: &Statement, index: usize, least: f64, rule: Rule) -> Result<u32, Box<Fault>> {
+    let value = statement.number(index, "a number")?;
     if value.fract() == 0.0 && (least..=MAX_NUMBER).contains(&value) {
         return Ok(value as u32);
     }
@@ -61,28 +59,28 @@ fn whole(record: &Record, index: usize, least: f64, rule: Rule) -> Result<u32, B
     Err(Fault::new(rule, message).fields(index, 1))
 }
 
-/// Field after the word `word`, where the record has that word.
-fn after(record: &Record, word: &str) -> Option<usize> {
-    (0..record.fields.len()).find(|i| record.is(*i, word)).map(|i| i + 1)
+/// Field after the word `word`, where the statement has that word.
+fn after(statement: &Statement, word: &str) -> Option<usize> {
+    (0..statement.fields.len()).find(|i| statement.is(*i, word)).map(|i| i + 1)
 }
 
 impl Reader {
     /// `FEDRAT/v`, `FEDRAT/v,unit`, `FEDRAT/unit,v`. Without a unit the last one holds; at the start,
     /// units of the file a minute.
-    pub(super) fn fedrat(&mut self, record: &Record) -> Outcome {
-        record.count(&[1, 2], "FEDRAT/value,MMPM")?;
-        let number = usize::from(!matches!(record.fields.first(), Some(Field::Number(_))));
-        let value = record.number(number, "the feed")?;
-        if record.fields.len() == 2 {
+    pub(super) fn fedrat(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[1, 2], "FEDRAT/value,MMPM")?;
+        let number = usize::from(!matches!(statement.fields.first(), Some(Field::Number(_))));
+        let value = statement.number(number, "the feed")?;
+        if statement.fields.len() == 2 {
             self.feed_unit =
-                FeedUnit::of(record, 1 - number).ok_or_else(|| unknown_feed(1 - number))?;
+                FeedUnit::of(statement, 1 - number).ok_or_else(|| unknown_feed(1 - number))?;
         }
         let feed = self.feed_of(value, self.feed_unit).map_err(|fault| fault.fields(number, 1))?;
         self.feed = Some(feed);
         if value <= 0.0 {
             self.ready = Ready::No;
         }
-        self.push(record.line, Op::Feed(feed));
+        self.push(statement.line, Op::Feed(feed));
         Ok(())
     }
 
@@ -110,29 +108,29 @@ impl Reader {
     /// `SPINDL/` with, in any order, a speed, `RPM`, `SFM` or `SMM`, `CLW` or `CCLW`, `MAXRPM,n` and
     /// `RANGE,n`; or `ON`, `OFF`. Surface speeds are resolved with the diameter of the tool. `MAXRPM` is
     /// "the maximum RPM to be reached during SFM motion" (Siemens NX, *SPINDL*).
-    pub(super) fn spindl(&mut self, record: &Record) -> Outcome {
+    pub(super) fn spindl(&mut self, statement: &Statement) -> Outcome {
         let (mut speed, mut surface, mut left, mut max) = (None, None, None, None);
         let mut range = false;
         let mut i = 0;
-        while i < record.fields.len() {
-            match record.fields.get(i) {
+        while i < statement.fields.len() {
+            match statement.fields.get(i) {
                 Some(Field::Number(value)) if speed.is_none() => speed = Some((i, *value)),
-                _ if record.is(i, "RPM") => surface = None,
-                _ if record.is(i, "SFM") => surface = Some(12.0 * INCH),
-                _ if record.is(i, "SMM") => surface = Some(1000.0),
-                _ if record.is(i, "CLW") => left = Some(false),
-                _ if record.is(i, "CCLW") => left = Some(true),
-                _ if record.is(i, "ON") => {}
-                _ if record.is(i, "OFF") => return self.turn(record, Spindle::Off),
-                _ if record.is(i, "MAXRPM") => {
+                _ if statement.is(i, "RPM") => surface = None,
+                _ if statement.is(i, "SFM") => surface = Some(12.0 * INCH),
+                _ if statement.is(i, "SMM") => surface = Some(1000.0),
+                _ if statement.is(i, "CLW") => left = Some(false),
+                _ if statement.is(i, "CCLW") => left = Some(true),
+                _ if statement.is(i, "ON") => {}
+                _ if statement.is(i, "OFF") => return self.turn(statement, Spindle::Off),
+                _ if statement.is(i, "MAXRPM") => {
                     i += 1;
-                    max = Some((i, record.number(i, "the greatest speed")?));
+                    max = Some((i, statement.number(i, "the greatest speed")?));
                 }
-                _ if record.is(i, "RANGE") => {
+                _ if statement.is(i, "RANGE") => {
                     i += 1;
                     let gears = ["LOW", "MEDIUM", "HIGH"];
-                    if !gears.iter().any(|gear| record.is(i, gear)) {
-                        record.number(i, "the range")?;
+                    if !gears.iter().any(|gear| statement.is(i, gear)) {
+                        statement.number(i, "the range")?;
                     }
                     range = true;
                 }
@@ -147,22 +145,23 @@ impl Reader {
         if range {
             let help = "check that the control chooses the gear by the speed";
             let message = "the gear range of SPINDL is not passed on";
-            self.report.warn(record, Rule::SpindleRange, message, help);
-            if record.fields.len() == 2 {
+            self.report.warn(statement, Rule::SpindleRange, message, help);
+            if statement.fields.len() == 2 {
                 return Ok(());
             }
         }
         if let Some((field, max)) = max
             && (speed.is_none() || !(1.0..=1e7).contains(&max))
         {
-            let message = "MAXRPM takes a speed greater than 0, in the record of the surface speed";
+            let message =
+                "MAXRPM takes a speed greater than 0, in the statement of the surface speed";
             return Err(Fault::new(Rule::Spindle, message)
                 .help("write SPINDL/SFM,speed,MAXRPM,greatest,CLW")
                 .fields(field, 1));
         }
         if speed.is_none() && left.is_none() {
             return match self.last_spindle {
-                Some(spindle) => self.turn(record, spindle),
+                Some(spindle) => self.turn(statement, spindle),
                 None => Err(Fault::new(Rule::Malformed, "no speed has been given yet")
                     .help("write SPINDL/speed,RPM,CLW")),
             };
@@ -189,7 +188,7 @@ impl Reader {
             (rpm, false) => Spindle::Clockwise(rpm),
             (rpm, true) => Spindle::CounterClockwise(rpm),
         };
-        self.turn(record, spindle)
+        self.turn(statement, spindle)
     }
 
     /// A speed in 1/min; with `surface`, a surface speed of so many mm a unit.
@@ -210,19 +209,19 @@ impl Reader {
         }
     }
 
-    fn turn(&mut self, record: &Record, spindle: Spindle) -> Outcome {
+    fn turn(&mut self, statement: &Statement, spindle: Spindle) -> Outcome {
         if spindle != Spindle::Off {
             self.last_spindle = Some(spindle);
         }
         self.spindle = spindle;
         self.ready = Ready::No;
-        self.push(record.line, Op::Spindle(spindle));
+        self.push(statement.line, Op::Spindle(spindle));
         Ok(())
     }
 
     /// `COOLNT/FLOOD`, `MIST`, `THRU`, also with `ON`; `ON` alone, which is the last kind again;
     /// `OFF`.
-    pub(super) fn coolnt(&mut self, record: &Record) -> Outcome {
+    pub(super) fn coolnt(&mut self, statement: &Statement) -> Outcome {
         let kinds = [
             ("FLOOD", Coolant::Flood),
             ("TAPKUL", Coolant::Flood),
@@ -230,14 +229,14 @@ impl Reader {
             ("THRU", Coolant::Through),
             ("TOOL", Coolant::Through),
         ];
-        let count = record.count(&[1, 2], "COOLNT/FLOOD, MIST, THRU or OFF")?;
-        let on = (0..count).find(|i| record.is(*i, "ON"));
+        let count = statement.count(&[1, 2], "COOLNT/FLOOD, MIST, THRU or OFF")?;
+        let on = (0..count).find(|i| statement.is(*i, "ON"));
         let coolant = match on {
             Some(_) if count == 1 => self.last_coolant,
-            None if count == 1 && record.is(0, "OFF") => Coolant::Off,
+            None if count == 1 && statement.is(0, "OFF") => Coolant::Off,
             _ => {
                 let field = usize::from(on == Some(0));
-                let known = kinds.iter().find(|(word, _)| record.is(field, word));
+                let known = kinds.iter().find(|(word, _)| statement.is(field, word));
                 // Two kinds, or OFF with one, are not one thing to do.
                 let known = known.filter(|_| on.is_some() || count == 1);
                 let (_, coolant) = known.ok_or_else(|| {
@@ -251,32 +250,32 @@ impl Reader {
         if coolant != Coolant::Off {
             self.last_coolant = coolant;
         }
-        self.push(record.line, Op::Coolant(coolant));
+        self.push(statement.line, Op::Coolant(coolant));
         Ok(())
     }
 
     /// `CUTCOM/LEFT`, `RIGHT`, `ON`, `OFF`, with the register after it or after `ADJUST`, which may also
-    /// come first (Siemens NX); a `GOTO` may follow in the same record.
-    pub(super) fn cutcom(&mut self, record: &Record) -> Outcome {
-        let goto = after(record, "GOTO");
-        let own = goto.map_or(record.fields.len(), |i| i - 1);
+    /// come first (Siemens NX); a `GOTO` may follow in the same statement.
+    pub(super) fn cutcom(&mut self, statement: &Statement) -> Outcome {
+        let goto = after(statement, "GOTO");
+        let own = goto.map_or(statement.fields.len(), |i| i - 1);
         let (mut side, mut register) = (None, None);
         for i in 0..own {
-            match record.fields.get(i) {
+            match statement.fields.get(i) {
                 Some(Field::Number(_)) if register.is_none() && i > 0 => {
-                    register = Some(whole(record, i, 0.0, Rule::Malformed)?);
+                    register = Some(whole(statement, i, 0.0, Rule::Malformed)?);
                 }
-                _ if ["LEFT", "RIGHT", "OFF", "ON"].iter().any(|word| record.is(i, word))
+                _ if ["LEFT", "RIGHT", "OFF", "ON"].iter().any(|word| statement.is(i, word))
                     && side.is_none() =>
                 {
                     side = Some(i);
                 }
-                _ if record.is(i, "ADJUST") || record.is(i, "OSETNO") => {
-                    if !matches!(record.fields.get(i + 1), Some(Field::Number(_))) {
+                _ if statement.is(i, "ADJUST") || statement.is(i, "OSETNO") => {
+                    if !matches!(statement.fields.get(i + 1), Some(Field::Number(_))) {
                         return Err(no_register(i));
                     }
                 }
-                _ if record.is(i, "XYPLAN") => {}
+                _ if statement.is(i, "XYPLAN") => {}
                 _ => {
                     return Err(Fault::new(Rule::Malformed, "this is not known of a compensation")
                         .help("write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF")
@@ -290,9 +289,9 @@ impl Reader {
                 .help("write CUTCOM/LEFT,register, CUTCOM/RIGHT,register or CUTCOM/OFF")
         })?;
         let compensation = match () {
-            () if record.is(side, "LEFT") => Compensation::Left(register),
-            () if record.is(side, "RIGHT") => Compensation::Right(register),
-            () if record.is(side, "OFF") => Compensation::Off,
+            () if statement.is(side, "LEFT") => Compensation::Left(register),
+            () if statement.is(side, "RIGHT") => Compensation::Right(register),
+            () if statement.is(side, "OFF") => Compensation::Off,
             () => self.last_side.ok_or_else(|| {
                 Fault::new(Rule::Malformed, "CUTCOM/ON before any side was given")
                     .help("write CUTCOM/LEFT or CUTCOM/RIGHT")
@@ -302,42 +301,42 @@ impl Reader {
         if compensation != Compensation::Off {
             self.last_side = Some(compensation);
         }
-        self.push(record.line, Op::Compensation(compensation));
+        self.push(statement.line, Op::Compensation(compensation));
         match goto {
-            Some(first) => self.goto_from(record, first),
+            Some(first) => self.goto_from(statement, first),
             None => Ok(()),
         }
     }
 
     /// `LOAD/TOOL,n` with, in any order, `ADJUST,k` or `OSETNO,k` (register), `LENGTH,l` (gauge length)
     /// and `ZOFF,z` of Siemens NX; `LOADTL/n` and `LOADTL/n,k` of CATIA.
-    pub(super) fn load(&mut self, record: &Record) -> Outcome {
-        let first = usize::from(record.major.eq_ignore_ascii_case(b"LOAD"));
-        if first == 1 && !record.is(0, "TOOL") {
+    pub(super) fn load(&mut self, statement: &Statement) -> Outcome {
+        let first = usize::from(statement.major.eq_ignore_ascii_case(b"LOAD"));
+        if first == 1 && !statement.is(0, "TOOL") {
             return Err(Fault::new(Rule::Unsupported, "only tools can be loaded").fields(0, 1));
         }
         let mut tool = std::mem::take(&mut self.next_tool);
-        tool.number = whole(record, first, 1.0, Rule::ToolNumber)?;
+        tool.number = whole(statement, first, 1.0, Rule::ToolNumber)?;
         let mut i = first + 1;
-        if let Some(Field::Number(_)) = record.fields.get(i) {
-            tool.offset = Some(whole(record, i, 0.0, Rule::Malformed)?);
+        if let Some(Field::Number(_)) = statement.fields.get(i) {
+            tool.offset = Some(whole(statement, i, 0.0, Rule::Malformed)?);
             i += 1;
         }
-        while i < record.fields.len() {
+        while i < statement.fields.len() {
             match () {
-                () if record.is(i, "ADJUST") || record.is(i, "OSETNO") => {
-                    tool.offset = Some(whole(record, i + 1, 0.0, Rule::Malformed)?);
+                () if statement.is(i, "ADJUST") || statement.is(i, "OSETNO") => {
+                    tool.offset = Some(whole(statement, i + 1, 0.0, Rule::Malformed)?);
                 }
-                () if record.is(i, "LENGTH") => {
-                    let length = record.number(i + 1, "the length")?;
+                () if statement.is(i, "LENGTH") => {
+                    let length = statement.number(i + 1, "the length")?;
                     tool.length = Some(self.length(length)?);
                 }
                 // Whether the shift is in the register already is known at the machine only.
-                () if record.is(i, "ZOFF") => {
-                    if record.number(i + 1, "the offset")? != 0.0 {
+                () if statement.is(i, "ZOFF") => {
+                    if statement.number(i + 1, "the offset")? != 0.0 {
                         let help = "check that the register of the tool length has it";
                         let message = "the Z offset of LOAD/TOOL is not passed on";
-                        self.report.warn(record, Rule::ToolOffset, message, help);
+                        self.report.warn(statement, Rule::ToolOffset, message, help);
                     }
                 }
                 () => {
@@ -366,10 +365,10 @@ impl Reader {
                 return Err(Fault::new(Rule::ToolNumber, message)
                     .help("add LOAD/TOOL,n before the first motion"));
             }
-            self.change_tool_at(early.records, record.line, tool);
+            self.change_tool_at(early.records, statement.line, tool);
             return Ok(());
         }
-        self.change_tool(record.line, tool);
+        self.change_tool(statement.line, tool);
         Ok(())
     }
 
@@ -383,26 +382,35 @@ impl Reader {
         self.tool = tool.clone();
         self.tool_record = Some(index);
         self.ready = Ready::No;
-        self.program.records.insert(index, Step { line, op: Op::Tool(Box::new(tool)) });
+        self.program.records.insert(index, Record { line, op: Op::Tool(Box::new(tool)) });
     }
 
     /// `SELECT/TOOL,n`, `SELCTL/n`: the tool to come.
-    pub(super) fn select(&mut self, record: &Record) -> Outcome {
-        let first = usize::from(record.major.eq_ignore_ascii_case(b"SELECT"));
-        if first == 1 && !record.is(0, "TOOL") {
+    pub(super) fn select(&mut self, statement: &Statement) -> Outcome {
+        let first = usize::from(statement.major.eq_ignore_ascii_case(b"SELECT"));
+        if first == 1 && !statement.is(0, "TOOL") {
             let help = "only SELECT/TOOL is passed on";
-            self.report.warn(record, Rule::IgnoredWord, "SELECT of another thing is ignored", help);
+            self.report.warn(
+                statement,
+                Rule::IgnoredWord,
+                "SELECT of another thing is ignored",
+                help,
+            );
             return Ok(());
         }
-        let number = whole(record, first, 1.0, Rule::ToolNumber)?;
-        self.push(record.line, Op::Preselect(number));
+        let number = whole(statement, first, 1.0, Rule::ToolNumber)?;
+        self.push(statement.line, Op::Preselect(number));
         Ok(())
     }
 
     /// Describes the tool: the one loaded last where it has not moved since, else the next.
-    pub(super) fn describe_tool(&mut self, record: &Record, describe: impl FnOnce(&mut Tool)) {
+    pub(super) fn describe_tool(
+        &mut self,
+        statement: &Statement,
+        describe: impl FnOnce(&mut Tool),
+    ) {
         let Some(index) = self.tool_record else {
-            self.next_line = record.line;
+            self.next_line = statement.line;
             return describe(&mut self.next_tool);
         };
         describe(&mut self.tool);
@@ -413,10 +421,10 @@ impl Reader {
 
     /// `CUTTER/d,r,e,f,a,b,h`: diameter and corner radius (ISO 4343); the rest of its seven values
     /// says the same in other words, and the height of the cutter, which is not a gauge length.
-    pub(super) fn cutter(&mut self, record: &Record) -> Outcome {
-        let diameter = self.diameter(record, 0)?;
-        let radius = match record.fields.get(1) {
-            Some(Field::Number(_)) => Some(self.length(record.number(1, "the corner radius")?)?),
+    pub(super) fn cutter(&mut self, statement: &Statement) -> Outcome {
+        let diameter = self.diameter(statement, 0)?;
+        let radius = match statement.fields.get(1) {
+            Some(Field::Number(_)) => Some(self.length(statement.number(1, "the corner radius")?)?),
             _ => None,
         };
         // SolidWorks CAM writes the name of the tool just before.
@@ -429,12 +437,12 @@ impl Reader {
         if name.is_some() {
             self.program.records.pop();
         }
-        let angle = match record.fields.get(4) {
+        let angle = match statement.fields.get(4) {
             Some(Field::Number(angle)) if *angle > 0.0 => Some(180.0 - 2.0 * angle),
             _ => None,
         };
-        let tapered = leans(record, 4) || leans(record, 5);
-        self.describe_tool(record, |tool| {
+        let tapered = leans(statement, 4) || leans(statement, 5);
+        self.describe_tool(statement, |tool| {
             tool.diameter = Some(diameter);
             tool.corner_radius = radius;
             tool.tapered = tapered;
@@ -447,34 +455,34 @@ impl Reader {
     }
 
     /// `TLDATA/MILL,d,r,length,taper,tip`, `TLDATA/DRILL,MILL,d,r,length,point angle,...`.
-    pub(super) fn tldata(&mut self, record: &Record) -> Outcome {
+    pub(super) fn tldata(&mut self, statement: &Statement) -> Outcome {
         let is_word = |field: &&Field| matches!(field, Field::Word(..));
-        let first = record.fields.iter().take_while(is_word).count();
-        let diameter = self.diameter(record, first)?;
-        let radius = match record.fields.get(first + 1) {
+        let first = statement.fields.iter().take_while(is_word).count();
+        let diameter = self.diameter(statement, first)?;
+        let radius = match statement.fields.get(first + 1) {
             Some(Field::Number(_)) => {
-                Some(self.length(record.number(first + 1, "the corner radius")?)?)
+                Some(self.length(statement.number(first + 1, "the corner radius")?)?)
             }
             _ => None,
         };
-        let angle = match record.fields.get(first + 3) {
-            Some(Field::Number(angle)) if record.is(0, "DRILL") => Some(*angle),
+        let angle = match statement.fields.get(first + 3) {
+            Some(Field::Number(angle)) if statement.is(0, "DRILL") => Some(*angle),
             _ => None,
         };
         // It belongs to the operation that has just begun, never to a tool loaded before it.
-        self.next_line = record.line;
+        self.next_line = statement.line;
         self.next_tool.diameter = Some(diameter);
         self.next_tool.corner_radius = radius;
         self.next_tool.tapered =
-            record.is(0, "DRILL") || leans(record, first + 3) || leans(record, first + 4);
+            statement.is(0, "DRILL") || leans(statement, first + 3) || leans(statement, first + 4);
         self.point_angle = angle;
         self.tool_record = None;
         Ok(())
     }
 
     /// A diameter in mm, at field `index`.
-    pub(super) fn diameter(&self, record: &Record, index: usize) -> Result<f64, Box<Fault>> {
-        let value = record.number(index, "the diameter")?;
+    pub(super) fn diameter(&self, statement: &Statement, index: usize) -> Result<f64, Box<Fault>> {
+        let value = statement.number(index, "the diameter")?;
         let diameter = self.length(value).map_err(|fault| fault.fields(index, 1))?;
         if diameter >= 0.0 {
             return Ok(diameter);
@@ -483,19 +491,20 @@ impl Reader {
     }
 
     /// `TPRINT/text`: the name of the tool.
-    pub(super) fn tprint(&mut self, record: &Record) -> Outcome {
-        let name = decode(record.body.0);
-        self.describe_tool(record, |tool| tool.name = name);
+    pub(super) fn tprint(&mut self, statement: &Statement) -> Outcome {
+        let name = decode(statement.body.0);
+        self.describe_tool(statement, |tool| tool.name = name);
         Ok(())
     }
 
     /// `INTOL/t`, `OUTTOL/t`, `TOLER/t`: how far the path may lie inside and outside of the part; `TOLER` is both together. With
     /// one for each surface the least holds.
-    pub(super) fn tolerance(&mut self, record: &Record) -> Outcome {
-        if let Some(i) = record.fields.iter().position(|field| matches!(field, Field::Word(..))) {
+    pub(super) fn tolerance(&mut self, statement: &Statement) -> Outcome {
+        if let Some(i) = statement.fields.iter().position(|field| matches!(field, Field::Word(..)))
+        {
             return Err(Fault::new(Rule::Malformed, "a tolerance is a number").fields(i, 1));
         }
-        let given = record.fields.iter().filter_map(|field| match field {
+        let given = statement.fields.iter().filter_map(|field| match field {
             Field::Number(value) => Some(*value),
             Field::Word(..) | Field::Blank => None,
         });
@@ -504,8 +513,8 @@ impl Reader {
             return Err(Fault::new(Rule::Malformed, "a tolerance has no sign"));
         }
         match () {
-            () if record.major.eq_ignore_ascii_case(b"INTOL") => self.tolerances[0] = least,
-            () if record.major.eq_ignore_ascii_case(b"OUTTOL") => self.tolerances[1] = least,
+            () if statement.major.eq_ignore_ascii_case(b"INTOL") => self.tolerances[0] = least,
+            () if statement.major.eq_ignore_ascii_case(b"OUTTOL") => self.tolerances[1] = least,
             () => self.tolerances = [0.0, least],
         }
         (self.says_tolerance, self.ready) = (false, Ready::No);
@@ -526,17 +535,17 @@ impl Reader {
 
     /// `DELAY/t`, `DELAY/t,SEC`, `DELAY/n,REV`, and the other way round: dwell in seconds or turns of
     /// the spindle.
-    pub(super) fn delay(&mut self, record: &Record) -> Outcome {
-        record.count(&[1, 2], "DELAY/seconds or DELAY/turns,REV")?;
-        let number = usize::from(!matches!(record.fields.first(), Some(Field::Number(_))));
-        let turns = record.is(1 - number, "REV");
-        if record.fields.len() == 2 && !turns && !record.is(1 - number, "SEC") {
+    pub(super) fn delay(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[1, 2], "DELAY/seconds or DELAY/turns,REV")?;
+        let number = usize::from(!matches!(statement.fields.first(), Some(Field::Number(_))));
+        let turns = statement.is(1 - number, "REV");
+        if statement.fields.len() == 2 && !turns && !statement.is(1 - number, "SEC") {
             return Err(Fault::new(Rule::Malformed, "a dwell is in seconds, or in REV")
                 .fields(1 - number, 1));
         }
-        let value = record.number(number, "the dwell")?;
+        let value = statement.number(number, "the dwell")?;
         let seconds = self.dwell(value, turns).map_err(|fault| fault.fields(number, 1))?;
-        self.push(record.line, Op::Dwell(seconds));
+        self.push(statement.line, Op::Dwell(seconds));
         Ok(())
     }
 
@@ -552,22 +561,22 @@ impl Reader {
     }
 
     /// `AUXFUN/n`: a function that the builder of the machine has added, by the number of its M function.
-    pub(super) fn auxfun(&mut self, record: &Record) -> Outcome {
-        record.count(&[1], "AUXFUN/number")?;
-        let number = whole(record, 0, 0.0, Rule::Malformed)?;
-        self.push(record.line, Op::Auxiliary(Auxiliary::of(number)));
+    pub(super) fn auxfun(&mut self, statement: &Statement) -> Outcome {
+        statement.count(&[1], "AUXFUN/number")?;
+        let number = whole(statement, 0, 0.0, Rule::Malformed)?;
+        self.push(statement.line, Op::Auxiliary(Auxiliary::of(number)));
         Ok(())
     }
 
     /// `STOP`.
-    pub(super) fn stop(&mut self, record: &Record) -> Outcome {
-        self.push(record.line, Op::Stop);
+    pub(super) fn stop(&mut self, statement: &Statement) -> Outcome {
+        self.push(statement.line, Op::Stop);
         Ok(())
     }
 
     /// `OPSTOP`.
-    pub(super) fn opstop(&mut self, record: &Record) -> Outcome {
-        self.push(record.line, Op::OptionalStop);
+    pub(super) fn opstop(&mut self, statement: &Statement) -> Outcome {
+        self.push(statement.line, Op::OptionalStop);
         Ok(())
     }
 }
@@ -602,6 +611,6 @@ fn unknown_feed(field: usize) -> Box<Fault> {
 }
 
 /// Whether the angle in field `index` is there and not 0.
-fn leans(record: &Record, index: usize) -> bool {
-    matches!(record.fields.get(index), Some(Field::Number(angle)) if *angle != 0.0)
+fn leans(statement: &Statement, index: usize) -> bool {
+    matches!(statement.fields.get(index), Some(Field::Number(angle)) if *angle != 0.0)
 }

@@ -1,7 +1,7 @@
-//! Records that are words for people: names, comments, the end.
+//! Statements that are words for people: names, comments, the end.
 
-use super::record::Record;
 use super::report::{Fault, Outcome};
+use super::statement::Statement;
 use super::{Dialect, Reader, Ready};
 use program::{Op, Rule};
 
@@ -27,40 +27,40 @@ fn after<'t>(text: &'t str, key: &str) -> Option<&'t str> {
 
 impl Reader {
     /// `$$ text`. CATIA gives its axis system so.
-    pub(super) fn remark(&mut self, record: &Record) -> Outcome {
-        let text = decode(record.body.0);
-        if self.axis_system(record, &text)? || text.starts_with('*') || text.is_empty() {
+    pub(super) fn remark(&mut self, statement: &Statement) -> Outcome {
+        let text = decode(statement.body.0);
+        if self.axis_system(statement, &text)? || text.starts_with('*') || text.is_empty() {
             return Ok(());
         }
-        self.comment(record, &text);
+        self.comment(statement, &text);
         Ok(())
     }
 
     /// A comment; CATIA names its operations in such.
-    fn comment(&mut self, record: &Record, text: &str) {
+    fn comment(&mut self, statement: &Statement, text: &str) {
         let op = match after(text, "OPERATION NAME") {
             Some(name) => Op::Operation(name.trim_start_matches([' ', ':']).into()),
             None => Op::Comment(text.into()),
         };
-        self.push(record.line, op);
+        self.push(statement.line, op);
     }
 
     /// `$$-> word / values` of Creo: the diameter of the tool and the coordinate system. What its other
-    /// directives say is in the records too.
-    pub(super) fn creo_directive(&mut self, record: &Record) -> Outcome {
-        if record.is(0, "CSYS") {
-            return self.creo_csys(record);
+    /// directives say is in the statements too.
+    pub(super) fn creo_directive(&mut self, statement: &Statement) -> Outcome {
+        if statement.is(0, "CSYS") {
+            return self.creo_csys(statement);
         }
-        if record.is(0, "CUTTER") {
-            let diameter = self.diameter(record, 1)?;
-            self.describe_tool(record, |tool| tool.diameter = Some(diameter));
+        if statement.is(0, "CUTTER") {
+            let diameter = self.diameter(statement, 1)?;
+            self.describe_tool(statement, |tool| tool.diameter = Some(diameter));
         }
         Ok(())
     }
 
     /// `PARTNO/text`: the name of the program.
-    pub(super) fn partno(&mut self, record: &Record) -> Outcome {
-        let name = decode(record.body.0);
+    pub(super) fn partno(&mut self, statement: &Statement) -> Outcome {
+        let name = decode(statement.body.0);
         if !name.is_empty() {
             self.program.name = name;
         }
@@ -68,11 +68,11 @@ impl Reader {
     }
 
     /// `PPRINT/text`: a comment. Makino states there what its points are; the rest of its sections
-    /// repeats the records.
-    pub(super) fn pprint(&mut self, record: &Record) -> Outcome {
-        let text = decode(record.body.0);
+    /// repeats the statements.
+    pub(super) fn pprint(&mut self, statement: &Statement) -> Outcome {
+        let text = decode(statement.body.0);
         if self.dialect != Dialect::Makino {
-            self.comment(record, &text);
+            self.comment(statement, &text);
             return Ok(());
         }
         match text.split_once(',') {
@@ -82,7 +82,7 @@ impl Reader {
                     .help("let the CAM system write the tool nose"))
             }
             Some(("BEGIN-SECTION", name)) => {
-                self.sections.push((record.line, name.into()));
+                self.sections.push((statement.line, name.into()));
                 Ok(())
             }
             Some(("END-SECTION", name)) => match self.sections.pop() {
@@ -97,12 +97,12 @@ impl Reader {
 
     /// `INSERT/text`. The text is meant for one control and is never passed on as code: it is a
     /// comment, and `INSERT/STOP text` a message and a stop.
-    pub(super) fn insert(&mut self, record: &Record) -> Outcome {
-        let text = decode(record.body.0);
+    pub(super) fn insert(&mut self, statement: &Statement) -> Outcome {
+        let text = decode(statement.body.0);
         if let Some(message) = after(&text, "STOP") {
             let help = "check that the operator is to stop here";
             self.report.warn(
-                record,
+                statement,
                 Rule::Insert,
                 "INSERT/STOP is read as a stop and a message",
                 help,
@@ -110,55 +110,55 @@ impl Reader {
             // First what the operator is to do, then the stop at which it is read.
             let message = message.trim();
             if !message.is_empty() {
-                self.push(record.line, Op::Message(message.into()));
+                self.push(statement.line, Op::Message(message.into()));
             }
-            self.push(record.line, Op::Stop);
+            self.push(statement.line, Op::Stop);
             return Ok(());
         }
         // SolidWorks CAM writes the names of tools and the size of the stock so.
         if self.dialect != Dialect::SolidWorksCam {
-            let help = "what the control must do has to be in a record of its own";
+            let help = "what the control must do has to be in a statement of its own";
             self.report.warn(
-                record,
+                statement,
                 Rule::Insert,
                 "INSERT is passed on as a comment, not as code",
                 help,
             );
         }
-        self.push(record.line, Op::Comment(text.into()));
+        self.push(statement.line, Op::Comment(text.into()));
         self.inserted = Some(self.program.records.len());
         Ok(())
     }
 
     /// `TOOL PATH/name,TOOL,tool name`: an operation of Siemens NX begins.
-    pub(super) fn tool_path(&mut self, record: &Record) -> Outcome {
-        let text = decode(record.body.0);
+    pub(super) fn tool_path(&mut self, statement: &Statement) -> Outcome {
+        let text = decode(statement.body.0);
         let (name, tool) = text.split_once(",TOOL,").unwrap_or((&text, ""));
-        self.operation = Some((record.line, name.into()));
+        self.operation = Some((statement.line, name.into()));
         self.next_tool = program::Tool { name: tool.trim().into(), ..Default::default() };
         self.tool_record = None;
         self.ready = Ready::No;
-        self.push(record.line, Op::Operation(name.trim().into()));
+        self.push(statement.line, Op::Operation(name.trim().into()));
         Ok(())
     }
 
     /// `END-OF-PATH`: the operation ends.
-    pub(super) fn end_of_path(&mut self, record: &Record) -> Outcome {
+    pub(super) fn end_of_path(&mut self, statement: &Statement) -> Outcome {
         self.no_pending_circle()?;
         if self.operation.take().is_none() {
             return Err(Fault::new(Rule::Malformed, "no TOOL PATH is open here"));
         }
-        self.push(record.line, Op::EndOfOperation);
+        self.push(statement.line, Op::EndOfOperation);
         Ok(())
     }
 
     /// `FINI`, `END`: the end of the program.
-    pub(super) fn fini(&mut self, record: &Record) -> Outcome {
+    pub(super) fn fini(&mut self, statement: &Statement) -> Outcome {
         self.no_pending_circle()?;
         if !self.ended {
             self.ended = true;
             self.ready = Ready::No;
-            self.push(record.line, Op::End);
+            self.push(statement.line, Op::End);
         }
         Ok(())
     }

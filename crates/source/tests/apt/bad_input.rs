@@ -141,7 +141,7 @@ fn an_error_shows_its_place() {
                     \u{20}   | GOTO/1.5,2.5,-3,0,0,0\n\
                     \u{20}   |                 ^^^^^\n";
     assert!(shown.starts_with(expected), "{shown}");
-    // In a record over several lines, on the line where it is.
+    // In a statement over several lines, on the line where it is.
     let text = GOOD.replace("GOTO/1.5,2.5,-3", "GOTO/1.5,$\n2.5,$\n1E9");
     let error = refusal(&text);
     assert_eq!((error.rule.name(), error.line, error.column), ("out-of-range", 9, 1));

@@ -1,5 +1,5 @@
-//! What each record of cutter-location data means, one by one; real files; bad input; any program written
-//! and read back. Expected values are worked out by hand from the record's definition, whose source is in
+//! What each statement of cutter-location data means, one by one; real files; bad input; any program written
+//! and read back. Expected values are worked out by hand from the statement's definition, whose source is in
 //! `docs/sources/apt.md`.
 
 mod arcs;

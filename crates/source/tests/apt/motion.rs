@@ -19,7 +19,7 @@ fn goto_moves_at_feed_and_keeps_what_is_left_out() {
         ),
         ("GOTO/1,2,3\nGOTO/10,,", vec![([1., 2., 3.], up), ([10., 2., 3.], up)]),
         ("GOTO/1,2,3\nGOTO/,5,", vec![([1., 2., 3.], up), ([1., 5., 3.], up)]),
-        // A comma at the end continues the record where no other begins.
+        // A comma at the end continues the statement where no other begins.
         ("GOTO/1,2,3\nGOTO/10,,\n7", vec![([1., 2., 3.], up), ([10., 2., 7.], up)]),
         ("GOTO/1,2,3\nCUTCOM/OFF,GOTO/,,9", vec![([1., 2., 3.], up), ([1., 2., 9.], up)]),
         ("FROM/7,8,9\nRAPID\nGOTO/,0,", vec![([7., 0., 9.], up)]),

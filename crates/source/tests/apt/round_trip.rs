@@ -11,7 +11,7 @@ use toolpost_source::apt::{Options, read};
 struct Style {
     inches: bool,
     blanks: bool,
-    /// Break records after every comma.
+    /// Break statements after every comma.
     broken: bool,
     line_end: &'static str,
     /// Vector in every `GOTO`, or only where it changes.
@@ -58,7 +58,7 @@ fn write(ops: &[Op], style: Style, setup: &Frame) -> String {
     let unit = if style.inches { 25.4 } else { 1.0 };
     let mut axis = Vec3::Z;
     let mut text = String::new();
-    let mut record = |words: String| {
+    let mut statement = |words: String| {
         let slash = if style.blanks { " / " } else { "/" };
         let comma = match (style.broken, style.blanks) {
             (true, _) => ",$\n",
@@ -71,13 +71,13 @@ fn write(ops: &[Op], style: Style, setup: &Frame) -> String {
         };
         let _ = writeln!(text, "{line}");
     };
-    record(format!("UNITS/{}", if style.inches { "INCHES" } else { "MM" }));
+    statement(format!("UNITS/{}", if style.inches { "INCHES" } else { "MM" }));
     for word in ["LOAD/TOOL,1", "SPINDL/1,RPM,CLW", "FEDRAT/1,MMPM", "PAINT/PATH"] {
-        record(word.into());
+        statement(word.into());
     }
     for frame in [&Frame::IDENTITY, setup] {
         let (o, x, y) = (frame.translation / unit, frame.matrix3.x_axis, frame.matrix3.y_axis);
-        record(format!(
+        statement(format!(
             "MSYS/{},{},{},{},{},{},{},{},{}",
             o.x, o.y, o.z, x.x, x.y, x.z, y.x, y.y, y.z
         ));
@@ -87,7 +87,7 @@ fn write(ops: &[Op], style: Style, setup: &Frame) -> String {
         match op {
             Op::Line(pose) | Op::Rapid(pose) => {
                 if matches!(op, Op::Rapid(_)) {
-                    record("RAPID".into());
+                    statement("RAPID".into());
                 }
                 let p = local.transform_point3(pose.point()) / unit;
                 let a = local.transform_vector3(pose.axis());
@@ -96,25 +96,25 @@ fn write(ops: &[Op], style: Style, setup: &Frame) -> String {
                     let _ = write!(line, ",{},{},{}", a.x, a.y, a.z);
                     axis = a;
                 }
-                record(line);
+                statement(line);
             }
-            Op::Feed(Feed::PerMinute(f)) => record(format!("FEDRAT/{f},MMPM")),
-            Op::Feed(Feed::PerTurn(f)) => record(format!("FEDRAT/MMPR,{f}")),
-            Op::Feed(Feed::InverseTime(f)) => record(format!("FEDRAT/INVERS,{f}")),
-            Op::Spindle(Spindle::Clockwise(s)) => record(format!("SPINDL/RPM,{s},CLW")),
-            Op::Spindle(Spindle::CounterClockwise(s)) => record(format!("SPINDL/{s},RPM,CCLW")),
-            Op::Coolant(Coolant::Flood) => record("COOLNT/FLOOD".into()),
-            Op::Coolant(Coolant::Mist) => record("COOLNT/MIST".into()),
-            Op::Coolant(_) => record("COOLNT/OFF".into()),
-            Op::Compensation(Compensation::Left(Some(d))) => record(format!("CUTCOM/LEFT,{d}")),
-            Op::Compensation(_) => record("CUTCOM/OFF".into()),
-            Op::Dwell(t) => record(format!("DELAY/{t}")),
-            Op::Stop => record("STOP".into()),
-            Op::Comment(words) => record(format!("PPRINT/{words}")),
+            Op::Feed(Feed::PerMinute(f)) => statement(format!("FEDRAT/{f},MMPM")),
+            Op::Feed(Feed::PerTurn(f)) => statement(format!("FEDRAT/MMPR,{f}")),
+            Op::Feed(Feed::InverseTime(f)) => statement(format!("FEDRAT/INVERS,{f}")),
+            Op::Spindle(Spindle::Clockwise(s)) => statement(format!("SPINDL/RPM,{s},CLW")),
+            Op::Spindle(Spindle::CounterClockwise(s)) => statement(format!("SPINDL/{s},RPM,CCLW")),
+            Op::Coolant(Coolant::Flood) => statement("COOLNT/FLOOD".into()),
+            Op::Coolant(Coolant::Mist) => statement("COOLNT/MIST".into()),
+            Op::Coolant(_) => statement("COOLNT/OFF".into()),
+            Op::Compensation(Compensation::Left(Some(d))) => statement(format!("CUTCOM/LEFT,{d}")),
+            Op::Compensation(_) => statement("CUTCOM/OFF".into()),
+            Op::Dwell(t) => statement(format!("DELAY/{t}")),
+            Op::Stop => statement("STOP".into()),
+            Op::Comment(words) => statement(format!("PPRINT/{words}")),
             other => unreachable!("{other:?} is not generated"),
         }
     }
-    record("FINI".into());
+    statement("FINI".into());
     text.replace('\n', style.line_end)
 }
 
@@ -168,12 +168,12 @@ proptest! {
 
     #[test]
     fn no_records_make_it_panic(
-        records in prop::collection::vec(
+        statements in prop::collection::vec(
             "(GOTO|CIRCLE|CYCLE|MSYS|CSYS|SPINDL|TLON,GOFWD|FEDRAT|LOAD|DELAY|UNITS|CUTTER|FROM|GODLTA)/\
              ((DRILL|FEDTO|RAPTO|TOOL|RPM|MM|CIRCLE|LINE|-?[0-9]{1,4}(\\.[0-9]{0,3})?|),){0,12}[0-9]?\\$?",
             0..12,
         ),
     ) {
-        let _ = read("t.apt", records.join("\n").as_bytes(), &Options { strict: true, ..Options::default() });
+        let _ = read("t.apt", statements.join("\n").as_bytes(), &Options { strict: true, ..Options::default() });
     }
 }

@@ -1,4 +1,4 @@
-//! Reading short texts, for the tests of single records.
+//! Reading short texts, for the tests of single statements.
 
 use geom::Vec3;
 use program::{Op, Pose};
