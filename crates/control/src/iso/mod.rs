@@ -18,7 +18,7 @@ pub use dialects::facts::{Facts, SourceRules};
 use flow::ahead::Ahead;
 use flow::run::Run;
 use flow::source::Source;
-use language::block::Fault;
+use language::Fault;
 pub use language::words::{
     Canned, Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Path, Pattern, Plane, Refused,
     Side,

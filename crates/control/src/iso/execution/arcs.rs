@@ -5,7 +5,7 @@ use super::state::Tilt;
 use super::step::Step;
 use crate::event::{Action, ArcTo};
 use crate::iso::dialects::facts::OuterCenter;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use geom::Vec3;
 use program::Rule;
 

@@ -1,11 +1,12 @@
 //! The words that move, turn, scale or mirror the coordinates.
 
-use super::frames::{Six, Transform, Unknown};
 use super::motion::LINEAR;
+use super::state::frames::{Six, Transform, Unknown};
 use super::state::{Polar, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::{Action, Risk};
-use crate::iso::language::block::{Fault, Word};
+use crate::iso::language::Fault;
+use crate::iso::language::block::Word;
 use crate::iso::language::words::{G, Group};
 use geom::{Frame, Mat3, Vec3};
 use program::{Rule, WorkOffset, WorkOffsetData};

@@ -1,45 +1,17 @@
 //! Canned cycles: `G73`, `G74`, `G76`, `G80` to `G89`.
 
 use super::motion::{LINEAR, Target};
-use super::state::Tilt;
+use super::state::{Holding, State, Tilt};
 use super::step::Step;
 use crate::event::{Action, Orientation, Risk};
 use crate::iso::dialects::facts::Cycles;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{Canned, FeedMode, G, Group};
 use geom::Vec3;
 use program::{Cycle, CycleKind, Feed, Rule, Spindle, Withdrawal};
 
 /// The most often that a block may repeat its hole: FANUC's K has four digits.
 const MOST_REPEATS: u32 = 9999;
-
-/// The cycle that runs and what it keeps from block to block.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Holding {
-    canned: Canned,
-    /// The level along the drilling axis when the first of the contiguous cycles began, mm.
-    initial: f64,
-    /// Last R and bottom as the words give them, mm.
-    words: (Option<f64>, Option<f64>),
-    /// R plane and bottom along the drilling axis, mm.
-    r: Option<f64>,
-    bottom: Option<f64>,
-    /// Q, mm: a peck, or how far the tool goes aside.
-    q: Option<f64>,
-    /// P, s.
-    dwell: Option<f64>,
-    /// What the events said last.
-    reported: Option<Cycle>,
-    /// The spindle is turned by rigid tapping.
-    rigid: bool,
-}
-
-impl Holding {
-    /// Whether it cuts a thread with a tap.
-    pub(super) fn taps(&self) -> bool {
-        matches!(self.canned, Canned::Tap | Canned::LeftTap)
-    }
-}
 
 impl Canned {
     fn pecks(self) -> bool {
@@ -63,16 +35,6 @@ impl Canned {
         self.needs_dwell(rules)
             || self.goes_aside()
             || matches!(self, Canned::Tap | Canned::LeftTap)
-    }
-}
-
-impl Holding {
-    /// The upper and the lower end of the feed, mm: back boring goes down to R and feeds up to Z.
-    fn ends(&self) -> (Option<f64>, Option<f64>) {
-        match self.canned {
-            Canned::BackBore => (self.bottom, self.r),
-            _ => (self.r, self.bottom),
-        }
     }
 }
 
@@ -461,7 +423,7 @@ impl Step<'_, '_, '_> {
         }
         let from = self.state.position[axis].max(at[axis]);
         let rotary = self.state.rotary;
-        let pose = |state: &super::state::State, point: Vec3| state.pose(point, rotary);
+        let pose = |state: &State, point: Vec3| state.pose(point, rotary);
         self.actions.push(Action::Rapid(pose(self.state, at.with_axis(axis, from))));
         self.actions.push(Action::Rapid(pose(self.state, at)));
         self.actions

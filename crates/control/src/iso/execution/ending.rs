@@ -1,9 +1,8 @@
 //! What is still on where a program ends. The next program takes it as off when it starts, and so the proof does
 //! (`docs/proof.md`, "What a program finds, and what it leaves").
 
-use super::frames::Transform;
-use super::kinematics::Kinematics;
-use super::state::{Length, State, Tilt};
+use super::state::frames::Transform;
+use super::state::{Kinematics, Length, State, Tilt};
 use crate::event::Risk;
 use crate::iso::dialects::facts::{AtEnd, Facts};
 use crate::iso::language::words::{FeedMode, Plane};

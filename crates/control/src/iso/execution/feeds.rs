@@ -1,10 +1,10 @@
 //! What F means.
 
-use super::cycles::Holding;
+use super::state::Holding;
 use super::step::Step;
 use crate::event::Action;
 use crate::iso::dialects::facts::{FeedMeaning, FeedUnit, SourceRules};
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{Canned, FeedMode, G, Group, Motion};
 use program::{Feed, Rule};
 

@@ -1,36 +1,11 @@
 //! The kinematics of a machine that has two: on a LinuxCNC M functions of the builder choose whether X, Y and Z are the
 //! axes, or the tip of the tool in coordinates that turn with the table (`switchkins`; `docs/controls/linuxcnc.md`).
 
-use super::state::UNKNOWN;
+use super::state::{Kinematics, UNKNOWN};
 use super::step::Step;
-use crate::Settings;
-use crate::iso::dialects::facts::Facts;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{G, Group, M, bit};
 use program::Rule;
-
-/// What X, Y and Z are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kinematics {
-    /// The axes: the machine has nothing to switch.
-    Single,
-    /// Whatever the program before has left: neither the end of a program nor a reset switches.
-    Unknown,
-    /// The axes.
-    Axes,
-    /// The tip of the tool in the work frame.
-    Tip,
-}
-
-impl Kinematics {
-    /// At the start of a program.
-    pub(super) fn at_start(facts: &Facts, settings: &Settings) -> Kinematics {
-        match settings.kinematics {
-            Some(_) if facts.syntax.extended_m => Kinematics::Unknown,
-            _ => Kinematics::Single,
-        }
-    }
-}
 
 impl Step<'_, '_, '_> {
     /// The M functions that switch. Nothing moves for them, and what stood at one place by the one kinematics stands at

@@ -2,9 +2,10 @@
 //!
 //! One [`step`] goes through the block in the order of the control and asks each of the others for its
 //! part: the words that move ([`motion`], [`arcs`], [`splines`], [`threads`], [`places`]), what is made
-//! of many moves ([`cycles`], [`patterns`]), the coordinates ([`coordinates`] say how [`frames`]
-//! change), [`kinematics`] that a program switches, the [`dynamic_offset`], [`tools`], the [`wire`], and [`feeds`]. How a number counts is asked of
-//! [`numbers`], what holds of the [`state`], which expressions read by [`system`]. A straight move behind another goes [`straight`] without all that.
+//! of many moves ([`cycles`], [`patterns`]), the coordinates ([`coordinates`] say how frames
+//! change), [`kinematics`] that a program switches, the [`dynamic_offset`], [`tools`], the [`wire`], and [`feeds`]. How a number
+//! counts is asked of [`numbers`], what holds of the [`state`], which knows none of the others, which expressions read by
+//! [`system`]. A straight move behind another goes [`straight`] without all that.
 
 mod arcs;
 mod coordinates;
@@ -12,7 +13,6 @@ mod cycles;
 mod dynamic_offset;
 mod ending;
 mod feeds;
-mod frames;
 mod kinematics;
 mod motion;
 pub(super) mod numbers;

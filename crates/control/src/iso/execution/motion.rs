@@ -4,7 +4,7 @@ use super::state::{Polar, Tilt};
 use super::step::Step;
 use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::Rollover;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{FeedMode, G, Group, Motion, bit};
 use crate::kernel::modulo::{self, Modulo};
 use geom::{Arc, Vec3};

@@ -4,8 +4,8 @@ use super::step::Step;
 use crate::WholeNumbers;
 use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::DwellUnit;
+use crate::iso::language::Fault;
 use crate::iso::language::arithmetic;
-use crate::iso::language::block::Fault;
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use program::Rule;
 

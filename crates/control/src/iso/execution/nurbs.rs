@@ -3,8 +3,9 @@
 //! The first control point is where the tool stands; each block gives the next by X, Y and its weight P. The knots are
 //! uniform, and as often at both ends as the order says, so that the curve begins and ends in its outer points.
 
+use super::state::Nurbs;
 use super::step::Step;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{G, Group, Motion};
 use geom::Vec3;
 use program::Rule;
@@ -23,14 +24,6 @@ const HIGHEST: usize = 16;
 
 /// How often a span may be halved.
 const DEEPEST: u32 = 24;
-
-/// A curve whose `G5.3` has not come yet.
-#[derive(Clone, Debug)]
-pub(crate) struct Nurbs {
-    /// Control points in the coordinates of the program, mm: X and Y times their weight, and the weight.
-    points: Vec<Vec3>,
-    order: usize,
-}
 
 impl Step<'_, '_, '_> {
     /// Between `G5.2` and `G5.3` there are control points, F and comments; `rs274` passes over or drops all else.

@@ -3,7 +3,7 @@
 use super::motion::Target;
 use super::step::Step;
 use crate::event::{Action, ArcTo};
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{Group, Pattern};
 use geom::Vec3;
 use program::Rule;

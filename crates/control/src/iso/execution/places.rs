@@ -5,7 +5,7 @@ use super::motion::{LINEAR, Target};
 use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::{Action, Risk, TiltChoice};
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{Group, Motion};
 use geom::Vec3;
 use program::{Axes, MachineMove, Probe, Rule};

@@ -3,7 +3,7 @@
 
 use super::step::Step;
 use crate::event::Action;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{Group, M};
 use program::{Auxiliary, Input, Output, OutputValue, Rule, Until};
 

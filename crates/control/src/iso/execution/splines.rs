@@ -1,7 +1,7 @@
 //! `G5`, `G5.1`: splines in the plane X Y, as fine lines.
 
 use super::step::Step;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use geom::Vec3;
 use program::Rule;
 

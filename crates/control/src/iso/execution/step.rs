@@ -3,7 +3,8 @@
 use super::state::State;
 use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::{AtEnd, Facts};
-use crate::iso::language::block::{Block, Fault};
+use crate::iso::language::Fault;
+use crate::iso::language::block::Block;
 use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
 use crate::kernel::coolant::{Coolants, Doubtful};
 use crate::{Settings, WholeNumbers};

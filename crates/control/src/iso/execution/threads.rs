@@ -2,7 +2,7 @@
 
 use super::step::Step;
 use crate::event::{Action, Thread};
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use program::{Cycle, CycleKind, Rule, Spindle};
 
 impl Step<'_, '_, '_> {

@@ -1,42 +1,11 @@
 //! Tools: their change, their lengths, and the registers that hold these.
 
-use super::state::{Length, Tilt, UNKNOWN};
+use super::state::{Length, Registers, Tilt, UNKNOWN};
 use super::step::Step;
-use crate::ToolData;
 use crate::event::{Action, Risk};
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{G, Group, M, Plane, bit};
 use program::{Rule, Spindle, Tool};
-
-/// What the program can know of the tool registers.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Registers {
-    /// Lengths by register, mm; NaN where the program has changed one that is not known.
-    lengths: Vec<(u32, f64)>,
-    /// Registers whose radius the program has written.
-    radii: Vec<u32>,
-    /// The last D and the last H, where the dialect remembers them.
-    pub d: Option<u32>,
-    pub h: Option<u32>,
-}
-
-impl Registers {
-    pub(super) fn new(tools: &[ToolData]) -> Registers {
-        let lengths = tools.iter().map(|tool| (tool.number, tool.length)).collect();
-        Registers { lengths, ..Registers::default() }
-    }
-
-    /// The length in a register, NaN where it is not known.
-    fn length(&self, register: u32) -> f64 {
-        let found = self.lengths.iter().rev().find(|(number, _)| *number == register);
-        found.map_or(f64::NAN, |(_, length)| *length)
-    }
-
-    fn write_length(&mut self, register: u32, length: f64) {
-        self.lengths.retain(|(number, _)| *number != register);
-        self.lengths.push((register, length));
-    }
-}
 
 impl Length {
     /// By how much the tip is nearer to the part than the gauge line, mm; NaN where not known.

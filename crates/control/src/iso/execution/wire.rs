@@ -1,41 +1,15 @@
 //! The wire of a wire-EDM machine: where it is threaded and cut, and what leans it.
 
+use super::state::Wire;
 use super::step::Step;
-use crate::Settings;
-use crate::event::{Action, Orientation};
-use crate::iso::language::block::Fault;
+use crate::event::Action;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{G, Group, M, Motion, Side};
 use geom::{Vec3, direction};
 use program::Rule;
 
-/// The wire as the control knows it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Wire {
-    /// Height at which U and V are counted, mm.
-    upper_plane: Option<f64>,
-    /// How far the wire is from X and Y there, mm.
-    u: f64,
-    v: f64,
-    /// Where that points it: it is set up upright.
-    axis: Vec3,
-    /// By how much the control leans it, as [`Action::Taper`] says it.
-    taper: f64,
-}
-
 /// What [`super::motion::Target::named`] says of a block with U or V.
 pub(super) const LEANS: u8 = 1 << 6;
-
-impl Wire {
-    /// Upright.
-    pub(super) fn new(settings: &Settings) -> Wire {
-        Wire { upper_plane: settings.wire.height, u: 0.0, v: 0.0, axis: Vec3::Z, taper: 0.0 }
-    }
-
-    /// Where it points.
-    pub(super) fn orientation(&self) -> Orientation {
-        Orientation::Axis(self.axis)
-    }
-}
 
 impl Step<'_, '_, '_> {
     /// What a wire machine does before it moves. It has no Z, and its generator's conditions move

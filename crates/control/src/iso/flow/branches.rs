@@ -1,10 +1,10 @@
 //! O-words as they are run: branches, loops and calls of subroutines (LinuxCNC manual, "O Codes").
 
-use super::calls::{Kind, Repeat};
+use super::frame::{Kind, Repeat};
 use super::owords::{Keyword, Name, OWords, parse};
 use super::run::Run;
 use super::source::{Source, SourceLocation};
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::expression::Reader;
 use crate::iso::language::parameters::Locals;
 

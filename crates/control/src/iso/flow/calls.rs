@@ -1,13 +1,14 @@
 //! Calls: subroutines, `M98` and `M99`, and the macros of `G65` and `G66`.
 
+use super::frame::{Frame, Kind, Modal};
 use super::macros;
-use super::modes::Modes;
 use super::run::Run;
 use super::source::SourceLocation;
 use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::Language;
+use crate::iso::language::Fault;
 use crate::iso::language::arithmetic;
-use crate::iso::language::block::{Block, Fault};
+use crate::iso::language::block::Block;
 use crate::iso::language::parameters::Locals;
 use crate::iso::language::words::{G, Group, M};
 use program::Rule;
@@ -20,76 +21,6 @@ const MACRO_CALLS: usize = 5;
 
 /// How many calls FANUC nests, macros and subprograms together (B-64484EN, 13.3 and 16.6).
 const ALL_CALLS: usize = 15;
-
-/// What has been called, and how it ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// The program itself.
-    Main,
-    /// `o<name> call`.
-    Subroutine,
-    /// `M98`.
-    Subprogram,
-    /// `G65`, or after a move the macro of `G66` (`modal`).
-    Macro { modal: bool },
-}
-
-/// A program that is under way.
-pub(crate) struct Frame<'a> {
-    pub kind: Kind,
-    /// Where its caller goes on.
-    back: SourceLocation<'a>,
-    caller: Option<u32>,
-    begin: SourceLocation<'a>,
-    /// How often it is still run, with this time.
-    turns: u32,
-    /// With which arguments.
-    locals: Option<Locals>,
-    /// A block of it has been executed.
-    pub begun: bool,
-    /// The `repeat` loops that are under way.
-    pub repeats: Vec<Repeat>,
-    /// The modes that it keeps.
-    pub modes: Option<Modes>,
-    /// The macro that is called after each move.
-    pub modal: Option<Modal<'a>>,
-}
-
-/// A `repeat` under way.
-pub(crate) struct Repeat {
-    /// Which of the O-words of the file.
-    pub word: usize,
-    /// How often it is still run, with this time.
-    pub left: f64,
-}
-
-/// What `G66` has asked for.
-pub(crate) struct Modal<'a> {
-    place: SourceLocation<'a>,
-    turns: u32,
-    locals: Locals,
-}
-
-impl<'a> Frame<'a> {
-    pub(super) fn new(
-        kind: Kind,
-        begin: SourceLocation<'a>,
-        back: SourceLocation<'a>,
-    ) -> Frame<'a> {
-        Frame {
-            kind,
-            back,
-            caller: None,
-            begin,
-            turns: 1,
-            locals: None,
-            begun: false,
-            repeats: Vec::new(),
-            modes: None,
-            modal: None,
-        }
-    }
-}
 
 impl<'a> Run<'a, '_> {
     /// The subprogram of `M98 P L` and how often it is run.

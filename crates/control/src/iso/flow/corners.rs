@@ -3,12 +3,13 @@
 //!
 //! What goes between two blocks is known when the second is. So a block with a corner is held until then.
 
-use super::run::Run;
+use super::run::{Run, WaitingCorner};
 use crate::WholeNumbers;
 use crate::event::{Action, ArcTo, Position};
 use crate::iso::dialects::facts::CornerWords;
 use crate::iso::execution::state::Tilt;
-use crate::iso::language::block::{Fault, Word};
+use crate::iso::language::Fault;
+use crate::iso::language::block::Word;
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::corner::{self, Element, Misfit, Shape};
 use geom::Vec3;
@@ -16,17 +17,6 @@ use program::{Diagnostic, Feed, Rule};
 
 /// Two ways whose directions differ by less make no corner, degrees (the same chapter, "Travel distance 0").
 const STRAIGHT_ON: f64 = 1.0;
-
-/// A block whose corner waits for the next one.
-pub(crate) struct WaitingCorner {
-    /// Its cut.
-    action: Action,
-    element: Element,
-    /// About which its arcs turn.
-    up: Vec3,
-    shape: Shape,
-    line: u32,
-}
 
 impl Run<'_, '_> {
     /// The cut of the block that has been executed, from `start`, goes round the corner of the block before it; it is held

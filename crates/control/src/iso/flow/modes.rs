@@ -1,53 +1,11 @@
 //! The modes that LinuxCNC keeps and brings back: `M70` to `M73`.
 
+use super::frame::Modes;
 use super::run::Run;
-use crate::iso::execution::state::{Length, State};
-use crate::iso::language::block::Fault;
-use crate::iso::language::words::{FeedMode, G, Group, M, Plane, Side};
+use crate::iso::execution::state::Length;
+use crate::iso::language::Fault;
+use crate::iso::language::words::{G, Group, M, Side};
 use program::{Compensation, Coolant, Rule, Spindle};
-
-/// What is kept (LinuxCNC manual, "M70 Save Modal State"): the motion word is not.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Modes {
-    /// They come back at the end of the subroutine (`M73`).
-    pub until_return: bool,
-    inches: Option<bool>,
-    plane: Plane,
-    incremental: bool,
-    centers_absolute: bool,
-    feed_mode: FeedMode,
-    return_to_r: Option<bool>,
-    work_offset: u32,
-    compensation: Compensation,
-    length: Length,
-    f: Option<f64>,
-    speed: Option<f64>,
-    surface: Option<f64>,
-    spindle: Spindle,
-    coolant: Coolant,
-}
-
-impl Modes {
-    fn of(state: &State, until_return: bool) -> Modes {
-        Modes {
-            until_return,
-            inches: state.inches,
-            plane: state.plane,
-            incremental: state.incremental,
-            centers_absolute: state.centers_absolute,
-            feed_mode: state.feed_mode,
-            return_to_r: state.return_to_r,
-            work_offset: state.frames.active(),
-            compensation: state.compensation.asked,
-            length: state.length,
-            f: state.f,
-            speed: state.speed,
-            surface: state.surface,
-            spindle: state.spindle,
-            coolant: state.coolant,
-        }
-    }
-}
 
 impl Run<'_, '_> {
     /// `M70` to `M73`.

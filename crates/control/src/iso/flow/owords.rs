@@ -3,8 +3,8 @@
 //! The O-words of a file are found and matched once, when the first of them is met; a line without
 //! one is never looked at for that.
 
-use super::source;
-use crate::iso::language::block::Fault;
+use super::start::start;
+use crate::iso::language::Fault;
 use crate::kernel::decimal;
 use crate::kernel::flow::{self, BlockLocation, Structures};
 use program::{Diagnostic, Rule};
@@ -78,7 +78,7 @@ pub(super) fn at(line: &[u8]) -> Option<usize> {
     // The first byte decides for nearly every line.
     let (at, _) = match line.first()? {
         b'O' | b'o' => return Some(0),
-        b' ' | b'\t' | b'/' | b'N' | b'n' => source::start(line),
+        b' ' | b'\t' | b'/' | b'N' | b'n' => start(line),
         _ => return None,
     };
     matches!(line.get(at), Some(b'O' | b'o')).then_some(at)

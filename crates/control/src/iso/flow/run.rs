@@ -1,11 +1,11 @@
 //! The run of a program: line after line, and the calls and jumps from one to another.
 
 use super::ahead::Ahead;
-use super::calls::{Frame, Kind};
-use super::corners::WaitingCorner;
-use super::macros;
+use super::frame::{Frame, Kind};
+use super::numbers;
 use super::owords;
-use super::source::{self, Source, SourceLocation};
+use super::source::{Source, SourceLocation};
+use super::start::start;
 use crate::Ending;
 use crate::Settings;
 use crate::event::{Action, Event, Risk};
@@ -13,12 +13,15 @@ use crate::iso::dialects::facts::{Facts, Language};
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
 use crate::iso::execution::straight::StraightContinuation;
+use crate::iso::language::Fault;
 use crate::iso::language::arithmetic;
-use crate::iso::language::block::{Block, Fault};
+use crate::iso::language::block::Block;
 use crate::iso::language::expression::Reader;
 use crate::iso::language::parameters::{Parameters, Values};
 use crate::iso::language::words::{G, Group, M};
+use crate::kernel::corner::{Element, Shape};
 use crate::kernel::{Channel, flow};
+use geom::Vec3;
 use program::{Diagnostic, Rule};
 use std::collections::HashMap;
 use std::ptr;
@@ -54,6 +57,17 @@ pub(crate) struct Run<'a, 's> {
     pub(super) held: Option<WaitingCorner>,
     /// Where the events go.
     pub(super) channel: &'a mut Channel<'s>,
+}
+
+/// A block whose corner waits for the next one.
+pub(crate) struct WaitingCorner {
+    /// Its cut.
+    pub(super) action: Action,
+    pub(super) element: Element,
+    /// About which its arcs turn.
+    pub(super) up: Vec3,
+    pub(super) shape: Shape,
+    pub(super) line: u32,
 }
 
 impl<'a, 's> Run<'a, 's> {
@@ -182,7 +196,7 @@ impl<'a, 's> Run<'a, 's> {
                 }
             }
             Language::MacroB => {
-                if let Some(at) = macros::at(text) {
+                if let Some(at) = numbers::at(text) {
                     return self.statement(from, text, at);
                 }
             }
@@ -233,7 +247,7 @@ impl<'a, 's> Run<'a, 's> {
     /// Whether what follows the end of the program is not its own: other programs, or what it has
     /// jumped over.
     fn ends_here(&self, text: &[u8]) -> bool {
-        let (at, _) = source::start(text);
+        let (at, _) = start(text);
         let begins = matches!(text.get(at), Some(b'O' | b'o' | b':'));
         self.flows || begins && self.here.percent_signs < 2
     }

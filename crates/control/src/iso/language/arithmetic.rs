@@ -1,6 +1,6 @@
 //! What operators and functions calculate, in RS274/NGC and in custom macro B.
 
-use super::expression::Value;
+use super::value::Value;
 use crate::iso::dialects::facts::Language;
 
 /// How near two numbers are taken as equal in RS274/NGC, and a number as a whole one.

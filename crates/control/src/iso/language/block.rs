@@ -1,19 +1,18 @@
 //! A block (a line of NC) taken apart into words.
 
+use super::Fault;
 use super::arithmetic;
-use super::expression::{Reader, Target, Value};
+use super::expression::Reader;
 use super::parameters::Values;
+use super::value::{Target, Value};
 use super::words::{G, Group, LETTERS, M, bit, index, set};
 use crate::Settings;
 use crate::iso::dialects::facts::{BlockDelete, Brackets, CornerWords, Facts, Language, Semicolon};
 use crate::kernel::decimal::{self, Decimal};
-use program::{Diagnostic, Rule};
+use program::Rule;
 
 /// The letters of a block that only moves, by [`bit`].
 const MOVES: u32 = set(b"NXYZABCIJKRF");
-
-/// A finding about a block.
-pub(crate) type Fault = Box<Diagnostic>;
 
 /// A letter with its number.
 #[derive(Clone, Copy, Debug, Default)]

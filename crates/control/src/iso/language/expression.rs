@@ -10,19 +10,17 @@
 //! | `EQ` `NE` `GT` `GE` `LT` `LE` | `EQ` `NE` `GT` `GE` `LT` `LE` |
 //! | `AND` `OR` `XOR` of truths | |
 
+use super::Fault;
 use super::arithmetic::{
     BINARY, Binary, FUNCTIONS, Function, MACRO_FUNCTIONS, NGC_FUNCTIONS, macro_binary,
     macro_function, ngc_binary, ngc_function, truth, whole,
 };
-use super::block::Fault;
 use super::parameters::Values;
+use super::value::{Target, Value};
 use crate::iso::dialects::facts::Language;
 use crate::kernel::decimal;
 use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
 use program::{Diagnostic, Rule};
-
-/// A calculated number; `None` is the null of a macro variable that holds nothing.
-pub(super) type Value = Option<f64>;
 
 /// How deep brackets may nest in macro B (B-63684EN, 16.3: alarm 118).
 const DEEPEST_MACRO: u32 = 5;
@@ -335,12 +333,4 @@ impl Grammar for Reader<'_, '_> {
         };
         self.checked(result, span.start, span.end)
     }
-}
-
-/// Which parameter is meant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Target<'t> {
-    Number(u32),
-    /// As it is written.
-    Name(&'t [u8]),
 }

@@ -1,6 +1,7 @@
 //! What is wrong with a block, at its place and with the way out.
 
-use super::block::{Block, Fault, Word};
+use super::Fault;
+use super::block::{Block, Word};
 use super::words::{Group, index};
 use crate::iso::dialects::facts::Language;
 use crate::kernel::coolant::Doubtful;

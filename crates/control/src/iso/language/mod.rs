@@ -12,4 +12,10 @@ pub(super) mod expression;
 mod faults;
 pub(super) mod parameters;
 pub(super) mod plain;
+pub(super) mod value;
 pub(super) mod words;
+
+use program::Diagnostic;
+
+/// A finding about a block.
+pub(crate) type Fault = Box<Diagnostic>;

@@ -1,6 +1,6 @@
 //! The parameters of RS274/NGC and the variables of macro B: what a program has set.
 
-use super::expression::{Target, Value};
+use super::value::{Target, Value};
 use crate::iso::dialects::facts::Language;
 use std::collections::HashMap;
 

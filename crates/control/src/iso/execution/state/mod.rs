@@ -1,11 +1,12 @@
 //! What the control remembers from block to block.
 
-use super::cycles::Holding;
-use super::frames::{Frames, ProgramFrame};
-use super::kinematics::Kinematics;
-use super::nurbs::Nurbs;
-use super::tools::Registers;
-use super::wire::Wire;
+mod cycle;
+pub(super) mod frames;
+mod kinematics;
+mod nurbs;
+mod registers;
+mod wire;
+
 use crate::event::{Orientation, Position};
 use crate::iso::dialects::facts::Facts;
 use crate::iso::language::words::{FeedMode, Motion, Plane, Side};
@@ -13,6 +14,14 @@ use crate::kernel::compensation::Terms;
 use crate::{Settings, TableAxis, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Purpose, Spindle, WorkOffset};
+
+pub(super) use cycle::Holding;
+pub(super) use kinematics::Kinematics;
+pub(super) use nurbs::Nurbs;
+pub(super) use registers::Registers;
+pub(super) use wire::Wire;
+
+use frames::{Frames, ProgramFrame};
 
 /// The modes, the position and what was reported last.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@
 use geom::{Frame, Mat3, Vec3};
 
 /// X, Y, Z in mm and A, B, C in degrees.
-pub(super) type Six = [f64; 6];
+pub(in crate::iso::execution) type Six = [f64; 6];
 
 /// Programmed coordinates in the work frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub(crate) struct ProgramFrame {
 
 impl ProgramFrame {
     /// Programmed coordinates that are those of the work frame.
-    pub(super) const SAME: ProgramFrame =
+    pub(in crate::iso::execution) const SAME: ProgramFrame =
         ProgramFrame { frame: Frame::IDENTITY, rotary: [0.0; 3], same: true };
 
     /// A programmed point in the work frame.
@@ -29,7 +29,7 @@ impl ProgramFrame {
     }
 
     /// A point of the work frame in programmed coordinates.
-    pub(super) fn programmed(&self, p: Vec3) -> Vec3 {
+    pub(in crate::iso::execution) fn programmed(&self, p: Vec3) -> Vec3 {
         if self.same {
             return p;
         }
@@ -37,12 +37,12 @@ impl ProgramFrame {
     }
 
     /// Programmed positions of the rotary axes as those of the work offset.
-    pub(super) fn rotary(&self, degrees: [f64; 3]) -> [f64; 3] {
+    pub(in crate::iso::execution) fn rotary(&self, degrees: [f64; 3]) -> [f64; 3] {
         if self.same { degrees } else { [0, 1, 2].map(|i| degrees[i] + self.rotary[i]) }
     }
 
     /// A programmed direction in the work frame, its length scaled with the coordinates.
-    pub(super) fn direction(&self, v: Vec3) -> Vec3 {
+    pub(in crate::iso::execution) fn direction(&self, v: Vec3) -> Vec3 {
         if self.same { v } else { self.frame.matrix3 * v }
     }
 
@@ -183,7 +183,8 @@ pub(crate) struct Transform {
 }
 
 impl Transform {
-    pub(super) const NONE: Transform = Transform { mirror: [None; 3], scale: None, turn: None };
+    pub(in crate::iso::execution) const NONE: Transform =
+        Transform { mirror: [None; 3], scale: None, turn: None };
 
     fn frame(&self) -> Frame {
         let about = |center: Vec3, m: Mat3| {
@@ -202,12 +203,12 @@ impl Transform {
     }
 
     /// The factor of an axis.
-    pub(super) fn factor(&self, axis: usize) -> f64 {
+    pub(in crate::iso::execution) fn factor(&self, axis: usize) -> f64 {
         self.scale.map_or(1.0, |(factors, _)| factors[axis])
     }
 
     /// Whether left and right change sides in the plane of these axes.
-    pub(super) fn swaps_sides(&self, first: usize, second: usize) -> bool {
+    pub(in crate::iso::execution) fn swaps_sides(&self, first: usize, second: usize) -> bool {
         let negative = |axis: usize| self.mirror[axis].is_some() != (self.factor(axis) < 0.0);
         negative(first) != negative(second)
     }
@@ -248,7 +249,11 @@ pub(crate) struct Frames {
 
 impl Frames {
     /// Nothing shifted, in the work offset `number`.
-    pub(super) fn new(number: u32, all_zero: bool, turns_offsets: bool) -> Frames {
+    pub(in crate::iso::execution) fn new(
+        number: u32,
+        all_zero: bool,
+        turns_offsets: bool,
+    ) -> Frames {
         let untouched = if all_zero { 0.0 } else { f64::NAN };
         let mut frames = Frames {
             offsets: Vec::with_capacity(2),
@@ -291,7 +296,7 @@ impl Frames {
     }
 
     /// The way into the work frame.
-    pub(super) fn place(&self) -> ProgramFrame {
+    pub(in crate::iso::execution) fn place(&self) -> ProgramFrame {
         let Some(offset) = self.offset() else { return ProgramFrame::SAME };
         let shift: Six = std::array::from_fn(|i| self.shift[i] + self.local[i]);
         let mut frame = offset.frame() * Frame::from_translation(linear(&shift));
@@ -309,25 +314,25 @@ impl Frames {
     }
 
     /// A point of the work frame in machine coordinates, NaN where it is not known.
-    pub(super) fn to_machine(&self, work: Vec3) -> Vec3 {
+    pub(in crate::iso::execution) fn to_machine(&self, work: Vec3) -> Vec3 {
         let Some(offset) = self.offset() else { return Vec3::NAN };
         times(turn(2, offset.angle), work) + linear(&offset.origin)
     }
 
     /// A point in machine coordinates in the work frame, NaN where it is not known.
-    pub(super) fn of_machine(&self, machine: Vec3) -> Vec3 {
+    pub(in crate::iso::execution) fn of_machine(&self, machine: Vec3) -> Vec3 {
         let Some(offset) = self.offset() else { return Vec3::NAN };
         times(turn(2, -offset.angle), machine - linear(&offset.origin))
     }
 
     /// What the active work offset holds for the rotary axes, degrees; NaN where not known.
-    pub(super) fn rotary_origin(&self) -> [f64; 3] {
+    pub(in crate::iso::execution) fn rotary_origin(&self) -> [f64; 3] {
         self.offset().map_or([f64::NAN; 3], |o| [o.origin[3], o.origin[4], o.origin[5]])
     }
 
     /// The work coordinates that are not known any more once the named axes of the machine (bit 0
     /// is X) are where only the machine knows.
-    pub(super) fn depend_on(&self, named: u8) -> [bool; 3] {
+    pub(in crate::iso::execution) fn depend_on(&self, named: u8) -> [bool; 3] {
         let axes = [0, 1, 2].map(|axis| named & 1 << axis != 0);
         let straight = |angle: f64| angle.is_nan() || angle % 180.0 == 0.0;
         if self.offset().is_none_or(|offset| straight(offset.angle)) {
@@ -338,19 +343,19 @@ impl Frames {
     }
 
     /// Another work offset is active.
-    pub(super) fn select(&mut self, number: u32) {
+    pub(in crate::iso::execution) fn select(&mut self, number: u32) {
         self.active = self.index(number);
     }
 
     /// The program has moved in the active work offset.
-    pub(super) fn used(&mut self) {
+    pub(in crate::iso::execution) fn used(&mut self) {
         if let Some(offset) = self.offsets.get_mut(self.active) {
             offset.used = true;
         }
     }
 
     /// Whether the program has moved in the active work offset.
-    pub(super) fn is_used(&self) -> bool {
+    pub(in crate::iso::execution) fn is_used(&self) -> bool {
         self.offset().is_some_and(|offset| offset.used)
     }
 
@@ -369,7 +374,7 @@ impl Frames {
     }
 
     /// Whether coordinates are mirrored, scaled, turned or tilted.
-    pub(super) fn is_transformed(&self) -> bool {
+    pub(in crate::iso::execution) fn is_transformed(&self) -> bool {
         self.transform != Transform::NONE || self.tilt.is_some()
     }
 
@@ -388,7 +393,7 @@ impl Frames {
     /// # Errors
     /// The program has moved in it, and what it held before is not known; or a step was added to an
     /// external offset that is not.
-    pub(super) fn write(
+    pub(in crate::iso::execution) fn write(
         &mut self,
         number: u32,
         values: [Option<f64>; 6],
@@ -413,7 +418,7 @@ impl Frames {
     ///
     /// # Errors
     /// The program has moved, and what it held before is not known.
-    pub(super) fn write_external(
+    pub(in crate::iso::execution) fn write_external(
         &mut self,
         values: [Option<f64>; 6],
         add: bool,
@@ -444,7 +449,7 @@ impl Frames {
     ///
     /// # Errors
     /// The program has moved in that offset, and where the tool stands in it is not known.
-    pub(super) fn write_here(
+    pub(in crate::iso::execution) fn write_here(
         &mut self,
         number: u32,
         here: Six,
@@ -482,7 +487,7 @@ impl Frames {
     ///
     /// # Errors
     /// The program has moved, and where the tool stands is not known.
-    pub(super) fn shift_here(
+    pub(in crate::iso::execution) fn shift_here(
         &mut self,
         here: Six,
         values: [Option<f64>; 6],
@@ -508,7 +513,10 @@ impl Frames {
     ///
     /// # Errors
     /// The program has moved, and what `G92` had set before is not known.
-    pub(super) fn shift_to(&mut self, values: [Option<f64>; 6]) -> Result<(), Unknown> {
+    pub(in crate::iso::execution) fn shift_to(
+        &mut self,
+        values: [Option<f64>; 6],
+    ) -> Result<(), Unknown> {
         let used = self.is_used();
         for ((shift, beyond), value) in self.shift.iter_mut().zip(&mut self.beyond).zip(values) {
             let Some(value) = value else { continue };
@@ -522,7 +530,7 @@ impl Frames {
     }
 
     /// `G92.1` and, with `keep`, `G92.2`. Answers whether it is known what goes away.
-    pub(super) fn unshift(&mut self, keep: bool) -> bool {
+    pub(in crate::iso::execution) fn unshift(&mut self, keep: bool) -> bool {
         let known = !self.beyond.iter().any(|v| v.is_nan());
         if !known && self.is_used() {
             self.lost = self.lost.or(Some(if keep { "G92.2" } else { "G92.1" }));
@@ -537,7 +545,7 @@ impl Frames {
     ///
     /// # Errors
     /// The program has stored nothing.
-    pub(super) fn restore(&mut self) -> Result<(), Unknown> {
+    pub(in crate::iso::execution) fn restore(&mut self) -> Result<(), Unknown> {
         self.shift = self.stored.ok_or(Unknown)?;
         Ok(())
     }
@@ -545,4 +553,4 @@ impl Frames {
 
 /// What is asked for depends on what stands in the machine and not in the program.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Unknown;
+pub(in crate::iso::execution) struct Unknown;
