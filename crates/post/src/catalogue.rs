@@ -263,12 +263,12 @@ names! {
         Pitch Word "PITCH", "mm", "Cycle: pitch of the thread, negative for left-hand.";
         Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter; in the unit of {{F}}.";
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
-        Lead Word "LEAD", "mm", "Way of a thread in a turn of the spindle.";
+        Lead Word "LEAD", "mm", "Lead of a thread: how far the tool goes in a turn of the spindle.";
         Height Word "HEIGHT", "", "Parameter that keeps the height of a place of the surface, the first as `first` says.";
         M Word "M", "", "Number of a function of the machine's builder.";
         FirstValue Word "FIRST_VALUE", "", "First value that a function of the machine's builder is called with.";
         SecondValue Word "SECOND_VALUE", "", "Second value that it is called with.";
-        Offset Word "OFFSET", "", "Place of the work offset that is written: 1 is the first.";
+        Offset Word "OFFSET", "", "Number of the work offset that is written: 1 is the first.";
         Signal Word "SIGNAL", "", "Number of a digital output or input.";
         Channel Word "CHANNEL", "", "Number of an analog output or input.";
         Value Word "VALUE", "", "What an analog output is set to, in the unit of the machine.";

@@ -83,7 +83,7 @@ struct Parts {
 /// A cut in inverse time.
 struct Timed {
     rate: f64,
-    /// Way of the tip, mm.
+    /// Path length of the tip, mm.
     length: f64,
     /// Whether the control knows it.
     timed: bool,

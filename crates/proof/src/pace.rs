@@ -45,9 +45,9 @@ pub(crate) struct Cut<'a> {
 /// What the cuts have taken since the last comparison, in minutes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pace {
-    /// Way of the source for which no block has moved yet, mm.
+    /// Path length of the source for which no block has moved yet, mm.
     owed: f64,
-    /// Way of the tip, mm.
+    /// Path length of the tip, mm.
     way: f64,
     /// The largest rounding of one of them, mm.
     rounding: f64,

@@ -193,9 +193,9 @@ pub struct Summary {
     pub blocks: usize,
     /// Tools in the order of their first call: numbers, or names where they are called so.
     pub tools: Vec<String>,
-    /// Way of the tip in the work frame in feed moves, holes included, mm.
+    /// Path length of the tip in the work frame in feed moves, holes included, mm.
     pub cutting_length_mm: f64,
-    /// Way of the tip in rapid moves between known places, as straight lines, mm.
+    /// Path length of the tip in rapid moves between known places, as straight lines, mm.
     pub rapid_length_mm: f64,
     /// Programmed positions of X, Y and Z, mm.
     pub linear_extents_mm: [Extent; 3],

@@ -301,16 +301,16 @@ fn a_source_that_keeps_to_the_path_is_followed() {
 /// A FANUC rounds corners as its parameters say, and no word of a program says how far; a GRBL goes through each corner, `$11` says
 /// how fast.
 #[test]
-fn a_tolerance_for_which_a_control_has_no_word_is_told() {
+fn a_tolerance_for_which_a_control_has_no_word_is_warned_of() {
     let source = source::apt::read("job.cls", BY_OPERATION.as_bytes(), &Default::default());
     let source = source.unwrap().program;
-    for (name, is_told) in [("generic-3axis-fanuc", true), ("generic-3axis-grbl", false)] {
+    for (name, is_warned) in [("generic-3axis-fanuc", true), ("generic-3axis-grbl", false)] {
         let machine = load(name).unwrap();
         let output = post::write(&source, &machine).unwrap_or_else(|found| panic!("{found:?}"));
-        let told: Vec<_> =
+        let warned: Vec<_> =
             output.warnings.iter().filter(|found| found.rule.name() == "path-mode").collect();
-        assert_eq!(!told.is_empty(), is_told, "{name}: {told:#?}");
-        assert!(told.len() <= 1, "{told:#?}");
+        assert_eq!(!warned.is_empty(), is_warned, "{name}: {warned:#?}");
+        assert!(warned.len() <= 1, "{warned:#?}");
     }
 }
 

@@ -122,7 +122,7 @@ fn tip([x, y, z, a, c]: [f64; 5]) -> Vec3 {
 struct Cut {
     /// The block, from 0.
     line: usize,
-    /// Way of the tip, mm.
+    /// Path length of the tip, mm.
     way: f64,
     /// The number behind F.
     feed: f64,

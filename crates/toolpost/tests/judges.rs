@@ -1,6 +1,6 @@
 //! Programs we write, run by interpreters that others wrote: `rs274` of LinuxCNC (Debian package
 //! `linuxcnc-uspace`) and `nc-gcode-interpreter` (PyPI). Both are programs run and compared with ours; their
-//! motion is held against the source, so nothing of ours but the reader and the writer is trusted.
+//! motion is compared with the source, so nothing of ours but the reader and the writer is trusted.
 //!
 //! A judge that is not installed is named on stderr and its test passes; in CI it fails.
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// What a page says of one sample.
 struct Reading {
-    /// The sample that this one is held against, where it is the same but for some blocks.
+    /// The sample that this one is compared with, where it is the same but for some blocks.
     like: Option<String>,
     quoted: Vec<String>,
     /// Whether each quoted stretch has words behind it.

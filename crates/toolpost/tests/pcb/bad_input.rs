@@ -388,7 +388,7 @@ fn machines_that_cannot_do_it() {
         ["error[axis-limit]: X moves from 4.0000 mm to 710.0000 mm: 406.0000 mm more", "300 mm"];
     let said = refused(&folder, &[&CALL[..], &long].concat(), 1, &found);
     assert_eq!(said.err.matches("error[").count(), 1, "{}", said.err);
-    // Where the work zero is known each place is held against the travel: one finding for each axis. X is
+    // Where the work zero is known each position is checked against the travel: one finding for each axis. X is
     // beyond it from 14 + 4 · 24 mm on, in 51 holes of a row; of the others only the last row is, in 9.
     let machine = "extends = \"grbl-3018\"\nwork_zero = [-100, -100, -20]\n";
     folder.write("mine.toml", machine);
