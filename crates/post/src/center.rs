@@ -31,17 +31,26 @@ const RADII: f64 = 0.01;
 const SAMPLES: u32 = 16;
 
 /// `program` with the path of the tool's centre in the place of each contour that compensation offsets, and where the first one begins;
-/// nothing where there is none.
+/// nothing where there is none. Pieces that are no longer than `resolution`, mm, are left to their neighbours.
 ///
 /// # Errors
 /// The tool does not fit, its radius is not known, or something happens on the contour that no path of the centre has.
-pub(crate) fn centered(program: &Program) -> Outcome<Option<(Program, Diagnostic)>> {
+pub(crate) fn centered(
+    program: &Program,
+    resolution: f64,
+) -> Outcome<Option<(Program, Diagnostic)>> {
     if program.compensated_path != Some(CompensatedPath::Contour) {
         return Ok(None);
     }
     let Some(line) = program.compensates() else { return Ok(None) };
-    let mut walk =
-        Walk { records: Vec::new(), here: None, radius: None, used: None, section: None };
+    let mut walk = Walk {
+        records: Vec::new(),
+        resolution,
+        here: None,
+        radius: None,
+        used: None,
+        section: None,
+    };
     for record in &program.records {
         walk.record(record).map_err(|found| {
             Box::new(if found.line == 0 { found.line(record.line) } else { *found })
@@ -85,6 +94,8 @@ struct Section {
     /// 1 where the tool is on the left, -1 where it is on the right.
     left: f64,
     radius: f64,
+    /// A piece that is no longer is left to its neighbours, mm.
+    shortest: f64,
     /// The tool; the plane is across it.
     axis: Vec3,
     /// Where the lead-in ends, once it has come.
@@ -96,6 +107,8 @@ struct Section {
 
 struct Walk {
     records: Vec<Record>,
+    /// The smallest step of the program's words, mm.
+    resolution: f64,
     here: Option<Pose>,
     radius: Option<f64>,
     /// The radius of the first contour.
@@ -175,6 +188,7 @@ impl Walk {
             line,
             left,
             radius,
+            shortest: self.resolution,
             axis: here.axis(),
             lead: None,
             items: Vec::new(),
@@ -201,10 +215,10 @@ impl Walk {
                     if section.lead.is_none() {
                         return Ok(true);
                     }
-                    section.items.push(Item::Along(line, heights[1]));
+                    section.along(line, heights);
                 } else {
                     let [start, end] = [here, *to].map(|pose| section.plane(pose.point()));
-                    section.go(Move { line, element: Element::line(start, end), heights });
+                    section.go(Move { line, element: Element::line(start, end), heights })?;
                 }
                 self.here = Some(*to);
                 Ok(false)
@@ -235,7 +249,7 @@ impl Walk {
                 let [start, end] = [here, to.end].map(|pose| section.plane(pose.point()));
                 let heights = [section.height(here.point()), section.height(to.end.point())];
                 let element = Element { start, end, turn: Some(turn) };
-                section.go(Move { line, element, heights });
+                section.go(Move { line, element, heights })?;
                 self.here = Some(to.end);
                 Ok(false)
             }
@@ -332,11 +346,39 @@ impl Section {
         }
     }
 
-    fn go(&mut self, step: Move) {
-        match self.lead {
-            None => self.lead = Some(step),
-            Some(_) => self.items.push(Item::Move(step)),
+    /// A move to another height; a point that the source gives twice is none.
+    fn along(&mut self, line: u32, [from, to]: [f64; 2]) {
+        if (to - from).abs() > NOWHERE {
+            self.items.push(Item::Along(line, to));
         }
+    }
+
+    /// # Errors
+    /// The contour goes on in pieces that the program cannot show.
+    fn go(&mut self, step: Move) -> Outcome {
+        let Some(lead) = &self.lead else {
+            self.lead = Some(step);
+            return Ok(());
+        };
+        if step.element.length() > self.shortest {
+            self.items.push(Item::Move(step));
+            return Ok(());
+        }
+        let last = self.items.iter().rev().find_map(Item::as_move);
+        let last = last.as_ref().unwrap_or(lead);
+        if last.element.end.distance(step.element.end) > self.shortest {
+            let message = format!(
+                "pieces of the contour, one behind the other, are shorter than a step of the program, {} mm",
+                self.shortest
+            );
+            let help = "have the CAM system leave out points so near to each other";
+            return Err(Diagnostic::error(Rule::Compensation, message)
+                .help(help)
+                .line(step.line)
+                .into());
+        }
+        self.along(step.line, step.heights);
+        Ok(())
     }
 
     /// Writes the path of the centre behind `records`; where it ends.
@@ -413,7 +455,8 @@ impl Section {
             let turn = turn_angle(before.tangent(1.0), after.tangent(0.0));
             let corner = after.start;
             let (from, to) = (parallel[k - 1].end, parallel[k].start);
-            if from.distance(to) <= JOINED {
+            // A short piece between may have been left out.
+            if from.distance(to) <= JOINED + before.end.distance(after.start) {
                 continue;
             }
             if turn * self.left < 0.0 || turn.abs() > PI - 1e-9 {
@@ -584,6 +627,7 @@ mod tests {
             line: 1,
             left,
             radius,
+            shortest: 1e-3,
             axis: Vec3::Z,
             lead: None,
             items: Vec::new(),

@@ -102,7 +102,8 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     }
     let mut output = match robot(machine) {
         Some(robot) => {
-            let centered = center::centered(program).map_err(|found| vec![*found])?;
+            let centered = center::centered(program, machine.resolution());
+            let centered = centered.map_err(|found| vec![*found])?;
             let (centered, warning) = centered.unzip();
             let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot)?;
             output.warnings.extend(warning);

@@ -10,6 +10,7 @@ use super::trail::{CompensatedMoves, Piece};
 use crate::resolved_pose::Number;
 use geom::{Element, Turn, Vec2, Vec3};
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 /// How far from an outer corner the centre may be, in radii of the tool: where the parallels cross at a turn of 100° (SINUMERIK
 /// `G451`) it is 1.556, on FANUC's way around a sharper one 1.414.
@@ -27,8 +28,30 @@ const MOST_PAIRS: usize = 30_000_000;
 /// Moves whose coordinates in the plane differ by less are one, in steps of so many mm.
 const ONE: f64 = 1e-4;
 
-/// Where the path is wrong, by line of the program, and how.
-pub(crate) type Fault = (u32, String);
+/// Where the path is wrong, and how.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Fault {
+    /// Line of the block of the path.
+    pub block: Option<u32>,
+    /// Line of the element of the contour: of the program where it offsets, of the source where the control does not.
+    pub element: Option<u32>,
+    pub how: String,
+}
+
+impl Fault {
+    pub(crate) fn at_block(line: u32, how: impl Into<String>) -> Fault {
+        Fault { block: Some(line), element: None, how: how.into() }
+    }
+
+    fn at_element(line: u32, how: impl Into<String>) -> Fault {
+        Fault { block: None, element: Some(line), how: how.into() }
+    }
+
+    /// With the element of the contour as well.
+    fn of(self, element: u32) -> Fault {
+        Fault { element: Some(element), ..self }
+    }
+}
 
 /// A move in the plane.
 #[derive(Clone, Copy)]
@@ -48,6 +71,8 @@ pub(crate) struct Slack {
     pub along: f64,
     /// Along arcs that are written as chords, beyond that.
     pub chord: f64,
+    /// How far behind the start of the contour the centre may begin; none: as far as the way in, an element to some controls, keeps it off.
+    pub start: Option<f64>,
 }
 
 /// Both paths in the plane.
@@ -66,6 +91,7 @@ struct PlanePaths {
     slack: f64,
     /// How far chords of arcs may leave them, beyond that, mm.
     chord: f64,
+    start: Option<f64>,
     /// By which ways, from and to, the centre runs along each element of the contour behind the first.
     along: Vec<[usize; 2]>,
 }
@@ -84,23 +110,24 @@ pub(crate) fn compare(
 ) -> Result<Vec<usize>, Fault> {
     let Some(first) = stretch.pieces.first() else { return Ok(vec![0; path.len()]) };
     let axis = first.to.axis;
-    let ways = |pieces: &[Piece]| -> Result<Vec<PlaneMove>, Fault> {
-        let ways = pieces.iter().enumerate().map(|(i, piece)| flat(piece, axis, i));
+    let ways = |pieces: &[Piece], at: fn(u32, String) -> Fault| -> Result<Vec<PlaneMove>, Fault> {
+        let ways = pieces
+            .iter()
+            .enumerate()
+            .map(|(i, piece)| flat(piece, axis, i).map_err(|how| at(piece.line, how.to_owned())));
         ways.collect::<Result<_, _>>()
     };
     let in_plane = |way: &PlaneMove| way.element.length() > NOWHERE;
-    // The first move leads to the contour, wherever it ends.
-    let contour = ways(&stretch.pieces)?;
-    let contour = contour.into_iter().filter(|way| way.piece == 0 || in_plane(way));
-    let contour: Vec<PlaneMove> = contour.collect();
-    let path = ways(path)?;
+    let contour = long_enough(ways(&stretch.pieces, Fault::at_element)?, slack.along);
+    let path = ways(path, Fault::at_block)?;
     let ways: Vec<PlaneMove> = path.iter().copied().filter(in_plane).collect();
     let parallel = contour.iter().map(|way| parallel_of(way, left * radius));
     let parallel = parallel.collect::<Result<_, _>>()?;
     let exit = stretch.exit.and_then(|piece| flat(&piece, axis, 0).ok()).map(|way| way.element);
-    let Slack { along: slack, chord } = slack;
+    let Slack { along: slack, chord, start } = slack;
+    let along = Vec::new();
     let mut paths =
-        PlanePaths { contour, parallel, ways, exit, radius, left, slack, chord, along: Vec::new() };
+        PlanePaths { contour, parallel, ways, exit, radius, left, slack, chord, start, along };
     paths.compare()?;
     paths.keeps_off()?;
     paths.pieces(&path, stretch.pieces.len())
@@ -113,17 +140,18 @@ impl PlanePaths {
         let mut last: Option<(usize, [f64; 2])> = None;
         for k in 1..self.contour.len() {
             let found = (next..self.ways.len())
-                .find_map(|i| self.covered(k, &self.ways[i].element).map(|part| (i, part)));
+                .find_map(|i| self.covered(k, &self.ways[i].element, 0.0).map(|part| (i, part)));
             let Some((i, mut part)) = found else {
-                let message = "nowhere leads the tool's centre along this block";
-                return Err((self.contour[k].line, message.into()));
+                let message = "nowhere leads the tool's centre along this element";
+                let block = self.ways.get(next).map(|way| way.line);
+                return Err(Fault { block, ..Fault::at_element(self.contour[k].line, message) });
             };
             // An arc may be written in parts.
             let mut j = i;
             let length = self.parallel[k].length();
             while self.contour[k].element.turn.is_some()
                 && let Some([from, to]) =
-                    self.ways.get(j + 1).and_then(|way| self.covered(k, &way.element))
+                    self.ways.get(j + 1).and_then(|way| self.covered(k, &way.element, part[1]))
                 && (from - part[1]).abs() <= self.slack
                 && to <= length + self.slack
             {
@@ -170,7 +198,7 @@ impl PlanePaths {
             let is_next = at.get(i + 1).is_none_or(|next| free < *next) && free < count;
             if !is_next || self.contour.iter().any(|element| element.piece == free) {
                 let message = "the program moves along the tool where the contour does not";
-                return Err((way.line, message.into()));
+                return Err(Fault::at_block(way.line, message));
             }
             at[i] = free;
             free += 1;
@@ -178,8 +206,9 @@ impl PlanePaths {
         Ok(at)
     }
 
-    /// Along which part of element `k` the centre runs on `way`, as lengths along the parallel, mm.
-    fn covered(&self, k: usize, way: &Element) -> Option<[f64; 2]> {
+    /// Along which part of element `k` the centre runs on `way`, as lengths along the parallel, mm; on an arc, of all turns, that which
+    /// begins nearest to `before`.
+    fn covered(&self, k: usize, way: &Element, before: f64) -> Option<[f64; 2]> {
         let parallel = &self.parallel[k];
         let [from, to] = match (parallel.turn, way.turn) {
             (None, None) => {
@@ -191,32 +220,30 @@ impl PlanePaths {
                 let ((from, off), (to, other)) = (place(way.start), place(way.end));
                 (off.max(other) <= self.slack).then_some([from, to])?
             }
-            (Some(turn), Some(other)) => {
+            (Some(turn), other) => {
                 let radius = parallel.start.distance(turn.center);
-                let off = |point: Vec2| (point.distance(turn.center) - radius).abs();
-                let apart =
-                    turn.center.distance(other.center).max(off(way.start)).max(off(way.end));
-                if apart > self.slack || turn.sweep * other.sweep <= 0.0 {
-                    return None;
-                }
-                let (spoke, to) = (parallel.start - turn.center, way.start - turn.center);
-                let angle = spoke.angle_to(to) * turn.sweep.signum();
-                [angle * radius, (angle + other.sweep.abs()) * radius]
-            }
-            // A chord.
-            (Some(turn), None) => {
-                let radius = parallel.start.distance(turn.center);
-                let off = |point: Vec2| (point.distance(turn.center) - radius).abs();
-                let sag = radius - turn.center.distance(way.at(0.5));
-                let ends = off(way.start).max(off(way.end));
-                if ends > self.slack || sag > self.slack + self.chord {
+                let off = |t: f64| way.at(t).distance(turn.center) - radius;
+                // Of a flat arc rounding moves the centre far, and no point of it.
+                let is_on = match other {
+                    Some(_) => {
+                        [0.0, 0.25, 0.5, 0.75, 1.0].iter().all(|t| off(*t).abs() <= self.slack)
+                    }
+                    // A chord.
+                    None => {
+                        off(0.0).abs().max(off(1.0).abs()) <= self.slack
+                            && -off(0.5) <= self.slack + self.chord
+                    }
+                };
+                if !is_on || other.is_some_and(|other| turn.sweep * other.sweep <= 0.0) {
                     return None;
                 }
                 let angle = |from: Vec2, to: Vec2| {
                     (from - turn.center).angle_to(to - turn.center) * turn.sweep.signum()
                 };
-                let from = angle(parallel.start, way.start);
+                let near = |angle: f64, to: f64| angle + TAU * ((to - angle) / TAU).round();
+                let from = near(angle(parallel.start, way.start), before / radius);
                 let step = angle(way.start, way.end);
+                let step = other.map_or(step, |other| near(step, other.sweep.abs()));
                 if step <= 0.0 {
                     return None;
                 }
@@ -237,23 +264,22 @@ impl PlanePaths {
     ) -> Result<(), Fault> {
         let (before, after) = (&self.contour[k - 1], &self.contour[k]);
         for way in &self.ways[i..=j] {
-            for element in [&before.element, &after.element] {
-                let near = samples(&way.element).map(|point| element.nearest(point).1);
+            for of in [before, after] {
+                let near = samples(&way.element).map(|point| of.element.nearest(point).1);
                 let near = near.fold(f64::INFINITY, f64::min);
-                self.holds_off(near, self.radius, way, after.line)?;
+                self.holds_off(near, self.radius, way, of.line)?;
             }
         }
-        let corner = after.element.start;
-        let between = self.ways[i + 1..j].iter();
-        let ends =
-            between.flat_map(|way| [way.element.start, way.element.at(0.5), way.element.end]);
-        self.not_far(corner, ends, after.line)?;
+        for way in &self.ways[i + 1..j] {
+            self.not_far(after, &[0.0, 0.5, 1.0].map(|t| way.element.at(t)), way)?;
+        }
         let length = self.parallel[k - 1].length();
+        let (last, first) = (&self.ways[i], &self.ways[j]);
         if part[1] > length {
-            self.not_far(corner, [self.ways[i].element.end], after.line)?;
+            self.not_far(after, &[last.element.end], last)?;
         }
         if next[0] < 0.0 {
-            self.not_far(corner, [self.ways[j].element.start], after.line)?;
+            self.not_far(after, &[first.element.start], first)?;
         }
         self.left_out(k - 1, [part[1], length], &after.element)?;
         self.left_out(k, [0.0, next[0]], &before.element)
@@ -270,10 +296,19 @@ impl PlanePaths {
             let near = near.fold(f64::INFINITY, f64::min);
             self.holds_off(near, self.radius.min(start), way, first.line)?;
         }
+        let way = &self.ways[i];
         if part[0] < 0.0 {
-            self.not_far(first.element.start, [self.ways[i].element.start], first.line)?;
+            self.not_far(first, &[way.element.start], way)?;
         }
-        self.left_out(1, [0.0, part[0]], &entry.element)
+        let Some(farthest) = self.start else {
+            return self.left_out(1, [0.0, part[0]], &entry.element);
+        };
+        if part[0] > farthest {
+            let behind = Number(part[0]);
+            let how = format!("the tool begins {behind} mm behind the start of the contour");
+            return Err(Fault::at_block(way.line, how).of(first.line));
+        }
+        Ok(())
     }
 
     /// The way off the contour, after way `i` along its last element.
@@ -283,17 +318,13 @@ impl PlanePaths {
         let length = self.parallel[k].length();
         if part[1] < length - self.slack {
             let left = Number(length - part[1]);
-            return Err((
-                last.line,
-                format!("the tool leaves {left} mm before the end of the contour"),
-            ));
+            let how = format!("the tool leaves {left} mm before the end of the contour");
+            return Err(Fault::at_block(self.ways[i].line, how).of(last.line));
         }
         if part[1] > length + self.slack && i + 1 < self.ways.len() {
             let past = Number(part[1] - length);
-            return Err((
-                last.line,
-                format!("the tool goes {past} mm past the end of the contour"),
-            ));
+            let how = format!("the tool goes {past} mm past the end of the contour");
+            return Err(Fault::at_block(self.ways[i].line, how).of(last.line));
         }
         let Some(end) = self.ways.last() else { return Ok(()) };
         let end = last.element.nearest(end.element.end).1;
@@ -311,11 +342,8 @@ impl PlanePaths {
         if near >= least - self.slack_of(way) {
             return Ok(());
         }
-        let deep = Number(least - near);
-        Err((
-            way.line,
-            format!("the tool cuts {deep} mm into the contour of the block in line {of}"),
-        ))
+        let how = format!("the tool cuts {} mm into the contour", Number(least - near));
+        Err(Fault::at_block(way.line, how).of(of))
     }
 
     /// How near to the contour is near enough on a way, mm.
@@ -362,7 +390,7 @@ impl PlanePaths {
             pairs += near.len();
             if pairs > MOST_PAIRS {
                 let message = "the contour lies over itself so often that it cannot be compared";
-                return Err((way.line, message.into()));
+                return Err(Fault::at_block(way.line, message));
             }
             for other in near.iter().filter(|other| !neighbours.contains(other)) {
                 self.apart(&way, &elements[*other].1, &self.contour[own.clone()], lead)?;
@@ -435,21 +463,15 @@ impl PlanePaths {
         })
     }
 
-    /// On its way around a corner the centre does not go far.
-    fn not_far(
-        &self,
-        corner: Vec2,
-        points: impl IntoIterator<Item = Vec2>,
-        line: u32,
-    ) -> Result<(), Fault> {
-        let far = points.into_iter().map(|point| point.distance(corner)).fold(0.0, f64::max);
+    /// On its way around the corner before `after` the centre does not go far: these points of a way.
+    fn not_far(&self, after: &PlaneMove, points: &[Vec2], way: &PlaneMove) -> Result<(), Fault> {
+        let far = points.iter().map(|point| point.distance(after.element.start));
+        let far = far.fold(0.0, f64::max);
         if far <= FARTHEST * self.radius + self.slack {
             return Ok(());
         }
-        Err((
-            line,
-            format!("before this block the tool's centre is {} mm off the corner", Number(far)),
-        ))
+        let how = format!("the tool's centre is {} mm off the corner before it", Number(far));
+        Err(Fault::at_block(way.line, how).of(after.line))
     }
 
     /// Each point of element `k` along which the centre does not run, from and to in mm, is one from which `other` keeps the tool.
@@ -469,7 +491,7 @@ impl PlanePaths {
             true => {
                 let message =
                     format!("the tool leaves {} mm of the contour uncut", Number(to - from));
-                Err((self.contour[k].line, message))
+                Err(Fault::at_element(self.contour[k].line, message))
             }
             false => Ok(()),
         }
@@ -515,7 +537,7 @@ impl PlanePaths {
             return Ok(());
         }
         let (by, how) = (Number(off.abs()), if off > 0.0 { "high" } else { "low" });
-        Err((way.line, format!("the tool goes {by} mm too {how}")))
+        Err(Fault::at_block(way.line, format!("the tool goes {by} mm too {how}")))
     }
 }
 
@@ -543,7 +565,7 @@ fn unique(
         let step = |mm: f64| (mm / ONE).round() as i64;
         let key = [start.x, start.y, end.x, end.y, middle.x, middle.y].map(step);
         // An arc of more than a turn is another one than the rest of it.
-        let many = turn.is_some_and(|turn| turn.sweep.abs() > std::f64::consts::TAU);
+        let many = turn.is_some_and(|turn| turn.sweep.abs() > TAU);
         let at = match known.get(&key).filter(|_| !many) {
             Some(&at) => {
                 if counts(way, &found[at].1) {
@@ -635,14 +657,34 @@ fn samples(element: &Element) -> impl Iterator<Item = Vec2> + '_ {
     (0..=SAMPLES).map(|i| element.at(f64::from(i) / f64::from(SAMPLES)))
 }
 
+/// The contour without pieces that are shorter than what counts as near, where what is left out comes to no more than that: what is cut
+/// of them, their neighbours show. The first move leads to the contour, wherever it ends.
+fn long_enough(contour: Vec<PlaneMove>, slack: f64) -> Vec<PlaneMove> {
+    let mut kept: Vec<PlaneMove> = Vec::with_capacity(contour.len());
+    for way in contour {
+        let length = way.element.length();
+        let is_short = kept.last().is_some_and(|last| {
+            let farther = last.element.end.distance(way.element.end);
+            length <= NOWHERE || length <= slack && farther <= slack
+        });
+        if !is_short {
+            kept.push(way);
+        }
+    }
+    kept
+}
+
 /// A move seen along the tool.
-fn flat(piece: &Piece, axis: Vec3, number: usize) -> Result<PlaneMove, Fault> {
+///
+/// # Errors
+/// It is no move across the tool, and why.
+fn flat(piece: &Piece, axis: Vec3, number: usize) -> Result<PlaneMove, &'static str> {
     let x = axis.any_orthonormal_vector();
     let y = axis.cross(x);
     let flat = |point: Vec3| Vec2::new(point.dot(x), point.dot(y));
     let (start, end) = (flat(piece.from.tip), flat(piece.to.tip));
     if geom::angle_between(piece.to.axis, axis) > geom::ANGLE_EPSILON {
-        return Err((piece.line, "the tool turns while compensation is on".into()));
+        return Err("the tool turns while compensation is on");
     }
     let turn = match piece.arc {
         None => None,
@@ -651,7 +693,7 @@ fn flat(piece: &Piece, axis: Vec3, number: usize) -> Result<PlaneMove, Fault> {
             Some(Turn { center: flat(arc.center), sweep })
         }
         Some(_) => {
-            return Err((piece.line, "an arc in another plane than that of the tool".into()));
+            return Err("an arc in another plane than that of the tool");
         }
     };
     let element = Element { start, end, turn };
@@ -671,7 +713,7 @@ fn parallel_of(way: &PlaneMove, left: f64) -> Result<Element, Fault> {
     if grown <= 0.0 {
         let message =
             format!("an arc of radius {} mm, into which the tool does not fit", Number(radius));
-        return Err((way.line, message));
+        return Err(Fault::at_element(way.line, message));
     }
     let out = |point: Vec2| center + (point - center) * (grown / radius);
     Ok(Element { start: out(start), end: out(end), turn })
@@ -724,7 +766,7 @@ mod tests {
     ];
 
     fn judged(path: &[End]) -> Result<(), Fault> {
-        let slack = Slack { along: 0.003, chord: 0.0 };
+        let slack = Slack { along: 0.003, chord: 0.0, start: Some(0.003) };
         compare(&stretch(), &pieces([-20.0, 0.0], path), 5.0, 1.0, slack).map(drop)
     }
 
@@ -746,16 +788,18 @@ mod tests {
     /// Each point on its own lower or higher than the contour is there: where it begins, around a corner, at its end.
     #[test]
     fn a_path_at_another_height_is_refused() {
-        let slack = Slack { along: 0.003, chord: 0.0 };
+        let slack = Slack { along: 0.003, chord: 0.0, start: Some(0.003) };
         let good = pieces([-20.0, 0.0], &PATH);
         for at in 0..5 {
             for height in [-8.0, 0.01] {
                 let mut path = good.clone();
                 path[at].to.tip.z += height;
                 path[at + 1].from.tip.z += height;
-                let (line, how) = compare(&stretch(), &path, 5.0, 1.0, slack).unwrap_err();
+                let Fault { block, how, .. } =
+                    compare(&stretch(), &path, 5.0, 1.0, slack).unwrap_err();
                 assert!(how.contains("mm too"), "{at}: {how}");
-                assert!([path[at].line, path[at + 1].line].contains(&line), "{at}: {line}");
+                let lines = [path[at].line, path[at + 1].line];
+                assert!(lines.contains(&block.unwrap()), "{at}: {block:?}");
             }
         }
     }
@@ -779,7 +823,7 @@ mod tests {
             ([-8.0, -5.0], None),
             ([-30.0, -8.0], None),
         ];
-        let slack = Slack { along: 0.003, chord: 0.0 };
+        let slack = Slack { along: 0.003, chord: 0.0, start: Some(0.003) };
         let judged =
             |path: &[End]| compare(&stretch, &pieces([-30.0, -8.0], path), 5.0, 1.0, slack);
         assert!(judged(&path).is_ok(), "{:?}", judged(&path));
@@ -819,6 +863,7 @@ mod tests {
         damaged("an element is missing", &|path| {
             path.remove(3);
         });
+        damaged("the first element is begun late", &|path| path[0].0 = [2.0, 5.0]);
         damaged("the last element is overrun", &|path| path[4].0 = [61.0, -25.0]);
         damaged("the way in begins far behind", &|path| {
             path.insert(0, ([-15.0, 5.0], None));
@@ -885,7 +930,7 @@ mod tests {
         let terms = Terms { source_line: 1, side, radius: Some(3.0), tool_length: None };
         let stretch =
             CompensatedMoves { terms, before: 0, pieces: pieces(start, &ends), exit: None };
-        let slack = Slack { along: 0.003, chord: 0.0 };
+        let slack = Slack { along: 0.003, chord: 0.0, start: Some(0.003) };
         let path = pieces(start, &through_the_neck(width));
         compare(&stretch, &path, 3.0, 1.0, slack).map(drop)
     }
@@ -895,8 +940,10 @@ mod tests {
         assert_eq!(judged_neck(8.0), Ok(()));
         assert_eq!(judged_neck(6.0), Ok(()));
         // 0.1 mm too narrow: along the lower wall the tool cuts into the bulge.
-        let (line, how) = judged_neck(5.9).unwrap_err();
-        assert_eq!((line, how.contains("mm into the contour")), (2, true), "{how}");
+        let Fault { block, element, how } = judged_neck(5.9).unwrap_err();
+        assert!(how.contains("mm into the contour"), "{how}");
+        // The bulge, or the side of it that ends there.
+        assert!(block == Some(2) && [Some(5), Some(6)].contains(&element), "{block:?} {element:?}");
     }
 
     /// A pocket with the corners (0, 0) and (40, 30), the tool inside: the first pass along its floor leaves 1 mm of stock, the last one, in
@@ -920,7 +967,7 @@ mod tests {
             pieces([20.0, 15.0], &ends)
         };
         let stretch = CompensatedMoves { terms, before: 0, pieces: pieces_of(&ends), exit: None };
-        let slack = Slack { along: 0.003, chord: 0.0 };
+        let slack = Slack { along: 0.003, chord: 0.0, start: Some(0.003) };
         let judged = |path: &[[f64; 2]]| compare(&stretch, &pieces_of(path), 3.0, 1.0, slack);
         // The way out is one more than the pieces.
         assert_eq!(judged(&path), Ok(vec![0, 1, 2, 3, 4, 5, 6]));

@@ -1,6 +1,6 @@
 //! The program on a control that knows the tools: where it leads their centres.
 
-use super::centre::Slack;
+use super::centre::{Fault, Slack};
 use super::trail::{CompensatedMoves, Piece};
 use super::{Part, centre};
 use crate::gauge::Gauge;
@@ -151,15 +151,20 @@ impl Run<'_> {
             return self.open(stretch, "the radius that the control takes is not known");
         };
         let along = ROUNDINGS * self.gauge.allowed.tip_mm + joints(self.gauge.machine);
-        let slack = Slack { along, chord: 0.0 };
+        let slack = Slack { along, chord: 0.0, start: None };
         match centre::compare(stretch, &path, radius, left, slack) {
             Ok(_) => self.report.compared.contours += 1,
-            Err((line, how)) => {
+            Err(Fault { block, element, how }) => {
+                let at = match (block, element) {
+                    (Some(_), Some(line)) => format!(", at the element of line {line}"),
+                    _ => String::new(),
+                };
                 let message = format!(
-                    "source line {}: with a radius of {} mm {how}",
+                    "source line {}: with a radius of {} mm {how}{at}",
                     stretch.terms.source_line,
                     Number(radius)
                 );
+                let line = block.or(element).unwrap_or_default();
                 let found = Diagnostic::error(Rule::Compensation, message).line(line);
                 self.report.mismatch(stretch.terms.source_line, found);
             }

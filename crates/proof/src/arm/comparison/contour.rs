@@ -3,7 +3,7 @@
 
 use super::super::expected::{Contour, Expected, Step};
 use super::{Comparison, refused};
-use crate::compensation::centre::{self, Slack};
+use crate::compensation::centre::{self, Fault, Slack};
 use crate::compensation::trail::Piece;
 use crate::resolved_pose::{Number, PartialPose};
 use control::kernel::arc::through;
@@ -24,7 +24,7 @@ pub(super) struct Gathered {
     pieces: Vec<Piece>,
     tries: u32,
     /// What was wrong at the last end.
-    fault: Option<centre::Fault>,
+    fault: Option<Fault>,
 }
 
 impl Comparison<'_> {
@@ -91,7 +91,8 @@ impl Comparison<'_> {
     /// The program has come to where the contour ends: that may be its end.
     fn at_end(&mut self, contour: &Contour) -> Outcome {
         let tolerances = &self.report.tolerances;
-        let slack = Slack { along: ROUNDINGS * tolerances.tip_mm, chord: tolerances.chord_mm };
+        let along = ROUNDINGS * tolerances.tip_mm;
+        let slack = Slack { along, chord: tolerances.chord_mm, start: Some(along) };
         let Some(gathered) = &mut self.gathered else { return Ok(()) };
         let found =
             centre::compare(&contour.moves, &gathered.pieces, contour.radius, contour.left, slack);
@@ -136,12 +137,15 @@ impl Comparison<'_> {
         let fault = self.gathered.take().and_then(|gathered| gathered.fault);
         let radius = Number(contour.radius);
         let message = match &fault {
-            Some((_, how)) => format!("with a radius of {radius} mm {how}"),
+            Some(Fault { how, element, .. }) => {
+                let at = element.map(|line| format!(", at the element of source line {line}"));
+                format!("with a radius of {radius} mm {how}{}", at.unwrap_or_default())
+            }
             None => format!(
                 "the program does not lead the tool's centre, with a radius of {radius} mm, along the contour to its end"
             ),
         };
-        let line = fault.map_or(0, |(line, _)| line);
+        let line = fault.and_then(|fault| fault.block).unwrap_or_default();
         Err(Diagnostic::error(Rule::Compensation, message).line(line).into())
     }
 
@@ -161,13 +165,13 @@ fn one_way_in_and_out(
     belongs: Vec<usize>,
     count: usize,
     pieces: &[Piece],
-) -> Result<Vec<usize>, centre::Fault> {
+) -> Result<Vec<usize>, Fault> {
     for (of, what) in [(0, "to"), (count, "off")] {
         if let Some((_, piece)) =
             belongs.iter().zip(pieces).filter(|(belongs, _)| **belongs == of).nth(1)
         {
             let message = format!("the way {what} the contour has a further point");
-            return Err((piece.line, message));
+            return Err(Fault::at_block(piece.line, message));
         }
     }
     Ok(belongs)
