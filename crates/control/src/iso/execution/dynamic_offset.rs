@@ -6,7 +6,7 @@
 use super::state::{Length, UNKNOWN};
 use super::step::Step;
 use crate::TableAxis;
-use crate::iso::language::block::Fault;
+use crate::iso::language::Fault;
 use crate::iso::language::words::{G, Group};
 use geom::{Vec3, rotate};
 use program::{Rule, WorkOffset};

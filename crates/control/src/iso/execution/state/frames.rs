@@ -379,7 +379,7 @@ impl Frames {
     }
 
     /// Whether the program has moved or turned no zero, so that coordinates are those of the active work offset.
-    pub(super) fn is_plain(&self) -> bool {
+    pub(in crate::iso::execution) fn is_plain(&self) -> bool {
         let stays = |offset: &Offset| offset.frame() == Frame::IDENTITY;
         self.offset().is_none_or(stays)
             && !self.is_transformed()
