@@ -7,9 +7,9 @@ G21 G17 G40 G49 G90 G94 G54
 (SLOT)
 M5
 (fit the tool, and set Z 0 with it)
-(Z goes to machine zero next: that must be its top)
+(Z goes up next: see that there is room)
 M0
-G53 G0 Z0
+G0 Z21
 T1
 (MILL_6)
 S3000 M3
@@ -30,7 +30,7 @@ G2 X32.5 Y20 Z-1 I-2.5 J0 F300
 X32.5 Y20 I-2.5 J0
 G0 Z20
 (HOLES)
-G53 G0 Z0
+G0 Z21
 M5
 T2
 (DRILL_3.3)
@@ -56,5 +56,5 @@ G1 Z-12
 G0 Z5
 Z20
 M5
-G53 G0 Z0
+G0 Z21
 M30

@@ -31,7 +31,7 @@ pub fn follow(
     let wide = columns.len();
     let mut moves = probing.moves(grid, |(column, row)| u32::try_from(row * wide + column).ok())?;
     let reach = [-probing.reach, probing.reach];
-    let surface = Surface::new(columns, rows, reach, f64::INFINITY)?;
+    let surface = Surface::new(columns.to_vec(), rows.to_vec(), reach, f64::INFINITY)?;
     let ground = Ground::Found(&surface, steepness);
     let level = levelled(&drilled(program)?, ground, allowed)?;
     let (mut records, clear) = (level.records, level.clears);

@@ -14,13 +14,16 @@ const NEAREST: f64 = 2.0 * APART;
 /// The names of files that a comment can hold.
 const NAME: &str = "letters, digits and . - _ /";
 
-/// Points at even distances over a rectangle, its corners among them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// By which part of their distance a column or a row is moved out of a hole at most, and by which at once.
+const SHIFTED: [f64; 2] = [0.4, 0.02];
+
+/// Points in columns and rows over a rectangle: at even distances, its corners among them, until [`Grid::clear_of`] moves some.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    from: Vec2,
-    to: Vec2,
-    columns: usize,
-    rows: usize,
+    /// X of each column, rising, mm.
+    columns: Vec<f64>,
+    /// Y of each row, rising, mm.
+    rows: Vec<f64>,
 }
 
 impl Grid {
@@ -51,36 +54,72 @@ impl Grid {
                 return wrong(message, &format!("{NEAREST} mm at least: fewer {what}"));
             }
         }
-        Ok(Grid { from, to, columns, rows })
+        let lines = |from: f64, to: f64, count: usize| {
+            let at = |i: usize| from + (to - from) * (i as f64 / (count - 1) as f64);
+            (0..count).map(at).collect()
+        };
+        Ok(Grid { columns: lines(from.x, to.x, columns), rows: lines(from.y, to.y, rows) })
+    }
+
+    /// The grid with columns, and where that is not enough rows, moved by as little as it takes for every place to be one where
+    /// `is_free` says yes: by two fifths of their distance at most, the outermost inwards. `None` where that does not do.
+    pub fn clear_of(&self, is_free: impl Fn(Vec2) -> bool) -> Option<Grid> {
+        let mut grid = self.clone();
+        for across in [false, true] {
+            let [moved, crossed] = match across {
+                false => [&self.columns, &self.rows],
+                true => [&self.rows, &grid.columns],
+            };
+            let at = |line: f64, other: f64| match across {
+                false => Vec2::new(line, other),
+                true => Vec2::new(other, line),
+            };
+            let is_clear = |line: f64| crossed.iter().all(|other| is_free(at(line, *other)));
+            // A line that cannot be cleared stays, and the other lines are moved out of the holes that are left.
+            let lines = (0..moved.len()).map(|i| shifted(moved, i, is_clear).unwrap_or(moved[i]));
+            let lines: Vec<f64> = lines.collect();
+            *(if across { &mut grid.rows } else { &mut grid.columns }) = lines;
+            let is_apart =
+                |lines: &[f64]| lines.windows(2).all(|pair| pair[1] - pair[0] >= NEAREST);
+            if grid.places().all(&is_free) {
+                return Some(grid).filter(|grid| grid.lines().into_iter().all(is_apart));
+            }
+        }
+        None
     }
 
     /// Its places in the order in which they are probed, row after row, every second one backwards.
     pub fn places(&self) -> impl Iterator<Item = Vec2> + '_ {
-        self.order().map(|(column, row)| Vec2::new(self.column(column), self.row(row)))
+        self.order().map(|(column, row)| Vec2::new(self.columns[column], self.rows[row]))
     }
 
     /// Column and row of the places in that order.
     pub(crate) fn order(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.rows).flat_map(move |row| {
-            (0..self.columns).map(move |column| {
-                (if row % 2 == 0 { column } else { self.columns - 1 - column }, row)
-            })
+        let columns = self.columns.len();
+        (0..self.rows.len()).flat_map(move |row| {
+            (0..columns)
+                .map(move |column| (if row % 2 == 0 { column } else { columns - 1 - column }, row))
         })
     }
 
     /// X of the columns and Y of the rows, rising, mm.
-    pub(crate) fn lines(&self) -> [Vec<f64>; 2] {
-        let columns = (0..self.columns).map(|column| self.column(column));
-        [columns.collect(), (0..self.rows).map(|row| self.row(row)).collect()]
+    pub(crate) fn lines(&self) -> [&[f64]; 2] {
+        [&self.columns, &self.rows]
     }
+}
 
-    fn column(&self, column: usize) -> f64 {
-        self.from.x + (self.to.x - self.from.x) * (column as f64 / (self.columns - 1) as f64)
-    }
-
-    fn row(&self, row: usize) -> f64 {
-        self.from.y + (self.to.y - self.from.y) * (row as f64 / (self.rows - 1) as f64)
-    }
+/// The nearest place to that of a line among `lines` at which it is clear.
+fn shifted(lines: &[f64], index: usize, is_clear: impl Fn(f64) -> bool) -> Option<f64> {
+    let line = lines[index];
+    let [most, step] = SHIFTED;
+    let count = (most / step).round() as usize;
+    let towards = |other: Option<&f64>| other.map(move |other| (other - line) * step);
+    let before = towards(index.checked_sub(1).and_then(|before| lines.get(before)));
+    let after = towards(lines.get(index + 1));
+    let moved = (1..=count).flat_map(|steps| {
+        [after, before].into_iter().flatten().map(move |way| line + way * steps as f64)
+    });
+    std::iter::once(line).chain(moved).find(|place| is_clear(*place))
 }
 
 /// How a surface is probed; its height is expected at Z 0.
@@ -148,7 +187,7 @@ impl Probing {
         }
         let mut moves = vec![Op::Feed(Feed::PerMinute(feed))];
         for at in grid.order() {
-            let pose = |z: f64| Pose::upright(Vec3::new(grid.column(at.0), grid.row(at.1), z));
+            let pose = |z: f64| Pose::upright(Vec3::new(grid.columns[at.0], grid.rows[at.1], z));
             let (end, place) = (pose(-reach)?, place(at));
             moves.push(Op::Rapid(pose(travel)?));
             moves.push(Op::Probe(Box::new(Probe { end, away: false, must_answer: true, place })));

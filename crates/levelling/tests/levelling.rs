@@ -408,6 +408,26 @@ fn a_grid_is_probed_row_by_row_there_and_back() {
     assert!(PROBING.program("p", &GRID(), Some("a) G0 Z-9")).is_err());
 }
 
+#[test]
+fn columns_and_rows_of_a_grid_go_out_of_holes() {
+    let far = |hole: Vec2| move |place: Vec2| place.distance(hole) >= 3.0;
+    // A hole on the second column: it goes by 0.02 of the 20 mm to the next at a time, 3.2 mm being the first that is enough.
+    let cleared = GRID().clear_of(far(Vec2::new(22.0, 23.0))).unwrap();
+    let places: Vec<Vec2> = cleared.places().collect();
+    assert!((places[1].x - 25.2).abs() < 1e-9 && places[1].y == 3.0, "{places:?}");
+    assert_eq!(
+        (places[0], places[2], places.len()),
+        (Vec2::new(2.0, 3.0), Vec2::new(42.0, 3.0), 12)
+    );
+    // The outermost go inwards.
+    let cleared = GRID().clear_of(far(Vec2::new(62.0, 43.0))).unwrap();
+    assert!((cleared.places().nth(3).unwrap().x - 58.8).abs() < 1e-9);
+    assert_eq!(GRID().clear_of(|_| true), Some(GRID()));
+    assert_eq!(GRID().clear_of(|_| false), None);
+    // 0.8 of their distance at most is between two columns.
+    assert_eq!(GRID().clear_of(|place| (place.x - 22.0).abs() > 8.5 && place.y != 3.0), None);
+}
+
 /// Written, proven, and what a machine would answer read back.
 #[test]
 fn machines_probe_and_follow_what_they_found() {

@@ -745,6 +745,13 @@ impl Machine {
         Some(self.number_of("turn_speed")).filter(|speed| *speed > 0.0)
     }
 
+    /// Z over the work zero to which tools retract, mm, where machine zero means nothing, since the machine has no switches to
+    /// home to: `retract_height` of the options, which the templates write. Only on a machine without rotary axes.
+    pub fn retract_height(&self) -> Option<f64> {
+        let height = self.number_of("retract_height");
+        Some(height).filter(|height| *height > 0.0 && self.rotary.is_empty())
+    }
+
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,
     /// which the templates write. The proof does not see that deviation.
     pub fn path_tolerance(&self) -> f64 {

@@ -367,8 +367,9 @@ value! {
 }
 
 /// What the options that are no mere texts of the templates may be: the name, the most, the unit.
-const MEASURED_OPTIONS: [(&str, f64, &str); 3] = [
+const MEASURED_OPTIONS: [(&str, f64, &str); 4] = [
     ("path_tolerance", 10.0, "mm"),
+    ("retract_height", 1000.0, "mm"),
     ("roughing_tolerance", 10.0, "mm"),
     ("orientation_tolerance", 45.0, "degrees"),
 ];

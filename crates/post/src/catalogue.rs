@@ -249,6 +249,7 @@ names! {
         HighY Word "HIGH_Y", "mm", "Largest Y of the blank.";
         HighZ Word "HIGH_Z", "mm", "Largest Z of the blank.";
         SafeHeight Word "SAFE_HEIGHT", "mm", "The safe height of the machine, in machine coordinates (`safe_height`): in every block.";
+        RetractHeight Word "RETRACT_HEIGHT", "mm", "Z over the work zero to which tools retract on a machine without switches: `retract_height` of the options above all that is cut, and no lower than the source goes. In every block.";
         RapidFeed Word "RAPID_FEED", "mm/min", "The fastest rapid of X, Y and Z, for a control whose rapids go at the last F: in every block. F is said anew behind it.";
         Surface Word "SURFACE", "mm", "Cycle: level of the point of the hole.";
         Clear Word "CLEAR", "mm", "Cycle: level from which the tool feeds (R plane).";

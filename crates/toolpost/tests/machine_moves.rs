@@ -136,3 +136,37 @@ fn a_safe_height_lies_within_the_travel() {
         assert!(found.to_string().contains("-336 to 0 mm"), "{found}");
     }
 }
+
+/// A 3018 has no switches: where its machine zero is, nobody knows. Each retract goes over the work zero, above all cuts.
+#[test]
+fn a_machine_without_switches_retracts_over_its_work_zero() {
+    let machine = load("grbl-3018").unwrap();
+    let text = posted(&machine).unwrap();
+    // The ring is cut from Z 1 down; the file says 20 mm.
+    assert!(!text.contains("G53"), "{text}");
+    assert_eq!(text.matches("\nG0 Z21\n").count(), 3, "{text}");
+    assert_eq!(proven(&machine, &text), Ok(()));
+    // Lower than the machine's file says, or moved across together with Z, it is no retract.
+    let changed = |from: &str, to: &str| proven(&machine, &text.replacen(from, to, 1));
+    let first = "M0\nG0 Z21\nT1";
+    assert_eq!(changed(first, "M0\nG0 Z19.9\nT1"), Err("tool-change-height"));
+    assert_eq!(changed(first, "M0\nG0 X0 Y0 Z20\nT1"), Err("tool-change-height"));
+    assert_eq!(changed(first, "M0\nT1"), Ok(()));
+    // By G53 it still goes nowhere that is known.
+    assert_eq!(changed(first, "M0\nG53 G0 Z0\nT1"), Err("machine-position"));
+    // The source goes up to Z 20 itself.
+    let of = |height: f64| {
+        let own = format!("extends = \"grbl-3018\"\n[options]\nretract_height = {height}\n");
+        let machine = load_text("own.toml", &own).unwrap();
+        proven(&machine, &posted(&machine).unwrap())
+    };
+    assert_eq!((of(6.0), of(0.5)), (Ok(()), Ok(())));
+    // Between the walls of a slot no tool goes across.
+    let deep = text.replacen(first, "M0\nG0 Z0.5\nT1", 1);
+    let own = "extends = \"grbl-3018\"\n[options]\nretract_height = 0.5\n";
+    assert_eq!(proven(&load_text("own.toml", own).unwrap(), &deep), Err("home-height"));
+    // Any GRBL may do so; one that is homed goes to its safe height.
+    let own = "extends = \"generic-3axis-grbl\"\n[options]\nretract_height = 30\n";
+    let text = posted(&load_text("own.toml", own).unwrap()).unwrap();
+    assert!(text.contains("G0 Z31") && !text.contains("G53"), "{text}");
+}

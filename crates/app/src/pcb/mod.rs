@@ -456,8 +456,7 @@ impl Shop<'_> {
             program = level(&program, surface, &LEVELLED)?;
         }
         if let Some(places) = self.probes(part, work) {
-            let grid = grid(board, places)?;
-            self.touches(part, work, &grid)?;
+            let grid = self.touched(part, work, grid(board, places)?)?;
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
         }
         let toolpath = Toolpath::of_program(program, "board");
@@ -487,35 +486,32 @@ impl Shop<'_> {
         running.probe.filter(|_| running.on_control && part.is_copper() && cuts)
     }
 
+    /// The grid with no place at which the tool touches the rim of a hole, or nothing, where the holes are there already. What
+    /// counts is the width that the tool has at the surface when its tip is as deep as it probes.
+    ///
     /// # Errors
-    /// A place at which the tool touches the rim of a hole, or nothing, since the holes are there already. What counts
-    /// is the width that it has at the surface when its tip is as deep as it probes.
-    fn touches(&self, part: Part, work: &Work, grid: &Grid) -> Result<(), Stop> {
+    /// Columns and rows cannot be moved out of the holes.
+    fn touched(&self, part: Part, work: &Work, grid: Grid) -> Result<Grid, Stop> {
         if !plan::is_drilled(part, self.job.settings) {
-            return Ok(());
+            return Ok(grid);
         }
         let width = |operation: &Operation| operation.tool.cutter.width(PROBED.reach);
         let radius = work.operations.first().map_or(0.0, width) / 2.0;
-        for place in grid.places() {
-            let mut holes = self.setup(part).drilled();
-            let Some(hole) = holes.find(|hole| hole.distance(place) < radius) else { continue };
-            let (low, high) = hole.extents();
-            let at = low.midpoint(high);
-            let message = format!(
-                "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {radius:.3} mm \
-                 from it, and the hole is drilled before",
-                place.x, place.y, hole.diameter, at.x, at.y
-            );
-            let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
-            let found = Diagnostic::error(Rule::ProbeInHole, message).help(help);
-            return Err(found.file(format!("{}.nc", part.name())).into());
-        }
-        Ok(())
+        let found = match clear_of(&grid, &[self.setup(part)], radius) {
+            Ok(grid) => return Ok(grid),
+            Err(found) => found,
+        };
+        let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
+        Err(found.help(help).file(format!("{}.nc", part.name())).into())
     }
 
     /// The program that measures the height of the board.
     fn probing(&self, places: [u32; 2]) -> Result<Program, Stop> {
-        let grid = grid(&self.front.board, places)?;
+        // It is run for either side, and for one of them the holes are there.
+        let sides = [&self.front, &self.back];
+        let sides = if self.is_turned { &sides[..] } else { &sides[..1] };
+        let grid = clear_of(&grid(&self.front.board, places)?, sides, PROBE_RIM)
+            .map_err(|found| found.help("another number of columns or rows"))?;
         let name = format!("{}-{PROBE}", self.front.board.name);
         let mut program = PROBED.program(&name, &grid, Some(HEIGHTS))?;
         let tool = program::Tool {
@@ -559,6 +555,41 @@ fn numbered(machine: &Machine, place: usize) -> Cow<'_, Machine> {
 
 /// The option of machines whose control knows programs by numbers.
 const PROGRAM_NUMBER: &str = "program_number";
+
+/// How far the places of `probe.nc` stay from the rims of holes, mm: half the width of a probe.
+const PROBE_RIM: f64 = 0.5;
+
+/// The grid with no place in a hole of a board that lies so, or nearer to one than `radius` mm; what is in the way where its
+/// columns and rows cannot be moved out of them.
+fn clear_of(grid: &Grid, sides: &[&Setup], radius: f64) -> Result<Grid, Box<Diagnostic>> {
+    let holes = sides.iter().flat_map(|side| side.drilled());
+    let mut holes: Vec<_> = holes.map(|hole| (hole.extents(), hole)).collect();
+    holes.sort_by(|((a, _), _), ((b, _), _)| a.x.total_cmp(&b.x));
+    let widest = holes.iter().map(|((low, high), _)| high.x - low.x).fold(0.0, f64::max);
+    let hole_at = |place: Vec2| {
+        let from = place.x - radius - widest;
+        let first = holes.partition_point(|((low, _), _)| low.x < from);
+        let near = holes.iter().skip(first);
+        let mut near = near.take_while(|((low, _), _)| low.x <= place.x + radius);
+        near.find(|(_, hole)| hole.distance(place) < radius).map(|(_, hole)| *hole)
+    };
+    let touched: Vec<Vec2> = grid.places().filter(|place| hole_at(*place).is_some()).collect();
+    let Some((first, hole)) = touched.first().and_then(|first| Some((*first, hole_at(*first)?)))
+    else {
+        return Ok(grid.clone());
+    };
+    if let Some(grid) = grid.clear_of(|place| hole_at(place).is_none()) {
+        return Ok(grid);
+    }
+    let (low, high) = hole.extents();
+    let at = low.midpoint(high);
+    let message = format!(
+        "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {radius:.3} mm \
+         from it, and the hole is drilled before; moving columns and rows does not help",
+        first.x, first.y, hole.diameter, at.x, at.y
+    );
+    Err(Diagnostic::error(Rule::ProbeInHole, message).into())
+}
 
 /// So many columns and rows of places over a board, [`INSIDE`] its edge; on a small one a quarter of it.
 fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {

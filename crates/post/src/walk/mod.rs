@@ -62,6 +62,14 @@ const EXTENTS: [WordName; 6] = [
     WordName::HighZ,
 ];
 
+/// Z to which tools go on a machine without switches: `height` mm above the work zero and all that is cut, and no lower than
+/// the source goes.
+fn retract_height(program: &Program, height: f64) -> f64 {
+    let poses = program.records.iter().filter_map(|record| record.op.pose());
+    let highest = poses.map(|pose| pose.point().z).fold(f64::NEG_INFINITY, f64::max);
+    (CutBox::of(program).reach(Vec3::Z).max(0.0) + height).max(highest)
+}
+
 /// What reaches over less, mm, is no body.
 const THIN: f64 = 0.01;
 
@@ -129,6 +137,9 @@ impl<'a> Walk<'a> {
         let mut scope = Scope::new(machine);
         let tools = if templates.read_tools() { &program.records[..] } else { &[] };
         let mut writer = Writer::new(machine);
+        if let Some(height) = machine.retract_height() {
+            writer.set_always(WordName::RetractHeight, retract_height(program, height));
+        }
         let reach = EXTENTS.iter().any(|word| templates.places(BlockName::ProgramStart, *word));
         let reach = if reach { blank(program) } else { None };
         let is_stock = reach.is_some() && program.stock.is_some();

@@ -214,7 +214,7 @@ impl Prover<'_> {
 
     /// By how much the tool at `to` is not the clearance above all cuts along `up`, with its length where it hangs from
     /// its tip, mm.
-    fn short_below(&mut self, to: &ResolvedPose, up: Vec3) -> f64 {
+    pub(super) fn short_below(&mut self, to: &ResolvedPose, up: Vec3) -> f64 {
         let point = Vec3::select(to.position.point.is_nan_mask(), Vec3::ZERO, to.position.point);
         let place = self.gauge.resolve(to.line, Position { point, ..to.position }).place;
         self.needed(up, place.axis) - place.tip.dot(up)

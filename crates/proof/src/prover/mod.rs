@@ -265,6 +265,12 @@ impl<'a> Prover<'a> {
         if self.ended && !passive {
             return Err(self.lost_at(line, Rule::AfterEnd, "goes on after the end of the program"));
         }
+        if let Action::Rapid(position) = &event.action
+            && self.retracts(position)
+        {
+            self.running.just_started = false;
+            return self.retract(line, position);
+        }
         let running = &mut self.running;
         running.just_started &= !matches!(
             event.action,

@@ -219,6 +219,47 @@ impl Prover<'_> {
         self.home(line, to.axes())
     }
 
+    /// Whether a rapid goes up along Z alone, no less high than the `retract_height` of a machine without switches, and not to where
+    /// the source goes.
+    pub(super) fn retracts(&self, to: &Position) -> bool {
+        let machine = self.gauge.machine;
+        let Some(height) = machine.retract_height() else { return false };
+        let (from, at) = (self.here.position.point, to.point);
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME || a.is_nan() && b.is_nan();
+        // Moves of a hole may go as high.
+        let in_hole = |goal: &ExpectedMotion| {
+            let begins = goal.from.is_none() || goal.tool_change || goal.homed;
+            matches!(goal.kind, Kind::Hole(_)) && !begins
+        };
+        let is_sources = matches!(&self.cursor.step, Step::Move(goal)
+            if in_hole(goal) || self.gauge.at(&self.gauge.station(0, *to), &goal.to));
+        at.z >= height - machine.resolution() / 2.0
+            && (from.z.is_nan() || from.z <= at.z)
+            && same(from.x, at.x)
+            && same(from.y, at.y)
+            && !is_sources
+    }
+
+    /// A retract to the `retract_height`, which is home on a machine without switches: above all that the source cuts.
+    pub(super) fn retract(&mut self, line: u32, to: &Position) -> Outcome {
+        let to = self.gauge.station(line, *to);
+        self.check_offsets(&to);
+        self.hold_travel(&to, None);
+        let short = self.short_below(&to, Vec3::Z);
+        if short > self.gauge.machine.resolution() {
+            let message = format!(
+                "source line {}: the program retracts to Z{}, {} mm short of {} mm above all that the source cuts",
+                self.cursor.line,
+                Number(to.position.point.z),
+                Number(short),
+                Number(self.gauge.machine.capabilities.rapid_clearance)
+            );
+            let help = "a higher `retract_height` in [options] of the machine's file, or --option retract_height=MM";
+            self.found(Diagnostic::error(Rule::HomeHeight, message).help(help).line(line));
+        }
+        self.home(line, Axes::Z)
+    }
+
     /// Axes sent to a fixed position.
     pub(super) fn home(&mut self, line: u32, axes: Axes) -> Outcome {
         self.turns(line, [0, 1, 2].map(|i| axes.contains(Axes::rotary(i))));

@@ -328,22 +328,63 @@ fn heights_that_nothing_measures() {
     refused(&folder, &[&call[..], &many].concat(), 2, &["error[on-control]", "64", "4000"]);
 }
 
-/// Seen from the back the holes of 0.8 mm are at 6 and 16. Four columns are at 1, 7, 13 and 19, nineteen 1 mm apart. A mill of 0.4 mm
-/// is at the rim of a hole from 0.6 mm on, a V-bit of 90 degrees, which is wide by 2.1 mm when it is 1 mm deep, from 1.45 mm on.
+/// Where a program probes.
+fn probed(text: &str) -> Vec<[f64; 2]> {
+    let mut at = [f64::NAN; 2];
+    let mut places = Vec::new();
+    for line in text.lines().filter(|line| !line.starts_with('(')) {
+        for word in line.split(' ') {
+            let value = || word[1..].parse().unwrap();
+            match word.as_bytes() {
+                [b'X', ..] => at[0] = value(),
+                [b'Y', ..] => at[1] = value(),
+                _ => {}
+            }
+        }
+        if line.contains("G38.2") {
+            places.push(at);
+        }
+    }
+    places
+}
+
+/// Seen from the back the holes of 0.8 mm are at 6 and 16 of Y 5. Four columns are at 1, 7, 13 and 19, nineteen 1 mm apart. A mill of
+/// 0.4 mm is at the rim of a hole from 0.6 mm on, a V-bit of 90 degrees, which is wide by 2.1 mm when it is 1 mm deep, from 1.45 mm on.
 #[test]
 fn heights_are_not_measured_in_holes() {
     let folder = small();
     let call = ["pcb", "board", "-o", "out", "-m", "linuxcnc-mill", "--on-control", "--probe"];
-    let inside = ["19x3", "--tool", "0.4"];
+    // Rows and columns are 1 mm apart, and none is moved by more than 0.4 mm.
+    let dense = ["19x9", "--tool", "0.4"];
     let words = [
         "error[probe-in-hole]",
         "back.nc",
-        "X16.000 Y5.000, in the hole of 0.8 mm at X16.000 Y5.000",
+        "X6.000 Y5.000, in the hole of 0.8 mm at X6.000 Y5.000",
+        "--from back",
     ];
-    refused(&folder, &[&call[..], &inside, &["--strict"]].concat(), 2, &words);
-    let more = ["4x3", "--vee", "90"];
-    let words = ["X7.000 Y5.000", "hole of 0.8 mm at X6.000 Y5.000", "1.050 mm", "--from back"];
-    refused(&folder, &[&call[..], &more, &["--strict"]].concat(), 2, &words);
+    refused(&folder, &[&call[..], &dense, &["--strict"]].concat(), 2, &words);
+    // Three rows are 4 mm apart: the one in the middle goes out of the holes. Of the four columns one does.
+    let inside = ["19x3", "--tool", "0.4"];
+    for (more, away) in [(&inside[..], 0.6), (&["4x3", "--vee", "90"], 1.45)] {
+        let said = folder.run(&[&call[..], more].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        let places = probed(&folder.read("out/back.nc"));
+        let count = if more[0] == "19x3" { 57 } else { 12 };
+        assert_eq!(places.len(), count, "{more:?}");
+        for [x, y] in places {
+            let distance = (x - 6.0).hypot(y - 5.0).min((x - 16.0).hypot(y - 5.0));
+            assert!(distance >= away - 1e-3, "{more:?}: X{x} Y{y}");
+            assert!((1.0..=19.0).contains(&x) && (1.0..=9.0).contains(&y), "X{x} Y{y}");
+        }
+    }
+    // The probe of `probe.nc` is run for both sides: from the front the holes are at 4 and 14.
+    let call_off = [&["pcb", "board", "-o", "off", "-m", "grbl-3018", "--probe"][..], &inside[..]];
+    assert_eq!(folder.run(&call_off.concat()).code, 0);
+    let places = probed(&folder.read("off/probe.nc"));
+    let nearest = |[x, y]: &[f64; 2]| {
+        [4.0, 6.0, 14.0, 16.0].map(|hole| (x - hole).hypot(y - 5.0)).into_iter().fold(9.0, f64::min)
+    };
+    assert!(places.len() == 57 && places.iter().all(|place| nearest(place) >= 0.9 - 1e-3));
     for (good, run) in [
         (&["4x3", "--tool", "0.4"][..], &["front", "drill", "back", "outline"][..]),
         (&[&inside[..], &["--from", "back"]].concat(), &["front", "back", "drill", "outline"]),
