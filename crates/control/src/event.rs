@@ -380,6 +380,15 @@ impl Risk {
         refused: true,
     };
 
+    /// `M6` stops the spindle, which turns to its place for the change; of the coolant LinuxCNC ("M6") and RS274/NGC 3.6 say
+    /// that it runs on, and on the others the machine's builder decides.
+    pub(crate) const CHANGE_RUNNING: Risk = Risk {
+        rule: Rule::StopRunning,
+        what: "changes the tool while coolant runs: this control need not stop it",
+        help: "write M9 before it; where the machine's builder has M6 stop it, `--accept stop-running` lets it pass",
+        refused: true,
+    };
+
     /// `G84` and `G74` that do not couple feed and spindle: LinuxCNC ("Canned Cycles": for a floating chuck), Mach3, and
     /// FANUC without `M29` (parameter 5200#0).
     pub(crate) const FLOATING_TAP: Risk = Risk {

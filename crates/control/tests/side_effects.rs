@@ -434,6 +434,13 @@ fn a_stop_with_spindle_or_coolant_running_is_reported_where_the_control_need_not
         (D::Sinumerik, ["M0", "M1"], [true; 3]),
         (D::Klartext, ["M0", "M0"], [true, false, true]),
         (D::Klartext, ["M1", "STOP"], [true; 3]),
+        // A change of the tool stops the spindle everywhere, of coolant that is sure of the TNC alone (640 p. 171).
+        (D::Fanuc, ["T2 M6", "T2 M6"], [true, false, true]),
+        (D::Haas, ["T2 M6", "T2 M6"], [true, false, true]),
+        (D::LinuxCnc, ["T2 M6", "T2 M6"], [true, false, true]),
+        (D::Mach3, ["T2 M6", "T2 M6"], [true, false, true]),
+        (D::Sinumerik, ["T2 M6", "T2 M6"], [true, false, true]),
+        (D::Klartext, ["TOOL CALL 2 Z S100", "TOOL CALL 2 Z S100"], [false; 3]),
     ] {
         for stop in stops {
             let on = [("M3", "M8"), ("M3", "M9"), ("M5", "M8")];

@@ -27,7 +27,7 @@ pub const ACCEPTABLE: [(Rule, &str); 26] = [
     (Rule::RapidPath, "room for the tool where it goes by rapid on another path than the source"),
     (Rule::ReplacementTool, "where and how the control changes a tool whose life is over"),
     (Rule::RotaryWay, "which way the rotary axes turn"),
-    (Rule::StopRunning, "M0 and M1 of the machine stop spindle and coolant"),
+    (Rule::StopRunning, "M0 and M1 of the machine stop spindle and coolant, M6 the coolant"),
     (Rule::StoredPosition, "where the stored position is to which Z goes"),
     (Rule::SwivelData, "the data set that the program names is that of this kinematics"),
     (Rule::TableFrame, "in which frame X, Y and Z count behind G43.4 with a turned table"),

@@ -1680,8 +1680,8 @@ rules! {
         "nothing to do, if the machine may stop where it stands"
         "sinumerik: `POLF[X]=10`";
     StopRunning "stop-running" []
-        "The program stops while spindle or coolant may run on."
-        "write M5 and M9 before the stop"
+        "The program stops while spindle or coolant may run on, or changes the tool while coolant may."
+        "write M5 and M9 before it"
         "`M0` without `M5` and `M9` before it";
     Stopped "stopped" []
         "The work was stopped from outside."

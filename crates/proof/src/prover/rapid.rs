@@ -232,7 +232,7 @@ impl Prover<'_> {
             matches!(goal.kind, Kind::Hole(_)) && !begins
         };
         let is_sources = matches!(&self.cursor.step, Step::Move(goal)
-            if in_hole(goal) || self.gauge.at(&self.gauge.station(0, *to), &goal.to));
+            if in_hole(goal) || self.gauge.at(&self.gauge.resolve(0, *to), &goal.to));
         at.z >= height - machine.resolution() / 2.0
             && (from.z.is_nan() || from.z <= at.z)
             && same(from.x, at.x)
@@ -242,7 +242,7 @@ impl Prover<'_> {
 
     /// A retract to the `retract_height`, which is home on a machine without switches: above all that the source cuts.
     pub(super) fn retract(&mut self, line: u32, to: &Position) -> Outcome {
-        let to = self.gauge.station(line, *to);
+        let to = self.gauge.resolve(line, *to);
         self.check_offsets(&to);
         self.hold_travel(&to, None);
         let short = self.short_below(&to, Vec3::Z);

@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::event::{Action, Risk};
 use crate::iso::language::Fault;
 use crate::iso::language::words::{G, Group, M, Plane, bit};
-use program::{Rule, Spindle, Tool};
+use program::{Coolant, Rule, Spindle, Tool};
 
 impl Length {
     /// By how much the tip is nearer to the part than the gauge line, mm; NaN where not known.
@@ -62,6 +62,9 @@ impl Step<'_, '_, '_> {
         if let Err(doubt) = self.coolants.allow_change(self.state.coolant) {
             let fault = self.block.at_group(Group::ToolChange, Rule::Coolant, doubt.message);
             return Err(fault.help(doubt.help).into());
+        }
+        if self.state.coolant != Coolant::Off {
+            self.actions.push(Action::Risk(Risk::CHANGE_RUNNING.into()));
         }
         self.put_in(number);
         self.turn(Spindle::Off);

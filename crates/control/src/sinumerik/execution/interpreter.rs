@@ -444,6 +444,9 @@ impl<'a, 's> Interpreter<'a, 's> {
             };
             let allowed = self.coolants().allow_change(self.state.coolant);
             allowed.map_err(|doubt| refused(source, doubt))?;
+            if self.state.coolant != Coolant::Off {
+                self.emit(source, Action::Risk(Risk::CHANGE_RUNNING.into()))?;
+            }
             self.state.tool = Some(tool.clone());
             self.emit(source, Action::Tool(tool))?;
             self.report_spindle(source, Spindle::Off)?;
