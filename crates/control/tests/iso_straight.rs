@@ -58,8 +58,14 @@ const PARAMETERS: [&str; 24] = [
 /// Two rapids and cuts before the word, so that a straight move would go on, ...
 const BEFORE: &str = "G21\nG90\nG94\nT1 M6\nS100 M3\nG43 H1\nG0 X1. Y2. Z30.\nG1 Z-1. F100\nX3.";
 
-/// ... and straight moves behind it, along one axis after the other.
-const BEHIND: &str = "G0 X4. Y5.\nZ6.\nG1 X7. F100\nY8. F100\nG0 X8.\nZ9.\nG1 X9. Y9. Z2.\nX1";
+/// ... or nothing but modes: no position, no tool and no cut.
+const BARE: &str = "G21\nG90\nG94\nS100 M3\nG1 F100";
+
+/// A block that moves nothing and still only says how to move, so that the next one may go on from it.
+const FEED_ALONE: &str = "F100\n";
+
+/// ... and straight moves behind it, along one axis after the other; then what depends on whether something has been cut.
+const BEHIND: &str = "G0 X4. Y5.\nZ6.\nG1 X7. F100\nY8. F100\nG0 X8.\nZ9.\nG1 X9. Y9. Z2.\nX1\nT2";
 
 /// Runs the lines on the short path and past it, without the lines that are refused.
 fn compare(dialect: Dialect, setup: &Setup, text: &str) -> Result<(), String> {
@@ -89,15 +95,19 @@ fn blanks_within_words(text: &str) -> String {
 
 #[test]
 fn a_straight_move_does_the_same_on_the_short_path_behind_every_word() {
-    let setup =
+    let known =
         Setup { start: Some(Vec3::ZERO), whole_numbers: WholeNumbers::Units, ..Setup::default() };
     for dialect in dialects() {
         let words = vocabulary(dialect);
         assert!(words.len() > 20, "{dialect:?}");
         for word in &words {
             for parameters in PARAMETERS {
-                let text = format!("{BEFORE}\n{word}{parameters}\n{BEHIND}");
-                compare(dialect, &setup, &text).unwrap_or_else(|found| panic!("{found}"));
+                for (before, between) in [(BEFORE, ""), (BEFORE, FEED_ALONE), (BARE, FEED_ALONE)] {
+                    let text = format!("{before}\n{word}{parameters}\n{between}{BEHIND}");
+                    for setup in [&known, &Setup { start: None, ..known.clone() }] {
+                        compare(dialect, setup, &text).unwrap_or_else(|found| panic!("{found}"));
+                    }
+                }
             }
         }
     }
@@ -136,6 +146,7 @@ proptest! {
     #[test]
     fn straight_moves_do_the_same_on_the_short_path_among_any_words(
         known in any::<bool>(),
+        before in prop::sample::select(&[BEFORE, BARE]),
         whole in prop::sample::select(&WHOLE_NUMBERS),
         blocks in prop::collection::vec(prop_oneof![
             1 => (any::<prop::sample::Index>(), prop::sample::select(&PARAMETERS))
@@ -150,7 +161,7 @@ proptest! {
                 Block::Straight(block) => block.clone(),
                 Block::Word(word, parameters) => format!("{}{parameters}", word.get(&words)),
             });
-            let text = format!("{BEFORE}\n{}\n", shown.collect::<Vec<_>>().join("\n"));
+            let text = format!("{before}\n{}\n", shown.collect::<Vec<_>>().join("\n"));
             prop_assert_eq!(compare(dialect, &setup, &text), Ok(()));
         }
     }

@@ -6,7 +6,9 @@ mod samples;
 
 use geom::{Frame, Vec3};
 use machine::Machine;
-use program::{Compensation, Coolant, Feed, Kind, Op, PathMode, Pose, Program, Spindle, Tool};
+use program::{
+    Compensation, Coolant, Cycle, CycleKind, Feed, Kind, Op, PathMode, Pose, Program, Spindle, Tool,
+};
 use proptest::prelude::*;
 use samples::{Sample, at, lines, sample};
 use std::sync::LazyLock;
@@ -45,7 +47,27 @@ fn cuts() -> [Op; 3] {
 }
 
 fn leaning() -> Pose {
-    Pose::new(Vec3::new(3.0, 2.0, -1.0), Vec3::new(0.0, 0.1, 1.0).normalize()).unwrap()
+    leaning_at(3.0, 2.0, 0.1)
+}
+
+/// At X, Y, Z-1, the tool axis leaning along Y.
+fn leaning_at(x: f64, y: f64, lean: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, -1.0), Vec3::new(0.0, lean, 1.0).normalize()).unwrap()
+}
+
+/// A hole whose cycle has a feed of its own: where a control has no such cycle, it is made of straight cuts.
+fn drilled() -> [Op; 2] {
+    let cycle = Cycle {
+        kind: CycleKind::Drill,
+        depth: 2.0,
+        clearance: 2.0,
+        retract: 6.0,
+        feed: Some(Feed::PerMinute(77.0)),
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    };
+    [Op::Cycle(Box::new(cycle)), Op::Hole(at(0.0, 0.0, -1.0))]
 }
 
 /// A sample of each kind, and what of the same kinds changes cuts otherwise.
@@ -66,6 +88,15 @@ fn alphabet() -> Vec<Vec<Op>> {
         vec![Op::Line(leaning()), Op::Line(leaning()), Op::Line(at(4.0, 4.0, -1.0))],
         vec![Op::Rapid(at(0.0, 0.0, 6.0)), Op::Frame(Box::new(slope)), Op::Rapid(leaning())],
         vec![Op::PathMode(PathMode::ExactPath)],
+        // Along one leaning axis, from one to another, and about Z, where a rotary axis is free.
+        [(3.0, 2.0), (4.0, 3.0), (6.0, 1.0)].map(|(x, y)| Op::Line(leaning_at(x, y, 0.1))).into(),
+        [0.1, 0.2, 0.2, 0.0, 0.0].map(|lean| Op::Line(leaning_at(30.0 * lean, 2.0, lean))).into(),
+        [0.0, 1e-9, 0.0].map(|lean| Op::Line(leaning_at(2.0, 2.0 + lean, lean))).into(),
+        // Beyond the travel of the small ones, and of all.
+        vec![Op::Line(at(450.0, 0.0, -1.0))],
+        vec![Op::Line(at(0.0, 90_000.0, -1.0))],
+        drilled().into(),
+        [drilled().as_slice(), &[Op::Hole(at(9.0, 0.0, -1.0)), Op::CycleOff]].concat(),
     ];
     samples.chain(others).collect()
 }
@@ -84,6 +115,57 @@ static MILLS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
     names.map(|name| machine::load(name).unwrap()).into()
 });
 
+/// Wire-EDM machines.
+static WIRES: LazyLock<Vec<Machine>> = LazyLock::new(|| {
+    ["fanuc-wire", "sodick-iso", "agie-iso"].map(|name| machine::load(name).unwrap()).into()
+});
+
+/// Cuts of a wire, upright and leaning, with a taper that the control makes.
+#[test]
+fn a_straight_cut_of_a_wire_is_written_the_same_on_the_short_path() {
+    let points = [(5.0, 0.0), (5.0, 5.0), (0.0, 5.0), (0.0, 0.0)];
+    let upright = points.map(|(x, y)| Op::Line(at(x, y, 0.0)));
+    let along = |lean: f64| {
+        points.map(|(x, y)| {
+            let axis = Vec3::new(lean, 0.0, 1.0).normalize();
+            Op::Line(Pose::new(Vec3::new(x, y, 0.0), axis).unwrap())
+        })
+    };
+    let parts: [Vec<Op>; 10] = [
+        vec![],
+        vec![Op::Taper(5.0)],
+        vec![Op::Taper(-3.0)],
+        vec![Op::Taper(0.0)],
+        vec![Op::Compensation(Compensation::Left(Some(1)))],
+        vec![Op::Compensation(Compensation::Off)],
+        vec![Op::Feed(Feed::PerMinute(4.0))],
+        along(0.05).into(),
+        along(0.1).into(),
+        vec![Op::CutWire, Op::Rapid(at(0.0, 0.0, 0.0)), Op::ThreadWire],
+    ];
+    let mut written = 0;
+    for machine in WIRES.iter() {
+        for parts in parts.iter().flat_map(|a| parts.iter().map(move |b| [a, b])) {
+            let start = [Op::Rapid(at(0.0, 0.0, 0.0)), Op::ThreadWire];
+            let feed = [Op::Feed(Feed::PerMinute(3.0))];
+            let ops = [
+                start.as_slice(),
+                &feed,
+                &upright,
+                parts[0],
+                &upright,
+                parts[1],
+                &upright,
+                &[Op::CutWire],
+            ]
+            .concat();
+            let is_written = both_paths(machine, &ops).unwrap_or_else(|found| panic!("{found}"));
+            written += usize::from(is_written);
+        }
+    }
+    assert!(written > 60, "{written}");
+}
+
 fn begins() -> Vec<Op> {
     vec![
         Op::Tool(Box::new(Tool { number: 1, diameter: Some(6.0), ..Tool::default() })),
@@ -91,6 +173,18 @@ fn begins() -> Vec<Op> {
         Op::Feed(Feed::PerMinute(300.0)),
         Op::Rapid(at(0.0, 0.0, 6.0)),
     ]
+}
+
+/// What leads past the short path does: behind a feed in between, the next cut says it.
+#[test]
+fn a_record_between_two_cuts_leads_past_the_short_path() {
+    for machine in MILLS.iter() {
+        let feed = [Op::Feed(Feed::PerMinute(123.0))];
+        let ops = [&begins(), cuts().as_slice(), &feed, &cuts()].concat();
+        let written = post::write(&lines(ops), machine).unwrap();
+        let text = String::from_utf8_lossy(&written.text);
+        assert_eq!(text.matches("F123").count(), 1, "{}\n{text}", machine.name);
+    }
 }
 
 #[test]

@@ -459,6 +459,41 @@ mod tests {
         }
     }
 
+    /// Points that are far off, on lines of their own, with an axis that is none; a vector left out behind a tilted tool means Z to some
+    /// systems. Each in straight cuts, by the habits of each system.
+    #[test]
+    fn a_plain_goto_does_the_same_on_the_short_path_wherever_it_goes() {
+        let heads =
+            ["", "CSI_SET_FLUTE_LENGTH/2.\n", "$$* Pro/CLfile  Version Creo\n", "$$ CATIA\n"];
+        let points = [
+            "GOTO/2,0,0\n3,1,0\n4,1,0\n",
+            "GOTO/2,0,0,0,0,1\n3,1,0,0,0.6,0.8\n",
+            "GOTO/1000001,0,0\n",
+            "GOTO/0,-1000001,0\n",
+            "GOTO/0,0,40000\n",
+            "GOTO/1000000,0,0\n",
+            "GOTO/2,0,0,0,0,0\n",
+            "GOTO/2,0,0,0,0,1.5\n",
+            "GOTO/2,0,0,0,0.6,0.8\n",
+            "GOTO/2,0,0,0,0.6,0.8\nGOTO/3,0,0\n",
+            "GOTO/2,0,0,0,0.6,0.8\nGOTO/3,0,0,0,0.6,0.8\n",
+            "GOTO/2,0,0,0,0,1\nGOTO/3,0,0\n",
+        ];
+        let mut refused = 0;
+        for head in heads {
+            for units in [START.to_owned(), START.replace("UNITS/MM", "UNITS/INCHES")] {
+                for [first, second] in points.iter().flat_map(|a| points.map(|b| [a, b])) {
+                    let text =
+                        format!("{head}{units}GOTO/1,0,0\n{first}{second}GOTO/5,0,0\nFINI\n");
+                    let [short, past] = both_paths(&text);
+                    assert_eq!(short, past, "{text}");
+                    refused += usize::from(short.contains("OutOfRange"));
+                }
+            }
+        }
+        assert!(refused > 100, "{refused}");
+    }
+
     /// Half circles one behind the other, each word between them, and points on the last circle, at its start and off it: what Creo means
     /// by those depends on the arc that was just cut.
     #[test]
