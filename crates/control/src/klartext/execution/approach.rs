@@ -4,43 +4,20 @@
 //! point, to PN. PS and PN are places of the tool's center; PH, PA and PE are places of the contour,
 //! from which the tool is offset by its radius.
 
-use super::contour::{Bend, Element, Waiting, left_of};
+use super::contour::left_of;
 use super::state::Control;
+use super::state::contour::{Approach, ApproachShape, Bend, Element, Waiting};
 use crate::event::Action;
 use crate::kernel::Outcome;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::Scanner;
-use crate::klartext::language::words::{CCA, FeedWord, LEN, LINEAR, PA, PR, RADIUS, Words, slot};
+use crate::klartext::language::words::{CCA, LEN, LINEAR, PA, PR, RADIUS, Words, slot};
 use geom::Vec3;
 use program::{Compensation, Diagnostic, Rule};
 
-/// The shape of an approach or a departure.
-#[derive(Clone, Copy, PartialEq)]
-enum Shape {
-    /// `LT`: a line in the direction of the contour, so long.
-    Tangent(f64),
-    /// `LN`: a line at right angles to the contour, so long.
-    Normal(f64),
-    /// `CT`: an arc of a radius, negative on the other side of the contour, and an angle in radians.
-    Arc(f64, f64),
-    /// `LCT`: an arc of a radius between a line and the contour.
-    LineAndArc(f64),
-}
-
-/// An approach that waits for the direction of the contour.
-#[derive(Clone, Copy)]
-pub(super) struct Approach {
-    shape: Shape,
-    start: Vec3,
-    compensation: Compensation,
-    feed: Option<FeedWord>,
-    /// Whether the way to PH is rapid, as the positioning before.
-    rapid: bool,
-}
-
-impl Shape {
+impl ApproachShape {
     /// The shape that the words say, and whether its point is in polar coordinates.
-    fn read(s: &mut Scanner, control: &Control) -> Outcome<(Shape, bool, Words)> {
+    fn read(s: &mut Scanner, control: &Control) -> Outcome<(ApproachShape, bool, Words)> {
         let (kind, span) = s.token();
         let (polar, kind) = match kind {
             [b'P', rest @ ..] => (true, rest),
@@ -58,13 +35,13 @@ impl Shape {
         let words = Words::read(s, point | own, control)?;
         let positive = |slot| words.get(slot).filter(|value| *value > 0.0);
         let shape = match kind {
-            b"LT" => positive(slot::LEN).map(Shape::Tangent),
-            b"LN" => positive(slot::LEN).map(Shape::Normal),
+            b"LT" => positive(slot::LEN).map(ApproachShape::Tangent),
+            b"LN" => positive(slot::LEN).map(ApproachShape::Normal),
             b"CT" => words.get(slot::R).filter(|radius| *radius != 0.0).and_then(|radius| {
                 let angle = positive(slot::CCA).filter(|angle| *angle <= 360.0)?;
-                Some(Shape::Arc(radius, angle.to_radians()))
+                Some(ApproachShape::Arc(radius, angle.to_radians()))
             }),
-            _ => positive(slot::R).map(Shape::LineAndArc),
+            _ => positive(slot::R).map(ApproachShape::LineAndArc),
         };
         let shape = shape.ok_or_else(|| {
             let message = "LT and LN need LEN, CT needs CCA up to 360° and R, LCT needs R";
@@ -120,7 +97,7 @@ fn side(compensation: Compensation) -> Option<f64> {
 impl Control<'_, '_> {
     /// `APPR`, from behind it: what is known is kept until the contour is.
     pub(crate) fn approach(&mut self, s: &mut Scanner) -> Outcome {
-        let (shape, polar, mut words) = Shape::read(s, self)?;
+        let (shape, polar, mut words) = ApproachShape::read(s, self)?;
         if polar {
             self.polar(s, &mut words)?;
         }
@@ -132,7 +109,7 @@ impl Control<'_, '_> {
             return Err(s.error_block(Rule::Contour, message));
         }
         let compensation = words.compensation.unwrap_or(Compensation::Off);
-        if compensation == Compensation::Off && !matches!(shape, Shape::Tangent(_)) {
+        if compensation == Compensation::Off && !matches!(shape, ApproachShape::Tangent(_)) {
             let message =
                 "an approach with R0 is one with RR on the iTNC 530 and an error on others";
             return Err(s.error_block(Rule::Compensation, message).help("say RL or RR").into());
@@ -143,7 +120,7 @@ impl Control<'_, '_> {
             let message = "the point of the contour is not known: give X, Y and Z";
             return Err(s.error_block(Rule::UnknownPosition, message));
         }
-        if matches!(shape, Shape::LineAndArc(_)) && end.z != self.here.z {
+        if matches!(shape, ApproachShape::LineAndArc(_)) && end.z != self.here.z {
             let message = "where LCT goes down differs between controls";
             return Err(s.error_block(Rule::Unsupported, message).help("go to Z before").into());
         }
@@ -169,31 +146,31 @@ impl Control<'_, '_> {
         let contour = next.start;
         let sign = side(compensation).unwrap_or(0.0);
         let (before, arc) = match shape {
-            Shape::Tangent(length) => (contour - along * length, None),
-            Shape::Normal(length) => {
+            ApproachShape::Tangent(length) => (contour - along * length, None),
+            ApproachShape::Normal(length) => {
                 let away = length + self.offset_from_contour(s, sign)?;
                 (contour + left_of(along) * (sign * away), None)
             }
-            Shape::Arc(radius, angle) => {
+            ApproachShape::Arc(radius, angle) => {
                 let arc = Touching::new(contour, along, sign * radius.signum(), radius.abs());
                 (arc.turned(contour, -angle), Some(arc.bend))
             }
-            Shape::LineAndArc(radius) => {
+            ApproachShape::LineAndArc(radius) => {
                 let arc = Touching::new(contour, along, sign, radius);
                 let tool = self.offset_from_contour(s, sign)?;
                 let before = arc.tangent_point(start, tool, true);
                 (before.ok_or_else(|| no_tangent(s))?, Some(arc.bend))
             }
         };
-        if matches!(shape, Shape::LineAndArc(_)) {
+        if matches!(shape, ApproachShape::LineAndArc(_)) {
             self.set_feed(s, feed)?;
         }
         // At right angles the compensation begins in the last line; else PH is compensated already.
-        if !matches!(shape, Shape::Normal(_)) {
+        if !matches!(shape, ApproachShape::Normal(_)) {
             self.set_compensation(compensation)?;
         }
         let to = before.with_z(start.z);
-        if rapid && !matches!(shape, Shape::LineAndArc(_)) {
+        if rapid && !matches!(shape, ApproachShape::LineAndArc(_)) {
             self.here = to;
             self.emit(Action::Rapid(self.pose(to)))?;
         } else {
@@ -212,11 +189,11 @@ impl Control<'_, '_> {
 
     /// `DEP`, from behind it.
     pub(crate) fn departure(&mut self, s: &mut Scanner) -> Outcome {
-        let (shape, polar, mut words) = Shape::read(s, self)?;
+        let (shape, polar, mut words) = ApproachShape::read(s, self)?;
         if polar {
             self.polar(s, &mut words)?;
         }
-        let to_a_point = matches!(shape, Shape::LineAndArc(_));
+        let to_a_point = matches!(shape, ApproachShape::LineAndArc(_));
         let plane = 1 << slot::X | 1 << slot::Y;
         if words.has(LINEAR) != to_a_point
             || (to_a_point && !words.has_all(plane))
@@ -234,7 +211,7 @@ impl Control<'_, '_> {
             return Err(s.error_block(Rule::Contour, message));
         };
         let sign = side(self.compensation);
-        let Some(sign) = sign.or(matches!(shape, Shape::Tangent(_)).then_some(0.0)) else {
+        let Some(sign) = sign.or(matches!(shape, ApproachShape::Tangent(_)).then_some(0.0)) else {
             let message = "on which side of the contour the tool leaves is said by RL or RR";
             return Err(s.error_block(Rule::Compensation, message));
         };
@@ -245,23 +222,23 @@ impl Control<'_, '_> {
         let (last, across) = (self.here, |along: Vec3| left_of(along) * (sign * tool));
         let element = |end, arc| Element { start: last, end, arc };
         match shape {
-            Shape::Tangent(length) => {
+            ApproachShape::Tangent(length) => {
                 self.tell(s, element(last + along * length, None))?;
                 self.leave_contour(self.here + across(along))
             }
-            Shape::Normal(length) => {
+            ApproachShape::Normal(length) => {
                 self.set_compensation(Compensation::Off)?;
                 let end = last + left_of(along) * (sign * (length + tool));
                 self.tell(s, element(end, None))
             }
-            Shape::Arc(radius, angle) => {
+            ApproachShape::Arc(radius, angle) => {
                 let arc = Touching::new(last, along, sign * radius.signum(), radius.abs());
                 let element = element(arc.turned(last, angle), Some(arc.bend));
                 self.tell(s, element)?;
                 let along = element.tangent_at_end().unwrap_or(along);
                 self.leave_contour(self.here + across(along))
             }
-            Shape::LineAndArc(radius) => {
+            ApproachShape::LineAndArc(radius) => {
                 let (end, _) = self.targets(s, &words)?;
                 let arc = Touching::new(last, along, sign, radius);
                 let before = arc.tangent_point(end, tool, false).ok_or_else(|| no_tangent(s))?;

@@ -1,84 +1,17 @@
 //! Elements of a contour, and the corners between them.
 
 use super::state::Control;
+use super::state::contour::{Bend, Cut, Element, Waiting};
 use crate::kernel::Outcome;
 use crate::kernel::corner::{self, Misfit, Shape};
+use crate::klartext::language::feed::{FeedWord, feed_word};
 use crate::klartext::language::scan::Scanner;
-use crate::klartext::language::words::{FeedWord, RADIUS, Words, feed_word, slot};
-use geom::{Vec3, direction};
+use crate::klartext::language::words::{RADIUS, Words, slot};
+use geom::Vec3;
 use program::{Feed, Rule};
-
-/// A straight line or an arc in the plane XY, in the coordinates of the blocks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Element {
-    pub(super) start: Vec3,
-    pub(super) end: Vec3,
-    /// What makes it an arc.
-    pub(super) arc: Option<Bend>,
-}
-
-/// How an arc turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bend {
-    pub(super) center: Vec3,
-    /// 1 counter-clockwise, −1 clockwise.
-    pub(super) sense: f64,
-    /// Full turns more than the shortest.
-    pub(super) turns: u32,
-}
-
-/// What waits for the next element of the contour.
-#[derive(Clone, Copy)]
-pub(super) enum Waiting {
-    /// An element up to a corner that is cut off.
-    Corner { first: Element, cut: Option<Cut> },
-    /// An approach, whose last part depends on where the contour begins.
-    Approach(super::approach::Approach),
-}
-
-/// How a corner is cut off, and the feed for that.
-#[derive(Clone, Copy)]
-pub(super) struct Cut {
-    shape: Shape,
-    feed: Option<FeedWord>,
-}
 
 /// Angles, radians, up to which two directions count as the same.
 const SMOOTH: f64 = 1e-6;
-
-impl Element {
-    /// The direction at the start, a unit vector in the plane; `None` where the element has no length
-    /// there or is not known.
-    pub(super) fn tangent_at_start(&self) -> Option<Vec3> {
-        self.tangent(self.start)
-    }
-
-    /// The direction at the end.
-    pub(super) fn tangent_at_end(&self) -> Option<Vec3> {
-        self.tangent(self.end)
-    }
-
-    fn tangent(&self, at: Vec3) -> Option<Vec3> {
-        match self.arc {
-            None => direction((self.end - self.start).with_z(0.0)),
-            Some(Bend { center, sense, .. }) => {
-                direction((Vec3::Z * sense).cross((at - center).with_z(0.0)))
-            }
-        }
-    }
-
-    /// Whether it lies in a plane parallel to XY.
-    fn is_plane(&self) -> bool {
-        self.start.z == self.end.z
-    }
-
-    /// As a part of a corner.
-    fn part(&self) -> corner::Element {
-        let turn = |bend: Bend| (bend.center.with_z(self.start.z), Vec3::Z * bend.sense);
-        let circle = self.arc.map(turn);
-        corner::Element { start: self.start, end: self.end, circle, cut: true }
-    }
-}
 
 /// A unit vector in the plane turned to the left.
 pub(super) fn left_of(along: Vec3) -> Vec3 {

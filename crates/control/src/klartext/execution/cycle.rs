@@ -1,13 +1,14 @@
 //! Cycles: what `CYCL DEF` says, and how they are called.
 
-use super::hole::{Hole, RAPID_FEED};
-use super::layout::{self, Layout, Unit};
-use super::older::Older;
-use super::state::{Control, TENTH_INCH, Tip};
+use super::hole::RAPID_FEED;
+use super::layout;
+use super::state::cycle::{Defined, Definition};
+use super::state::transforms::Transforms;
+use super::state::{Control, Tip};
 use crate::event::{Action, Risk};
 use crate::kernel::Outcome;
 use crate::klartext::language::functions::When;
-use crate::klartext::language::registers::{Parameter, Registers};
+use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Scanner, Word};
 use crate::klartext::language::words::{LINEAR, Words, slot};
 use geom::Vec3;
@@ -38,47 +39,6 @@ impl Designation {
         }
         Err(s.error(Rule::Syntax, (start, s.at()), "the number of a cycle is expected here"))
     }
-}
-
-/// A cycle that is defined; its parameters are in the Q parameters of their numbers, where a program
-/// may change them until it calls the cycle.
-#[derive(Debug)]
-pub(crate) struct Definition {
-    layout: &'static Layout,
-    given: Vec<u16>,
-    /// mm in the unit of length of the program that defines it.
-    unit: f64,
-}
-
-impl Definition {
-    /// The number of the cycle.
-    pub(super) fn number(&self) -> u16 {
-        self.layout.number
-    }
-
-    /// mm or mm/min in the unit of a parameter that the definition gave.
-    pub(super) fn unit_of(&self, q: u16) -> Option<f64> {
-        let unit = layout::unit(q)?;
-        self.given.contains(&q).then_some(match unit {
-            Unit::Length => self.unit,
-            Unit::Feed if self.unit != 1.0 => TENTH_INCH,
-            Unit::Feed | Unit::Plain => 1.0,
-        })
-    }
-
-    /// The cycle with what its parameters hold now.
-    pub(super) fn hole<'a>(&'a self, registers: &'a Registers) -> Hole<'a> {
-        Hole { definition: self, registers }
-    }
-}
-
-/// A cycle that is ready to be called.
-#[derive(Debug)]
-pub(super) enum Defined {
-    /// With Q parameters: it starts at the surface that they say.
-    Parameters(Definition),
-    /// In parts: it starts where the tool stands.
-    Older(Older),
 }
 
 impl Control<'_, '_> {
@@ -191,7 +151,7 @@ impl Control<'_, '_> {
                 "what a preset does to mirrored, rotated or scaled coordinates is not known";
             return Err(s.error_block(Rule::Transformation, message));
         }
-        self.outside = super::transform::Transforms::default();
+        self.outside = Transforms::default();
         self.forget_position();
         let Some(offset) = WorkOffset::at(preset as u32) else { return Ok(()) };
         self.emit(Action::WorkOffset(offset))

@@ -1,8 +1,8 @@
 //! Cycle 208: a bore that is milled on a helix.
 
-use super::contour::{Bend, Element};
 use super::hole::Hole;
 use super::state::Control;
+use super::state::contour::{Bend, Element};
 use crate::event::Action;
 use crate::kernel::Outcome;
 use crate::klartext::language::scan::Scanner;

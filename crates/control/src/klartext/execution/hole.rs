@@ -1,6 +1,6 @@
 //! Hole cycles: what they do, from their parameters.
 
-use super::cycle::Definition;
+use super::state::cycle::Definition;
 use crate::event::Risk;
 use crate::klartext::language::registers::{Parameter, Registers};
 use geom::Vec3;
@@ -16,6 +16,13 @@ const DISENGAGING: f64 = 0.2;
 pub(super) struct Hole<'a> {
     pub(super) definition: &'a Definition,
     pub(super) registers: &'a Registers,
+}
+
+impl Definition {
+    /// The cycle with what its parameters hold now.
+    pub(super) fn hole<'a>(&'a self, registers: &'a Registers) -> Hole<'a> {
+        Hole { definition: self, registers }
+    }
 }
 
 impl Hole<'_> {

@@ -1,5 +1,8 @@
 //! Which parameters a cycle has, and why others are refused.
 
+/// mm/min in the unit of F of an inch program, a tenth of an inch each minute.
+pub(super) const TENTH_INCH: f64 = 2.54;
+
 /// The unit of a cycle parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {

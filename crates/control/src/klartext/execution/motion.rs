@@ -1,6 +1,7 @@
 //! Path functions: lines, arcs and helices.
 
-use super::contour::{Bend, Element, left_of};
+use super::contour::left_of;
+use super::state::contour::{Bend, Element};
 use super::state::{AXES, Control, Tip};
 use crate::event::{Action, ArcTo, Orientation, Position, Risk};
 use crate::kernel::Outcome;

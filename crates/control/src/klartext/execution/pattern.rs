@@ -1,7 +1,7 @@
 //! Patterns of points at which a cycle is called.
 
-use super::cycle::Definition;
 use super::state::Control;
+use super::state::cycle::Definition;
 use crate::event::Action;
 use crate::kernel::Outcome;
 use crate::klartext::language::functions::When;
@@ -187,7 +187,7 @@ impl PatternWords {
             let plain = PLAIN.contains(&word.address);
             let length = matches!(word.address, b"X" | b"Y" | b"Z" | b"D" | b"DX" | b"DY");
             let Some(number) = word.number.filter(|_| plain || length) else {
-                return Err(crate::klartext::language::words::unknown(s, &word));
+                return Err(crate::klartext::language::feed::unknown(s, &word));
             };
             if words.find(word.address).is_some() {
                 return Err(s.error(

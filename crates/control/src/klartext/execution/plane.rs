@@ -1,24 +1,15 @@
 //! Tilted planes of work and the keeping of the tool tip.
 
+use super::state::tilt::{Tilt, spatial};
+use super::state::transforms::Transforms;
 use super::state::{Control, Tip};
-use super::transform::Transforms;
 use crate::event::{Action, Risk, TiltChoice};
 use crate::kernel::Outcome;
+use crate::klartext::language::feed::feed_word;
 use crate::klartext::language::scan::Scanner;
-use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
+use crate::klartext::language::words::{ROTARY, Words, slot};
 use geom::{Mat3, Vec3, direction};
 use program::{Axes, Rule};
-
-/// A tilted plane of work.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tilt {
-    /// From the tilted coordinates to the work frame.
-    pub(super) turn: Mat3,
-    /// Transformations within the plane.
-    pub(super) inside: Transforms,
-    /// Whether the control has put the rotary axes there (`TURN`, `MOVE`).
-    pub(super) turned: bool,
-}
 
 /// Cosine up to which two vectors, written with a few decimals, count as being at right angles.
 const SQUARE: f64 = 1e-4;
@@ -33,14 +24,6 @@ enum Positioning {
         choice: TiltChoice,
     },
     Stay,
-}
-
-/// The frame of spatial angles in degrees: about the fixed axes, first A, then B, then C (TNC 640
-/// manual, PLANE SPATIAL).
-pub(super) fn spatial([a, b, c]: [f64; 3]) -> Mat3 {
-    Mat3::from_rotation_z(c.to_radians())
-        * Mat3::from_rotation_y(b.to_radians())
-        * Mat3::from_rotation_x(a.to_radians())
 }
 
 impl Control<'_, '_> {
@@ -244,7 +227,7 @@ impl Control<'_, '_> {
                 let Some(word) = s.word(&self.registers)? else { break };
                 rapid = Some(
                     feed_word(s, &word, self.tool_feed)?
-                        == crate::klartext::language::words::FeedWord::Max,
+                        == crate::klartext::language::feed::FeedWord::Max,
                 );
             } else if s.take_symbol(b"DIST") {
                 // About which point MOVE turns; where the tool is then is not known anyway.

@@ -4,9 +4,11 @@ use super::state::{Control, Tip};
 use crate::ToolData;
 use crate::event::{Action, Risk};
 use crate::kernel::Outcome;
+use crate::klartext::language::feed;
+use crate::klartext::language::feed::feed_word;
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::Scanner;
-use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
+use crate::klartext::language::words::{LINEAR, Words};
 use geom::Vec3;
 use program::{Compensation, Diagnostic, Rule, Spindle, Tool};
 
@@ -52,7 +54,7 @@ impl Control<'_, '_> {
                 }
                 (b"DL" | b"DR", Some(0.0)) => {}
                 (b"DL" | b"DR", Some(_)) => return Err(oversize(s, word.span)),
-                _ => return Err(words::unknown(s, &word)),
+                _ => return Err(feed::unknown(s, &word)),
             }
         }
         if called.is_some() && !axis {
@@ -86,7 +88,7 @@ impl Control<'_, '_> {
             match (word.address, word.number) {
                 (b"L", Some(value)) if length.is_none() => length = Some(value * self.unit),
                 (b"R", Some(value)) if radius.is_none() => radius = Some(value * self.unit),
-                _ => return Err(words::unknown(s, &word)),
+                _ => return Err(feed::unknown(s, &word)),
             }
         }
         let (Some(length), Some(radius)) = (length, radius) else {

@@ -1,12 +1,12 @@
 //! A program runs: its blocks in their order, jumps, subprograms, called programs.
 
-use super::calls::Calls;
+use super::returns::Calls;
 use super::source::{BlockLocation, Line, Source};
 use crate::event::{Action, Risk};
 use crate::kernel::Outcome;
 use crate::klartext::execution::cycle::Designation;
-use crate::klartext::execution::older::parts_needed;
 use crate::klartext::execution::state::Control;
+use crate::klartext::execution::state::older::parts_needed;
 use crate::klartext::language::formula;
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Parameter;

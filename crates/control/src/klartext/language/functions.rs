@@ -1,7 +1,7 @@
 //! M functions: what they are and when in a block they act.
 
+use super::feed::{FeedWord, Readable, feed_word, unknown};
 use super::scan::{Scanner, Word};
-use super::words::{FeedWord, Readable, feed_word, unknown};
 use crate::kernel::Outcome;
 use crate::kernel::coolant::Doubtful;
 use program::{CoolantFunctions, CoolantSwitch, Rule};

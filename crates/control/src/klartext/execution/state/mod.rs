@@ -1,33 +1,37 @@
 //! What the control holds while a program runs, and how that becomes events.
 
-use super::contour::{Element, Waiting};
-use super::cycle::Defined;
-use super::older::Older;
-use super::plane::Tilt;
-use super::transform::Transforms;
+pub(super) mod contour;
+pub(super) mod cycle;
+pub(in crate::klartext) mod older;
+pub(super) mod tilt;
+pub(super) mod transforms;
+
+use super::layout::TENTH_INCH;
 use crate::Settings;
 use crate::ToolData;
 use crate::event::{Action, Orientation, Position, Risk};
 use crate::kernel::compensation::Terms;
 use crate::kernel::coolant::{Coolants, Doubtful};
 use crate::kernel::{Channel, Outcome};
+use crate::klartext::language::feed::{FeedWord, Readable};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::Scanner;
-use crate::klartext::language::words::{FeedWord, Readable};
+use contour::{Element, Waiting};
+use cycle::Defined;
 use geom::Vec3;
+use older::Older;
 use program::{
     Auxiliary, Axes, Compensation, Coolant, CoolantFunctions, CoolantSwitch, Cycle, Feed, Rule,
     Spindle,
 };
+use tilt::Tilt;
+use transforms::Transforms;
 
 use std::collections::HashMap;
 
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
-
-/// mm/min in the unit of F of an inch program, a tenth of an inch each minute.
-pub(super) const TENTH_INCH: f64 = 2.54;
 
 /// Whether the control keeps the tool tip, and what the rotary words then mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,7 +256,7 @@ impl<'a, 's> Control<'a, 's> {
             // reckons with where they stand.
             Some(_) => Orientation::Rotary { degrees: self.degrees, tool_center: true },
             None if self.tip == Tip::KeptSpatial => {
-                Orientation::Axis(super::plane::spatial(self.degrees).z_axis)
+                Orientation::Axis(tilt::spatial(self.degrees).z_axis)
             }
             None => {
                 Orientation::Rotary { degrees: self.degrees, tool_center: self.tip == Tip::Kept }
@@ -545,7 +549,7 @@ impl<'a, 's> Control<'a, 's> {
                 b"ID" => id = word.number,
                 b"NR" => number = word.number,
                 b"IDX" => index = word.number,
-                _ => return Err(crate::klartext::language::words::unknown(s, &word)),
+                _ => return Err(crate::klartext::language::feed::unknown(s, &word)),
             }
         }
         let axis = index.and_then(|index| (0..3usize).find(|i| *i as f64 + 1.0 == index));
