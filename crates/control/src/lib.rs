@@ -132,7 +132,8 @@ impl Dialect {
             Dialect::Sodick => Language::Iso(&wire::SODICK),
             Dialect::Agie => Language::Iso(&wire::AGIE),
             Dialect::Source(facts) => Language::Iso(facts),
-            Dialect::Sinumerik | Dialect::Sinumerik828d => Language::Sinumerik,
+            Dialect::Sinumerik => Language::Sinumerik(&sinumerik::S840D),
+            Dialect::Sinumerik828d => Language::Sinumerik(&sinumerik::S828D),
             Dialect::Klartext => Language::Klartext,
             Dialect::Points => Language::Points,
             Dialect::Krl => Language::Krl,
@@ -147,7 +148,7 @@ impl Dialect {
         match self.language() {
             Language::Iso(facts) => facts.reset.corners,
             Language::Klartext => Corners::Unbounded,
-            Language::Sinumerik
+            Language::Sinumerik(_)
             | Language::Points
             | Language::Krl
             | Language::UrScript
@@ -172,7 +173,7 @@ impl Dialect {
     pub fn ending(self) -> Ending {
         match self.language() {
             Language::Iso(facts) => facts.syntax.ending,
-            Language::Sinumerik
+            Language::Sinumerik(_)
             | Language::Klartext
             | Language::Krl
             | Language::UrScript
@@ -186,7 +187,7 @@ impl Dialect {
     pub fn feed_path(self) -> FeedPath {
         match self.language() {
             Language::Iso(facts) => facts.reset.feed_path,
-            Language::Sinumerik => FeedPath::Group([0.0; 3]),
+            Language::Sinumerik(_) => FeedPath::Group([0.0; 3]),
             Language::Klartext => FeedPath::AllAxes,
             Language::Points => FeedPath::AsSetUp,
             // The speed of the tip, whatever turns.
@@ -201,7 +202,7 @@ impl Dialect {
     pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
         match self.language() {
             Language::Iso(facts) => facts.reset.work_offset,
-            Language::Sinumerik => Some(WorkOffset::NONE),
+            Language::Sinumerik(_) => Some(WorkOffset::NONE),
             Language::Klartext
             | Language::Points
             | Language::Krl
@@ -221,7 +222,7 @@ impl Dialect {
 enum Language {
     /// With the facts of its dialect.
     Iso(&'static Facts),
-    Sinumerik,
+    Sinumerik(&'static sinumerik::Facts),
     Klartext,
     Points,
     Krl,
@@ -484,7 +485,7 @@ pub fn optional_blocks(text: &[u8]) -> impl Iterator<Item = (u32, u8)> {
 pub fn vocabulary(dialect: Dialect) -> Vec<String> {
     match dialect.language() {
         Language::Iso(facts) => iso::vocabulary(facts),
-        Language::Sinumerik => sinumerik::vocabulary(),
+        Language::Sinumerik(_) => sinumerik::vocabulary(),
         Language::Klartext => klartext::vocabulary(),
         Language::Points => Vec::new(),
         Language::Krl => krl::vocabulary(),
@@ -515,7 +516,7 @@ pub fn read(
 ) -> Result<(), Box<Diagnostic>> {
     kernel::run(settings, file_name, text, sink, |channel| match settings.dialect.language() {
         Language::Iso(facts) => iso::run(facts, settings, text, channel),
-        Language::Sinumerik => sinumerik::run(settings, text, channel),
+        Language::Sinumerik(facts) => sinumerik::run(facts, settings, text, channel),
         Language::Klartext => klartext::run(settings, text, channel),
         Language::Points => points::run(settings, text, channel),
         Language::Krl => krl::run(settings, text, channel),

@@ -1,8 +1,8 @@
 //! Arcs in every notation: centre, radius, opening angle, through a point.
 
-use super::corner::Element;
 use super::interpreter::Interpreter;
 use crate::event::Action;
+use crate::kernel::corner::Element;
 use crate::kernel::source::Source;
 use crate::kernel::{Outcome, arc};
 use crate::sinumerik::language::block::{Block, Coordinate, Count};

@@ -4,11 +4,11 @@
 //! What goes between two blocks is known when the second is. So a block with a corner is held until then,
 //! and what is said in between with it.
 
-use super::interpreter::Interpreter;
+use super::interpreter::{Interpreter, WaitingCorner};
 use crate::event::{Action, ArcTo, Event};
 use crate::kernel::Outcome;
-pub(super) use crate::kernel::corner::Element;
-use crate::kernel::corner::{self, Joint, Misfit, Shape};
+
+use crate::kernel::corner::{self, Element, Joint, Misfit, Shape};
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Corner};
 use geom::Vec3;
@@ -19,18 +19,6 @@ const MOST_BETWEEN: usize = 100;
 
 /// Directions that differ by less, radians, make no corner.
 const STRAIGHT_ON: f64 = 1e-6;
-
-/// A block whose corner waits for the next one.
-pub(crate) struct WaitingCorner {
-    element: Element,
-    corner: Corner,
-    /// Whether every block has such a corner (`RNDM`), so that there need not be one here.
-    modal: bool,
-    feed: Option<f64>,
-    line: u32,
-    /// What has been said since.
-    between: Vec<Event>,
-}
 
 impl Interpreter<'_, '_> {
     /// Whether a block has to do with a corner.

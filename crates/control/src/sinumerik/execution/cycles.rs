@@ -4,6 +4,7 @@
 //! manuals. What a call asks for and [`Cycle`] cannot say is refused.
 
 use super::state::State;
+use super::state::modal::{Drilling, Pause};
 use crate::event::Risk;
 use crate::kernel::Outcome;
 use crate::kernel::source::Source;
@@ -59,54 +60,6 @@ const COARSE_PITCH: &[(f64, f64)] = &[
     (45.0, 4.5),
     (48.0, 5.0),
 ];
-
-/// How long a pause lasts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Pause {
-    /// Seconds.
-    Seconds(f64),
-    /// Turns of the spindle.
-    Turns(f64),
-}
-
-impl Pause {
-    /// `DTB` and its kin: positive seconds, negative turns.
-    fn signed(value: f64) -> Pause {
-        if value < 0.0 { Pause::Turns(-value) } else { Pause::Seconds(value) }
-    }
-
-    /// Seconds at a spindle speed (1/min); nothing where turns are asked of a spindle that stands.
-    pub fn seconds(self, spindle: Spindle) -> Option<f64> {
-        match (self, spindle) {
-            (Pause::Seconds(seconds), _) => Some(seconds),
-            (Pause::Turns(turns), Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed))
-                if speed > 0.0 =>
-            {
-                Some(turns / speed * 60.0)
-            }
-            _ => None,
-        }
-    }
-}
-
-/// A cycle that is ready to drill. Heights and ways in mm in the program's coordinates.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Drilling {
-    /// What happens, but for the dwell.
-    pub cycle: Cycle,
-    /// Dwell at the bottom.
-    pub dwell: Pause,
-    /// Height of the reference plane.
-    pub surface: f64,
-    /// What the cycle makes of the spindle before it drills.
-    pub spindle_before: Option<Spindle>,
-    /// What the cycle makes of the spindle afterwards.
-    pub spindle_after: Option<Spindle>,
-    /// Whether it drills at the active feed.
-    pub needs_feed: bool,
-    /// What the call asks for that a source cannot say.
-    pub risks: Vec<Risk>,
-}
 
 /// The arguments of a call, by name.
 struct Arguments<'a> {

@@ -1,8 +1,8 @@
 //! What is still on where a program ends. The next program takes it as off when it starts, and so the proof does
 //! (`docs/proof.md`, "What a program finds, and what it leaves").
 
-use super::modal::Modal;
 use super::state::State;
+use super::state::modal::Modal;
 use crate::event::Risk;
 use crate::sinumerik::language::commands::{DELIVERED, Delivered, Diameter, FeedType};
 use geom::Frame;

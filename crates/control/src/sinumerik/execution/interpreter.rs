@@ -4,24 +4,23 @@
 //! (auxiliary functions come before the motion, Function Manual H2); then the motion; then the hole of
 //! a modal cycle; then stops and the end of the program (`M0 M1 M2 M17 M30` come after the motion).
 
-use super::corner::WaitingCorner;
-use super::cycles::{Drilling, Pause};
-use super::modal::Modal;
-use super::programmable::plain_values;
 use super::state::State;
+use super::state::modal::{Drilling, Modal, Pause};
 use crate::Settings;
 use crate::event::{Action, Event, FeedPath, Risk};
 use crate::kernel::Channel;
 use crate::kernel::Outcome;
 use crate::kernel::compensation::Terms;
 use crate::kernel::coolant::{Coolants, Doubtful};
+use crate::kernel::corner::Element;
 use crate::kernel::source::Source;
-use crate::sinumerik::language::block::{Block, ToolCall};
+use crate::sinumerik::language::axis::AXIS_NAMES;
+use crate::sinumerik::language::block::{Block, Coordinate, Corner, Count, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{self, Code, FeedType, Motion};
-use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, ELEMENTS_IN_A_TURN};
+use crate::sinumerik::models::Facts;
 use program::{
     Auxiliary, Compensation, Coolant, CoolantSwitch, Cycle, Diagnostic, Feed, Rule, Spindle, Tool,
 };
@@ -74,11 +73,27 @@ fn refused(source: &Source, doubt: Doubtful) -> Box<Diagnostic> {
     error
 }
 
+/// A block whose corner waits for the next one.
+pub(crate) struct WaitingCorner {
+    pub(super) element: Element,
+    pub(super) corner: Corner,
+    /// Whether every block has such a corner (`RNDM`), so that there need not be one here.
+    pub(super) modal: bool,
+    pub(super) feed: Option<f64>,
+    pub(super) line: u32,
+    /// What has been said since.
+    pub(super) between: Vec<Event>,
+}
+
 impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
-    pub fn new(settings: &'a Settings, channel: &'a mut Channel<'s>) -> Interpreter<'a, 's> {
+    pub fn new(
+        facts: &'static Facts,
+        settings: &'a Settings,
+        channel: &'a mut Channel<'s>,
+    ) -> Interpreter<'a, 's> {
         Interpreter {
-            state: State::new(settings),
+            state: State::new(facts, settings),
             settings,
             channel,
             line: None,
@@ -858,4 +873,20 @@ fn group(source: &Source, call: &Call) -> Outcome {
     let mut error = source.block_error(Rule::Unsupported, message);
     error.help = "set its arguments behind the level to 0 or a text".into();
     Err(error)
+}
+
+/// X, Y and Z of a block, which count neither absolute nor incremental.
+pub(super) fn plain_values(source: &Source, block: &Block) -> Outcome<[Option<f64>; 3]> {
+    let mut values = [None; 3];
+    for (place, coordinate) in values.iter_mut().zip(&block.axes) {
+        *place = match coordinate {
+            Some(Coordinate { count: Count::Modal, value, .. }) => Some(*value),
+            Some(_) => {
+                let message = format!("{} takes plain values", block.command(3));
+                return Err(source.block_error(Rule::Frame, message));
+            }
+            None => None,
+        };
+    }
+    Ok(values)
 }

@@ -1,33 +1,13 @@
 //! Holes, and what `MCALL` has after each block with a motion.
 
-use super::cycles::Drilling;
 use super::interpreter::Interpreter;
+use super::state::modal::{Drilling, Modal};
 use crate::event::Action;
 use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::statement::ProgramCall;
 use geom::Vec3;
 use program::{Cycle, Rule};
-
-/// What `MCALL` has after each block with a motion.
-pub(crate) enum Modal {
-    None,
-    /// A cycle.
-    Cycle(Drilling),
-    /// A program.
-    Program(ProgramCall),
-    /// A program; the block that moved has just been.
-    Due(ProgramCall),
-    /// A program that runs; its own blocks do not call it.
-    Running,
-}
-
-impl Modal {
-    /// Whether the next motion has something behind it.
-    pub(crate) fn waits(&self) -> bool {
-        matches!(self, Modal::Cycle(_) | Modal::Program(_))
-    }
-}
 
 impl Interpreter<'_, '_> {
     pub fn cycle_off(&mut self, source: &Source) -> Outcome {

@@ -1,17 +1,17 @@
 //! Where a block sends the axes.
 
-use super::corner::Element;
 use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::state::ToolAxis;
 use crate::event::{Action, Risk};
 use crate::kernel::Outcome;
 use crate::kernel::compensation::{Outer, Terms};
+use crate::kernel::corner::Element;
 use crate::kernel::modulo::{self, Modulo};
 use crate::kernel::source::Source;
+use crate::sinumerik::language::axis::AXIS_NAMES;
 use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
-use crate::sinumerik::language::system::AXIS_NAMES;
 use geom::{Vec3, direction};
 use program::{Axes, Compensation, MachineMove, Rule};
 

@@ -1,7 +1,7 @@
 //! Patterns of holes, which the modal cycle drills: `HOLES1`, `HOLES2`, `CYCLE801`.
 
 use super::interpreter::Interpreter;
-use super::modal::Modal;
+use super::state::modal::Modal;
 use crate::event::Action;
 use crate::kernel::Outcome;
 use crate::kernel::source::Source;

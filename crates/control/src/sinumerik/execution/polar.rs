@@ -2,7 +2,7 @@
 //! 12/2019, 2.9.3).
 
 use super::interpreter::Interpreter;
-use super::programmable::plain_values;
+use super::interpreter::plain_values;
 use crate::kernel::Outcome;
 use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Count};

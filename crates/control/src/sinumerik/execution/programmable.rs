@@ -1,10 +1,10 @@
 //! The programmable frame: `TRANS`, `ROT`, `SCALE`, `MIRROR`, their additive forms, `G58` and `G59`.
 
 use super::frames::{about, roll_pitch_yaw};
-use super::interpreter::Interpreter;
+use super::interpreter::{Interpreter, plain_values};
 use crate::kernel::Outcome;
 use crate::kernel::source::Source;
-use crate::sinumerik::language::block::{Block, Coordinate, Count};
+use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::commands::{Diameter, FrameCommand};
 use geom::{Frame, Vec3};
 use program::{Compensation, Rule};
@@ -102,20 +102,4 @@ impl Interpreter<'_, '_> {
         self.state.change_frames(|frames| frames.set_programmable(frame, fine));
         Ok(())
     }
-}
-
-/// X, Y and Z of a block, which count neither absolute nor incremental.
-pub(super) fn plain_values(source: &Source, block: &Block) -> Outcome<[Option<f64>; 3]> {
-    let mut values = [None; 3];
-    for (place, coordinate) in values.iter_mut().zip(&block.axes) {
-        *place = match coordinate {
-            Some(Coordinate { count: Count::Modal, value, .. }) => Some(*value),
-            Some(_) => {
-                let message = format!("{} takes plain values", block.command(3));
-                return Err(source.block_error(Rule::Frame, message));
-            }
-            None => None,
-        };
-    }
-    Ok(values)
 }

@@ -1,6 +1,6 @@
 //! Programs: the main one, those that travel in the same file, and those of the operator's folders.
 
-use super::outline::Outline;
+use super::outline::{self, Outline};
 use crate::kernel::Outcome;
 use crate::kernel::flow::BlockLocation;
 use crate::kernel::folders::Folders;
@@ -36,11 +36,7 @@ impl Program<'_> {
     /// The block that starts at byte `at` on that line, and where the next one starts.
     #[inline]
     pub fn block(&self, at: usize, line: u32) -> Option<(Source<'_>, usize)> {
-        let rest = self.text.get(at..).filter(|rest| !rest.is_empty())?;
-        let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
-        let piece = rest.get(..length).unwrap_or(rest);
-        let piece = piece.strip_suffix(b"\r").unwrap_or(piece);
-        Some((Source { line, text: piece }, at + length + 1))
+        outline::block(&self.text, at, line)
     }
 
     /// Labels and control structures, found when the first jump asks for them.
@@ -51,7 +47,7 @@ impl Program<'_> {
         if let Some(outline) = self.outline.get() {
             return Ok(outline);
         }
-        let outline = Outline::of(self)?;
+        let outline = Outline::of(&self.text, self.start())?;
         Ok(self.outline.get_or_init(|| outline))
     }
 

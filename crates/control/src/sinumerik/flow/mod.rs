@@ -2,9 +2,10 @@
 //!
 //! Programs come from a [`library`]. Block follows block ([`mod@run`]) unless a statement leads
 //! elsewhere: to a label or through a control structure, which the program's [`outline`] knows, or over
-//! a call into another program level ([`levels`]).
+//! a call ([`calls`]) into another program [`level`].
 
-mod levels;
+mod calls;
+mod level;
 mod library;
 pub(super) mod outline;
 pub(super) mod run;

@@ -1,6 +1,5 @@
 //! Where jumps go: the labels and block numbers of a program, and its control structures.
 
-use super::library::Program;
 use crate::kernel::Outcome;
 use crate::kernel::flow::{BlockLocation, Labels, Structures};
 use crate::kernel::source::Source;
@@ -22,15 +21,25 @@ pub(crate) struct Outline {
     pub structures: Structures<Word>,
 }
 
+/// The block of `text` that starts at byte `at` on that line, and where the next one starts.
+#[inline]
+pub fn block(text: &[u8], at: usize, line: u32) -> Option<(Source<'_>, usize)> {
+    let rest = text.get(at..).filter(|rest| !rest.is_empty())?;
+    let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+    let piece = rest.get(..length).unwrap_or(rest);
+    let piece = piece.strip_suffix(b"\r").unwrap_or(piece);
+    Some((Source { line, text: piece }, at + length + 1))
+}
+
 impl Outline {
-    /// Reads the beginning of every block.
+    /// Reads the beginning of every block of `text`, whose first one is at `start`.
     ///
     /// # Errors
     /// Control structures that do not fit together.
-    pub fn of(program: &Program) -> Outcome<Outline> {
+    pub fn of(text: &[u8], start: BlockLocation) -> Outcome<Outline> {
         let mut outline = Outline::default();
-        let mut place = program.start();
-        while let Some((source, next)) = program.block(place.at, place.line) {
+        let mut place = start;
+        while let Some((source, next)) = block(text, place.at, place.line) {
             let after = BlockLocation { at: next, line: place.line.saturating_add(1) };
             outline.add(&source, place, after)?;
             place = after;
@@ -39,7 +48,7 @@ impl Outline {
             return Ok(outline);
         };
         let mark = &outline.structures[index];
-        let text = program.block(mark.place.at, mark.place.line).map_or(&[][..], |b| b.0.text);
+        let text = block(text, mark.place.at, mark.place.line).map_or(&[][..], |b| b.0.text);
         let source = Source { line: mark.place.line, text };
         let message = format!("{} has no end (alarm 12640)", mark.word.name());
         Err(source.block_error(Rule::ControlStructure, message))

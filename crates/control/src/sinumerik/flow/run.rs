@@ -1,6 +1,6 @@
 //! The course of a program: from block to block, over jumps, loops and calls.
 
-use super::levels::{Caller, LEVELS};
+use super::level::{LEVELS, Level, Repetition, check_length};
 use super::library::{Library, Program};
 use crate::Settings;
 use crate::event::{Action, Risk};
@@ -9,46 +9,18 @@ use crate::kernel::Outcome;
 use crate::kernel::flow::{BlockLocation, Calls, Labels};
 use crate::kernel::source::Source;
 use crate::sinumerik::execution::interpreter::Interpreter;
-use crate::sinumerik::execution::modal::Modal;
+use crate::sinumerik::execution::state::modal::Modal;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::expression::Evaluator;
-use crate::sinumerik::language::scan::{Name, Scanner};
+use crate::sinumerik::language::scan::Name;
 use crate::sinumerik::language::statement::{Count, Jump, Search, Section, Statement, Target};
 use crate::sinumerik::language::structure::Word;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
+use crate::sinumerik::models::Facts;
 use program::{Diagnostic, Rule};
 use std::hash::Hash;
 use std::rc::Rc;
-
-/// Most characters of a block, its end included (Programming Manual 06/2019, 2.2.2.2).
-const LONGEST_BLOCK: usize = 512;
-
-/// A program that runs.
-pub(crate) struct Level<'a> {
-    pub program: Rc<Program<'a>>,
-    /// The block that comes next.
-    pub next: BlockLocation,
-    /// Whether a block has done something, behind which no variable is defined any more.
-    pub working: bool,
-    /// The sections that are being repeated, the inmost last.
-    pub sections: Vec<Repetition>,
-    /// The last values of the `FOR` loops that run, each with the byte of its first block.
-    pub counts: Vec<(usize, f64)>,
-    /// What the caller gets back; none for the main program.
-    pub caller: Option<Caller>,
-}
-
-/// A section that is being repeated.
-pub(crate) struct Repetition {
-    from: BlockLocation,
-    /// The byte behind its last block.
-    end: usize,
-    /// How often it still starts again.
-    left: u32,
-    /// Where it goes on afterwards.
-    back: BlockLocation,
-}
 
 /// A run of a main program.
 pub(crate) struct Run<'a, 's> {
@@ -58,21 +30,17 @@ pub(crate) struct Run<'a, 's> {
     pub callers: Calls<Level<'a>>,
 }
 
-impl<'a> Level<'a> {
-    /// At the start of a program.
-    pub fn new(program: Rc<Program<'a>>, caller: Option<Caller>) -> Level<'a> {
-        let next = program.start();
-        let (sections, counts) = (Vec::new(), Vec::new());
-        Level { program, next, working: false, sections, counts, caller }
-    }
-}
-
 impl<'a, 's> Run<'a, 's> {
     /// Runs the main program of `text`.
-    pub fn main(settings: &'a Settings, text: &'a [u8], channel: &'a mut Channel<'s>) -> Outcome {
+    pub fn main(
+        facts: &'static Facts,
+        settings: &'a Settings,
+        text: &'a [u8],
+        channel: &'a mut Channel<'s>,
+    ) -> Outcome {
         let library = Library::new(&settings.setup.folders, text)?;
         let Some(program) = library.main() else { return Ok(()) };
-        let interpreter = Interpreter::new(settings, channel);
+        let interpreter = Interpreter::new(facts, settings, channel);
         let level = Level::new(program, None);
         let mut run = Run { library, interpreter, level, callers: Calls::new(LEVELS - 1) };
         let mut block = Block::empty();
@@ -415,27 +383,4 @@ impl<'a, 's> Run<'a, 's> {
 /// Whether a loop that counts to `end` is run with `value`.
 fn reaches(value: f64, end: f64) -> bool {
     value <= end + end.abs() * 1e-12
-}
-
-fn check_length(source: &Source) -> Outcome {
-    if source.text.len() < LONGEST_BLOCK {
-        return Ok(());
-    }
-    let message = format!("a block has at most {LONGEST_BLOCK} characters with its end");
-    Err(source.error(Rule::BlockLength, LONGEST_BLOCK - 1..source.text.len(), message))
-}
-
-/// Only comments follow the end of a program without jumps.
-pub(super) fn check_rest(program: &Program, mut place: BlockLocation) -> Outcome<bool> {
-    while let Some((source, next)) = program.block(place.at, place.line) {
-        check_length(&source)?;
-        // What closes a part of the program for the editor may follow.
-        let mut scanner = Scanner::new(source);
-        if !scanner.take_word("GROUP_END") && !scanner.rests() {
-            let message = "there are blocks behind the end of the program";
-            return Err(source.block_error(Rule::ProgramEnd, message));
-        }
-        place = BlockLocation { at: next, line: place.line.saturating_add(1) };
-    }
-    Ok(true)
 }

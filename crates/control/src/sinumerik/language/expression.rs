@@ -7,6 +7,7 @@
 //! A comparison ranks below `AND`: `R1==1 AND R2==2` is `R1==(1 AND R2)==2`. Whoever writes that means
 //! something else; where the two readings differ the block is refused.
 
+use super::axis;
 use super::functions::{self, MOST_ARGUMENTS};
 use super::operators::{Operator, bits};
 use super::scan::Scanner;
@@ -256,7 +257,7 @@ impl Expression<'_, '_, '_, '_> {
             "TRUE" => return Ok(Value::Bool(true)),
             "FALSE" => return Ok(Value::Bool(false)),
             name => {
-                if let Some(axis) = system::axis(name) {
+                if let Some(axis) = axis::axis(name) {
                     return Ok(Value::Axis(axis));
                 }
             }

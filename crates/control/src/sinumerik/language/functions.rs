@@ -1,7 +1,7 @@
 //! The functions of expressions (Job Planning 12/2019, 3.1.2 and 3.1.4). Angles are degrees; the first
 //! character of a text has index 0.
 
-use super::system;
+use super::axis;
 use super::value::Value;
 
 /// Most arguments of a function.
@@ -55,12 +55,12 @@ pub(super) fn named(name: &str) -> Option<Function> {
         "SUBSTR" => substring,
         "AXNAME" => |a| {
             let name = text(one(a)?)?;
-            system::axis(&name.to_ascii_uppercase())
+            axis::axis(&name.to_ascii_uppercase())
                 .map(Value::Axis)
                 .ok_or_else(|| format!("there is no axis {name}"))
         },
         "AXSTRING" => |a| match one(a)? {
-            Value::Axis(axis) => Ok(Value::text(system::axis_name(*axis))),
+            Value::Axis(axis) => Ok(Value::text(axis::axis_name(*axis))),
             other => Err(format!("{} is no axis", other.name())),
         },
         _ => return None,

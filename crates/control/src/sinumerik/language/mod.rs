@@ -6,6 +6,7 @@
 //! `=` stands an [`expression`] of [`operators`] and [`functions`] over [`value`]s and what is [`named`]:
 //! [`variables`] and what the control says of itself ([`system`]).
 
+pub(super) mod axis;
 pub(super) mod block;
 pub(super) mod call;
 pub(super) mod commands;

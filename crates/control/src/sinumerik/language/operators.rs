@@ -1,7 +1,7 @@
 //! The operators, with the rank of each.
 
+use super::axis;
 use super::scan::Scanner;
-use super::system;
 use super::value::{LONGEST_TEXT, Value};
 
 /// How far apart two reals may be, as a part of the larger, and still be equal (Job Planning 12/2019,
@@ -182,7 +182,7 @@ fn written(value: &Value) -> String {
         Value::Bool(value) => u8::from(*value).to_string(),
         Value::Char(value) => char::from(*value).to_string(),
         Value::Text(text) => text.to_string(),
-        Value::Axis(axis) => system::axis_name(*axis).to_owned(),
+        Value::Axis(axis) => axis::axis_name(*axis).to_owned(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::scan::Name;
 use super::value::{Kind, Value};
+use crate::sinumerik::models::Facts;
 use program::Feed;
 use std::collections::HashMap;
 
@@ -14,8 +15,8 @@ pub(crate) trait Readable {
     /// The R parameters.
     fn parameters(&self) -> &Parameters;
 
-    /// Whether the control is an 828D.
-    fn is_828d(&self) -> bool;
+    /// What the model of the control reads otherwise than the others.
+    fn facts(&self) -> &'static Facts;
 
     /// Whether lengths are programmed in mm and as radii.
     fn counts_plainly(&self) -> bool;

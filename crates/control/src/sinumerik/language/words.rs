@@ -347,13 +347,13 @@ impl Reader<'_, '_> {
     }
 
     fn numbered_command(&mut self, start: usize, number: u32) -> Outcome {
-        // Fundamentals 12/2019, "Settable work offset": on an 828D G58 and G59 are the fifth and the sixth.
-        let is_828d = self.state.is_828d();
-        if is_828d && matches!(number, 505 | 506) {
-            let message = format!("there is no G{number} on an 828D: write G{}", number - 447);
+        let facts = self.state.facts();
+        let elsewhere = facts.offsets_elsewhere.iter().find(|(offset, _)| *offset == number);
+        if let Some((_, own)) = elsewhere {
+            let message = format!("there is no G{number} on an {}: write G{own}", facts.name);
             return Err(self.scanner.error_since(start, Rule::UnknownWord, message));
         }
-        if commands::settable_offset(number) || is_828d && matches!(number, 58 | 59) {
+        if commands::settable_offset(number) || facts.own_offsets.contains(&number) {
             let repeated = self.block.further_offset.replace(number).is_some();
             return self.once(start, repeated || self.block.groups[8] != 0);
         }

@@ -1,43 +1,18 @@
 //! Program levels: a call, its parameters, and the way back.
 
+use super::level::{Caller, LEVELS, Level, Reference, check_rest};
 use super::library::Program;
-use super::run::{Level, Run, check_rest};
+use super::run::Run;
 use crate::kernel::Outcome;
 use crate::kernel::flow::BlockLocation;
 use crate::kernel::source::Source;
-use crate::sinumerik::execution::modal::Modal;
-use crate::sinumerik::execution::state::Modes;
+use crate::sinumerik::execution::state::modal::Modal;
 use crate::sinumerik::language::definition::Signature;
 use crate::sinumerik::language::expression::Evaluator;
 use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::statement::ProgramCall;
 use crate::sinumerik::language::variables::{Locals, Variable};
 use program::Rule;
-
-/// Most program levels, that of the main program included (Programming Manual 12/2019, 3.2.1.3).
-pub(super) const LEVELS: usize = 16;
-
-/// What a caller gets back.
-pub(crate) struct Caller {
-    locals: Locals,
-    /// Variables that were given themselves (`VAR`).
-    references: Vec<Reference>,
-    /// Modal commands (`SAVE`).
-    modes: Option<Box<Modes>>,
-    /// The line that events of the caller carry.
-    line: Option<u32>,
-    /// What `MCALL` calls after the next motion, where it has called this program.
-    modal: Option<ProgramCall>,
-    /// The values of the parameters, and how often the program runs again with them.
-    again: (u32, Vec<(Name, Variable)>),
-}
-
-/// A variable of the caller that is a parameter.
-pub(super) struct Reference {
-    parameter: usize,
-    variable: usize,
-    element: Option<usize>,
-}
 
 impl Run<'_, '_> {
     /// Goes into a called program.

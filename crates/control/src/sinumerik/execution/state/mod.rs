@@ -1,23 +1,25 @@
 //! What the control remembers from block to block.
 
+pub(in crate::sinumerik) mod modal;
+mod offsets;
+mod smoothed;
+
 use super::frames::Frames;
-use super::modal::Modal;
-use super::offsets::WorkOffsets;
-use super::smoothing::Smoothed;
+use crate::Settings;
 use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, GROUPS, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, Locals, Parameters, Readable};
-use crate::{Dialect, Settings};
+use crate::sinumerik::models::Facts;
 use geom::{Frame, Vec3};
+use modal::Modal;
+use offsets::{WORK_OFFSET_AT_RESET, WorkOffsets};
 use program::{Compensation, Coolant, Feed, Spindle, Tool};
+use smoothed::Smoothed;
 
 /// Coordinates that differ by less are one, mm: rotations round.
 const SAME_PLACE: Vec3 = Vec3::splat(1e-9);
-
-/// `G500`: none, in the reset state that the maker delivers.
-pub const WORK_OFFSET_AT_RESET: u32 = 500;
 
 /// The place of a settable offset as the neutral program counts them: 53 for none (`G500`), 54 to 57,
 /// then `G505` (on an 828D `G58`, `G59`) and so on.
@@ -162,8 +164,8 @@ pub(crate) struct State {
     /// The operator's parameter that the positions of A, B, C are written with, and the line that
     /// wrote one first.
     pub offsets: [Option<(Option<usize>, u32)>; 3],
-    /// The control is an 828D, whose `G58` and `G59` are settable work offsets.
-    pub is_828d: bool,
+    /// The model of the control.
+    pub facts: &'static Facts,
     /// Whether the program has ended.
     pub ended: bool,
 }
@@ -197,8 +199,8 @@ impl Readable for State {
         &self.parameters
     }
 
-    fn is_828d(&self) -> bool {
-        self.is_828d
+    fn facts(&self) -> &'static Facts {
+        self.facts
     }
 
     fn counts_plainly(&self) -> bool {
@@ -251,7 +253,7 @@ impl Readable for State {
 impl State {
     /// The reset state that the maker delivers (Programming Manual 06/2019, 4.3; `G1 G17 G40 G500 G71
     /// G90 G94 ORIWKS`); where the axes stand is not known.
-    pub fn new(settings: &Settings) -> State {
+    pub fn new(facts: &'static Facts, settings: &Settings) -> State {
         State {
             motion: Motion::Line,
             plane_normal: 2,
@@ -303,7 +305,7 @@ impl State {
             moved: false,
             machine_known: settings.setup.start.is_some(),
             offsets: [None; 3],
-            is_828d: settings.dialect == Dialect::Sinumerik828d,
+            facts,
             ended: false,
         }
     }
