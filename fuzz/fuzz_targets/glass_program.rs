@@ -29,7 +29,7 @@ fuzz_target!(|data: &[u8]| {
     let task = Task {
         cloud: &[[10_000, 10_000, 15_000]],
         machine: &machine,
-        lens: &lens,
+        lens,
         index: 1.5195,
         block: [20.0, 20.0, 30.0],
         blocks: 1,

@@ -34,7 +34,14 @@ pub fn bounds(points: &[Point]) -> Option<(Point, Point)> {
     points.par_iter().map(|&point| (point, point)).reduce_with(join)
 }
 
-/// Points in cubes of equal size, sorted so that the points of a cube follow one another.
+/// The axis along which points reach farthest.
+pub fn longest(points: &[Point]) -> usize {
+    let (low, high) = bounds(points).unwrap_or_default();
+    let length = |axis: usize| i64::from(high[axis]) - i64::from(low[axis]);
+    (0..3).max_by_key(|axis| length(*axis)).unwrap_or(2)
+}
+
+/// Points in cubes of equal size, sorted so that the points of a row of cubes along X follow one another.
 #[derive(Debug)]
 pub struct Grid {
     /// Side of a cube, µm.
@@ -43,10 +50,12 @@ pub struct Grid {
     low: Point,
     /// Cubes along X and Y.
     counts: [i64; 2],
-    /// The cubes that hold points, in order, and where their points begin in `order`.
-    cubes: Vec<(i64, u32)>,
-    /// Numbers of points.
+    /// The rows that hold points, in order, and where their points begin in `order`.
+    rows: Vec<(i64, u32)>,
+    /// Numbers of points, row by row and from low to high X.
     order: Vec<u32>,
+    /// The number along X of the cube of each of them.
+    along: Vec<u32>,
 }
 
 impl Grid {
@@ -55,17 +64,27 @@ impl Grid {
         let (low, high) = bounds(points).unwrap_or_default();
         let side = side.max(1);
         let count = |axis: usize| (i64::from(high[axis]) - i64::from(low[axis])) / side + 1;
-        let mut grid =
-            Grid { side, low, counts: [count(0), count(1)], cubes: vec![], order: vec![] };
-        let number = |(i, &point)| (grid.key(grid.cell(point)), i as u32);
-        let mut keyed: Vec<(i64, u32)> = points.par_iter().enumerate().map(number).collect();
+        let mut grid = Grid {
+            side,
+            low,
+            counts: [count(0), count(1)],
+            rows: Vec::new(),
+            order: Vec::new(),
+            along: Vec::new(),
+        };
+        let number = |(i, &point): (usize, &Point)| {
+            let [x, y, z] = grid.cell(point);
+            (z * grid.counts[1] + y, x as u32, i as u32)
+        };
+        let mut keyed: Vec<(i64, u32, u32)> = points.par_iter().enumerate().map(number).collect();
         keyed.par_sort_unstable();
-        for (at, &(key, _)) in keyed.iter().enumerate() {
-            if grid.cubes.last().is_none_or(|(last, _)| *last != key) {
-                grid.cubes.push((key, at as u32));
+        for (at, &(row, _, _)) in keyed.iter().enumerate() {
+            if grid.rows.last().is_none_or(|(last, _)| *last != row) {
+                grid.rows.push((row, at as u32));
             }
         }
-        grid.order = keyed.into_iter().map(|(_, i)| i).collect();
+        grid.order = keyed.iter().map(|(_, _, i)| *i).collect();
+        grid.along = keyed.into_iter().map(|(_, x, _)| x).collect();
         grid
     }
 
@@ -74,21 +93,22 @@ impl Grid {
             .map(|axis| (i64::from(point[axis]) - i64::from(self.low[axis])).div_euclid(self.side))
     }
 
-    fn key(&self, cell: [i64; 3]) -> i64 {
-        (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
-    }
-
     /// The points in the cubes whose numbers along X go from `x` to `x + 2` in one row: these are neighbours in the order.
     fn row(&self, x: i64, y: i64, z: i64) -> &[u32] {
         let (from, to) = (x.max(0), (x + 2).min(self.counts[0] - 1));
         if from > to || !(0..self.counts[1]).contains(&y) || z < 0 {
             return &[];
         }
-        let start = |key: i64| {
-            let at = self.cubes.partition_point(|(cube, _)| *cube < key);
-            self.cubes.get(at).map_or(self.order.len(), |(_, start)| *start as usize)
+        let row = z * self.counts[1] + y;
+        let Ok(number) = self.rows.binary_search_by_key(&row, |(row, _)| *row) else {
+            return &[];
         };
-        &self.order[start(self.key([from, y, z]))..start(self.key([to, y, z]) + 1)]
+        let start = self.rows[number].1 as usize;
+        let end = self.rows.get(number + 1).map_or(self.order.len(), |(_, end)| *end as usize);
+        let along = &self.along[start..end];
+        let first = along.partition_point(|cube| i64::from(*cube) < from);
+        let beyond = along[first..].partition_point(|cube| i64::from(*cube) <= to);
+        &self.order[start + first..start + first + beyond]
     }
 
     /// Numbers of all points within one side of `point` along each axis, and some farther ones.
@@ -96,6 +116,67 @@ impl Grid {
         let [x, y, z] = self.cell(point);
         let rows = (-1..=1).flat_map(move |dz| (-1..=1).map(move |dy| (y + dy, z + dz)));
         rows.flat_map(move |(y, z)| self.row(x - 1, y, z)).copied()
+    }
+}
+
+/// Points of a slab, at most.
+const SLAB: usize = 1 << 20;
+
+/// Points sorted along an axis, to be worked on slab by slab, so that only what belongs to a slab needs room.
+///
+/// **Border rule.** A slab is a part of the points in their order along the axis. Work on it sees, besides its own points, all points
+/// that lie before or behind it by the reach of the work or less; what is found of a point belongs to the slab of the point. So the
+/// result depends neither on where slabs begin nor on who works on which.
+#[derive(Debug)]
+pub struct Slabs {
+    /// Numbers of the points, from low to high; where they are level, in their order.
+    order: Vec<u32>,
+    /// The lowest place, µm, and how many points lie lower than each µm from there on.
+    low: i32,
+    below: Vec<u32>,
+}
+
+impl Slabs {
+    /// Of `count` points (fewer than 2³²); `at` says where each lies on the axis, µm within 2 m.
+    pub fn new(count: usize, at: impl Fn(usize) -> i32 + Sync) -> Slabs {
+        let range = (0..count).into_par_iter().map(|i| (at(i), at(i)));
+        let range = range.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (low, high) = range.unwrap_or_default();
+        let above = |i: usize| (i64::from(at(i)) - i64::from(low)) as usize;
+        // Points are counted µm by µm and then put where theirs begin.
+        let mut below = vec![0u32; (i64::from(high) - i64::from(low)) as usize + 2];
+        (0..count).for_each(|i| below[above(i) + 1] += 1);
+        for i in 1..below.len() {
+            below[i] += below[i - 1];
+        }
+        let mut next = below.clone();
+        let mut order = vec![0; count];
+        for i in 0..count {
+            let place = &mut next[above(i)];
+            order[*place as usize] = i as u32;
+            *place += 1;
+        }
+        Slabs { order, low, below }
+    }
+
+    /// The numbers of all points, from low to high.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// The numbers of all points, slab by slab.
+    pub fn each(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        self.order.chunks(SLAB)
+    }
+
+    /// The numbers of all points that lie from `low` to `high` (µm), both of which count.
+    pub fn within(&self, low: i64, high: i64) -> &[u32] {
+        let before = |place: i64| {
+            let at = (place - i64::from(self.low)).clamp(0, self.below.len() as i64 - 1);
+            self.below[at as usize] as usize
+        };
+        let (from, to) = (before(low), before(high.saturating_add(1)));
+        &self.order[from..to.max(from)]
     }
 }
 
@@ -122,29 +203,55 @@ pub struct Distances {
 /// Compares every pair of `points` with `spacing` (µm, more than 0): exact, in whole numbers. Pairs farther apart than the spacing
 /// are looked at up to twice of it, to name the nearest.
 pub fn distances(points: &[Point], spacing: i64) -> Distances {
-    let grid = Grid::new(points, 2 * spacing.max(1));
-    let least = spacing * spacing;
-    let of = |(i, &here): (usize, &Point)| {
-        let (mut nearest, mut close) = ((i64::MAX, 0, 0), 0u64);
-        for j in grid.near(here) {
-            if j as usize != i {
-                let square = squared(here, points[j as usize]);
-                let (a, b) = ((i as u32).min(j), (i as u32).max(j));
-                nearest = nearest.min((square, a, b));
-                close += u64::from(square < least);
-            }
-        }
-        (nearest, close, u64::from(close > 0))
-    };
-    let join = |a: ((i64, u32, u32), u64, u64), b: ((i64, u32, u32), u64, u64)| {
-        (a.0.min(b.0), a.1 + b.1, a.2 + b.2)
-    };
+    let spacing = spacing.max(1);
+    let near = distances_within(points, spacing, spacing + spacing / 4);
+    match near.nearest {
+        Some(_) => near,
+        None => distances_within(points, spacing, 2 * spacing),
+    }
+}
+
+/// As [`distances`]; pairs farther apart than `reach` (µm, more than the spacing) are not looked at.
+fn distances_within(points: &[Point], spacing: i64, reach: i64) -> Distances {
+    let (most, least) = (reach * reach, spacing * spacing);
+    let axis = longest(points);
+    let slabs = Slabs::new(points.len(), |i| points[i][axis]);
+    type Found = ((i64, u32, u32), u64, u64);
+    let join = |a: Found, b: Found| (a.0.min(b.0), a.1 + b.1, a.2 + b.2);
     let none = || ((i64::MAX, 0, 0), 0, 0);
-    let (nearest, close, crowded) = points.par_iter().enumerate().map(of).reduce(none, join);
+    let at = |i: Option<&u32>| i.map_or(0, |&i| i64::from(points[i as usize][axis]));
+    let of_slab = |slab: &[u32]| {
+        let (low, high) = (at(slab.first()), at(slab.last()));
+        let seen = in_order(slabs.within(low - reach, high + reach));
+        let own: Vec<Point> = seen.iter().map(|&i| points[i as usize]).collect();
+        let grid = Grid::new(&own, reach);
+        let of = |&i: &u32| {
+            let here = points[i as usize];
+            let (mut nearest, mut close) = ((i64::MAX, 0, 0), 0u64);
+            for near in grid.near(here) {
+                let square = squared(here, own[near as usize]);
+                let j = seen[near as usize];
+                if square <= most && j != i {
+                    nearest = nearest.min((square, i.min(j), i.max(j)));
+                    close += u64::from(square < least);
+                }
+            }
+            (nearest, close, u64::from(close > 0))
+        };
+        in_order(slab).par_iter().map(of).reduce(none, join)
+    };
+    let (nearest, close, crowded) = slabs.each().map(of_slab).fold(none(), join);
     let pair = |(square, a, b): (i64, u32, u32)| Pair {
         points: [a, b],
         distance: (square as f64).sqrt() * 1e-3,
     };
     let nearest = (nearest.0 < i64::MAX).then(|| pair(nearest));
     Distances { nearest, too_close: close / 2, crowded }
+}
+
+/// The points of a slab in their own order: those of a program follow one another in space, so that work on them stays where it is.
+pub(crate) fn in_order(slab: &[u32]) -> Vec<u32> {
+    let mut own = slab.to_vec();
+    own.sort_unstable();
+    own
 }

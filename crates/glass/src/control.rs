@@ -6,7 +6,7 @@ use crate::machine::{Coordinate, Format, Machine};
 use program::{Diagnostic, Rule};
 
 /// A pulse of the laser.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pulse {
     /// The line of the program, from 1; of a binary program the number of the pulse.
     pub line: u32,
@@ -14,6 +14,53 @@ pub struct Pulse {
     pub at: [f64; 3],
     /// Ticks since the pulse before, where both are fired in one motion at constant speed; else 0.
     pub passed: u32,
+}
+
+/// The pulses of a program, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pulses {
+    /// Pulses with their lines.
+    Listed(Vec<Pulse>),
+    /// Pulses of a binary program, whole µm.
+    Whole(Vec<[i32; 3]>),
+}
+
+impl Default for Pulses {
+    fn default() -> Pulses {
+        Pulses::Listed(Vec::new())
+    }
+}
+
+impl Pulses {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Pulses::Listed(pulses) => pulses.len(),
+            Pulses::Whole(places) => places.len(),
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The pulse of this number, from 0.
+    pub fn get(&self, number: usize) -> Option<Pulse> {
+        match self {
+            Pulses::Listed(pulses) => pulses.get(number).copied(),
+            Pulses::Whole(places) => {
+                let line = u32::try_from(number + 1).unwrap_or(u32::MAX);
+                let at = places.get(number)?.map(|value| f64::from(value) / 1e3);
+                Some(Pulse { line, at, passed: 0 })
+            }
+        }
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = Pulse> + Clone {
+        (0..self.len()).filter_map(|number| self.get(number))
+    }
 }
 
 /// A motion at constant speed in which pulses are fired.
@@ -50,7 +97,7 @@ pub struct Run {
     /// Its motions at constant speed, in their order.
     pub motions: Vec<Motion>,
     /// Its pulses, in their order.
-    pub pulses: Vec<Pulse>,
+    pub pulses: Pulses,
     /// Where else the axes stop, in their order.
     pub stops: Vec<Stop>,
 }
@@ -106,14 +153,10 @@ fn binary(bytes: &[u8]) -> Result<Run, String> {
     if crc32fast::hash(own).to_le_bytes() != *sum {
         return Err(String::from("the sum of the bytes is not the one that is stated"));
     }
-    let place = |at: usize| -> Option<[f64; 3]> {
-        let mm = |at: usize| whole(at).map(|value| f64::from(value) / 1e3);
-        Some([mm(at)?, mm(at + 4)?, mm(at + 8)?])
-    };
-    let pulse =
-        |(number, at): (u32, usize)| Some(Pulse { line: number, at: place(at)?, passed: 0 });
-    let pulses = (1..=u32::MAX).zip((HEAD..own.len()).step_by(12)).filter_map(pulse).collect();
-    Ok(Run { block: place(8), pulses, ..Run::default() })
+    let pulse = |at| Some([whole(at)?, whole(at + 4)?, whole(at + 8)?]);
+    let pulses = (HEAD..own.len()).step_by(12).filter_map(pulse).collect();
+    let block = pulse(8).map(|sides| sides.map(|side| f64::from(side) / 1e3));
+    Ok(Run { block, pulses: Pulses::Whole(pulses), ..Run::default() })
 }
 
 /// A line, from 1 (0 of a binary program), and what is wrong with it.
@@ -213,6 +256,7 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
     let late = machine.late();
     let mut moving: Option<Moving> = None;
     let mut run = Run::default();
+    let mut pulses = Vec::new();
     let mut promised: Option<u64> = None;
     let mut ended = false;
     let mut last = 0;
@@ -270,7 +314,7 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
                     fired = [0, 1, 2].map(|axis| there[axis] + moving.speed[axis] * late);
                     run.motions.iter_mut().last().into_iter().for_each(|motion| motion.count += 1);
                 }
-                run.pulses.push(Pulse { line: number, at: fired, passed });
+                pulses.push(Pulse { line: number, at: fired, passed });
             }
             (Some("FIELD"), Some(_)) if machine.stage.is_some() => {
                 let mut center = [0.0; 2];
@@ -281,7 +325,7 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
                     };
                     *value = number;
                 }
-                let first = u32::try_from(run.pulses.len()).unwrap_or(u32::MAX);
+                let first = u32::try_from(pulses.len()).unwrap_or(u32::MAX);
                 if run.fields.last().is_some_and(|(before, _, _)| *before == first) {
                     return wrong("there is no pulse in the field before");
                 }
@@ -296,7 +340,7 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
                 if steps.iter().all(|speed| speed.abs() < 1e-3) {
                     return wrong("RUN needs a speed of at least one axis");
                 }
-                let first = u32::try_from(run.pulses.len()).unwrap_or(u32::MAX);
+                let first = u32::try_from(pulses.len()).unwrap_or(u32::MAX);
                 run.motions.push(Motion { first, count: 0, speed });
                 moving = Some(Moving { speed, from: None });
             }
@@ -310,10 +354,10 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
                 return wrong("REST is missing before END");
             }
             (Some("END"), Some(count)) => {
-                if run.pulses.len() as u64 != count {
+                if pulses.len() as u64 != count {
                     return Err((
                         at,
-                        format!("{} pulses where BEGIN states {count}", run.pulses.len()),
+                        format!("{} pulses where BEGIN states {count}", pulses.len()),
                     ));
                 }
                 ended = true;
@@ -329,6 +373,7 @@ fn numbered(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
             return wrong("the command has a word too many");
         }
     }
+    run.pulses = Pulses::Listed(pulses);
     if ended { Ok(run) } else { Err((last, String::from("the program has no END"))) }
 }
 
@@ -344,7 +389,7 @@ fn points(text: &[u8]) -> Result<Run, Wrong> {
         };
         pulses.push(Pulse { line: u32::try_from(at).unwrap_or(u32::MAX), at: place, passed: 0 });
     }
-    Ok(Run { pulses, ..Run::default() })
+    Ok(Run { pulses: Pulses::Listed(pulses), ..Run::default() })
 }
 
 /// The G-code of LinuxCNC and GRBL, as far as an engraver needs it: G21, G90, G0 with X, Y and Z, the word that fires, and M2 or
@@ -359,6 +404,7 @@ struct Gcode<'f> {
     /// The line of a motion after which the laser has not fired.
     open: Option<u32>,
     run: Run,
+    pulses: Vec<Pulse>,
 }
 
 /// Whether a line is a comment and nothing more: what stands between two comments is run.
@@ -371,7 +417,7 @@ impl Gcode<'_> {
     /// Notes the place of a motion after which the laser did not fire.
     fn pass(&mut self) {
         if let Some(line) = self.open.take() {
-            let pulses = u32::try_from(self.run.pulses.len()).unwrap_or(u32::MAX);
+            let pulses = u32::try_from(self.pulses.len()).unwrap_or(u32::MAX);
             self.run.stops.push(Stop { line, at: self.at, pulses });
         }
     }
@@ -388,7 +434,7 @@ impl Gcode<'_> {
                 return Err(String::from("a pulse where not every axis has been sent to a place"));
             };
             self.open = None;
-            self.run.pulses.push(Pulse { line: number, at: [x, y, z], passed: 0 });
+            self.pulses.push(Pulse { line: number, at: [x, y, z], passed: 0 });
             return Ok(());
         }
         if ["M2", "M30"].contains(&line) {
@@ -435,6 +481,7 @@ fn gcode(text: &[u8], fire: &str) -> Result<Run, Wrong> {
         at: [None; 3],
         open: None,
         run: Run::default(),
+        pulses: Vec::new(),
     };
     let mut last = 0;
     for (number, line) in lines(text)? {
@@ -443,7 +490,7 @@ fn gcode(text: &[u8], fire: &str) -> Result<Run, Wrong> {
         machine.line(own, line.trim()).map_err(|message| (number, message))?;
     }
     match machine.ended {
-        true => Ok(machine.run),
+        true => Ok(Run { pulses: Pulses::Listed(machine.pulses), ..machine.run }),
         false => Err((last, String::from("the program has no end (M2)"))),
     }
 }

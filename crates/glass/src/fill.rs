@@ -63,24 +63,44 @@ pub struct Left {
     pub first_column: Option<[f64; 3]>,
 }
 
-/// The points of `mesh` (mm), and what was left out. They may be too close to each other, but for those of [`Fill::Surface`].
-pub fn points(mesh: &Mesh, filling: &Filling, apart: Apart, seed: u64) -> (Vec<Point>, Left) {
+/// Points that a body becomes.
+#[derive(Clone, Debug, Default)]
+pub struct Points {
+    /// Points of the surface that are a spacing apart.
+    pub sampled: Vec<Point>,
+    /// Others. They may be too close to each other, but for those of a filling that [`Filling::keeps`] the distance.
+    pub others: Vec<Point>,
+    /// What was left out.
+    pub left: Left,
+}
+
+/// The points of `mesh` (mm).
+pub fn points(mesh: &Mesh, filling: &Filling, apart: Apart, seed: u64) -> Points {
     let step = filling.step.unwrap_or(apart.rounded());
-    match filling.fill {
-        Fill::Surface => (sample::surface(mesh, apart, seed), Left::default()),
-        Fill::Solid => {
-            let mut points = sample::surface(mesh, apart, seed);
-            let (within, left) = solid(mesh, step, seed);
-            points.extend(within);
-            (points, left)
-        }
+    let sampled = match filling.fill {
+        Fill::Surface | Fill::Solid => sample::surface(mesh, apart, seed),
+        Fill::Sections(_) | Fill::Triangles(_) | Fill::Rays => Vec::new(),
+    };
+    let (others, left) = match filling.fill {
+        Fill::Surface => Default::default(),
+        Fill::Solid => solid(mesh, step, seed),
         Fill::Sections(how) => sections(mesh, &how, step, filling.direction),
         Fill::Triangles(full) => triangles(mesh, step, full),
         Fill::Rays => rays(mesh, step, filling.direction),
-    }
+    };
+    Points { sampled, others, left }
 }
 
 impl Filling {
+    /// Whether the points that are not sampled are as far from each other as `apart` says.
+    pub fn keeps(&self, apart: Apart) -> bool {
+        match self.fill {
+            Fill::Surface => true,
+            Fill::Solid => self.step.is_none_or(|step| step >= apart.rounded()),
+            Fill::Sections(_) | Fill::Triangles(_) | Fill::Rays => false,
+        }
+    }
+
     /// Some more points than `mesh` becomes, where points may not be nearer than `spacing` (µm) on its surface.
     pub fn expected(&self, mesh: &Mesh, spacing: u32) -> f64 {
         let spacing = f64::from(spacing) * 1e-3;

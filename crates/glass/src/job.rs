@@ -131,8 +131,8 @@ pub struct Made {
     pub text: Vec<u8>,
     /// The cloud in the frame of the block, µm; of a program that was made here in its order.
     pub cloud: Vec<Point>,
-    /// Where the pulses of the program lie in the glass, in their order, mm.
-    pub places: Vec<DVec3>,
+    /// What the virtual machine read.
+    pub run: control::Run,
     /// The report.
     pub report: Report,
     /// Whether it is proven.
@@ -172,6 +172,7 @@ pub fn make(
     }
     let text =
         post::write(&axes, &runs, &fields, machine, (settings.placing.block, settings.blocks));
+    drop(axes);
     job.judge(text, Some(planned))
 }
 
@@ -294,12 +295,13 @@ impl<'m> Job<'m> {
             let axes = pulses.map(at).collect();
             return Ordered { axes, runs: plan.runs, fields: Vec::new() };
         }
-        let flat: Vec<[i32; 2]> = match &on_table {
-            Some(blocks) => blocks.poses(&self.cloud),
-            None => self.cloud.iter().map(|[x, y, _]| [*x, *y]).collect(),
+        let axes: Vec<Point> = match &on_table {
+            Some(blocks) => {
+                let poses = blocks.poses(&self.cloud);
+                poses.iter().zip(&self.cloud).map(|(&[a, b], at)| [a, b, down(at)]).collect()
+            }
+            None => self.cloud.iter().map(|at| [at[0], at[1], down(at)]).collect(),
         };
-        let axes: Vec<Point> =
-            flat.iter().zip(&self.cloud).map(|(&[a, b], point)| [a, b, down(point)]).collect();
         let shadow = Shadow {
             slope: beam.slope_in_glass() * WIDER,
             radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
@@ -336,14 +338,17 @@ impl<'m> Job<'m> {
         };
         let own =
             |all: &[Point]| -> Vec<Point> { order.iter().map(|&i| all[i as usize]).collect() };
-        let first = own(&axes);
+        let own_axes = own(&axes);
+        drop(axes);
         self.cloud = own(cloud);
-        let mut axes = first.clone();
+        let mut axes = own_axes;
+        let count = axes.len();
         for (block, blocks) in
             on_table.iter().flat_map(|blocks| (1..blocks.count).map(move |i| (i, blocks)))
         {
             let turned = blocks.turned(block);
-            axes.extend(first.iter().map(|[a, b, z]| [*a, b + turned, *z]));
+            axes.extend_from_within(..count);
+            axes[count * block as usize..].iter_mut().for_each(|at| at[1] += turned);
         }
         let runs = if machine.program.runs {
             fly::runs(&axes, machine.coordinates().map(|of| of.steps()), machine.late(), &clock)
@@ -355,7 +360,7 @@ impl<'m> Job<'m> {
 
     /// Reads the program back and compares it with the cloud; `planned` are the ticks of the order that was written.
     fn judge(mut self, text: Vec<u8>, planned: Option<u64>) -> Result<Made, Vec<Diagnostic>> {
-        let Job { spacing, lens, beam, material, machine, settings, moved, .. } = self;
+        let Job { spacing, beam, material, machine, settings, moved, .. } = self;
         let (cloud, mut findings) = (&self.cloud, std::mem::take(&mut self.findings));
         let placing = &settings.placing;
         let cut = optics::cut(cloud, placing.block, beam.slope_in_glass());
@@ -366,16 +371,7 @@ impl<'m> Job<'m> {
                 format!("{} pairs of points are nearer than {spacing} mm", distances.too_close);
             return Err(error(Rule::Spacing, message, MISTAKE));
         }
-        let task = proof::Task {
-            cloud,
-            machine,
-            lens: &lens,
-            index: material.index,
-            block: placing.block,
-            blocks: settings.blocks,
-            spacing,
-            accept_shadowed: settings.accept_shadowed,
-        };
+        let task = task(cloud, material, machine, settings)?;
         let run = control::read(&text, machine)?;
         let (proof, found) = proof::prove(&run, &task)?;
         findings.extend(found);
@@ -412,9 +408,43 @@ impl<'m> Job<'m> {
             proof,
         };
         let proven = !findings.iter().any(Diagnostic::is_error);
-        let places = proof::places(&run, &task).into_iter().map(|(place, _)| place).collect();
-        Ok(Made { text, cloud: self.cloud, places, report, proven, findings })
+        Ok(Made { text, cloud: self.cloud, run, report, proven, findings })
     }
+}
+
+/// What the programs of a job are to make.
+fn task<'t>(
+    cloud: &'t [Point],
+    material: &Material,
+    machine: &'t Machine,
+    settings: &Settings,
+) -> Result<proof::Task<'t>, Vec<Diagnostic>> {
+    let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
+    Ok(proof::Task {
+        cloud,
+        machine,
+        lens,
+        index: material.index,
+        block: settings.placing.block,
+        blocks: settings.blocks,
+        spacing: settings.spacing.unwrap_or(lens.spacing),
+        accept_shadowed: settings.accept_shadowed,
+    })
+}
+
+/// Where the pulses of a program that is made lie in the glass, in their order, mm.
+///
+/// # Errors
+/// The machine has no such lens.
+pub fn places(
+    made: &Made,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+) -> Result<Vec<DVec3>, Vec<Diagnostic>> {
+    let task = task(&made.cloud, material, machine, settings)?;
+    let glass = proof::Glass::new(&made.run, &task);
+    Ok((0..glass.len()).map(|pulse| glass.place(pulse).0).collect())
 }
 
 /// The blocks on the table of a polar machine.
@@ -746,7 +776,9 @@ fn discretise(
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
         return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
-    let (mut cloud, left) = fill::points(mesh, filling, apart, *seed);
+    let fill::Points { sampled: mut cloud, mut others, left } =
+        fill::points(mesh, filling, apart, *seed);
+    let mut asked = cloud.len() + others.len();
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
     let Some(mut given) = given else {
         return Err(error(
@@ -764,9 +796,13 @@ fn discretise(
     for (number, (picture, sheet)) in parts.sheets().enumerate() {
         given.extend(picture.points(&sheet, apart, seed.wrapping_add(number as u64)));
     }
-    let asked = cloud.len() + given.len();
-    if !given.is_empty() || filling.fill != Fill::Surface {
-        cloud.extend(given);
+    asked += given.len();
+    if !cloud.is_empty() && filling.keeps(apart) {
+        others = weld::clear(&others, &cloud, apart);
+    }
+    cloud.append(&mut others);
+    if !given.is_empty() || !filling.keeps(apart) {
+        cloud.append(&mut given);
         cloud = weld::welded(&cloud, apart.spacing);
     }
     if cloud.is_empty() {

@@ -13,8 +13,9 @@ pub fn write(
     machine: &Machine,
     (block, blocks): ([f64; 3], u32),
 ) -> Vec<u8> {
-    let mut text = Text(Vec::with_capacity(axes.len() * 40 + 200));
     let sides = block.map(|side| (side * 1e3).round() as i32);
+    let is_text = machine.program.format != Format::Binary;
+    let mut text = Text(Vec::with_capacity(if is_text { axes.len() * 40 + 200 } else { 0 }));
     match (machine.program.format, &machine.program.fire) {
         (Format::Binary, _) => return binary(axes, sides),
         (Format::Points, _) => {

@@ -5,14 +5,17 @@
 //! the shadow is looked for in a tree of boxes: neither is shared with the planning. The cloud is that of the job; its minimum
 //! distance is proven by [`crate::cloud::distances`].
 
-use crate::cloud::{self, Grid, Pair, Point};
-use crate::control::{Motion, Pulse, Run};
+use crate::clock::Clock;
+use crate::cloud::{self, Grid, Pair, Point, Slabs, in_order};
+use crate::control::{Motion, Pulse, Pulses, Run};
 use crate::machine::{Lens, Machine, Table};
 use crate::polar::Pose;
 use glam::{DVec2, DVec3};
 use program::{Diagnostic, Findings, Rule};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::borrow::Cow;
+use std::collections::HashMap;
 
 /// What a program is to make.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +25,7 @@ pub struct Task<'t> {
     /// The machine.
     pub machine: &'t Machine,
     /// Its lens.
-    pub lens: &'t Lens,
+    pub lens: Lens,
     /// Index of refraction of the block.
     pub index: f64,
     /// Sides of each block, mm.
@@ -65,18 +68,76 @@ fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
     (in_air.tan() / in_glass.tan(), in_glass.tan())
 }
 
-/// Where the pulses of a run lie in the glass, in their order: mm in the frame of their block, and the number of that, from 0.
-pub fn places(run: &Run, task: &Task) -> Vec<(DVec3, u32)> {
-    let (deeper, _) = depth(task.lens, task.machine.laser.beam, task.index);
-    let in_glass = |pulse: &Pulse| {
-        let [a, b, z] = pulse.at;
-        let (flat, block) = match &task.machine.polar {
-            Some(table) => on_table(a, b, table, task),
+/// Where pulses lie in the glass.
+#[derive(Clone, Copy, Debug)]
+pub struct Glass<'t> {
+    pulses: &'t Pulses,
+    task: Task<'t>,
+    deeper: f64,
+}
+
+impl<'t> Glass<'t> {
+    /// The pulses of `run` in the blocks of `task`.
+    pub fn new(run: &'t Run, task: &Task<'t>) -> Glass<'t> {
+        let (deeper, _) = depth(&task.lens, task.machine.laser.beam, task.index);
+        Glass { pulses: &run.pulses, task: *task, deeper }
+    }
+
+    /// How many pulses there are.
+    pub fn len(&self) -> usize {
+        self.pulses.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.pulses.is_empty()
+    }
+
+    /// Where the pulse of this number lies: mm in the frame of its block, and the number of that, both from 0.
+    pub fn place(&self, number: usize) -> (DVec3, u32) {
+        let [a, b, z] = self.pulses.get(number).map_or([0.0; 3], |pulse| pulse.at);
+        let (flat, block) = match &self.task.machine.polar {
+            Some(table) => on_table(a, b, table, &self.task),
             None => (DVec2::new(a, b), 0),
         };
-        (flat.extend(task.block[2] + z * deeper), block)
-    };
-    run.pulses.iter().map(in_glass).collect()
+        (flat.extend(self.task.block[2] + z * self.deeper), block)
+    }
+}
+
+/// Where pulses lie in the glass, those of several blocks side by side.
+struct Places<'t> {
+    glass: Glass<'t>,
+    /// From block to block, mm.
+    apart: f64,
+    /// Along the longest axis of the cloud.
+    axis: usize,
+    slabs: Slabs,
+}
+
+impl<'t> Places<'t> {
+    fn new(glass: Glass<'t>, apart: f64, axis: usize) -> Places<'t> {
+        let none = Slabs::new(0, |_| 0);
+        let places = Places { glass, apart, axis, slabs: none };
+        let slabs = Slabs::new(glass.len(), |number| places.on_axis(places.at(number as u32)));
+        Places { slabs, ..places }
+    }
+
+    /// Where a pulse lies, mm.
+    fn at(&self, number: u32) -> DVec3 {
+        let (place, block) = self.glass.place(number as usize);
+        place + DVec3::X * (self.apart * f64::from(block))
+    }
+
+    /// Where a place lies along the axis, µm; beyond 2 m it is stray anyway.
+    fn on_axis(&self, place: DVec3) -> i32 {
+        (place[self.axis] * 1e3).round().clamp(-2e6, 2e6) as i32
+    }
+
+    /// From where to where a slab goes, µm.
+    fn ends(&self, slab: &[u32]) -> (i64, i64) {
+        let end = |i: Option<&u32>| i.map_or(0, |&i| i64::from(self.on_axis(self.at(i))));
+        (end(slab.first()), end(slab.last()))
+    }
 }
 
 /// Where the beam hits at these angles of arm and table (degrees): in the frame of the block under it, or of the first one where
@@ -94,15 +155,17 @@ fn on_table(arm: f64, turned: f64, table: &Table, task: &Task) -> (DVec2, u32) {
 }
 
 /// The clouds of all blocks side by side, farther apart than a block is wide, and that distance, µm.
-fn side_by_side(task: &Task) -> (Vec<Point>, i32) {
+fn side_by_side<'t>(task: &Task<'t>) -> (Cow<'t, [Point]>, i32) {
     let apart = ((task.block[0] + 50.0) * 1e3) as i32;
+    // Beams side by side make the same points in each block.
+    if task.machine.polar.is_none() || task.blocks == 1 {
+        return (Cow::Borrowed(task.cloud), apart);
+    }
     let moved = |block: u32| {
         let shift = apart * block as i32;
         task.cloud.iter().map(move |[x, y, z]| [x + shift, *y, *z])
     };
-    // Beams side by side make the same points in each block.
-    let made = if task.machine.polar.is_some() { task.blocks } else { 1 };
-    ((0..made).flat_map(moved).collect(), apart)
+    (Cow::Owned((0..task.blocks).flat_map(moved).collect()), apart)
 }
 
 /// Compares the pulses of `run` with `task`.
@@ -118,20 +181,19 @@ pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Dia
     let mut findings = Findings::default();
     findings_of_block(run, task, &mut findings);
     travels(run, task, &mut findings);
-    let (deeper, slope) = depth(task.lens, task.machine.laser.beam, task.index);
+    let (deeper, slope) = depth(&task.lens, task.machine.laser.beam, task.index);
     let (cloud, apart_by) = side_by_side(task);
+    let glass = Glass::new(run, task);
     let task = &Task { cloud: &cloud, ..*task };
-    let shift = |(place, block): (DVec3, u32)| {
-        place + DVec3::X * (f64::from(apart_by) * 1e-3 * f64::from(block))
-    };
-    let places: Vec<DVec3> = places(run, task).into_iter().map(shift).collect();
+    let places = Places::new(glass, f64::from(apart_by) * 1e-3, cloud::longest(task.cloud));
     let (order, across, along) = matched(pulses, &places, task, &mut findings);
     let (nearest, too_close) = distances(&places, task.spacing);
+    drop(places);
     let apart = apart(nearest, too_close, pulses, task.spacing, deeper);
     let shadowed = shadows(&order, task.cloud, slope, 500.0 * task.lens.crack[0]);
     let hidden = finding_of_shadows(&shadowed, &order, pulses, task);
     apart.into_iter().chain(hidden).for_each(|found| findings.push(found));
-    let ticks = steps(run, task.machine).into_par_iter().sum::<u64>();
+    let ticks = Steps::new(run, task.machine).sum();
     let proof = Proof {
         pulses: pulses.len() as u64,
         across,
@@ -175,7 +237,7 @@ fn findings_of_block(run: &Run, task: &Task, findings: &mut Findings) {
 fn finding_of_shadows(
     shadowed: &[(u32, u32)],
     order: &[u32],
-    pulses: &[Pulse],
+    pulses: &Pulses,
     task: &Task,
 ) -> Option<Diagnostic> {
     let &(below, above) = shadowed.iter().min()?;
@@ -189,7 +251,7 @@ fn finding_of_shadows(
         show(order[below as usize]),
         show(order[above as usize])
     );
-    let line = pulses[below as usize].line;
+    let line = line(pulses, below);
     Some(match task.accept_shadowed {
         true => Diagnostic::warning(Rule::Shadowed, message)
             .line(line)
@@ -202,98 +264,156 @@ fn finding_of_shadows(
 
 /// The ticks before each pulse of a run, 1 before the first: every motion from stop to stop takes whole ticks, and pulses in one
 /// motion are as many apart as it says.
-pub fn steps(run: &Run, machine: &Machine) -> Vec<u64> {
-    let clock = machine.clock();
-    let units = machine.coordinates().map(|of| of.steps());
-    let in_steps = |at: [f64; 3]| [0, 1, 2].map(|axis| at[axis] * units[axis]);
-    let step = |from: [f64; 3], to: [f64; 3]| {
-        let [from, to] = [from, to].map(|at| in_steps(at).map(|value| value.round() as i32));
-        u64::from(clock.step(from, to))
-    };
-    let straight = |pair: &[Pulse]| match pair[1].passed {
-        0 => step(pair[0].at, pair[1].at),
-        passed => u64::from(passed),
-    };
-    let mut ticks: Vec<u64> = run.pulses.iter().take(1).map(|_| 1).collect();
-    ticks.par_extend(run.pulses.par_windows(2).map(straight));
-    // Into a motion at constant speed the axes gain it, out of it they brake.
-    let late = machine.late();
-    let mut ends: Vec<(usize, [f64; 3], [f64; 3])> = Vec::new();
-    for Motion { first, count, speed } in &run.motions {
-        let (before, after) = (*first as usize, (first + count) as usize);
-        let speed = in_steps(*speed);
-        match ends.last_mut().filter(|end| end.0 == before) {
-            Some(end) => end.2 = speed,
-            None => ends.push((before, [0.0; 3], speed)),
-        }
-        ends.push((after, speed, [0.0; 3]));
-    }
-    let between = |next: usize| -> Option<(Pulse, Pulse)> {
-        Some((*run.pulses.get(next.checked_sub(1)?)?, *run.pulses.get(next)?))
-    };
-    for (next, leaves, enters) in ends {
-        let Some((from, to)) = between(next) else { continue };
-        // At the trigger, which is a little before.
-        let led = |at: [f64; 3], speed: [f64; 3]| {
-            let at = in_steps(at);
-            [0, 1, 2].map(|axis| at[axis] - speed[axis] * late)
-        };
-        let (a, b) = (led(from.at, leaves), led(to.at, enters));
-        let way = [0, 1, 2].map(|axis| b[axis].round() - a[axis].round());
-        ticks[next] = clock.between(way, leaves, enters);
-    }
-    // From field to field the stage moves, while the mirrors lead the beam to its place in the next one.
-    for pair in run.fields.windows(2) {
-        let ((_, _, from), (next, _, to)) = (pair[0], pair[1]);
-        let Some((before, after)) = between(next as usize) else { continue };
-        let inside = |at: [f64; 3], center: [f64; 2]| [at[0] - center[0], at[1] - center[1], at[2]];
-        let mirrors = step(inside(before.at, from), inside(after.at, to));
-        ticks[next as usize] = mirrors.max(machine.carried(from, to));
-    }
-    for stops in run.stops.chunk_by(|a, b| a.pulses == b.pulses) {
-        let next = stops[0].pulses as usize;
-        let Some((before, after)) = between(next) else { continue };
-        // After the first pulse every axis has been sent to a place.
-        let known = stops.iter().filter_map(|stop| match stop.at {
-            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
-            _ => None,
-        });
-        let chain: Vec<[f64; 3]> =
-            std::iter::once(before.at).chain(known).chain([after.at]).collect();
-        ticks[next] = chain.windows(2).map(|pair| step(pair[0], pair[1])).sum();
-    }
-    ticks
+pub struct Steps<'r> {
+    run: &'r Run,
+    clock: Clock,
+    /// Steps of each axis in a mm or degree.
+    units: [f64; 3],
+    /// The ticks before pulses to which more leads than a motion from the pulse before.
+    own: HashMap<usize, u64>,
 }
 
-/// The nearest two of `places` (mm), and how many pairs are nearer than `spacing` (mm). Places beyond 2 m are left out: they are stray.
-fn distances(places: &[DVec3], spacing: f64) -> (Option<Pair>, u64) {
-    let far = |place: &DVec3| cloud::point(*place);
-    let known: Vec<(u32, Point)> =
-        places.iter().zip(0..).filter_map(|(place, i)| Some((i, far(place)?))).collect();
-    let points: Vec<Point> = known.iter().map(|(_, point)| *point).collect();
-    // Places are up to a µm from their points in each axis.
-    let grid = Grid::new(&points, (2e3 * spacing).ceil() as i64 + 2);
-    let of = |&(i, point): &(u32, Point)| {
-        let (mut nearest, mut close) = ((f64::MAX, 0, 0), 0u64);
-        for j in grid.near(point).map(|near| known[near as usize].0).filter(|j| *j > i) {
-            let distance = places[i as usize].distance(places[j as usize]);
-            if distance < nearest.0 {
-                nearest = (distance, i, j);
-            }
-            close += u64::from(distance < spacing - ROUNDING);
+impl<'r> Steps<'r> {
+    /// Of `run` on `machine`.
+    pub fn new(run: &'r Run, machine: &Machine) -> Steps<'r> {
+        let (clock, units) = (machine.clock(), machine.coordinates().map(|of| of.steps()));
+        let mut steps = Steps { run, clock, units, own: HashMap::new() };
+        steps.motions(machine);
+        // From field to field the stage moves, while the mirrors lead the beam to its place in the next one.
+        for pair in run.fields.windows(2) {
+            let ((_, _, from), (next, _, to)) = (pair[0], pair[1]);
+            let Some((before, after)) = steps.between(next as usize) else { continue };
+            let inside =
+                |at: [f64; 3], center: [f64; 2]| [at[0] - center[0], at[1] - center[1], at[2]];
+            let mirrors = steps.step(inside(before.at, from), inside(after.at, to));
+            steps.own.insert(next as usize, mirrors.max(machine.carried(from, to)));
         }
-        (nearest, close)
+        for stops in run.stops.chunk_by(|a, b| a.pulses == b.pulses) {
+            let next = stops[0].pulses as usize;
+            let Some((before, after)) = steps.between(next) else { continue };
+            // After the first pulse every axis has been sent to a place.
+            let known = stops.iter().filter_map(|stop| match stop.at {
+                [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+                _ => None,
+            });
+            let chain: Vec<[f64; 3]> =
+                std::iter::once(before.at).chain(known).chain([after.at]).collect();
+            let ticks = chain.windows(2).map(|pair| steps.step(pair[0], pair[1])).sum();
+            steps.own.insert(next, ticks);
+        }
+        steps
+    }
+
+    /// How many pulses there are.
+    pub fn len(&self) -> usize {
+        self.run.pulses.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.run.pulses.is_empty()
+    }
+
+    /// The ticks before the pulse of this number, from 0.
+    pub fn get(&self, number: usize) -> u64 {
+        match (self.own.get(&number), self.between(number)) {
+            (Some(own), _) => *own,
+            (None, None) => 1,
+            (None, Some((from, to))) if to.passed == 0 => self.step(from.at, to.at),
+            (None, Some((_, to))) => u64::from(to.passed),
+        }
+    }
+
+    /// The ticks of all of them.
+    pub fn sum(&self) -> u64 {
+        (0..self.len()).into_par_iter().map(|number| self.get(number)).sum()
+    }
+
+    fn between(&self, next: usize) -> Option<(Pulse, Pulse)> {
+        let pulses = &self.run.pulses;
+        Some((pulses.get(next.checked_sub(1)?)?, pulses.get(next)?))
+    }
+
+    fn in_steps(&self, at: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| at[axis] * self.units[axis])
+    }
+
+    fn step(&self, from: [f64; 3], to: [f64; 3]) -> u64 {
+        let [from, to] = [from, to].map(|at| self.in_steps(at).map(|value| value.round() as i32));
+        u64::from(self.clock.step(from, to))
+    }
+
+    /// Into a motion at constant speed the axes gain it, out of it they brake.
+    fn motions(&mut self, machine: &Machine) {
+        let late = machine.late();
+        let mut ends: Vec<(usize, [f64; 3], [f64; 3])> = Vec::new();
+        for Motion { first, count, speed } in &self.run.motions {
+            let (before, after) = (*first as usize, (first + count) as usize);
+            let speed = self.in_steps(*speed);
+            match ends.last_mut().filter(|end| end.0 == before) {
+                Some(end) => end.2 = speed,
+                None => ends.push((before, [0.0; 3], speed)),
+            }
+            ends.push((after, speed, [0.0; 3]));
+        }
+        for (next, leaves, enters) in ends {
+            let Some((from, to)) = self.between(next) else { continue };
+            // At the trigger, which is a little before.
+            let led = |at: [f64; 3], speed: [f64; 3]| {
+                let at = self.in_steps(at);
+                [0, 1, 2].map(|axis| at[axis] - speed[axis] * late)
+            };
+            let (a, b) = (led(from.at, leaves), led(to.at, enters));
+            let way = [0, 1, 2].map(|axis| b[axis].round() - a[axis].round());
+            self.own.insert(next, self.clock.between(way, leaves, enters));
+        }
+    }
+}
+
+/// The nearest two of `places`, and how many pairs are nearer than `spacing` (mm). Places beyond 2 m are left out: they are stray.
+fn distances(places: &Places, spacing: f64) -> (Option<Pair>, u64) {
+    let found = distances_within(places, spacing, 1.25 * spacing);
+    if found.0.is_some() { found } else { distances_within(places, spacing, 2.0 * spacing) }
+}
+
+/// As [`distances`]; pairs farther apart than `most` (mm, more than the spacing) are not looked at.
+fn distances_within(places: &Places, spacing: f64, most: f64) -> (Option<Pair>, u64) {
+    // Places are up to a µm from their points in each axis.
+    let reach = (1e3 * most).ceil() as i64 + 2;
+    let join = |a: ((f64, u32, u32), u64), b: ((f64, u32, u32), u64)| {
+        (if b.0 < a.0 { b.0 } else { a.0 }, a.1 + b.1)
     };
-    let less = |a: (f64, u32, u32), b: (f64, u32, u32)| match a.0.total_cmp(&b.0) {
-        std::cmp::Ordering::Greater => b,
-        std::cmp::Ordering::Less => a,
-        std::cmp::Ordering::Equal if (a.1, a.2) <= (b.1, b.2) => a,
-        std::cmp::Ordering::Equal => b,
+    let none = || ((f64::MAX, 0, 0), 0);
+    let of_slab = |slab: &[u32]| {
+        let (low, high) = places.ends(slab);
+        let known = |&i: &u32| {
+            let place = places.at(i);
+            Some((i, place, cloud::point(place)?))
+        };
+        let seen = in_order(places.slabs.within(low - reach, high + reach));
+        let seen: Vec<(u32, DVec3, Point)> = seen.par_iter().filter_map(known).collect();
+        let points: Vec<Point> = seen.iter().map(|(_, _, point)| *point).collect();
+        let grid = Grid::new(&points, reach);
+        let of = |i: &u32| {
+            let (mut nearest, mut close) = ((f64::MAX, 0, 0), 0u64);
+            let Some((i, place, point)) = known(i) else { return (nearest, close) };
+            for &(j, there, _) in grid.near(point).map(|near| &seen[near as usize]) {
+                let square = place.distance_squared(there);
+                if j > i && square <= most * most {
+                    let distance = square.sqrt();
+                    if (distance, i, j) < nearest {
+                        nearest = (distance, i, j);
+                    }
+                    close += u64::from(distance < spacing - ROUNDING);
+                }
+            }
+            (nearest, close)
+        };
+        in_order(slab).par_iter().map(of).reduce(none, join)
     };
-    let join = |a: ((f64, u32, u32), u64), b: ((f64, u32, u32), u64)| (less(a.0, b.0), a.1 + b.1);
-    let (nearest, close) = known.par_iter().map(of).reduce(|| ((f64::MAX, 0, 0), 0), join);
+    let (nearest, close) = places.slabs.each().map(of_slab).fold(none(), join);
     let pair = |(distance, a, b)| Pair { points: [a, b], distance };
-    ((nearest.0 <= 2.0 * spacing).then(|| pair(nearest)), close)
+    ((nearest.0 < f64::MAX).then(|| pair(nearest)), close)
 }
 
 /// Part of a mm that sums of coordinates lose.
@@ -303,12 +423,12 @@ const ROUNDING: f64 = 1e-9;
 fn apart(
     nearest: Option<Pair>,
     too_close: u64,
-    pulses: &[Pulse],
+    pulses: &Pulses,
     spacing: f64,
     deeper: f64,
 ) -> Option<Diagnostic> {
     let Pair { points: [a, b], distance } = nearest.filter(|_| too_close > 0)?;
-    let [first, second] = [a, b].map(|i| pulses[i as usize].line);
+    let [first, second] = [a, b].map(|i| line(pulses, i));
     let message = format!(
         "{too_close} pairs of pulses are nearer than {spacing} mm, the nearest {distance:.4} mm, of the lines {first} and {second}"
     );
@@ -326,7 +446,7 @@ fn apart(
 
 /// Every axis stays within its travel, wherever it stops.
 fn travels(run: &Run, task: &Task, findings: &mut Findings) {
-    let pulses = run.pulses.iter().enumerate().map(|(i, pulse)| {
+    let pulse = |(i, pulse): (usize, Pulse)| {
         let begun = run.fields.partition_point(|(first, _, _)| *first as usize <= i);
         let center = begun.checked_sub(1).map_or([0.0; 2], |field| run.fields[field].2);
         let [x, y, z] = pulse.at;
@@ -334,7 +454,7 @@ fn travels(run: &Run, task: &Task, findings: &mut Findings) {
         let whole =
             |value: f64| if run.fields.is_empty() { value } else { (value * 1e6).round() / 1e6 };
         (pulse.line, [whole(x - center[0]), whole(y - center[1]), z].map(Some))
-    });
+    };
     for (_, line, center) in &run.fields {
         let stage = task.machine.stage.iter().flat_map(|stage| [("X", stage.x), ("Y", stage.y)]);
         for ((name, axis), at) in stage.zip(center) {
@@ -357,16 +477,17 @@ fn travels(run: &Run, task: &Task, findings: &mut Findings) {
         let gained = clock.gained(steps).1;
         let ends = [(motion.first, -1.0), (motion.first + motion.count - 1, 1.0)];
         ends.map(|(pulse, side)| {
-            let Pulse { line, at, .. } = run.pulses[pulse as usize];
+            let Pulse { line, at, .. } = run.pulses.get(pulse as usize).unwrap_or_default();
             let beyond = |axis: usize| at[axis] + side * gained[axis] / coordinates[axis].steps();
             (line, [0, 1, 2].map(|axis| Some(beyond(axis))))
         })
     });
-    let all: Vec<(u32, [Option<f64>; 3])> = pulses.chain(stops).chain(turned).collect();
+    let pulses = run.pulses.iter().enumerate().map(pulse);
+    let all = pulses.chain(stops).chain(turned);
     for (i, of) in coordinates.into_iter().enumerate().filter(|(_, of)| !of.endless) {
         let (name, [low, high]) = (of.word, of.axis.travel);
         let unit = if of.turns { "°" } else { "mm" };
-        let beyond = all.iter().filter_map(|(line, at)| Some((*line, at[i]?)));
+        let beyond = all.clone().filter_map(|(line, at)| Some((line, at[i]?)));
         for (line, at) in beyond.filter(|(_, at)| !(low..=high).contains(at)) {
             let message = format!("{name}{at:.3} is beyond the travel from {low} to {high} {unit}");
             let found = Diagnostic::error(Rule::Travel, message).line(line);
@@ -380,55 +501,37 @@ const NONE: u32 = u32::MAX;
 
 /// Gives each pulse the nearest point: the points in the order of their pulses, and the largest distances across and along the beam, mm.
 fn matched(
-    pulses: &[Pulse],
-    places: &[DVec3],
+    pulses: &Pulses,
+    places: &Places,
     task: &Task,
     findings: &mut Findings,
 ) -> (Vec<u32>, f64, f64) {
-    let [radius, height] = task.lens.crack.map(|size| 500.0 * size);
-    let grid = Grid::new(task.cloud, radius.max(height).ceil() as i64);
-    let nearest = |place: &DVec3| {
-        let place = place.to_array().map(|value| value * 1e3);
-        let rounded = place.map(|value| value.round() as i32);
-        let way = |j: u32| {
-            let point = task.cloud[j as usize].map(f64::from);
-            let (x, y, z) = (place[0] - point[0], place[1] - point[1], place[2] - point[2]);
-            (x.hypot(y), z.abs())
-        };
-        let inside = grid.near(rounded).map(|j| (way(j), j)).filter(|((across, along), _)| {
-            (across / radius).powi(2) + (along / height).powi(2) <= 1.0
-        });
-        let far = |((across, along), j): &((f64, f64), u32)| (across * across + along * along, *j);
-        inside.min_by(|a, b| far(a).0.total_cmp(&far(b).0).then(a.1.cmp(&b.1)))
-    };
-    let found: Vec<_> = places.par_iter().map(nearest).collect();
+    let (found, across, along) = nearest_points(places, task);
     let mut by: Vec<u32> = vec![NONE; task.cloud.len()];
     let mut order = Vec::with_capacity(pulses.len());
-    let (mut most_across, mut most_along) = (0.0f64, 0.0f64);
-    for (i, (pulse, found)) in pulses.iter().zip(found).enumerate() {
-        let Some(((across, along), j)) = found else {
-            let DVec3 { x, y, z } = places[i];
+    for (i, j) in (0..).zip(found) {
+        if j == NONE {
+            let DVec3 { x, y, z } = places.at(i);
             let message =
                 format!("the pulse at {x:.3} {y:.3} {z:.3} mm lies in the crack of no point");
             findings.push(
                 Diagnostic::error(Rule::Stray, message)
-                    .line(pulse.line)
-                    .help("write the program anew"),
-            );
-            continue;
-        };
-        (most_across, most_along) = (most_across.max(across), most_along.max(along));
-        if by[j as usize] != NONE {
-            let first = pulses[by[j as usize] as usize].line;
-            let message = format!("the point of this pulse was made on line {first} already");
-            findings.push(
-                Diagnostic::error(Rule::Twice, message)
-                    .line(pulse.line)
+                    .line(line(pulses, i))
                     .help("write the program anew"),
             );
             continue;
         }
-        by[j as usize] = i as u32;
+        if by[j as usize] != NONE {
+            let first = line(pulses, by[j as usize]);
+            let message = format!("the point of this pulse was made on line {first} already");
+            findings.push(
+                Diagnostic::error(Rule::Twice, message)
+                    .line(line(pulses, i))
+                    .help("write the program anew"),
+            );
+            continue;
+        }
+        by[j as usize] = i;
         order.push(j);
     }
     let lost = by.iter().filter(|by| **by == NONE).count();
@@ -437,7 +540,52 @@ fn matched(
         let message = format!("{lost} points get no pulse, one of them at {x:.3} {y:.3} {z:.3} mm");
         findings.push(Diagnostic::error(Rule::Lost, message).help("write the program anew"));
     }
-    (order, most_across * 1e-3, most_along * 1e-3)
+    (order, across, along)
+}
+
+/// Of each pulse the nearest point in whose crack it lies, `NONE` where it lies in none, and the largest distances across and along
+/// the beam, mm.
+fn nearest_points(places: &Places, task: &Task) -> (Vec<u32>, f64, f64) {
+    let [radius, height] = task.lens.crack.map(|size| 500.0 * size);
+    let reach = radius.max(height).ceil() as i64 + 1;
+    let points = Slabs::new(task.cloud.len(), |i| task.cloud[i][places.axis]);
+    let mut found: Vec<u32> = vec![NONE; places.glass.len()];
+    let (mut most_across, mut most_along) = (0.0f64, 0.0f64);
+    for slab in places.slabs.each() {
+        let (low, high) = places.ends(slab);
+        let seen = in_order(points.within(low - reach, high + reach));
+        let own: Vec<Point> = seen.par_iter().map(|&j| task.cloud[j as usize]).collect();
+        let grid = Grid::new(&own, reach);
+        let nearest = |&i: &u32| {
+            let place = places.at(i).to_array().map(|value| value * 1e3);
+            let rounded = place.map(|value| value.round() as i32);
+            let way = |near: u32| {
+                let point = own[near as usize].map(f64::from);
+                let (x, y, z) = (place[0] - point[0], place[1] - point[1], place[2] - point[2]);
+                (x.hypot(y), z.abs())
+            };
+            let inside = grid.near(rounded).map(|near| (way(near), seen[near as usize]));
+            let inside = inside.filter(|((across, along), _)| {
+                (across / radius).powi(2) + (along / height).powi(2) <= 1.0
+            });
+            let far = |((across, along), _): &((f64, f64), u32)| across * across + along * along;
+            let best = inside.min_by(|a, b| far(a).total_cmp(&far(b)).then(a.1.cmp(&b.1)));
+            (i, best)
+        };
+        let of_slab: Vec<_> = in_order(slab).par_iter().map(nearest).collect();
+        for (i, ((across, along), j)) in
+            of_slab.into_iter().filter_map(|(i, best)| Some((i, best?)))
+        {
+            found[i as usize] = j;
+            (most_across, most_along) = (most_across.max(across), most_along.max(along));
+        }
+    }
+    (found, most_across * 1e-3, most_along * 1e-3)
+}
+
+/// The line of a pulse.
+fn line(pulses: &Pulses, number: u32) -> u32 {
+    pulses.get(number as usize).map_or(0, |pulse| pulse.line)
 }
 
 /// A box of points, and when the first of them is made.
@@ -506,17 +654,25 @@ impl Node {
     }
 }
 
-/// The places in the order of points that are shadowed, each with that of the first point that shadows it.
+/// The places in the order of points that are shadowed, each with that of the first point that shadows it. Points above are
+/// taken slab by slab, with the slabs below of which some points are made after them.
 fn shadows(order: &[u32], cloud: &[Point], slope: f64, radius: f64) -> Vec<(u32, u32)> {
-    let mut points: Vec<(Point, u32)> =
-        order.iter().enumerate().map(|(when, &i)| (cloud[i as usize], when as u32)).collect();
-    if points.is_empty() {
-        return Vec::new();
+    let point = |when: u32| cloud[order[when as usize] as usize];
+    let heights = Slabs::new(order.len(), |when| point(when as u32)[2]);
+    let slabs: Vec<(&[u32], u32)> =
+        heights.each().map(|slab| (slab, slab.iter().copied().max().unwrap_or(0))).collect();
+    let mut first: Vec<u32> = vec![NONE; order.len()];
+    for (number, (above, _)) in slabs.iter().enumerate() {
+        let mut points: Vec<(Point, u32)> = above.iter().map(|&when| (point(when), when)).collect();
+        let tree = Node::new(&mut points);
+        for (below, _) in slabs[..=number].iter().filter(|(_, last)| *last > tree.first) {
+            let shadower =
+                |&when: &u32| Some((when, tree.shadower(point(when), when, slope, radius)?));
+            let found: Vec<(u32, u32)> = below.par_iter().filter_map(shadower).collect();
+            for (when, by) in found {
+                first[when as usize] = first[when as usize].min(by);
+            }
+        }
     }
-    let tree = Node::new(&mut points);
-    let shadower = |(when, &i): (usize, &u32)| {
-        let by = tree.shadower(cloud[i as usize], when as u32, slope, radius)?;
-        Some((when as u32, by))
-    };
-    order.par_iter().enumerate().filter_map(shadower).collect()
+    (0..).zip(first).filter(|(_, by)| *by != NONE).collect()
 }

@@ -122,7 +122,7 @@ pub fn seconds_of(text: &str) -> Option<i64> {
 /// Runs what a program does on `machine`; the time begins with the first pulse's tick.
 pub fn simulate(run: &Run, machine: &Machine, events: Events) -> Statistics {
     let rate = machine.laser.rate;
-    let steps = proof::steps(run, machine);
+    let steps = proof::Steps::new(run, machine);
     let skipped = (events.from.max(1) as usize - 1).min(steps.len());
     let mut dice = Dice(events.seed);
     let mut statistics = Statistics {
@@ -137,8 +137,8 @@ pub fn simulate(run: &Run, machine: &Machine, events: Events) -> Statistics {
         next: None,
     };
     let mut tick = 0u64;
-    for (i, step) in steps.iter().enumerate().skip(skipped) {
-        let step = if i == skipped { 1 } else { *step };
+    for i in skipped..steps.len() {
+        let step = if i == skipped { 1 } else { steps.get(i) };
         if events.until.is_some_and(|until| (tick + step) as f64 / rate > until) {
             statistics.next = Some(i as u32 + 1);
             break;
@@ -146,8 +146,9 @@ pub fn simulate(run: &Run, machine: &Machine, events: Events) -> Statistics {
         tick += step;
         statistics.unused += step - 1;
         // The axes do not wait within a motion: from this pulse to the next it goes on.
-        let is_moving =
-            run.pulses[i].passed > 0 || run.pulses.get(i + 1).is_some_and(|next| next.passed > 0);
+        let is_moving = [i, i + 1]
+            .into_iter()
+            .any(|at| run.pulses.get(at).is_some_and(|pulse| pulse.passed > 0));
         let mut made = false;
         for again in 0..if events.feedback && !is_moving { TIMES } else { 1 } {
             tick += u64::from(again > 0);
@@ -163,7 +164,7 @@ pub fn simulate(run: &Run, machine: &Machine, events: Events) -> Statistics {
         }
     }
     let left: u64 = match statistics.next {
-        Some(next) => steps[next as usize - 1..].iter().sum(),
+        Some(next) => (next as usize - 1..steps.len()).map(|i| steps.get(i)).sum(),
         None => 0,
     };
     statistics.seconds = tick as f64 / rate;

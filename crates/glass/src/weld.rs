@@ -1,19 +1,97 @@
-//! Points of lists that are too close to others are left out.
+//! Points that are too close to others are left out.
 
-use crate::cloud::{Grid, Point, squared};
+use crate::cloud::{Grid, Point, Slabs, longest, squared};
+use crate::sample::Apart;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
 
-/// The points of `points` that are at least `spacing` (µm) from all that are kept before them.
+/// The points of `points` that are at least `spacing` (µm) from all that are kept before them: slab by slab along the longest axis
+/// of the cloud ([`Slabs`]), and within a slab in the order given.
 pub fn welded(points: &[Point], spacing: u32) -> Vec<Point> {
-    let spacing = i64::from(spacing);
-    let grid = Grid::new(points, spacing);
-    let mut kept = vec![false; points.len()];
-    for (i, &here) in points.iter().enumerate() {
-        let close = |j: u32| {
-            (j as usize) < i
-                && kept[j as usize]
-                && squared(here, points[j as usize]) < spacing * spacing
-        };
-        kept[i] = !grid.near(here).any(close);
+    let spacing = i64::from(spacing.max(1));
+    let axis = longest(points);
+    let slabs = Slabs::new(points.len(), |i| points[i][axis]);
+    let mut is_kept = vec![false; points.len()];
+    for slab in slabs.each() {
+        let mut kept = Kept { spacing, cubes: HashMap::new(), points: Vec::new() };
+        let low = slab.first().map_or(0, |&i| i64::from(points[i as usize][axis]));
+        // What is kept so far lies in the slabs before.
+        let border = slabs.within(low - spacing, low).iter().map(|&i| i as usize);
+        border.filter(|&i| is_kept[i]).for_each(|i| kept.push(points[i]));
+        let mut own = slab.to_vec();
+        own.sort_unstable();
+        for i in own.into_iter().map(|i| i as usize) {
+            is_kept[i] = !kept.is_near(points[i]);
+            if is_kept[i] {
+                kept.push(points[i]);
+            }
+        }
     }
-    points.iter().zip(kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()
+    points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()
+}
+
+/// Points that are kept. They are a spacing apart, so that a cube of that side holds few of them, however many are asked about.
+struct Kept {
+    spacing: i64,
+    /// The last point of each cube, and of each point the one before it in its cube.
+    cubes: HashMap<[i64; 3], u32>,
+    points: Vec<(Point, Option<u32>)>,
+}
+
+impl Kept {
+    fn cube(&self, point: Point) -> [i64; 3] {
+        point.map(|value| i64::from(value).div_euclid(self.spacing))
+    }
+
+    fn push(&mut self, point: Point) {
+        let number = self.points.len() as u32;
+        let before = self.cubes.insert(self.cube(point), number);
+        self.points.push((point, before));
+    }
+
+    fn is_near(&self, point: Point) -> bool {
+        let [x, y, z] = self.cube(point);
+        let cubes = (0..27).map(|i| [x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1]);
+        cubes.filter_map(|cube| self.cubes.get(&cube)).any(|&last| {
+            let mut next = Some(last);
+            while let Some(at) = next {
+                let (other, before) = self.points[at as usize];
+                if squared(point, other) < self.spacing * self.spacing {
+                    return true;
+                }
+                next = before;
+            }
+            false
+        })
+    }
+}
+
+/// The points of `points` that are as far from all of `others` as `apart` says.
+pub fn clear(points: &[Point], others: &[Point], apart: Apart) -> Vec<Point> {
+    let reach = i64::from(apart.spacing) + apart.lost.ceil() as i64;
+    let least = f64::from(apart.spacing).powi(2);
+    let axis = longest(others);
+    let (slabs, around) = (
+        Slabs::new(points.len(), |i| points[i][axis]),
+        Slabs::new(others.len(), |i| others[i][axis]),
+    );
+    let mut is_kept = vec![false; points.len()];
+    for slab in slabs.each() {
+        let at = |i: Option<&u32>| i.map_or(0, |&i| i64::from(points[i as usize][axis]));
+        let seen = around.within(at(slab.first()) - reach, at(slab.last()) + reach);
+        let own: Vec<Point> = seen.iter().map(|&i| others[i as usize]).collect();
+        let grid = Grid::new(&own, reach);
+        let is_clear = |&i: &u32| {
+            let here = points[i as usize];
+            let way = |near: u32| {
+                let other = own[near as usize];
+                DVec3::from_array([0, 1, 2].map(|axis| f64::from(here[axis] - other[axis])))
+            };
+            (i, grid.near(here).all(|near| apart.squared(way(near)) >= least))
+        };
+        let found: Vec<(u32, bool)> = slab.par_iter().map(is_clear).collect();
+        found.into_iter().for_each(|(i, clear)| is_kept[i as usize] = clear);
+    }
+    points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()
 }

@@ -24,7 +24,8 @@ fn cuboid(x: f64, y: f64, z: f64) -> Mesh {
 }
 
 fn filled(mesh: &Mesh, fill: Fill, step: Option<f64>, direction: DVec3) -> (Vec<Point>, Left) {
-    points(mesh, &Filling { fill, step, direction }, APART, 1)
+    let made = points(mesh, &Filling { fill, step, direction }, APART, 1);
+    ([made.sampled, made.others].concat(), made.left)
 }
 
 fn cut(mesh: &Mesh, how: Sections, step: f64, direction: DVec3) -> (Vec<Point>, Left) {

@@ -85,7 +85,7 @@ fn programs_of_a_scanner_that_cannot_be_are_refused() {
     let machine = machine(30.0);
     let good = "N1 BEGIN BLOCK X20.000 Y20.000 Z20.000 POINTS 1\nN2 FIELD X10.000 Y10.000\nN3 PULSE U0.000 V1.000 Z-5.000\nN4 END\n";
     let run = read(good.as_bytes(), &machine).unwrap();
-    assert_eq!(run.pulses[0].at, [10.0, 11.0, -5.0]);
+    assert_eq!(run.pulses.get(0).unwrap().at, [10.0, 11.0, -5.0]);
     for (from, to) in [
         ("N2 FIELD X10.000 Y10.000", "N2 FIELD X10.000"),
         ("N2 FIELD X10.000 Y10.000", "N2 PULSE U0 V0 Z0"),

@@ -8,6 +8,7 @@ use common::k9;
 use toolpost_glass::cloud::{Point, distances};
 use toolpost_glass::control::read;
 use toolpost_glass::curve::{self, Layers, read as read_curves};
+use toolpost_glass::fill::{Fill, Filling};
 use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
 use toolpost_glass::mesh::{Mesh, Shape};
@@ -87,7 +88,7 @@ fn judged(text: &[u8], cloud: &[Point], format: &str) -> Vec<&'static str> {
     let task = Task {
         cloud,
         machine: &machine,
-        lens: &lens,
+        lens,
         index: 1.5195,
         block,
         blocks: 1,
@@ -150,7 +151,7 @@ fn pulses_that_come_too_near_are_refused_and_those_that_rounding_brings_near_are
         let task = Task {
             cloud: &cloud,
             machine: &machine,
-            lens: &lens,
+            lens,
             index: 1.5195,
             block,
             blocks: 1,
@@ -481,4 +482,15 @@ fn the_writer_and_the_judge_share_nothing_but_the_machine() {
             assert!(!uses(planner, judge), "{planner} uses {judge}");
         }
     }
+}
+
+#[test]
+fn a_solid_keeps_the_distance_in_the_glass_too() {
+    let settings =
+        Settings { filling: Filling { fill: Fill::Solid, ..settings().filling }, ..settings() };
+    let made = made(Shape::Mesh(sphere(2.5, 60)), "binary", &settings);
+    // Whole µm of drive bring no two pulses nearer: not within, and not to those of the surface.
+    let proof = made.report.proof;
+    assert!(proof.too_close == 0 && proof.nearest.unwrap().distance >= 0.13, "{proof:?}");
+    assert!(made.report.welded > 1000 && made.report.points > 15_000, "{:?}", made.report.points);
 }

@@ -357,8 +357,10 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
         return Ok(not_saved(account));
     }
     progress.step("saving");
-    let picture =
-        drawing.as_ref().map(|drawing| drawing.drawn(&made, args.job.block)).transpose()?;
+    let picture = drawing
+        .as_ref()
+        .map(|drawing| drawing.drawn(&made, &material, &machine, &settings))
+        .transpose()?;
     let report = account.report();
     let mut saved: Vec<(&Target, &[u8])> =
         vec![(&report_target, report.as_bytes()), (&target, &made.text)];
@@ -386,8 +388,15 @@ impl Drawing {
         Ok(Some(Drawing { target: Target::new(file, inputs)?, format: Format::of(file)?, title }))
     }
 
-    fn drawn(&self, made: &Made, block: [f64; 3]) -> Result<Vec<u8>, Stop> {
-        let picture = drawing::GlassPicture { block, points: &made.places };
+    fn drawn(
+        &self,
+        made: &Made,
+        material: &material::Material,
+        machine: &Machine,
+        settings: &Settings,
+    ) -> Result<Vec<u8>, Stop> {
+        let points = job::places(made, material, machine, settings)?;
+        let picture = drawing::GlassPicture { block: settings.placing.block, points: &points };
         Ok(self.format.bytes(drawing::glass(&self.title, &picture))?)
     }
 }
@@ -410,7 +419,7 @@ fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
     let mut account = account(&made, &machine, &material);
     account.findings = in_program(account.findings);
     if let Some(drawing) = drawing {
-        let picture = drawing.drawn(&made, job.block)?;
+        let picture = drawing.drawn(&made, &material, &machine, &settings)?;
         files::save(&[(&drawing.target, &picture)])?;
         account.rows.extend(job.picture.iter().map(|file| ("picture", file.display().to_string())));
     }

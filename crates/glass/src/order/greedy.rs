@@ -2,7 +2,7 @@
 
 use super::shadow::{Bonds, Shadow};
 use crate::clock::Clock;
-use crate::cloud::Point;
+use crate::cloud::{Point, Slabs};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -21,9 +21,8 @@ const FAR: usize = 400;
 
 /// A legal order of `points` (µm in the glass) at which the axes stand at `axes` (µm).
 pub(super) fn order(points: &[Point], axes: &[Point], shadow: Shadow, clock: &Clock) -> Vec<u32> {
-    let mut by_height: Vec<u32> = (0..points.len() as u32).collect();
-    by_height.par_sort_unstable_by_key(|&i| (points[i as usize][2], i));
-    let bands: Vec<&[u32]> = by_height.chunks(BAND).collect();
+    let by_height = Slabs::new(points.len(), |i| points[i][2]);
+    let bands: Vec<&[u32]> = by_height.order().chunks(BAND).collect();
     let mut order = Vec::with_capacity(points.len());
     let mut at = None;
     for bands in bands.chunks(TOGETHER) {
