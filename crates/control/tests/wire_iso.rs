@@ -3,12 +3,13 @@
 mod common;
 
 use geom::Vec3;
-use program::{Compensation, Diagnostic, Feed};
-use toolpost_control::{Action, ArcTo, Dialect, Position, Settings, Wire};
+use program::{Compensation, Diagnostic, Feed, Purpose};
+use toolpost_control::{Action, ArcTo, Dialect, Position, Settings, Setup, Wire};
 
 fn run(dialect: Dialect, text: &str, height: Option<f64>) -> Result<Vec<Action>, Box<Diagnostic>> {
     let wire = Wire { height, thread: Some(60), cut: Some(50) };
-    let settings = Settings { wire, ..Settings::new(dialect, [false; 3]) };
+    let setup = Setup { purpose: Purpose::Contour, ..Setup::default() };
+    let settings = Settings { wire, setup, ..Settings::new(dialect, [false; 3]) };
     common::ops(&settings, "part.nc", text)
 }
 

@@ -334,3 +334,29 @@ fn moves_below_the_resolution_are_proven_on_every_mill() {
         }
     }
 }
+
+/// What the end of a program leaves on, the next program finds: behind an arc in another plane the program goes back to G17.
+#[test]
+fn a_program_that_ends_behind_an_arc_in_another_plane_is_proven_on_every_mill() {
+    let upright = |end: Pose, center: Vec3, normal: Vec3| {
+        Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, normal, 0).unwrap() }))
+    };
+    for axis in [Vec3::X, Vec3::Y] {
+        let [normal, end] = [axis.cross(Vec3::Z), axis * 10.0 - Vec3::Z];
+        let ops = vec![
+            Op::Rapid(at(0.0, 0.0, 5.0)),
+            Op::Line(at(0.0, 0.0, -1.0)),
+            upright(at(end.x, end.y, -1.0), axis * 5.0 - Vec3::Z, normal),
+            Op::Rapid(at(end.x, end.y, 5.0)),
+        ];
+        let source = program(ops);
+        for machine in files::mills().filter(|machine| machine.arm.is_none()) {
+            let name = &machine.name;
+            let text = post::write(&source, &machine)
+                .unwrap_or_else(|found| panic!("{name}: {found:#?}"))
+                .text;
+            let report = proof::prove(&source, &machine, "p", &text, &Default::default());
+            assert!(report.proven, "{name}: {:#?}", report.mismatches);
+        }
+    }
+}

@@ -239,6 +239,19 @@ fn any_damage_to_a_program_of_iso_code_is_refused() {
     }
 }
 
+/// `G92` takes the zero away from under the cut: it would lie where the wire stands.
+#[test]
+fn a_program_that_moves_the_zero_to_the_wire_is_refused() {
+    let machine = machine("extends = \"fanuc-wire\"\n[wire]\nheight = 40\n");
+    let text = written(&die(), &machine);
+    let first = text.find("G0").unwrap();
+    let block = text[..first].rfind('\n').unwrap() + 1;
+    let moved = format!("{}G92 X100. Y50.\n{}", &text[..block], &text[block..]);
+    let found = proof(&die(), &machine, &moved);
+    assert!(!found.proven);
+    assert_eq!(found.mismatches[0].rule.name(), "operator-data");
+}
+
 #[test]
 fn a_mill_threads_no_wire() {
     let mill = machine("extends = \"generic-3axis-fanuc\"");

@@ -591,7 +591,8 @@ impl<'a> Walk<'a> {
             self.unclamp()?;
             self.say_unturned(BlockName::ProgramEnd);
         }
-        // What the next program finds: F counts mm/min again, where the block places the word.
+        // What the next program finds: the plane XY, and F counts mm/min again, where the block places the word.
+        self.plane_xy()?;
         self.writer.code(WordName::FeedMode, feed_mode::PER_MINUTE);
         self.block(BlockName::ProgramEnd)
     }

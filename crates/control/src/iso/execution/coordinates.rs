@@ -9,7 +9,7 @@ use crate::iso::language::Fault;
 use crate::iso::language::block::Word;
 use crate::iso::language::words::{G, Group};
 use geom::{Frame, Mat3, Vec3};
-use program::{Rule, WorkOffset, WorkOffsetData};
+use program::{Purpose, Rule, WorkOffset, WorkOffsetData};
 
 /// The letters of the axes, in the order of [`Six`].
 const AXES: [u8; 6] = *b"XYZABC";
@@ -27,8 +27,9 @@ impl Step<'_, '_, '_> {
         }
         match word {
             G::ShiftHere => {
-                // It stays when the program has ended. A wire-EDM machine knows no other origin: its programs begin so.
-                if self.facts.wire.is_none() {
+                // It stays when the program has ended. Many programs of a wire-EDM machine begin so: a contour that is read from
+                // one hangs on no zero.
+                if self.facts.wire.is_none() || self.state.purpose != Purpose::Contour {
                     self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
                 }
                 let values = self.axis_values()?;
