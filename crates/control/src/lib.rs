@@ -212,6 +212,21 @@ impl Dialect {
         }
     }
 
+    /// Whether the length of a tool counts only where a word takes it (`G43 H`, `D`): a change of the tool does not.
+    pub fn takes_length_by_word(self) -> bool {
+        match self.language() {
+            // Where the operator puts the tools in, no register holds their lengths.
+            Language::Iso(facts) => !facts.tools.by_hand && facts.wire.is_none(),
+            Language::Sinumerik(_) => true,
+            Language::Klartext
+            | Language::Points
+            | Language::Krl
+            | Language::UrScript
+            | Language::Ls
+            | Language::Rapid => false,
+        }
+    }
+
     /// Whether the work offset of the program before may be active when a program starts.
     pub fn may_keep_work_offset(self) -> bool {
         matches!(self.language(), Language::Iso(facts) if facts.reset.keeps_work_offset)

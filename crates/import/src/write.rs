@@ -6,7 +6,7 @@ use crate::foreign::{Form, Line, Part, Piece, Post};
 use crate::items::codes;
 use crate::text::{quoted, short};
 use machine::library::{MACHINES, names};
-use machine::{Machine, Word, load};
+use machine::{LengthOffset, Machine, Word, load};
 use program::Rule;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -92,6 +92,11 @@ impl Writing<'_> {
             }
         } else {
             out.push_str("length_offset = \"implicit\"\n");
+            if self.base.capabilities.length_offset != LengthOffset::Implicit {
+                let message = "no block takes the length of the tool: programs with one tool that is touched off are proven, others \
+                               need `{{length}} {{H}}` in the blocks `rapid` and `linear` and `length_offset = \"tool-number\"`";
+                self.findings.assumed(Rule::LengthOffset, message.into());
+            }
         }
         if let Some(end) = &post.line_end {
             let end = if end == "\n" { "\\n" } else { "\\r\\n" };

@@ -25,6 +25,8 @@ pub(crate) struct Running {
     pub spindle_line: u32,
     pub coolant_line: u32,
     pub tool: Option<Tool>,
+    /// Whether the program has had another tool before.
+    pub tool_is_further: bool,
     pub compensation: Compensation,
     /// Lean of the wire by the control, degrees.
     pub taper: f64,
@@ -56,6 +58,7 @@ impl Running {
             spindle_line: 0,
             coolant_line: 0,
             tool: None,
+            tool_is_further: false,
             compensation: Compensation::Off,
             taper: 0.0,
             length_offset: None,
@@ -102,6 +105,7 @@ impl Running {
         if self.coolant_line != line {
             self.coolant = Coolant::Off;
         }
+        self.tool_is_further |= self.tool.as_ref().is_some_and(|last| !same_tool(last, &tool));
         self.tool = Some(tool);
         self.last_offsets = None;
     }
@@ -133,6 +137,15 @@ pub(crate) fn set_up(
             wanted.tool.and_then(|tool| tool.offset).or((called > 0).then_some(called))
         }
     };
+    // One tool alone may have been touched off.
+    let named = wanted.tool.is_some_and(|tool| tool.offset.is_some());
+    let counts = Dialect::named(&machine.reader).is_some_and(Dialect::takes_length_by_word);
+    if counts && offset.is_none() && (named || running.tool_is_further) {
+        let message = format!(
+            "no length offset is active for T{called}: this control takes the length by a word, not with the tool"
+        );
+        return Some((Rule::LengthOffset, message));
+    }
     let shown = |offset: Option<u32>| offset.map_or("none".into(), |n| n.to_string());
     if offset.is_some() && running.length_offset != offset {
         let (found, wanted) = (shown(running.length_offset), shown(offset));

@@ -438,3 +438,29 @@ fn z_goes_home_by_g53_wherever_no_plane_is_tilted() {
     let nowhere = machine::load_text("own.toml", nowhere).unwrap();
     assert_eq!(post::check(&nowhere).unwrap_err()[0].rule.name(), "safe-height");
 }
+
+/// LinuxCNC "G43", B-64484EN-2 "Tool length offset": a change of the tool takes no length. A machine file that says that it does
+/// would let the second tool go down by the difference of the lengths; a single tool may have been touched off.
+#[test]
+fn a_control_that_takes_lengths_by_a_word_gets_no_second_tool_without_it() {
+    let text = |second: &str| {
+        format!(
+            "UNITS/MM\nLOADTL/1\nCUTTER/10,0\nSPINDL/900,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,20\n\
+             {second}FINI\n"
+        )
+    };
+    let second = "LOADTL/2\nCUTTER/8,0\nSPINDL/800,RPM,CLW\nRAPID\nGOTO/0,0,20\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,20\n";
+    let read = |text: String| {
+        source::apt::read("c.cls", text.as_bytes(), &Default::default()).unwrap().program
+    };
+    let (one, two) = (read(text("")), read(text(second)));
+    for name in ["fanuc", "haas", "iso", "linuxcnc", "mach3"] {
+        let own = machine(&format!(
+            "extends = \"generic-3axis-{name}\"\n[capabilities]\nlength_offset = \"implicit\"\n"
+        ));
+        assert!(!written(&one, &own).contains("G43"), "{name}");
+        let text = post::write(&two, &own).unwrap().text;
+        let found = rules(&two, &own, &String::from_utf8(text).unwrap());
+        assert_eq!(found[0], "length-offset", "{name}: {found:?}");
+    }
+}
