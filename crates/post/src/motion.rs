@@ -246,7 +246,7 @@ impl Walk<'_> {
             self.writer.unset(Words::ALL);
             return Ok(());
         }
-        let goes_on = pieces == 1 && cut == Cut::Straight && self.can_go_on();
+        let goes_on = self.can_go_on();
         self.check_limits()?;
         self.say_feed(length, pieces, cut)?;
         self.compensate()?;
@@ -262,7 +262,8 @@ impl Walk<'_> {
     }
 
     /// Whether a straight cut in the orientation at hand may be followed by one that differs from it in where
-    /// it goes alone: neither its feed nor anything else depends on its way.
+    /// it goes alone: neither its feed nor anything else depends on its way. Cuts in pieces, and those in which axes turn, are
+    /// of the other kinds of coordinates.
     #[inline]
     fn can_go_on(&self) -> bool {
         matches!(self.place.kind, Kind::Plain | Kind::Tilted(..))

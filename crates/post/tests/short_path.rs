@@ -55,6 +55,20 @@ fn leaning_at(x: f64, y: f64, lean: f64) -> Pose {
     Pose::new(Vec3::new(x, y, -1.0), Vec3::new(0.0, lean, 1.0).normalize()).unwrap()
 }
 
+/// Cuts whose axis goes round Z until a rotary axis is at the end of its travel, and cuts along Z between, in which it may turn back.
+fn winding(sense: f64) -> Vec<Op> {
+    let round = |turn: u32| {
+        (0..8).map(move |eighth| {
+            let angle = sense * std::f64::consts::FRAC_PI_4 * f64::from(eighth);
+            let axis = Vec3::new(0.2 * angle.cos(), 0.2 * angle.sin(), 1.0).normalize();
+            let point = Vec3::new(f64::from(eighth), f64::from(turn), -1.0);
+            Op::Line(Pose::new(point, axis).unwrap())
+        })
+    };
+    let upright = |turn: u32| [3.0, 2.0, 1.0].map(|x| Op::Line(at(x, f64::from(turn), -1.0)));
+    (0..6).flat_map(|turn| round(turn).chain(upright(turn))).collect()
+}
+
 /// A hole whose cycle has a feed of its own: where a control has no such cycle, it is made of straight cuts.
 fn drilled() -> [Op; 2] {
     let cycle = Cycle {
@@ -92,6 +106,8 @@ fn alphabet() -> Vec<Vec<Op>> {
         [(3.0, 2.0), (4.0, 3.0), (6.0, 1.0)].map(|(x, y)| Op::Line(leaning_at(x, y, 0.1))).into(),
         [0.1, 0.2, 0.2, 0.0, 0.0].map(|lean| Op::Line(leaning_at(30.0 * lean, 2.0, lean))).into(),
         [0.0, 1e-9, 0.0].map(|lean| Op::Line(leaning_at(2.0, 2.0 + lean, lean))).into(),
+        winding(1.0),
+        winding(-1.0),
         // Beyond the travel of the small ones, and of all.
         vec![Op::Line(at(450.0, 0.0, -1.0))],
         vec![Op::Line(at(0.0, 90_000.0, -1.0))],
@@ -111,6 +127,9 @@ static MILLS: LazyLock<Vec<Machine>> = LazyLock::new(|| {
         "fanuc-table-bc",
         "sinumerik-840d-table-ac",
         "sinumerik-840d-traori",
+        "haas-umc-750",
+        "linuxcnc-xyzac",
+        "linuxcnc-xyzbc-head",
     ];
     names.map(|name| machine::load(name).unwrap()).into()
 });

@@ -246,6 +246,7 @@ impl<'a> Walk<'a> {
             };
         }
         let goes_on = std::mem::take(&mut self.goes_on);
+        // Where cuts go on, a route has one orientation; it is looked at all the same, since a block would not say another one.
         if let Op::Line(pose) = &record.op
             && goes_on
             && self.keeps_orientation(pose)

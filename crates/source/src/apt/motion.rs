@@ -467,6 +467,7 @@ mod tests {
             ["", "CSI_SET_FLUTE_LENGTH/2.\n", "$$* Pro/CLfile  Version Creo\n", "$$ CATIA\n"];
         let points = [
             "GOTO/2,0,0\n3,1,0\n4,1,0\n",
+            "FEDRAT/50,MMPM\nGOTO/2,0,0\n3,1,0\n",
             "GOTO/2,0,0,0,0,1\n3,1,0,0,0.6,0.8\n",
             "GOTO/1000001,0,0\n",
             "GOTO/0,-1000001,0\n",
