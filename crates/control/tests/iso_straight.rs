@@ -28,7 +28,7 @@ fn dialects() -> impl Iterator<Item = Dialect> {
 }
 
 /// What stands behind a word: what some of them need, and what a modal one makes of a move.
-const PARAMETERS: [&str; 24] = [
+const PARAMETERS: [&str; 27] = [
     "",
     " X5.",
     " Z0.",
@@ -48,6 +48,9 @@ const PARAMETERS: [&str; 24] = [
     " R30.",
     " X0. Y0. R30.",
     " X1. Y1. Z1. I1. J1. K1. P2.",
+    " X0. Y0. Z0. I10. J20. K0.",
+    " Z-9. R-2. F50.",
+    " Z-5. F1.",
     " Q1 E0.1",
     " S100",
     " L2 P1 X1. Y2. Z3.",
@@ -56,13 +59,15 @@ const PARAMETERS: [&str; 24] = [
 ];
 
 /// Two rapids and cuts before the word, so that a straight move would go on, ...
-const BEFORE: &str = "G21\nG90\nG94\nT1 M6\nS100 M3\nG43 H1\nG0 X1. Y2. Z30.\nG1 Z-1. F100\nX3.";
+const BEFORE: &str =
+    "G21\nG90\nG94\nG98\nT1 M6\nS100 M3\nG43 H1\nG0 X1. Y2. Z30.\nG1 Z-1. F100\nX3.";
 
 /// ... or nothing but modes: no position, no tool and no cut.
 const BARE: &str = "G21\nG90\nG94\nS100 M3\nG1 F100";
 
-/// A block that moves nothing and still only says how to move, so that the next one may go on from it.
-const FEED_ALONE: &str = "F100\n";
+/// What may stand between: a block that moves nothing and still only says how to move, so that a move along one axis may go on from it;
+/// and an F that is another one where the word has taken it as something else.
+const BETWEEN: [&str; 3] = ["", "F100\nX6.\n", "G1 X6. F1.\n"];
 
 /// ... and straight moves behind it, along one axis after the other; then what depends on whether something has been cut.
 const BEHIND: &str = "G0 X4. Y5.\nZ6.\nG1 X7. F100\nY8. F100\nG0 X8.\nZ9.\nG1 X9. Y9. Z2.\nX1\nT2";
@@ -97,16 +102,20 @@ fn blanks_within_words(text: &str) -> String {
 fn a_straight_move_does_the_same_on_the_short_path_behind_every_word() {
     let known =
         Setup { start: Some(Vec3::ZERO), whole_numbers: WholeNumbers::Units, ..Setup::default() };
+    let unknown = Setup { start: None, ..known.clone() };
     for dialect in dialects() {
         let words = vocabulary(dialect);
         assert!(words.len() > 20, "{dialect:?}");
         for word in &words {
             for parameters in PARAMETERS {
-                for (before, between) in [(BEFORE, ""), (BEFORE, FEED_ALONE), (BARE, FEED_ALONE)] {
+                for (setup, before, between) in [
+                    (&known, BEFORE, BETWEEN[0]),
+                    (&unknown, BEFORE, BETWEEN[1]),
+                    (&known, BEFORE, BETWEEN[2]),
+                    (&unknown, BARE, BETWEEN[1]),
+                ] {
                     let text = format!("{before}\n{word}{parameters}\n{between}{BEHIND}");
-                    for setup in [&known, &Setup { start: None, ..known.clone() }] {
-                        compare(dialect, setup, &text).unwrap_or_else(|found| panic!("{found}"));
-                    }
+                    compare(dialect, setup, &text).unwrap_or_else(|found| panic!("{found}"));
                 }
             }
         }
