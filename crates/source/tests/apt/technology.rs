@@ -349,3 +349,27 @@ fn a_tolerance_holds_until_another_one_or_none_is_said() {
     assert_eq!(after("TOLER/0", "TOLER/0"), [AsSetUp; 0]);
     assert_eq!(after("TOLER/0.5,0.25", "TOLER/0.25"), [Blend(0.25)]);
 }
+
+/// What a motion needs is looked at once, and again behind a statement that changes it.
+#[test]
+fn what_a_cut_needs_is_asked_for_again_behind_what_changes_it() {
+    let cuts = "GOTO/0,0,0\nGOTO/1,0,0\n";
+    assert_eq!(error(&format!("{cuts}SPINDL/OFF\nGOTO/2,0,0")), "spindle-off");
+    assert_eq!(error(&format!("{cuts}FEDRAT/0,MMPM\nGOTO/2,0,0")), "no-feed");
+    // The feed of a cycle ends with it.
+    let drilled = "UNITS/MM\nLOAD/TOOL,1\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,5\n\
+                   CYCLE/DRILL,DEPTH,5,MMPM,100,CLEAR,1\nGOTO/0,0,0\nCYCLE/OFF\n";
+    let text = format!("{drilled}GOTO/1,0,0\nFINI\n");
+    let found = read("a.apt", text.as_bytes(), &Options::default()).unwrap_err();
+    assert_eq!(found[0].rule.name(), "no-feed");
+    // From the point of FROM the next motion begins, also in the middle.
+    let from = reading(&format!("{HEAD}{cuts}FROM/9,9,9\nGOTO/2,0,0\nFINI\n"));
+    assert!(from.program.records.iter().any(|r| r.op == Op::Rapid(at(9., 9., 9.))));
+    // What is said of a tool behind its first motion is said of the next one.
+    let text = format!("{HEAD}{cuts}LOAD/TOOL,2\nGOTO/2,0,0\nCUTTER/10\nGOTO/3,0,0\nFINI\n");
+    let tools = reading(&text).program.records.into_iter().filter_map(|r| match r.op {
+        Op::Tool(tool) => Some((tool.number, tool.diameter)),
+        _ => None,
+    });
+    assert_eq!(tools.collect::<Vec<_>>(), [(1, None), (2, None)]);
+}
