@@ -1,6 +1,6 @@
 //! The settings of the virtual control of a machine.
 
-use control::{Dialect, FeedPath, Settings, Setup, Wire};
+use control::{Dialect, FeedPath, Settings, Setup, TableAxis, Wire};
 use machine::{Machine, Mount, RotaryFeed};
 use program::{Diagnostic, Outcome, Rule};
 

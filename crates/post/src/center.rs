@@ -24,6 +24,9 @@ const JOINED: f64 = 2e-4;
 /// Around an outer corner of two lines the centre goes straight to where the parallels cross, if that is no farther off than this, mm.
 const BEYOND: f64 = 2e-4;
 
+/// What corners leave of an element has to be at least so many steps of the program's words long.
+const SHOWN: f64 = 4.0;
+
 /// How far the radii at the ends of an arc of the source may differ, as a part of them.
 const RADII: f64 = 0.01;
 
@@ -412,19 +415,24 @@ impl Section {
                 Item::Move(_) => segments.next(),
             };
             let Some(segment) = segment else { continue };
-            if let Some(around) = &segment.around {
+            if let Some(around) = segment.around.as_ref().filter(|around| self.shows(around)) {
                 let op = self.op(around, height)?;
                 records.push(Record { line: segment.line, op });
             }
             height = segment.height;
             at = segment.element.end;
-            // Nothing of an element may be left between its neighbours' corners.
-            if segment.element.length() > NOWHERE {
+            // Nothing of an arc may be left at the radius of the tool.
+            if self.shows(&segment.element) {
                 let op = self.op(&segment.element, height)?;
                 records.push(Record { line: segment.line, op });
             }
         }
         Ok(pose(at, height)?)
+    }
+
+    /// Whether the program can show it.
+    fn shows(&self, element: &Element) -> bool {
+        element.length() > self.shortest
     }
 
     /// A line or an arc to the end of an element.
@@ -485,7 +493,10 @@ impl Section {
         let mut segments = Vec::with_capacity(moves.len());
         for (k, step) in moves.iter().enumerate() {
             let [from, to] = parts[k];
-            if from > to + 1e-9 {
+            // What is left between its neighbours' corners is seen in the program.
+            let (left, whole) = ((to - from) * parallel[k].length(), parallel[k].length());
+            let least = (SHOWN * self.shortest).min(whole / 3.0);
+            if from > to + 1e-9 || self.shows(&parallel[k]) && left < least {
                 return self.too_thick(step.line, "between the neighbours of this element");
             }
             segments.push(CenterMove {
@@ -529,14 +540,18 @@ impl Section {
                     let step = &moves[*i];
                     let top = step.heights[0].max(step.heights[1]);
                     let is_above = moves[k].heights[0].min(segment.height) > top + NEAR;
-                    if is_above || element.distance(&step.element, NOWHERE) >= self.radius - NEAR {
+                    if is_above || element.distance(&step.element, NEAR) >= self.radius - NEAR {
                         continue;
                     }
                     let evenly = (0..=SAMPLES).map(|i| f64::from(i) / f64::from(SAMPLES));
                     let points = evenly.chain(self.within(element, &step.element));
-                    let points = points.map(|t| element.at(t));
-                    let mut points = points;
-                    if points.any(|at| self.cuts_into(&step.element, &moves[k], at)) {
+                    let mut points = points.map(|t| element.at(t));
+                    let is_neighbour = i.abs_diff(k) == 1;
+                    let cuts = |at: Vec2| match is_neighbour {
+                        true => step.element.away(at) < self.radius - NEAR,
+                        false => self.cuts_into(&step.element, &moves[k], at),
+                    };
+                    if points.any(cuts) {
                         let what = format!("between this element and that of line {}", step.line);
                         return self.too_thick(segment.line, &what);
                     }
@@ -549,11 +564,8 @@ impl Section {
     /// Where a segment is nearest to an element, or crosses it, and up to where on both sides of that the tool cuts into it.
     fn within(&self, segment: &Element, other: &Element) -> impl Iterator<Item = f64> {
         let nearest = segment.closest(other).0;
-        let near: Vec<f64> = segment
-            .meets(other, NOWHERE)
-            .chain([nearest])
-            .map(|point| segment.nearest(point).0)
-            .collect();
+        let near: Vec<f64> =
+            segment.meets(other, NEAR).chain([nearest]).map(|point| segment.nearest(point).0).collect();
         let cuts = |t: f64| other.nearest(segment.at(t)).1 < self.radius - NEAR;
         let last = |from: f64, end: f64| {
             let (mut inside, mut outside) = (from, end);

@@ -50,6 +50,7 @@ mod cycles;
 mod findings;
 #[expect(clippy::wildcard_enum_match_arm, reason = "what is not named is refused")]
 mod guard;
+mod leads;
 mod motion;
 mod number;
 mod position;
@@ -100,19 +101,38 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     if !errors.is_empty() {
         return Err(errors);
     }
-    let mut output = match robot(machine) {
-        Some(robot) => {
-            let centered = center::centered(program, machine.resolution());
-            let centered = centered.map_err(|found| vec![*found])?;
-            let (centered, warning) = centered.unzip();
-            let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot)?;
-            output.warnings.extend(warning);
-            output
+    let leads = match machine.wire {
+        Some(_) => Vec::new(),
+        None => leads::check(program, robot(machine).is_none()),
+    };
+    let (errors, of_leads) = leads.into_iter().partition(is_error);
+    let (mut errors, of_leads): (Vec<Diagnostic>, Vec<Diagnostic>) = (errors, of_leads);
+    let written = match robot(machine) {
+        Some(robot) => write_arm(program, machine, robot),
+        None => write_moves(program, machine),
+    };
+    let mut output = match written {
+        Ok(output) if errors.is_empty() => output,
+        Ok(_) => return Err(errors),
+        Err(mut found) => {
+            found.append(&mut errors);
+            return Err(found);
         }
-        None => write_moves(program, machine)?,
     };
     let warnings: Vec<Diagnostic> = warnings;
-    output.warnings.extend(warnings);
+    output.warnings.extend(warnings.into_iter().chain(of_leads));
+    Ok(output)
+}
+
+fn write_arm(
+    program: &Program,
+    machine: &Machine,
+    robot: (&::arm::Arm, &machine::Cell),
+) -> Result<Output, Vec<Diagnostic>> {
+    let centered = center::centered(program, machine.resolution());
+    let (centered, warning) = centered.map_err(|found| vec![*found])?.unzip();
+    let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot)?;
+    output.warnings.extend(warning);
     Ok(output)
 }
 

@@ -52,7 +52,12 @@ impl Contour {
         self.line(to);
     }
 
-    fn end(mut self, out: Vec2) -> Program {
+    fn end(self, out: Vec2) -> Program {
+        self.read(out).unwrap()
+    }
+
+    /// What the reader makes of it, which takes no arc that is smaller than the tool.
+    fn read(mut self, out: Vec2) -> Option<Program> {
         self.text += "CUTCOM/OFF\n";
         self.line(out);
         write!(self.text, "RAPID\nGOTO/{},{},20\nSPINDL/OFF\nFINI\n", self.at.x, self.at.y)
@@ -61,10 +66,10 @@ impl Contour {
     }
 }
 
-fn read(text: &str) -> Program {
+fn read(text: &str) -> Option<Program> {
     let options =
         source::apt::Options { cutcom: Some(CompensatedPath::Contour), ..Default::default() };
-    source::apt::read("job.cls", text.as_bytes(), &options).unwrap().program
+    source::apt::read("job.cls", text.as_bytes(), &options).ok().map(|read| read.program)
 }
 
 /// Whether it is proven; refused by the writer otherwise.
@@ -151,5 +156,128 @@ fn a_point_given_twice_changes_nothing() {
             let source = contour.end(Vec2::new(-20.0, -20.0));
             assert!(made(&source, &machine, "twice"), "{name} {behind} {aside}");
         }
+    }
+}
+/// Lines and arcs, half of the corners tangent, coordinates of three to five decimals.
+#[test]
+fn what_the_writer_makes_of_a_contour_passes_its_proof() {
+    let mut dice = Dice(17);
+    let machines = LANGUAGES.map(|name| machine::load(name).unwrap());
+    let (mut count, most) = (0, if cfg!(debug_assertions) { 120 } else { 600 });
+    for k in 0..most {
+        let (mut heading, start) = (dice.number(-3.0, 3.0), Vec2::new(20.0, 0.0));
+        let left = dice.once_in(2);
+        let side = if left { 1.0 } else { -1.0 };
+        let aside = |heading: f64| Vec2::from_angle(heading).perp() * side * 15.0;
+        let decimals = 3 + dice.index(3);
+        let from = start + aside(heading);
+        let mut contour = Contour::begin(
+            dice.number(1.0, 8.0),
+            if left { "LEFT" } else { "RIGHT" },
+            [from, start],
+            decimals,
+        );
+        for _ in 0..2 + dice.index(5) {
+            let length = dice.number(2.0, 18.0);
+            if dice.once_in(2) {
+                contour.line(contour.at + Vec2::from_angle(heading) * length);
+            } else {
+                let (radius, left) = (dice.number(2.0, 25.0), dice.once_in(2));
+                let sign = if left { 1.0 } else { -1.0 };
+                let angle = (length / radius).min(3.0) * sign;
+                let center = contour.at + Vec2::from_angle(heading).perp() * radius * sign;
+                let spoke = contour.at - center;
+                contour.arc(center, left, center + Vec2::from_angle(angle).rotate(spoke));
+                heading += angle;
+            }
+            if dice.once_in(2) {
+                heading += dice.number(-1.2, 1.2);
+            }
+        }
+        let out = contour.at + aside(heading);
+        let text = contour.text.clone();
+        let Some(source) = contour.read(out) else { continue };
+        count += usize::from(made(&source, &machines[k % 4], &format!("{k}\n{text}")));
+    }
+    assert!(count > most / 4, "{count} of {most}");
+}
+
+/// Around a square of 60 by 40 mm from outside, from the middle of its left side: with the way in from, and the way out to, these points.
+fn square([from, out]: [[f64; 2]; 2], more: &str) -> Program {
+    let text = format!(
+        "PARTNO/JOB\nUNITS/MM\nCUTTER/10\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/{0},{1},20\nFEDRAT/MMPM,300\nGOTO/{0},{1},-2\nCUTCOM/LEFT\n\
+         GOTO/0,20,-2\nGOTO/0,40,-2\nGOTO/60,40,-2\nGOTO/60,0,-2\nGOTO/0,0,-2\nGOTO/0,20,-2\nCUTCOM/OFF\nGOTO/{2},{3},-2\nRAPID\n\
+         GOTO/{2},{3},20\n{more}SPINDL/OFF\nFINI\n",
+        from[0], from[1], out[0], out[1]
+    );
+    read(&text).unwrap()
+}
+
+/// A robot, and mills whose controls offset.
+fn offsetting() -> Vec<Machine> {
+    let mill = |name: &str| {
+        let text = format!("extends = \"{name}\"\n[settings]\ntool_radius = \"full\"\n");
+        machine::load_text("mine.toml", &text).unwrap()
+    };
+    let mills =
+        ["generic-3axis-sinumerik", "generic-3axis-fanuc", "generic-3axis-linuxcnc"].map(mill);
+    std::iter::once(machine::load(LANGUAGES[0]).unwrap()).chain(mills).collect()
+}
+
+#[test]
+fn a_way_through_the_contour_itself_is_refused() {
+    let refused = |source: &Program, line: u32, of: &str| {
+        for machine in offsetting() {
+            let found = post::write(source, &machine).expect_err(&machine.name);
+            let known = found.iter().any(|found| {
+                (found.rule.name(), found.line) == ("compensation-gouge", line)
+                    && (found.message.contains(of) || found.message.contains("cuts into it"))
+            });
+            assert!(known, "{}: {found:?}", machine.name);
+        }
+    };
+    // From the middle of the part, and through the whole of it to its other side.
+    refused(&square([[30.0, 20.0], [-20.0, 20.0]], ""), 11, "element of line 1");
+    refused(&square([[-20.0, 20.0], [75.0, 20.0]], ""), 18, "element of line 1");
+    let straight = square([[-20.0, 20.0], [-20.0, 20.0]], "");
+    for machine in offsetting() {
+        let output = post::write(&straight, &machine).unwrap();
+        let gouges = output.warnings.iter().any(|found| found.rule.name() == "compensation-gouge");
+        assert!(!gouges, "{}", machine.name);
+    }
+}
+
+#[test]
+fn a_way_that_comes_near_to_a_contour_is_a_warning() {
+    let warned = |source: &Program, count: usize| -> Vec<Vec<(u32, String)>> {
+        let of = |machine: Machine| {
+            let output = post::write(source, &machine).expect(&machine.name);
+            let report = proof::prove(source, &machine, "p", &output.text, &Default::default());
+            assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+            let gouges = output.warnings.into_iter();
+            let gouges = gouges.filter(|found| found.rule.name() == "compensation-gouge");
+            gouges.map(|found| (found.line, found.message)).collect()
+        };
+        offsetting().into_iter().take(count).map(of).collect()
+    };
+    // Down at 4 mm from the last side, which a tool of radius 5 then cuts by 1 mm; a LinuxCNC, the last one, finds no way from there.
+    for found in warned(&square([[-4.0, 10.0], [-20.0, 20.0]], ""), 3) {
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!(found[0].0, 11);
+        assert!(found[0].1.contains("within 4 mm of its element of line 16"), "{}", found[0].1);
+    }
+    // Around once more with 0.5 mm of stock less: the second way in crosses no wall that stays.
+    let finish = "RAPID\nGOTO/-20,20,20\nGOTO/-20,20,-2\nCUTCOM/LEFT\nGOTO/0.5,20,-2\nGOTO/0.5,39.5,-2\nGOTO/59.5,39.5,-2\nGOTO/59.5,0.5,-2\n\
+        GOTO/0.5,0.5,-2\nGOTO/0.5,20,-2\nCUTCOM/OFF\nGOTO/-20,20,-2\nRAPID\nGOTO/-20,20,20\n";
+    for found in warned(&square([[-20.0, 20.0], [-20.0, 20.0]], finish), 4) {
+        assert_eq!(found, []);
+    }
+    // Straight on over a second part.
+    let second = "RAPID\nGOTO/30,20,20\nRAPID\nGOTO/80,20,20\nGOTO/80,20,-2\nCUTCOM/LEFT\nGOTO/80,60,-2\nGOTO/90,60,-2\nCUTCOM/OFF\nGOTO/90,80,-2\nRAPID\n\
+        GOTO/90,80,20\n"
+        .replace("GOTO/80,20,20\nGOTO/80,20,-2", "GOTO/30,30,20\nGOTO/30,30,-2");
+    for found in warned(&square([[-20.0, 20.0], [-20.0, 20.0]], &second), 4) {
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].1.contains("goes over another contour"), "{}", found[0].1);
     }
 }

@@ -118,11 +118,10 @@ pub(crate) fn compare(
         ways.collect::<Result<_, _>>()
     };
     let in_plane = |way: &PlaneMove| way.element.length() > NOWHERE;
-    let contour = long_enough(ways(&stretch.pieces, Fault::at_element)?, slack.along);
+    let contour = ways(&stretch.pieces, Fault::at_element)?;
+    let (contour, parallel) = long_enough(contour, left * radius, slack.along)?;
     let path = ways(path, Fault::at_block)?;
     let ways: Vec<PlaneMove> = path.iter().copied().filter(in_plane).collect();
-    let parallel = contour.iter().map(|way| parallel_of(way, left * radius));
-    let parallel = parallel.collect::<Result<_, _>>()?;
     let exit = stretch.exit.and_then(|piece| flat(&piece, axis, 0).ok()).map(|way| way.element);
     let Slack { along: slack, chord, start } = slack;
     let along = Vec::new();
@@ -408,17 +407,17 @@ impl PlanePaths {
         lead: Option<(Vec2, Option<Element>)>,
     ) -> Result<(), Fault> {
         let least = lead.map_or(self.radius, |(end, said)| {
-            let said = said.map_or(f64::INFINITY, |said| said.distance(&other.element, NOWHERE));
+            let said = said.map_or(f64::INFINITY, |said| said.distance(&other.element, self.slack));
             other.element.nearest(end).1.min(said).min(self.radius)
         });
         let enough = least - self.slack_of(way);
         let is_above = low(way) > high(other) + self.slack;
-        if is_above || way.element.distance(&other.element, NOWHERE) >= enough {
+        if is_above || way.element.distance(&other.element, self.slack) >= enough {
             return Ok(());
         }
         // Where they are nearest or cross, and how far on both sides of that the way is too near.
         let nearest = way.element.closest(&other.element).0;
-        let meets = way.element.meets(&other.element, NOWHERE).chain([nearest]);
+        let meets = way.element.meets(&other.element, self.slack).chain([nearest]);
         let reach = |point: Vec2| {
             let t = way.element.nearest(point).0;
             [0.0, 1.0]
@@ -429,7 +428,7 @@ impl PlanePaths {
             .collect();
         let points = samples(&way.element).chain(ends.into_iter().map(|t| way.element.at(t)));
         let crosses =
-            |way: &&PlaneMove| way.element.meets(&other.element, NOWHERE).next().is_some();
+            |way: &&PlaneMove| way.element.meets(&other.element, self.slack).next().is_some();
         let crossing: Vec<&PlaneMove> = own.iter().filter(crosses).collect();
         let near = points.filter_map(|point| {
             let (t, near) = other.element.nearest(point);
@@ -657,21 +656,31 @@ fn samples(element: &Element) -> impl Iterator<Item = Vec2> + '_ {
     (0..=SAMPLES).map(|i| element.at(f64::from(i) / f64::from(SAMPLES)))
 }
 
-/// The contour without pieces that are shorter than what counts as near, where what is left out comes to no more than that: what is cut
-/// of them, their neighbours show. The first move leads to the contour, wherever it ends.
-fn long_enough(contour: Vec<PlaneMove>, slack: f64) -> Vec<PlaneMove> {
-    let mut kept: Vec<PlaneMove> = Vec::with_capacity(contour.len());
+/// The contour without what is shorter than what counts as near, itself or its parallel, of neighbouring ones both together: what is cut of
+/// them, those before and behind them show. The first move leads to the contour, wherever it ends.
+///
+/// # Errors
+/// An arc that is too small for the tool.
+fn long_enough(
+    contour: Vec<PlaneMove>,
+    left: f64,
+    slack: f64,
+) -> Result<(Vec<PlaneMove>, Vec<Element>), Fault> {
+    let (mut kept, mut parallel) = (Vec::new(), Vec::new());
+    let mut skipped = 0.0;
     for way in contour {
-        let length = way.element.length();
-        let is_short = kept.last().is_some_and(|last| {
-            let farther = last.element.end.distance(way.element.end);
-            length <= NOWHERE || length <= slack && farther <= slack
-        });
-        if !is_short {
+        if way.piece > 0 && way.element.length() <= NOWHERE {
+            continue;
+        }
+        let own = parallel_of(&way, left)?;
+        skipped += way.element.length().min(own.length());
+        if way.piece == 0 || skipped > slack {
             kept.push(way);
+            parallel.push(own);
+            skipped = 0.0;
         }
     }
-    kept
+    Ok((kept, parallel))
 }
 
 /// A move seen along the tool.
