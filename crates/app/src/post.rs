@@ -16,12 +16,13 @@ use serde_json::json;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [Rule; 20] = [
+const MACHINE_CANNOT: [Rule; 23] = [
     Rule::ArcOrientation,
     Rule::ArmPath,
     Rule::AxisLimit,
     Rule::NoCycle,
     Rule::CycleTap,
+    Rule::Feed,
     Rule::FeedRange,
     Rule::LineLength,
     Rule::Linearisation,
@@ -29,6 +30,8 @@ const MACHINE_CANNOT: [Rule; 20] = [
     Rule::NumberRange,
     Rule::OneOpening,
     Rule::OrientationInCut,
+    Rule::Posture,
+    Rule::RapidPath,
     Rule::SpindleRange,
     Rule::Taper,
     Rule::TaperLimit,

@@ -459,7 +459,9 @@ impl<'a> Walk<'a> {
         if apart < self.machine.resolution() && turns.fold(0.0, f64::max) < SAME_JOINTS {
             return Ok(());
         }
-        let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, false) else {
+        // From home no line of the source leads.
+        let free = self.here.joints == self.home_joints();
+        let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, free) else {
             let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut, and straight the \
                            posture or a turn of a joint would not fit";
             let help = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";
@@ -645,7 +647,13 @@ impl<'a> Walk<'a> {
             let message = format!(
                 "the control would take the feed of {feed:.3} mm/min for {written:.3} mm/min: its word has no more digits"
             );
-            return Err(Diagnostic::error(Rule::Feed, message).into());
+            let step = self.machine.words.get(WordName::F.name()).map_or(1.0, Word::resolution);
+            let below = step * (feed / step).floor();
+            let help = match below > 0.0 {
+                true => format!("{below} or {} mm/min in the source", below + step),
+                false => format!("{} mm/min in the source", below + step),
+            };
+            return Err(Diagnostic::error(Rule::Feed, message).help(help).into());
         }
         self.sent.feed = Some(feed);
         if self.templates.has(BlockName::Feed) {

@@ -98,3 +98,46 @@ fn descriptions_of_arms_are_imported_by_their_ending_and_nothing_is_saved_of_wha
     let said = folder.run(&["machines", "check", "mine.toml"]);
     assert!(said.code == 0 && said.out.contains("as the factory has measured them"), "{said:?}");
 }
+
+/// As a mill that cannot make a toolpath: exit code 1, and nothing is saved.
+#[test]
+fn what_a_robot_cannot_do_is_no_wrong_input() {
+    let folder = Folder::new();
+    let job = |feed: &str| {
+        format!(
+            "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,{feed}\nGOTO/0,0,-2\nGOTO/60,0,-2\nRAPID\n\
+             GOTO/60,0,50\nFINI\n"
+        )
+    };
+    // A feed between two whole cm/min.
+    folder.write("slow.cls", job("6.6"));
+    folder.write("good.cls", job("300"));
+    for (file, robot, code, what) in [
+        ("slow.cls", "fanuc-lrmate-200id-mill", 1, "10 mm/min in the source"),
+        ("good.cls", "fanuc-lrmate-200id-mill", 0, ""),
+    ] {
+        let said = folder.run(&["post", file, "--machine", robot, "-o", "out.txt"]);
+        assert!(said.code == code && said.err.contains(what), "{file}: {said:?}");
+    }
+}
+
+/// A program that begins by rapid in the plane of its cuts: from home the tool comes down to it along its own axis.
+#[test]
+fn a_rapid_from_home_into_the_plane_of_the_cuts_is_proven() {
+    let folder = Folder::new();
+    let sector = "%\nO0001\nG21\nG17 G40 G90 G94\nG0 X0. Y0. Z0.\nG1 X40. Y0. F60\nG3 X0. Y40. R40.\nG1 X0. Y0.\nM30\n%\n";
+    folder.write("sector.nc", sector);
+    for robot in ["kuka-kr6-r900", "universal-ur5e", "fanuc-lrmate-200id-mill", "abb-irb120-mill"] {
+        let said = folder.run(&[
+            "post",
+            "sector.nc",
+            "--from",
+            "fanuc-31i",
+            "--machine",
+            robot,
+            "-o",
+            "out.txt",
+        ]);
+        assert_eq!(said.code, 0, "{robot}: {said:?}");
+    }
+}
