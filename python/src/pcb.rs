@@ -10,7 +10,7 @@ use ::pcb::isolation::{Direction, Narrow};
 use ::pcb::plan::{
     Clearing, Drilling, Isolate, Isolation, Outline, Part, Placing, Running, Settings, Turn,
 };
-use app::pcb::Job;
+use app::pcb::{Job, file_of};
 use app::{Source, Stop, Verdict, files};
 use drawing::Format;
 use geom::Vec2;
@@ -240,7 +240,7 @@ pub fn pcb<'py>(
         let contents = made.contents(&job, &report).into_iter();
         let contents: Vec<_> = contents.map(|(name, bytes)| (name, bytes.to_vec())).collect();
         let order: Vec<String> =
-            made.programs.iter().map(|made| format!("{}.nc", made.name)).collect();
+            made.programs.iter().map(|made| file_of(machine, &made.name)).collect();
         let read = made.files.iter().filter_map(Source::file).map(Path::to_owned);
         let inputs: Vec<PathBuf> = read.chain(machine.loaded_from.files.iter().cloned()).collect();
         Ok::<_, Stop>((account, contents, order, inputs))

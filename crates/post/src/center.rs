@@ -564,8 +564,11 @@ impl Section {
     /// Where a segment is nearest to an element, or crosses it, and up to where on both sides of that the tool cuts into it.
     fn within(&self, segment: &Element, other: &Element) -> impl Iterator<Item = f64> {
         let nearest = segment.closest(other).0;
-        let near: Vec<f64> =
-            segment.meets(other, NEAR).chain([nearest]).map(|point| segment.nearest(point).0).collect();
+        let near: Vec<f64> = segment
+            .meets(other, NEAR)
+            .chain([nearest])
+            .map(|point| segment.nearest(point).0)
+            .collect();
         let cuts = |t: f64| other.nearest(segment.at(t)).1 < self.radius - NEAR;
         let last = |from: f64, end: f64| {
             let (mut inside, mut outside) = (from, end);

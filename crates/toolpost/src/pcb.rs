@@ -5,8 +5,9 @@ use crate::answer::{Answer, not_saved};
 use crate::args::pcb::Pcb;
 use crate::progress::Progress;
 use ::pcb::plan::Part;
-use app::pcb::{Job, PROBE, Program};
+use app::pcb::{Job, PROBE, Program, file_of};
 use app::{Source, Stop, Verdict, Watch, files, toolpath};
+use machine::Machine;
 use program::{Diagnostic, Rule};
 use std::path::Path;
 
@@ -24,7 +25,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(4, silent);
     let board: Vec<Source> = args.board.iter().cloned().map(Source::File).collect();
     let made = job.make(&board, &progress)?;
-    let mut account = made.account(&job, older(args, &made.programs));
+    let mut account = made.account(&job, older(args, &machine, &made.programs));
     if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         return Ok(not_saved(account));
     }
@@ -53,10 +54,10 @@ fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
 }
 
 /// Tells of programs and pictures of another call that stay next to those of this one.
-fn older(args: &Pcb, programs: &[Program]) -> Option<Diagnostic> {
+fn older(args: &Pcb, machine: &Machine, programs: &[Program]) -> Option<Diagnostic> {
     let is_made = |name: &str| programs.iter().any(|made| made.name == name);
     let names = Part::ALL.into_iter().map(Part::name).chain([PROBE]);
-    let others = names.filter(|name| !is_made(name)).map(|name| format!("{name}.nc"));
+    let others = names.filter(|name| !is_made(name)).map(|name| file_of(machine, name));
     let there: Vec<String> = others.filter(|file| args.output.join(file).exists()).collect();
     (!there.is_empty()).then(|| {
         let message = format!("of an earlier call there are still {}", there.join(", "));

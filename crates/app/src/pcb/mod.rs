@@ -138,7 +138,7 @@ impl<'a> Job<'a> {
             programs.push(Program { name, part: Some(part), up, work, posted, picture, probes });
         }
         for made in &programs {
-            let file = format!("{}.nc", made.name);
+            let file = file_of(self.machine, &made.name);
             warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&file)));
         }
         if left_out.is_empty() {
@@ -181,7 +181,7 @@ impl Made {
         let mut findings = self.warnings.clone();
         findings.extend(more);
         let report = report::of(self, job.settings, job.machine, &findings);
-        findings.extend(self.left_out.iter().flat_map(LeftOut::findings));
+        findings.extend(self.left_out.iter().flat_map(|left| left.findings(job.machine)));
         let verdict = if self.left_out.is_empty() { Verdict::Done } else { Verdict::Partly };
         Account { verdict, rows: report.rows, data: report.data, findings }
     }
@@ -195,7 +195,7 @@ impl Made {
         for Program { name, picture, .. } in &self.programs {
             contents.extend(picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
         }
-        let text = |made: &'a Program| (format!("{}.nc", made.name), &made.posted.text[..]);
+        let text = |made: &'a Program| (file_of(job.machine, &made.name), &made.posted.text[..]);
         contents.extend(self.programs.iter().map(text));
         contents
     }
@@ -398,8 +398,8 @@ impl LeftOut {
     }
 
     /// Why, each with a file: that of the board which is wrong, or the program.
-    pub fn findings(&self) -> impl Iterator<Item = Diagnostic> {
-        let file = format!("{}.nc", self.part.name());
+    pub fn findings(&self, machine: &Machine) -> impl Iterator<Item = Diagnostic> {
+        let file = file_of(machine, self.part.name());
         let errors = self.account.findings.iter().filter(|found| found.is_error()).cloned();
         errors.map(move |found| match found.file.is_empty() {
             true => found.file(&file),
@@ -459,6 +459,7 @@ impl Shop<'_> {
             let grid = self.touched(part, work, grid(board, places)?)?;
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
         }
+        self.name(&mut program, &task.name);
         let toolpath = Toolpath::of_program(program, "board");
         let format = self.job.picture;
         let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
@@ -502,7 +503,7 @@ impl Shop<'_> {
             Err(found) => found,
         };
         let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
-        Err(found.help(help).file(format!("{}.nc", part.name())).into())
+        Err(found.help(help).file(file_of(self.job.machine, part.name())).into())
     }
 
     /// The program that measures the height of the board.
@@ -520,6 +521,7 @@ impl Shop<'_> {
             ..program::Tool::default()
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
+        self.name(&mut program, PROBE);
         let place = Part::ALL.len();
         let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE, place)?;
         let (work, picture, probes) = (Work::default(), None, None);
@@ -527,13 +529,32 @@ impl Shop<'_> {
         Ok(Program { name, part: None, up: None, work, posted, picture, probes })
     }
 
+    /// Controllers of robots know a program by the name of its file.
+    fn name(&self, program: &mut ::program::Program, name: &str) {
+        if let Some(stem) = robot_name(self.job.machine, name) {
+            program.name = stem;
+        }
+    }
+
     /// The text of a program, proven, that is so many places behind the first of all programs that a board can have.
     fn proven(&self, toolpath: &Toolpath, name: &str, place: usize) -> Result<Posted, Stop> {
-        let file = format!("{name}.nc");
         let Job { machine, tolerances, .. } = self.job;
+        let file = file_of(machine, name);
         let machine = numbered(machine, place);
         post::proven(toolpath, &machine, &file, tolerances, &Quiet(self.watch))
     }
+}
+
+/// The file of the program that is called so: on a robot with the ending of its controller, and the name that the program has in it.
+pub fn file_of(machine: &Machine, name: &str) -> String {
+    match robot_name(machine, name) {
+        Some(stem) => format!("{stem}.{}", machine.extension),
+        None => format!("{name}.nc"),
+    }
+}
+
+fn robot_name(machine: &Machine, name: &str) -> Option<String> {
+    machine.cell.as_ref().map(|_| name.replace('-', "_"))
 }
 
 /// The machine with the number of the program that is so many places behind the first, whose number `program_number` says

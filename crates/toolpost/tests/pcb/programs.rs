@@ -934,3 +934,41 @@ fn every_mill_of_the_library_makes_the_board() {
         assert_eq!(said.code, 0, "{mill}: {}", said.err);
     }
 }
+
+/// A robot of each language: every program is proven, and its file is called as the controller wants it, by the name that the program has.
+#[test]
+fn a_board_is_cut_by_a_robot() {
+    let folder = small();
+    for (robot, front, head) in [
+        ("kuka-kr6-r900", "front.src", "DEF front ( )"),
+        ("universal-ur5e", "front.script", "def job_front():"),
+        ("fanuc-lrmate-200id-mill", "front.ls", "/PROG FRONT"),
+        ("abb-irb120-mill", "front.mod", "MODULE MOD_front"),
+    ] {
+        let words = [
+            "pcb",
+            "board",
+            "--machine",
+            robot,
+            "--tool",
+            "0.4",
+            "--drills",
+            "0.8",
+            "--outline-tool",
+            "2",
+            "--thickness",
+            "1.6",
+            "-o",
+            robot,
+        ];
+        let said = folder.run(&words);
+        assert_eq!(said.code, 0, "{robot}: {said:?}");
+        let report: Value =
+            serde_json::from_str(&folder.read(&format!("{robot}/report.json"))).unwrap();
+        let programs = report["programs"].as_array().unwrap();
+        assert_eq!(programs.len(), 4, "{robot}");
+        assert!(programs.iter().all(|program| program["proof"]["proven"] == true));
+        let text = folder.read(&format!("{robot}/{front}"));
+        assert!(text.contains(head), "{robot}: {text}");
+    }
+}
