@@ -47,8 +47,8 @@ pub fn measure(points: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
 
 /// A sphere of about `count` points, `spacing` µm apart: prints what they take.
 fn sampled(count: usize, spacing: u32, rounds: usize) -> Result<Vec<Point>, Vec<Diagnostic>> {
-    // Points that lie by chance leave 0.675 of them on a square of one spacing.
-    let area = count as f64 / 0.675 * (f64::from(spacing) * 1e-3).powi(2);
+    // There are some 0.72 points on a square of one spacing.
+    let area = count as f64 / 0.72 * (f64::from(spacing) * 1e-3).powi(2);
     let body = sphere((area / (4.0 * PI)).sqrt());
     let mut points = Vec::new();
     let sampling = fastest(rounds, &mut || {

@@ -1,14 +1,14 @@
 //! Points on the surface of a mesh: no two nearer than a spacing, and no place of the surface farther than 1.3 spacings
 //! from a point.
 //!
-//! Darts are thrown into cells of the surface, triangles at most one and a quarter spacings long. A dart that hits nothing
-//! within a spacing becomes a point, which then covers its cell. Where it hits something, the cell is halved, unless a point covers
-//! it whole. A cell of at most `FINEST` spacings is given up: its dart lies within a spacing of a point, so all of it lies
+//! The surface is cut into patches, which are filled one after another in an order by chance. Darts are thrown into cells of a patch,
+//! triangles at most one and a quarter spacings long. A dart that hits nothing within a spacing becomes a point, which then covers
+//! its cell. Where it hits something, the cell is halved, unless a point covers it whole. A cell of at most `FINEST` spacings is given up: its dart lies within a spacing of a point, so all of it lies
 //! within 1 + `FINEST` spacings. That is the bound of the largest gap.
 //!
-//! **Border rule of tiles.** Space is divided into cubes of `TILE` spacings. A cell belongs to the cube that holds its centroid.
+//! **Border rule of tiles.** Space is divided into cubes of `TILE` spacings. A patch belongs to the cube that holds its centroid.
 //! Cubes are worked on in eight turns, by whether their three numbers are odd or even: two cubes of a turn are a whole cube
-//! apart, farther than a spacing and two halves of a cell, so neither sees the other's points; a cube sees the points of all earlier
+//! apart, farther than a spacing and two halves of a patch, so neither sees the other's points; a cube sees the points of all earlier
 //! turns. The result depends on neither the threads nor who works on which cube.
 
 use crate::cloud::Point;
@@ -18,6 +18,9 @@ use rayon::prelude::*;
 
 /// Longest edge of a cell that darts are thrown into first, spacings.
 const COARSEST: f64 = 1.25;
+
+/// Longest edge of a piece of the surface whose neighbours are looked up together, spacings.
+const PATCH: f64 = 2.0 * COARSEST;
 
 /// Longest edge of a cell that is given up, spacings.
 const FINEST: f64 = 0.25;
@@ -29,8 +32,8 @@ pub const LARGEST_GAP: f64 = 1.0 + FINEST;
 /// Side of a tile, spacings.
 const TILE: f64 = 16.0;
 
-/// How far from its tile a cell's points may be, and how far those may be that they must see, spacings.
-const BORDER: f64 = COARSEST + 1.0;
+/// How far from its tile a patch's points may be, and how far those may be that they must see, spacings.
+const BORDER: f64 = PATCH + 1.0;
 
 /// Cells of the look-up grid of a tile along each axis: as large as a spacing.
 const CELLS: usize = (TILE + 2.0 * BORDER) as usize + 2;
@@ -157,17 +160,22 @@ struct Room {
     /// The tile's own box, µm.
     tile: (DVec3, DVec3),
     number: [i32; 3],
-    /// The last point of each cube; 0 is none, 1 the first point. At their distance no more than 13,000 points are in a room
-    /// of 20.5 spacings.
+    /// The last point of each cube; 0 is none, 1 the first point. At their distance no more than 25,000 points are in a room
+    /// of 25 spacings.
     last: Vec<u16>,
+    /// Of each row of cubes along X those that hold points, bit by bit.
+    rows: Vec<u32>,
     points: Vec<Seen>,
+    /// Room for the points near a cell, and for its halves.
+    near: Near,
+    open: Vec<Cell>,
 }
 
 /// A point that darts see.
 #[derive(Clone, Copy)]
 struct Seen {
     /// µm.
-    point: Point,
+    place: DVec3,
     /// The one before it in its cube, as in [`Room::last`].
     before: u16,
 }
@@ -182,7 +190,10 @@ impl Default for Room {
             tile: (DVec3::ZERO, DVec3::ZERO),
             number: [0; 3],
             last: vec![0; CELLS * CELLS * CELLS],
+            rows: vec![0; CELLS * CELLS],
             points: Vec::new(),
+            near: Near::default(),
+            open: Vec::new(),
         }
     }
 }
@@ -191,9 +202,9 @@ impl Room {
     fn enter(&mut self, number: [i32; 3], apart: Apart) {
         let spacing = f64::from(apart.spacing.max(1));
         for i in 0..self.points.len() {
-            let place = DVec3::from_array(self.points[i].point.map(f64::from));
-            if let Some(cube) = self.cube(place) {
+            if let Some(cube) = self.cube(self.points[i].place) {
                 self.last[cube] = 0;
+                self.rows[cube / CELLS] = 0;
             }
         }
         self.points.clear();
@@ -215,8 +226,9 @@ impl Room {
     fn see(&mut self, point: Point) {
         let place = DVec3::from_array(point.map(f64::from));
         if let Some(cube) = self.cube(place) {
-            self.points.push(Seen { point, before: self.last[cube] });
+            self.points.push(Seen { place, before: self.last[cube] });
             self.last[cube] = self.points.len() as u16;
+            self.rows[cube / CELLS] |= 1 << (cube % CELLS);
         }
     }
 
@@ -228,37 +240,95 @@ impl Room {
         for &triangle in triangles {
             self.divide(mesh.corners(triangle).map(|corner| corner * 1e3), &mut cells);
         }
-        let (mut points, mut halved) = (Vec::new(), Vec::new());
-        let finest = (FINEST * self.spacing).powi(2);
-        while !cells.is_empty() {
-            dice.shuffle(&mut cells);
-            for cell in cells.drain(..) {
-                let dart = dice.within(&cell).round();
-                match self.hit(dart, &cell) {
-                    Hit::Nothing => {
-                        let point = dart.to_array().map(|value| value as i32);
-                        self.see(point);
-                        points.push(point);
-                    }
-                    Hit::Covers => {}
-                    Hit::Point(point) => {
-                        let (edge, at) = longest(&cell);
-                        if edge > finest {
-                            let halves = halves(&cell, at);
-                            let open = |half: &Triangle| !self.covers(point, half);
-                            halved.extend(halves.into_iter().filter(open));
-                        }
-                    }
-                }
-            }
-            std::mem::swap(&mut cells, &mut halved);
+        dice.shuffle(&mut cells);
+        let mut points = Vec::new();
+        for cell in cells {
+            self.throw(cell, &mut dice, &mut points);
         }
         points
     }
 
+    /// Throws darts into a cell and its halves until all of it is covered or given up.
+    fn throw(&mut self, corners: Triangle, dice: &mut Dice, points: &mut Vec<Point>) {
+        let [square, coarsest, finest] =
+            [1.0, COARSEST, FINEST].map(|part| (part * self.spacing).powi(2));
+        let mut near = self.near(&corners);
+        let mut open = std::mem::take(&mut self.open);
+        open.push(Cell { corners, near: corners.map(|corner| near.around(corner, square)) });
+        while let Some(cell) = open.pop() {
+            // Places that are near a point are a convex set, which holds a cell where it holds its corners.
+            if cell.near[0] & cell.near[1] & cell.near[2] != 0 {
+                continue;
+            }
+            let (edge, at) = longest(&cell.corners);
+            if edge <= coarsest {
+                let dart = dice.within(&cell.corners).to_array().map(whole);
+                let place = DVec3::from_array(dart.map(f64::from));
+                if !near.hits(place, square) {
+                    self.see(dart);
+                    let bit = near.push(place);
+                    for cell in &mut open {
+                        for (corner, own) in cell.corners.iter().zip(&mut cell.near) {
+                            let is_near = self.apart.squared(*corner - place) < square;
+                            *own |= if is_near { bit } else { 0 };
+                        }
+                    }
+                    points.push(dart);
+                    continue;
+                }
+                if edge <= finest {
+                    continue;
+                }
+            }
+            let [a, b, c] = [0, 1, 2].map(|i| (at + i) % 3);
+            let middle = (cell.corners[b] + cell.corners[c]) * 0.5;
+            let around = near.around(middle, square);
+            let half = |corner: usize| Cell {
+                corners: [cell.corners[a], cell.corners[corner], middle],
+                near: [cell.near[a], cell.near[corner], around],
+            };
+            // Neither half comes first every time.
+            open.extend(if dice.below(2) == 0 { [half(b), half(c)] } else { [half(c), half(b)] });
+        }
+        (self.near, self.open) = (near, open);
+    }
+
+    /// The points that a dart in `cell` may hit.
+    fn near(&mut self, cell: &Triangle) -> Near {
+        let mut near = std::mem::take(&mut self.near);
+        near.clear(self.apart.lost);
+        let middle = (cell[0] + cell[1] + cell[2]) / 3.0;
+        let far = cell.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+        // As far from the middle as a dart sees from a corner, and half a µm for its rounding.
+        let reach = far + self.side + 1.0;
+        let [low, high] = [-reach, reach].map(|reach| (middle + reach - self.low) / self.side);
+        let most = (CELLS - 1) as f64;
+        let from = low.clamp(DVec3::ZERO, DVec3::splat(most));
+        let to = high.clamp(DVec3::ZERO, DVec3::splat(most));
+        let columns = (u32::MAX << from.x as u32) & (u32::MAX >> (31 - to.x as u32));
+        for z in from.z as usize..=to.z as usize {
+            for y in from.y as usize..=to.y as usize {
+                let row = z * CELLS + y;
+                let mut taken = self.rows[row] & columns;
+                while taken > 0 {
+                    let mut at = self.last[row * CELLS + taken.trailing_zeros() as usize];
+                    taken &= taken - 1;
+                    while at > 0 {
+                        let Seen { place, before } = self.points[at as usize - 1];
+                        if place.distance_squared(middle) < reach * reach {
+                            near.push(place);
+                        }
+                        at = before;
+                    }
+                }
+            }
+        }
+        near
+    }
+
     /// The cells of `triangle` whose centroids are in this tile.
     fn divide(&self, triangle: Triangle, cells: &mut Vec<Triangle>) {
-        let coarsest = (COARSEST * self.spacing).powi(2);
+        let coarsest = (PATCH * self.spacing).powi(2);
         let mut open = vec![triangle];
         while let Some(triangle) = open.pop() {
             let (low, high) = box_of(&triangle);
@@ -276,50 +346,65 @@ impl Room {
             }
         }
     }
+}
 
-    /// Whether all of `cell` is within a spacing of `point`: places that are near a point are a convex set, which holds a cell
-    /// where it holds its corners.
-    fn covers(&self, point: DVec3, cell: &Triangle) -> bool {
-        let square = self.spacing * self.spacing;
-        cell.iter().all(|&corner| self.apart.squared(corner - point) < square)
+/// Points that darts in a cell may hit, µm.
+#[derive(Debug, Default)]
+struct Near {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    z: Vec<f64>,
+    /// As of [`Apart`].
+    lost: f64,
+}
+
+impl Near {
+    fn clear(&mut self, lost: f64) {
+        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(Vec::clear);
+        self.lost = lost;
     }
 
-    /// What a dart in `cell` hits within a spacing. Darts and points are whole µm: the comparison is exact.
-    fn hit(&self, dart: DVec3, cell: &Triangle) -> Hit {
-        let Some(cube) = self.cube(dart) else { return Hit::Covers };
-        let square = self.spacing * self.spacing;
-        let mut hit = Hit::Nothing;
-        // The middle first: what covers a cell is mostly there.
-        for rows in [cube, cube - CELLS * CELLS, cube + CELLS * CELLS] {
-            for row in [rows, rows - CELLS, rows + CELLS] {
-                for &last in &self.last[row - 1..=row + 1] {
-                    let mut at = last;
-                    while at > 0 {
-                        let Seen { point, before } = self.points[at as usize - 1];
-                        let point = DVec3::from_array(point.map(f64::from));
-                        if self.apart.squared(dart - point) < square {
-                            if self.covers(point, cell) {
-                                return Hit::Covers;
-                            }
-                            hit = Hit::Point(point);
-                        }
-                        at = before;
-                    }
-                }
-            }
-        }
-        hit
+    /// Takes a point in; answers its bit, none of those beyond the last bit.
+    fn push(&mut self, point: DVec3) -> u64 {
+        let bit = 1u64.checked_shl(self.x.len() as u32).unwrap_or(0);
+        self.x.push(point.x);
+        self.y.push(point.y);
+        self.z.push(point.z);
+        bit
+    }
+
+    /// What [`Apart::squared`] says of each point and `place`.
+    fn squares(&self, place: DVec3) -> impl Iterator<Item = f64> {
+        let square = move |((x, y), z): ((&f64, &f64), &f64)| {
+            let height = ((place.z - z).abs() - self.lost).max(0.0);
+            (place.x - x) * (place.x - x) + (place.y - y) * (place.y - y) + height * height
+        };
+        self.x.iter().zip(&self.y).zip(&self.z).map(square)
+    }
+
+    /// Whether a dart hits a point within the distance whose square is given. Darts and points are whole µm: the comparison is exact.
+    fn hits(&self, dart: DVec3, square: f64) -> bool {
+        self.squares(dart).any(|own| own < square)
+    }
+
+    /// The bits of the points around `place` within the distance whose square is given.
+    fn around(&self, place: DVec3, square: f64) -> u64 {
+        let bits = self.squares(place).take(64).enumerate();
+        bits.fold(0, |near, (i, own)| near | u64::from(own < square) << i)
     }
 }
 
-/// What is within a spacing of a dart.
-#[derive(Clone, Copy, PartialEq)]
-enum Hit {
-    Nothing,
-    /// A point that does not cover the cell of the dart.
-    Point(DVec3),
-    /// A point that covers it.
-    Covers,
+/// A cell, and of each of its corners the bits of the points within a spacing.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    corners: Triangle,
+    near: [u64; 3],
+}
+
+/// The nearest whole number, of those within 4 m in µm.
+fn whole(value: f64) -> i32 {
+    const OFF: i32 = 1 << 22;
+    (value + (f64::from(OFF) + 0.5)) as i32 - OFF
 }
 
 /// Numbers that look like chance and are the same in every run (splitmix64).
