@@ -244,6 +244,14 @@ impl Risk {
         refused: true,
     };
 
+    /// `G9`: an exact stop for one block.
+    pub(crate) const EXACT_BLOCK: Risk = Risk {
+        rule: Rule::PathMode,
+        what: "stops exactly at the end of single blocks (G9), which is not carried over: the corner there is one like the others",
+        help: "write G60 or G61 before such corners and G64 behind them where they have to be sharp",
+        refused: false,
+    };
+
     /// `LFON`, `POLF`, `POLFMASK` and their kin (SINUMERIK, "Rapid retraction"): ways that the axes take at a stop alone.
     pub(crate) const STOP_RETRACT: Risk = Risk {
         rule: Rule::StopRetract,

@@ -4,7 +4,7 @@
 mod common;
 
 use geom::Vec3;
-use program::{Coolant, Diagnostic, Feed, Spindle};
+use program::{Coolant, Diagnostic, Feed, PathMode, Spindle};
 use toolpost_control::{Action, Dialect, Kinematics, Orientation, Position, Settings, TableAxis};
 
 /// What a program does on a machine with B and C.
@@ -1525,5 +1525,29 @@ fn the_blank_of_a_heidenhain_has_two_corners_and_a_thickness() {
         "BLK FORM 0.2 X+100 Y+100 Z+0",
     ] {
         assert_eq!(blank(wrong), Err("blank"), "{wrong}");
+    }
+}
+
+/// SINUMERIK "Exact stop (G60, G9, G601, G602, G603)": `G60` holds up to `G64`, `G9` for its block, as that of FANUC and Haas.
+#[test]
+fn an_exact_stop_is_reported() {
+    let text = "G54 G90 G94\nT1\nM6\nS500 M3\nG0 X0 Y0 Z5\nG60\nG1 X5 F100\nG64\nG1 X9\nM30\n";
+    let actions = actions(Dialect::Sinumerik, text);
+    let modes: Vec<PathMode> = actions
+        .iter()
+        .filter_map(|action| if let Action::PathMode(mode) = action { Some(*mode) } else { None })
+        .collect();
+    assert_eq!(modes, [PathMode::ExactStop, PathMode::AsSetUp]);
+    for (dialect, start) in [
+        (Dialect::Sinumerik, "G54 G90 G94\nT1\nM6\nS500 M3\nG0 X0 Y0 Z5"),
+        (Dialect::Fanuc, "G21 G54 G90 G94\nT1 M6\nS500 M3\nG0 X0. Y0. Z5."),
+        (Dialect::Haas, "G21 G54 G90 G94\nT1 M6\nS500 M3\nG0 X0. Y0. Z5."),
+    ] {
+        let reported = |block: &str| {
+            let found = self::actions(dialect, &format!("{start}\n{block}\nM30\n"));
+            let exact = |action: &&Action| matches!(action, Action::Risk(risk) if risk.rule.name() == "path-mode" && !risk.refused);
+            found.iter().filter(exact).count()
+        };
+        assert_eq!([reported("G9 G1 X5. F100."), reported("G1 X5. F100.")], [1, 0], "{dialect:?}");
     }
 }

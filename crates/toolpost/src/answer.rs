@@ -118,9 +118,12 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { ' ' } else { c }).collect()
 }
 
-/// Whether a program rests on what a finding of this rule says: a unit that was guessed, a rule that was accepted.
+/// Whether a program rests on what a finding of this rule says: a unit that was guessed, blocks that were read as switched on, a
+/// stop that is left out, a height that nobody knows, a rule that was accepted.
 fn is_assumption(rule: Rule) -> bool {
-    rule == Rule::UnknownUnit || proof::ACCEPTABLE.iter().any(|(acceptable, _)| rule == *acceptable)
+    const READ_SO: [Rule; 4] =
+        [Rule::UnknownUnit, Rule::BlockSkip, Rule::OptionalStop, Rule::EndHeight];
+    READ_SO.contains(&rule) || proof::ACCEPTABLE.iter().any(|(acceptable, _)| rule == *acceptable)
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ const G_WORDS: &[GRow] = &[
     (50, Group::OneShot, G::LookAhead { letter: b'P', on: 10_000 }),
     (51, Group::OneShot, G::LookAhead { letter: b'Q', on: 1 }),
     (80, Group::OneShot, G::LookAhead { letter: b'P', on: 1 }),
-    (90, Group::OneShot, G::Neutral(b"")),
+    (90, Group::OneShot, G::ExactBlock),
     (100, Group::OneShot, G::WriteData),
     (290, Group::OneShot, G::FromHome),
     (310, Group::OneShot, G::Skip),

@@ -12,7 +12,7 @@ use crate::iso::language::words::{
 use program::WorkOffset;
 
 const G_WORDS: &[GRow] = &[
-    (90, Group::OneShot, G::Neutral(b"")),
+    (90, Group::OneShot, G::ExactBlock),
     (100, Group::OneShot, G::WriteData),
     (290, Group::OneShot, G::FromHome),
     (310, Group::OneShot, G::Skip),

@@ -100,6 +100,7 @@ impl Step<'_, '_, '_> {
             | G::SurfaceSpeed(_)
             | G::Dwell
             | G::DynamicOffset(_)
+            | G::ExactBlock
             | G::LookAhead { .. }
             | G::MacroCall { .. }
             | G::CancelMacroCall => self.go(),

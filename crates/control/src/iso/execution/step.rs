@@ -398,6 +398,10 @@ impl Step<'_, '_, '_> {
                 self.state.rounds_corners = self.take_length(b'E')?;
                 self.smoothness()
             }
+            (_, Some(G::ExactBlock)) => {
+                self.actions.push(Action::Risk(Risk::EXACT_BLOCK.into()));
+                return Ok(());
+            }
             _ => return Ok(()),
         };
         self.actions.push(Action::PathMode(mode));

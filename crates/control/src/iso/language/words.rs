@@ -72,6 +72,8 @@ pub enum G {
     SurfaceSpeed(bool),
     /// `G4`.
     Dwell,
+    /// An exact stop at the end of the block.
+    ExactBlock,
     /// The work zero that turns with the table, on or off.
     DynamicOffset(bool),
     /// `G28`.

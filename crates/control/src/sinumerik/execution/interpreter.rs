@@ -315,7 +315,12 @@ impl<'a, 's> Interpreter<'a, 's> {
         for (said, now) in self.state.said.iter_mut().zip(block.groups) {
             *said = if now == 0 { *said } else { now };
         }
+        let before = self.state.smoothed.path();
         self.state.smoothed.switch(block);
+        self.report_path(source, before)?;
+        if block.code(11) == Some(Code::ExactBlock) {
+            self.emit(source, Action::Risk(Risk::EXACT_BLOCK.into()))?;
+        }
         let turns_loosely =
             [34, 61].iter().any(|&group| block.code(group) == Some(Code::TurnsLoosely(true)));
         if turns_loosely && self.settings.rotary.contains(&true) {

@@ -55,7 +55,7 @@ impl Interpreter<'_, '_> {
         self.report_path(source, before)
     }
 
-    fn report_path(&mut self, source: &Source, before: PathMode) -> Outcome {
+    pub(super) fn report_path(&mut self, source: &Source, before: PathMode) -> Outcome {
         match self.state.smoothed.path() {
             path if path == before => Ok(()),
             path => self.emit(source, Action::PathMode(path)),

@@ -15,6 +15,8 @@ pub(crate) enum Code {
     Motion(Motion),
     /// `G4`.
     Dwell,
+    /// `G9`: the axes stop at the end of this block.
+    ExactBlock,
     /// `G74`, `G75`: axes to the reference point, to a fixed point.
     Home,
     /// `TRANS` and its kin.
@@ -72,6 +74,8 @@ pub(crate) enum Smoothing {
     /// It does not.
     #[default]
     Off,
+    /// `G60`: the axes stop at the end of each block.
+    ExactStop,
     /// By the tolerance of `CTOL`, where the program says one.
     Programmed,
     /// `G644`: by machine data, whatever the program says.
@@ -275,7 +279,7 @@ pub(super) static COMMANDS: &[Command] = &[
     g("G153", 9, Code::MachineCoordinates),
     g("SUPA", 9, Code::MachineCoordinates),
     // 10 to 12: exact stop, continuous path
-    g("G60", 10, Code::Smoothing(Smoothing::Off)),
+    g("G60", 10, Code::Smoothing(Smoothing::ExactStop)),
     g("G64", 10, Code::Smoothing(Smoothing::Off)),
     // By ADIS, which is 0 where the program does not say it.
     g("G641", 10, Code::Smoothing(Smoothing::Off)),
@@ -283,7 +287,7 @@ pub(super) static COMMANDS: &[Command] = &[
     g("G643", 10, Code::Smoothing(Smoothing::Programmed)),
     g("G644", 10, Code::Smoothing(Smoothing::MachineData)),
     g("G645", 10, Code::Smoothing(Smoothing::Programmed)),
-    same("G9", 11),
+    g("G9", 11, Code::ExactBlock),
     same("G601", 12),
     same("G602", 12),
     same("G603", 12),

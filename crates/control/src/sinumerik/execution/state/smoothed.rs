@@ -27,7 +27,7 @@ impl Smoothed {
     /// Whether machine data say by how much the control leaves the path, which has not been reported.
     pub fn is_loose(&self) -> bool {
         let loose = |mode| match mode {
-            Smoothing::Off => false,
+            Smoothing::Off | Smoothing::ExactStop => false,
             Smoothing::Programmed => self.contour.is_none(),
             Smoothing::MachineData => true,
         };
@@ -68,6 +68,9 @@ impl Smoothed {
     /// By how much the control may leave the path in cuts, where the program says it.
     pub fn path(&self) -> PathMode {
         let [distance, _] = self.distances;
+        if self.rounding == Smoothing::ExactStop && self.compressor == Smoothing::Off {
+            return PathMode::ExactStop;
+        }
         match self.contour {
             Some(tolerance) => PathMode::Blend(tolerance.max(distance)),
             None if distance > 0.0 => PathMode::Blend(distance),
