@@ -10,7 +10,7 @@ use ::pcb::isolation::{Direction, Narrow};
 use ::pcb::plan::{
     Clearing, Drilling, Isolate, Isolation, Outline, Part, Placing, Running, Settings, Turn,
 };
-use app::pcb::{Job, file_of};
+use app::pcb::Job;
 use app::{Source, Stop, Verdict, files};
 use drawing::Format;
 use geom::Vec2;
@@ -170,6 +170,7 @@ pub fn pcb<'py>(
     let cuts = [("contours", Isolate::Contours), ("middle", Isolate::Middle)];
     let settings = Settings {
         only,
+        unit: None,
         isolation: Isolation {
             tool,
             vee,
@@ -181,6 +182,7 @@ pub fn pcb<'py>(
             direction: word(py, "direction", direction, &directions)?,
             narrow: word(py, "narrow", narrow, &gaps)?,
             isolate: word(py, "isolate", isolate, &cuts)?,
+            ..Isolation::default()
         },
         clearing: Clearing { clear, margin, mask_tool, legend_tool, engrave },
         drilling: Drilling {
@@ -194,6 +196,7 @@ pub fn pcb<'py>(
                 from_side,
                 &[("front", Face::Front), ("back", Face::Back)],
             )?,
+            ..Drilling::default()
         },
         outline: Outline {
             outline_tool,
@@ -203,6 +206,7 @@ pub fn pcb<'py>(
             tab_height,
             close_gaps,
             board_margin,
+            ..Outline::default()
         },
         placing: Placing {
             thickness,
@@ -213,6 +217,7 @@ pub fn pcb<'py>(
             alignment,
             panel,
             spacing,
+            ..Placing::default()
         },
         running: Running {
             feed,
@@ -225,6 +230,7 @@ pub fn pcb<'py>(
             probe,
             on_control,
             split_tools,
+            ..Running::default()
         },
     };
     let formats = [("svg", Format::Svg), ("png", Format::Png)];
@@ -235,12 +241,11 @@ pub fn pcb<'py>(
         let mut job = Job::new(machine, &settings, &tolerances)?;
         (job.surface, job.picture, job.strict) = (surface, picture, strict);
         let made = job.make(&sources, &())?;
-        let account = made.account(&job, None);
+        let account = made.account(&job, Vec::new());
         let report = format!("{:#}\n", account.data);
         let contents = made.contents(&job, &report).into_iter();
         let contents: Vec<_> = contents.map(|(name, bytes)| (name, bytes.to_vec())).collect();
-        let order: Vec<String> =
-            made.programs.iter().map(|made| file_of(machine, &made.name)).collect();
+        let order: Vec<String> = made.programs.iter().map(|made| made.file.clone()).collect();
         let read = made.files.iter().filter_map(Source::file).map(Path::to_owned);
         let inputs: Vec<PathBuf> = read.chain(machine.loaded_from.files.iter().cloned()).collect();
         Ok::<_, Stop>((account, contents, order, inputs))

@@ -181,7 +181,7 @@ fn a_board_is_made_without_a_command_line_from_memory_as_from_a_file() {
         let watch = Patience::of(usize::MAX);
         let made = job.make(&[source], &watch).unwrap();
         assert_eq!(watch.steps(), ["reading", "planning", "writing and proving"]);
-        let account = made.account(&job, None);
+        let account = made.account(&job, Vec::new());
         assert_eq!(account.verdict, Verdict::Done);
         let texts =
             made.programs.iter().map(|program| (program.name.clone(), program.posted.text.clone()));

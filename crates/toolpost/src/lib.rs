@@ -19,6 +19,7 @@ mod pcb;
 mod post;
 mod progress;
 mod prove;
+mod settings;
 mod show;
 mod wire;
 
@@ -45,7 +46,13 @@ const INTERRUPTED: u8 = 130;
 
 /// Obeys a command line, whose first word is the name of the command, and answers the exit code.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let CommandLine { command, quiet, json } = match CommandLine::try_parse_from(words) {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let (is_quiet, is_json) = said_first(&words);
+    let settings::Expanded { words, found } = match settings::expanded(words) {
+        Ok(expanded) => expanded,
+        Err(stop) => return Answer::from(stop).say(is_quiet, is_json),
+    };
+    let CommandLine { mut command, quiet, json } = match CommandLine::try_parse_from(&words) {
         Ok(line) => line,
         Err(usage) => {
             let usage = shortened(usage);
@@ -54,6 +61,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(usage.exit_code()).unwrap_or(u8::MAX);
         }
     };
+    if let Command::Pcb(args) = &mut command {
+        args.found = found;
+        args.options = settings::options(&words);
+    }
     end_cleanly();
     let silent = quiet || json;
     let answer = match command {
@@ -68,6 +79,12 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Completions { shell } => Ok(completions(shell)),
     };
     answer.unwrap_or_else(Answer::from).say(quiet, json)
+}
+
+/// Whether `--quiet` and `--json` are among the words of a command line.
+fn said_first(words: &[OsString]) -> (bool, bool) {
+    let has = |word: &str| words.iter().any(|said| said == word);
+    (has("--quiet") || has("-q"), has("--json"))
 }
 
 /// The most characters of an argument that is wrong that are printed.

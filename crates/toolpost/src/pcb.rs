@@ -14,18 +14,20 @@ use std::path::Path;
 /// Writes the programs, proves them, and only then saves them with their pictures and the report.
 pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
-    let (settings, tolerances) = (args.settings(), args.closeness.tolerances());
+    let (settings, tolerances) = (args.plan(), args.closeness.tolerances());
     let mut job = Job::new(&machine, &settings, &tolerances)?;
     job.surface = args.running.heights.clone().map(Source::File);
     let named = args.files.named().into_iter();
     job.named = named.map(|(file, layer)| (Source::File(file), layer)).collect();
     (job.picture, job.strict) = (args.picture, args.strict);
+    job.options = args.options.clone();
     files::check_folder(&args.output)?;
     not_among_inputs(args)?;
     let progress = Progress::new(4, silent);
     let board: Vec<Source> = args.board.iter().cloned().map(Source::File).collect();
     let made = job.make(&board, &progress)?;
-    let mut account = made.account(&job, older(args, &machine, &made.programs));
+    let found = older(args, &machine, &made.programs).into_iter().chain(args.found.clone());
+    let mut account = made.account(&job, found.collect());
     if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         return Ok(not_saved(account));
     }

@@ -1,16 +1,23 @@
 //! `toolpost prove`: any program, also one edited by hand, compared with the toolpath it should make.
 
 use crate::answer::Answer;
-use crate::args::Prove;
+use crate::args::{Command, CommandLine, Prove};
 use crate::progress::Progress;
+use app::pcb::Job;
 use app::prove::compare;
 use app::report::{self, Digests};
-use app::{Stop, Watch, files, toolpath};
-use program::{Purpose, encoding};
+use app::{Source, Stop, Watch, files, toolpath};
+use clap::Parser;
+use machine::Machine;
+use program::{Diagnostic, Purpose, Rule, encoding};
+use serde_json::Value;
 
 /// Runs the program on the virtual control of the machine and compares.
 pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
+    if let Some(options) = board_options(args)? {
+        return board(args, &machine, &options, silent);
+    }
     let progress = Progress::new(2, silent);
     progress.step("reading");
     let against = args.against.as_path().into();
@@ -29,4 +36,60 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
         Err(found) => account.findings.push(*found),
     }
     Ok(account.into())
+}
+
+/// The report of a board's programs, which lies beside them.
+const REPORT: &str = "report.json";
+
+/// The options with which the board was made that the program is compared with; `None` where that is no board.
+///
+/// # Errors
+/// `report` where it is one, and nothing beside the program says with which options it was made.
+fn board_options(args: &Prove) -> Result<Option<Vec<String>>, Stop> {
+    let against = &args.against;
+    let is_board = against.is_dir()
+        || against.extension().is_some_and(|ending| ending == "kicad_pcb" || ending == "toml");
+    if !is_board {
+        return Ok(None);
+    }
+    let file = args.program.with_file_name(REPORT);
+    let wrong = |message: &str| {
+        let help = "the report.json that `toolpost pcb` saves with its programs has the options with which the board was made";
+        Diagnostic::error(Rule::ReportPair, message).help(help).file(file.display().to_string())
+    };
+    let text = files::read(&file).map_err(|found| wrong(&found.message))?;
+    let report: Value =
+        serde_json::from_slice(&text).map_err(|_| wrong("this is no report of `toolpost pcb`"))?;
+    let options = report["options"].as_array().ok_or_else(|| wrong("the report has no options"))?;
+    Ok(Some(options.iter().filter_map(Value::as_str).map(str::to_owned).collect()))
+}
+
+/// Compares the program of a board with what the board gives.
+fn board(
+    args: &Prove,
+    machine: &Machine,
+    options: &[String],
+    silent: bool,
+) -> Result<Answer, Stop> {
+    let words = ["toolpost", "pcb", "--machine=m", "--output=o"].map(str::to_owned);
+    let board = args.against.display().to_string();
+    let words = words.into_iter().chain(options.iter().cloned()).chain([String::from("--"), board]);
+    let parsed = CommandLine::try_parse_from(words).map(|line| line.command);
+    let Ok(Command::Pcb(made)) = parsed else {
+        let message = "the options of the report are none of `toolpost pcb`";
+        let help = "make the programs anew";
+        return Err(Diagnostic::error(Rule::ReportPair, message).help(help).into());
+    };
+    let (settings, tolerances) = (made.plan(), args.closeness.tolerances());
+    let mut job = Job::new(machine, &settings, &tolerances)?;
+    job.surface = made.running.heights.clone().map(Source::File);
+    let named = made.files.named().into_iter();
+    job.named = named.map(|(file, layer)| (Source::File(file), layer)).collect();
+    let progress = Progress::new(4, silent);
+    let sources: Vec<Source> = made.board.iter().cloned().map(Source::File).collect();
+    let text = files::read(&args.program)?;
+    let file = files::name(&args.program);
+    let name = args.program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let read = encoding::without_mark(&text);
+    Ok(job.prove(&sources, (&name, &file), read, &progress)?.into())
 }

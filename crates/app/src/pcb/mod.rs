@@ -4,9 +4,12 @@
 mod report;
 mod source;
 
+pub use source::SETTINGS;
+
 use crate::account::{Account, Stop, Verdict};
 use crate::input;
 use crate::post::{self, Posted};
+use crate::prove;
 use crate::summary::number;
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
@@ -22,6 +25,7 @@ use program::heights::HeightMap;
 use program::{Diagnostic, Op, Record, Rule, not_both};
 use proof::Tolerances;
 use rayon::prelude::*;
+use serde_json::json;
 use std::borrow::Cow;
 
 /// What is made of a board, and on which machine.
@@ -38,6 +42,8 @@ pub struct Job<'a> {
     pub picture: Option<Format>,
     /// Whether a warning about the board, or a program that cannot be made, stops the work.
     pub strict: bool,
+    /// The options with which the board is made, as they are typed: the report keeps them for a later proof.
+    pub options: Vec<String>,
 }
 
 /// The programs of a board.
@@ -73,8 +79,8 @@ impl<'a> Job<'a> {
         settings.check()?;
         let heights = heights(&settings.running)?;
         let (surface, picture, strict) = (None, None, false);
-        let named = Vec::new();
-        Ok(Job { machine, settings, tolerances, heights, surface, named, picture, strict })
+        let (named, options) = (Vec::new(), Vec::new());
+        Ok(Job { machine, settings, tolerances, heights, surface, named, picture, strict, options })
     }
 
     /// Writes the programs of the board that `board` is (a folder of files, some files, a board of KiCad's, a model) and
@@ -84,6 +90,93 @@ impl<'a> Job<'a> {
     /// What is wrong with the board; where none of its programs can be made, or one cannot and the job is strict, why. A program
     /// that cannot be made is left out otherwise, and all others are made.
     pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
+        let running = &self.settings.running;
+        let Begun { shop, tasks, mut left_out, mut warnings, layers, files } =
+            self.begun(board, watch)?;
+        let mut programs = Vec::with_capacity(tasks.len() + 1);
+        if let Some(grid) = running.probe.filter(|_| !running.on_control) {
+            let probing = shop.probing(grid)?;
+            if probing.posted.account.verdict != Verdict::Done {
+                return Err(probing.posted.account.into());
+            }
+            programs.push(probing);
+        }
+        let made: Vec<_> = tasks.par_iter().map(|task| shop.made(task)).collect();
+        for (made, task) in made.into_iter().zip(tasks) {
+            let part = task.part;
+            let (posted, picture) = match made {
+                Ok(made) => made,
+                Err(stop) if stop.verdict == Verdict::Cancelled => return Err(stop),
+                Err(stop) => {
+                    left_out.push(self.left_out(part, stop));
+                    continue;
+                }
+            };
+            if posted.account.verdict != Verdict::Done {
+                left_out.push(self.left_out(part, posted.account.into()));
+                continue;
+            }
+            let probes = shop.probes(part, &task.work);
+            let up = Some(plan::face(part, self.settings));
+            let Task { name, work, .. } = task;
+            let file = self.file(&name);
+            programs.push(Program {
+                name,
+                file,
+                part: Some(part),
+                up,
+                work,
+                posted,
+                picture,
+                probes,
+            });
+        }
+        for made in &programs {
+            warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&made.file)));
+        }
+        if left_out.is_empty() {
+            warnings = toolpath::held(warnings, self.strict)?;
+        }
+        let Setup { board: front, axis, .. } = shop.front;
+        Ok(Made { programs, left_out, files, layers, front, axis, warnings })
+    }
+
+    /// Proves the text of the program `name` (`front`, `drill`), which is called `file`, against what the same job makes of the board.
+    ///
+    /// # Errors
+    /// What is wrong with the board; `no-such-part` where the job makes no program of this name.
+    pub fn prove(
+        &self,
+        board: &[input::Source],
+        (name, file): (&str, &str),
+        text: &[u8],
+        watch: &dyn Watch,
+    ) -> Result<Account, Stop> {
+        let running = &self.settings.running;
+        let Begun { shop, tasks, .. } = self.begun(board, watch)?;
+        let probe = running.probe.filter(|_| name == PROBE && !running.on_control);
+        let (toolpath, place) = match (probe, tasks.iter().find(|task| task.name == name)) {
+            (Some(places), _) => (shop.probe_path(places)?, Part::ALL.len()),
+            (None, Some(task)) => (shop.toolpath(task)?, task.place),
+            (None, None) => {
+                let made: Vec<&str> = tasks.iter().map(|task| task.name.as_str()).collect();
+                let message =
+                    format!("no program of this board is called `{name}`: {}", made.join(", "));
+                let help =
+                    "name the file as it was saved, and give the settings with which it was made";
+                return Err(Diagnostic::error(Rule::NoSuchPart, message).help(help).into());
+            }
+        };
+        let machine = self.shaped(numbered(self.machine, place));
+        prove::compare(&toolpath, &machine, file, text, self.tolerances, watch)
+    }
+
+    /// Everything up to the programs: the board is read, and what is cut of it is planned.
+    fn begun<'s>(
+        &'s self,
+        board: &[input::Source],
+        watch: &'s dyn Watch,
+    ) -> Result<Begun<'s>, Stop> {
         let Job { machine, settings, .. } = *self;
         let measured = settings.running.on_control && self.surface.is_some();
         not_both("on_control", "heights", measured)?;
@@ -102,51 +195,24 @@ impl<'a> Job<'a> {
         let ((front, mut planned), (back, more)) = (front?, back?);
         planned.extend(more);
         planned.sort_by_key(|(part, _)| plan::order(*part, settings));
-        let (works, mut left_out) = self.divided(planned)?;
+        let (works, left_out) = self.divided(planned)?;
         warnings.extend(plan::late_pins(&parts, settings));
         let rack = Rack::of(&works);
         let is_turned = works.iter().any(|(part, _)| plan::face(*part, settings) == Face::Back);
         watch.begin("writing and proving")?;
         let shop = Shop { job: self, front, back, is_turned, rack, watch, surface };
         let tasks = tasks(works, running.split_tools);
-        let mut programs = Vec::with_capacity(tasks.len() + 1);
-        if let Some(grid) = running.probe.filter(|_| !running.on_control) {
-            let probing = shop.probing(grid)?;
-            if probing.posted.account.verdict != Verdict::Done {
-                return Err(probing.posted.account.into());
-            }
-            programs.push(probing);
-        }
-        let made: Vec<_> = tasks.par_iter().map(|task| shop.made(task)).collect();
-        for (made, task) in made.into_iter().zip(tasks) {
-            let part = task.part;
-            let (posted, picture) = match made {
-                Ok(made) => made,
-                Err(stop) if stop.verdict == Verdict::Cancelled => return Err(stop),
-                Err(stop) => {
-                    left_out.push(LeftOut::of(part, stop));
-                    continue;
-                }
-            };
-            if posted.account.verdict != Verdict::Done {
-                left_out.push(LeftOut { part, account: posted.account });
-                continue;
-            }
-            let probes = shop.probes(part, &task.work);
-            let up = Some(plan::face(part, settings));
-            let Task { name, work, .. } = task;
-            programs.push(Program { name, part: Some(part), up, work, posted, picture, probes });
-        }
-        for made in &programs {
-            let file = file_of(self.machine, &made.name);
-            warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&file)));
-        }
-        if left_out.is_empty() {
-            warnings = toolpath::held(warnings, self.strict)?;
-        }
         let source::Source { layers, files, .. } = source;
-        let Setup { board: front, axis, .. } = shop.front;
-        Ok(Made { programs, left_out, files, layers, front, axis, warnings })
+        Ok(Begun { shop, tasks, left_out, warnings, layers, files })
+    }
+
+    /// The file in which a program of this name is saved.
+    fn file(&self, name: &str) -> String {
+        file_of(self.machine, name)
+    }
+
+    fn left_out(&self, part: Part, stop: Stop) -> LeftOut {
+        LeftOut { part, file: self.file(part.name()), account: stop.into() }
     }
 
     /// The work of programs, apart from those that cannot be made.
@@ -158,7 +224,7 @@ impl<'a> Job<'a> {
         for (part, work) in planned {
             match work {
                 Ok(work) => works.push((part, work)),
-                Err(findings) => left_out.push(LeftOut::of(part, Stop::invalid(findings))),
+                Err(findings) => left_out.push(self.left_out(part, Stop::invalid(findings))),
             }
         }
         let findings = || left_out.iter().flat_map(|left| &left.account.findings);
@@ -170,18 +236,46 @@ impl<'a> Job<'a> {
     }
 }
 
+impl Job<'_> {
+    /// The machine with what this job says otherwise: how long its spindle is waited for, and text of the user's.
+    fn shaped<'m>(&self, machine: Cow<'m, Machine>) -> Cow<'m, Machine> {
+        let Running { spin_up, text: [before, after], .. } = &self.settings.running;
+        if spin_up.is_none() && before.is_empty() && after.is_empty() {
+            return machine;
+        }
+        let mut machine = machine.into_owned();
+        machine.spindle.dwell = spin_up.unwrap_or(machine.spindle.dwell);
+        if let Some(block) = machine.blocks.get_mut("program_start").filter(|_| !before.is_empty())
+        {
+            block.text = format!("{}\n{}\n", block.text.trim_end_matches('\n'), plain(before));
+        }
+        if let Some(block) = machine.blocks.get_mut("program_end").filter(|_| !after.is_empty()) {
+            block.text = format!("{}\n{}", plain(after), block.text);
+        }
+        Cow::Owned(machine)
+    }
+}
+
+/// A text as a block that is written as it stands.
+fn plain(text: &str) -> String {
+    // Nothing of it is taken for the end of what stands as it is.
+    let text = text.trim_end().replace("{%", "{ %");
+    format!("{{% raw %}}{text}{{% endraw %}}")
+}
+
 impl Made {
     /// What is reported of all programs together, and of `more` that the caller has found; where nothing is saved, what is
     /// reported of the first program that is not proven.
-    pub fn account(&self, job: &Job, more: Option<Diagnostic>) -> Account {
+    pub fn account(&self, job: &Job, more: Vec<Diagnostic>) -> Account {
         let nothing = self.programs.iter().all(|made| made.up.is_none());
         if let Some(first) = self.left_out.first().filter(|_| nothing || job.strict) {
             return first.account.clone();
         }
         let mut findings = self.warnings.clone();
         findings.extend(more);
-        let report = report::of(self, job.settings, job.machine, &findings);
-        findings.extend(self.left_out.iter().flat_map(|left| left.findings(job.machine)));
+        let mut report = report::of(self, job.settings, job.machine, &findings);
+        report.data["options"] = json!(job.options);
+        findings.extend(self.left_out.iter().flat_map(LeftOut::findings));
         let verdict = if self.left_out.is_empty() { Verdict::Done } else { Verdict::Partly };
         Account { verdict, rows: report.rows, data: report.data, findings }
     }
@@ -195,10 +289,20 @@ impl Made {
         for Program { name, picture, .. } in &self.programs {
             contents.extend(picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
         }
-        let text = |made: &'a Program| (file_of(job.machine, &made.name), &made.posted.text[..]);
+        let text = |made: &'a Program| (made.file.clone(), &made.posted.text[..]);
         contents.extend(self.programs.iter().map(text));
         contents
     }
+}
+
+/// A board that is read, and what is cut of it.
+struct Begun<'a> {
+    shop: Shop<'a>,
+    tasks: Vec<Task>,
+    left_out: Vec<LeftOut>,
+    warnings: Vec<Diagnostic>,
+    layers: Vec<(String, String)>,
+    files: Vec<input::Source>,
 }
 
 /// Every program is written and proven for who watches all of them: their steps are not reported.
@@ -370,8 +474,10 @@ fn can_probe(parts: &[Part], [columns, rows]: [u32; 2], machine: &Machine) -> Re
 
 /// A program that was made.
 pub struct Program {
-    /// What it and its picture are called.
+    /// What its picture is called.
     pub name: String,
+    /// What it is called, as the control wants it.
+    pub file: String,
     /// What of the board it is about; `None` where it measures its height.
     part: Option<Part>,
     /// The side of the board that is up when it runs; `None` where it is run for either.
@@ -389,20 +495,18 @@ pub struct Program {
 pub struct LeftOut {
     /// What it is about.
     pub part: Part,
+    /// The file in which it would be saved.
+    pub file: String,
     account: Account,
 }
 
 impl LeftOut {
-    fn of(part: Part, stop: Stop) -> LeftOut {
-        LeftOut { part, account: stop.into() }
-    }
-
     /// Why, each with a file: that of the board which is wrong, or the program.
-    pub fn findings(&self, machine: &Machine) -> impl Iterator<Item = Diagnostic> {
-        let file = file_of(machine, self.part.name());
+    pub fn findings(&self) -> impl Iterator<Item = Diagnostic> {
+        let file = &self.file;
         let errors = self.account.findings.iter().filter(|found| found.is_error()).cloned();
         errors.map(move |found| match found.file.is_empty() {
-            true => found.file(&file),
+            true => found.file(file),
             false => found,
         })
     }
@@ -441,11 +545,11 @@ impl Shop<'_> {
         }
     }
 
-    /// The program of a part of the board, proven, and its picture.
-    fn made(&self, task: &Task) -> Result<(Posted, Option<Vec<u8>>), Stop> {
+    /// What the program of a part of the board is to do.
+    fn toolpath(&self, task: &Task) -> Result<Toolpath, Stop> {
         let Task { part, work, .. } = task;
         let part = *part;
-        let Setup { board, axis, .. } = self.setup(part);
+        let board = &self.setup(part).board;
         let name = format!("{}-{}", board.name, task.name);
         let number = |operation: &Operation| self.rack.number(&operation.tool.name);
         let operations: Vec<(u32, &Operation)> =
@@ -460,7 +564,14 @@ impl Shop<'_> {
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
         }
         self.name(&mut program, &task.name);
-        let toolpath = Toolpath::of_program(program, "board");
+        Ok(Toolpath::of_program(program, "board"))
+    }
+
+    /// The program of a part of the board, proven, and its picture.
+    fn made(&self, task: &Task) -> Result<(Posted, Option<Vec<u8>>), Stop> {
+        let Task { part, work, .. } = task;
+        let Setup { board, axis, .. } = self.setup(*part);
+        let toolpath = self.toolpath(task)?;
         let format = self.job.picture;
         let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
         let picture = BoardPicture {
@@ -473,9 +584,10 @@ impl Shop<'_> {
             rest: &work.rest,
             turning: self.is_turned.then_some(*axis),
         };
+        let name = &toolpath.program.name;
         let (posted, picture) = rayon::join(
             || self.proven(&toolpath, &task.name, task.place),
-            || format.map(|format| format.bytes(drawing::board(&name, &picture))).transpose(),
+            || format.map(|format| format.bytes(drawing::board(name, &picture))).transpose(),
         );
         Ok((posted?, picture?))
     }
@@ -503,11 +615,11 @@ impl Shop<'_> {
             Err(found) => found,
         };
         let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
-        Err(found.help(help).file(file_of(self.job.machine, part.name())).into())
+        Err(found.help(help).file(self.job.file(part.name())).into())
     }
 
-    /// The program that measures the height of the board.
-    fn probing(&self, places: [u32; 2]) -> Result<Program, Stop> {
+    /// What the program does that measures the height of the board.
+    fn probe_path(&self, places: [u32; 2]) -> Result<Toolpath, Stop> {
         // It is run for either side, and for one of them the holes are there.
         let sides = [&self.front, &self.back];
         let sides = if self.is_turned { &sides[..] } else { &sides[..1] };
@@ -522,11 +634,15 @@ impl Shop<'_> {
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
         self.name(&mut program, PROBE);
-        let place = Part::ALL.len();
-        let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE, place)?;
+        Ok(Toolpath::of_program(program, "board"))
+    }
+
+    /// The program that measures the height of the board.
+    fn probing(&self, places: [u32; 2]) -> Result<Program, Stop> {
+        let posted = self.proven(&self.probe_path(places)?, PROBE, Part::ALL.len())?;
         let (work, picture, probes) = (Work::default(), None, None);
-        let name = String::from(PROBE);
-        Ok(Program { name, part: None, up: None, work, posted, picture, probes })
+        let (name, file) = (String::from(PROBE), self.job.file(PROBE));
+        Ok(Program { name, file, part: None, up: None, work, posted, picture, probes })
     }
 
     /// Controllers of robots know a program by the name of its file.
@@ -538,19 +654,17 @@ impl Shop<'_> {
 
     /// The text of a program, proven, that is so many places behind the first of all programs that a board can have.
     fn proven(&self, toolpath: &Toolpath, name: &str, place: usize) -> Result<Posted, Stop> {
+        let file = self.job.file(name);
         let Job { machine, tolerances, .. } = self.job;
-        let file = file_of(machine, name);
-        let machine = numbered(machine, place);
+        let machine = self.job.shaped(numbered(machine, place));
         post::proven(toolpath, &machine, &file, tolerances, &Quiet(self.watch))
     }
 }
 
-/// The file of the program that is called so: on a robot with the ending of its controller, and the name that the program has in it.
+/// The file of the program that is called so, as its control wants it: on a robot by the name that the program has in it.
 pub fn file_of(machine: &Machine, name: &str) -> String {
-    match robot_name(machine, name) {
-        Some(stem) => format!("{stem}.{}", machine.extension),
-        None => format!("{name}.nc"),
-    }
+    let stem = robot_name(machine, name).unwrap_or_else(|| name.to_owned());
+    format!("{stem}.{}", machine.extension)
 }
 
 fn robot_name(machine: &Machine, name: &str) -> Option<String> {

@@ -1,6 +1,6 @@
 //! What is reported of the programs of a board.
 
-use super::{Made, PROBE, Program, file_of};
+use super::{Made, PROBE, Program};
 use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
@@ -50,11 +50,11 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
             rows.push(("turn", text));
             up = face;
         }
-        rows.extend(program.rows(machine));
+        rows.extend(program.rows());
     }
     rows.extend(made.left_out.iter().map(|left| {
-        let why = left.findings(machine).next().map_or_else(String::new, |found| found.message);
-        ("left out", format!("{}: {why}", file_of(machine, left.part.name())))
+        let why = left.findings().next().map_or_else(String::new, |found| found.message);
+        ("left out", format!("{}: {why}", left.file))
     }));
     let problems = programs
         .iter()
@@ -83,7 +83,7 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
         "programs": programs.iter().map(Program::describe).collect::<Vec<_>>(),
         "left_out": made.left_out.iter().map(|left| json!({
             "name": left.part.name(),
-            "errors": left.findings(machine).collect::<Vec<_>>(),
+            "errors": left.findings().collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "warnings": warnings,
     });
@@ -118,7 +118,7 @@ fn missing(made: &Made, settings: &Settings) -> Vec<&'static str> {
 
 impl Program {
     /// A line for each tool, and what the program amounts to.
-    fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
+    fn rows(&self) -> Vec<(&'static str, String)> {
         let account = &self.posted.account;
         let data = &account.data;
         let measures = &data["source"]["measures"];
@@ -128,11 +128,7 @@ impl Program {
         let part = self.part.map_or(PROBE, Part::name);
         let cuts = operations.join(", ");
         // One of several programs of a part has a name of its own.
-        let cuts = if self.name == part {
-            cuts
-        } else {
-            format!("{}: {cuts}", file_of(machine, &self.name))
-        };
+        let cuts = if self.name == part { cuts } else { format!("{}: {cuts}", self.file) };
         let mut rows = vec![
             (part, cuts),
             (
@@ -169,6 +165,7 @@ impl Program {
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
         data["name"] = json!(self.name);
+        data["file"] = json!(self.file);
         data["up"] = json!(self.up.map(|face| face.to_string()));
         if let Some([columns, rows]) = self.probes {
             data["measures_heights"] = json!({ "columns": columns, "rows": rows });

@@ -63,8 +63,9 @@ pub fn read(
         _ => {
             let layer = |i: usize| Some(named.get(i.checked_sub(unnamed)?)?.1);
             let all = texts.iter().enumerate();
+            let unit = settings.unit;
             let all: Vec<File> =
-                all.map(|(i, (name, text))| File { name, layer: layer(i), text }).collect();
+                all.map(|(i, (name, text))| File { name, layer: layer(i), unit, text }).collect();
             let wanted = |layer| plan::needs(layer, settings);
             let (artwork, layers) =
                 pcb::board::artwork(&name, &all, wanted).map_err(Stop::invalid)?;
@@ -73,7 +74,12 @@ pub fn read(
         }
     };
     let asked = &settings.outline;
-    let artwork = artwork.outlined(asked.close_gaps, asked.board_margin).map_err(Stop::invalid)?;
+    let mut artwork =
+        artwork.outlined(asked.close_gaps, asked.board_margin).map_err(Stop::invalid)?;
+    if asked.rectangular {
+        let margin = asked.board_margin.unwrap_or(0.0);
+        artwork = artwork.rectangular(margin).map_err(Stop::invalid)?;
+    }
     Ok(Source { artwork, layers, files })
 }
 
@@ -82,6 +88,9 @@ const PLOTS: [&str; 9] = ["gbr", "ger", "gtl", "gbl", "cmp", "sol", "top", "bot"
 
 /// What the names of copies begin with that KiCad makes while a board is edited.
 const COPY: &str = "_autosave-";
+
+/// Files of settings that lie beside a board.
+pub const SETTINGS: [&str; 2] = ["toolpost.toml", "millproject"];
 
 /// Endings of boards as models.
 const MODEL: [&str; 2] = ["toml", "json"];
@@ -134,7 +143,8 @@ fn within(folder: &Path) -> Result<Vec<input::Source>, Stop> {
     for entry in entries.take(MOST_FILES + 1) {
         let path =
             entry.map_err(|error| about(format!("the folder cannot be read: {error}")))?.path();
-        if path.is_file() && !files::name(&path).starts_with(COPY) {
+        let name = files::name(&path);
+        if path.is_file() && !name.starts_with(COPY) && !SETTINGS.contains(&name.as_str()) {
             files.push(path);
         }
     }

@@ -6,8 +6,8 @@
 
 use super::copper::{Copper, Pattern};
 use super::{Board, Face, check, crop};
-use geom::Vec2;
 use geom::region::{Fill, Index, Region, RegionError, Ring};
+use geom::{Element, Vec2};
 use program::{Diagnostic, Rule};
 
 /// Copper that is drawn so far within the box around the outline stays within it, mm, whatever uniting adds to
@@ -47,9 +47,12 @@ impl Artwork {
     pub(crate) fn whole(mut self) -> Result<Artwork, Vec<Diagnostic>> {
         if !(self.is_within(&self.front) && self.is_within(&self.back)) {
             let (front, back) = (self.front.take(), self.back.take());
+            let lines = [&front, &back].map(lines);
             let (front, back) = both(|| united(Face::Front, front), || united(Face::Back, back))?;
-            for (face, (copper, joined)) in [(Face::Front, front), (Face::Back, back)] {
+            let united = [(Face::Front, front), (Face::Back, back)].into_iter().zip(lines);
+            for ((face, (copper, joined)), lines) in united {
                 self.board.side_mut(face).copper = copper;
+                self.board.side_mut(face).lines = lines;
                 self.warnings.extend(joined);
             }
         }
@@ -76,22 +79,29 @@ impl Artwork {
             && board.broken_edge.is_none()
             && let (Some(margin), Some((low, high))) = (margin, board.extents())
         {
-            let (low, high) = (low - margin, high + margin);
-            let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
-            let region =
-                Ring::polygon(&corners).and_then(|ring| Region::inside([&ring], Fill::NonZero));
-            board.outline = Some(region.map_err(|error| {
-                let message =
-                    format!("no rectangle of {margin} mm around the board can be made: {error}");
-                let help = "give another --board-margin, or the layer of the outline";
-                vec![Diagnostic::error(Rule::Outline, message).help(help)]
-            })?);
+            board.outline = Some(rectangle(low - margin, high + margin)?);
             let message = format!(
                 "no file has the edge of the board: it is a rectangle, {margin} mm around copper and holes"
             );
             let help = "give the layer of the outline where the board has another form";
             self.warnings.push(Diagnostic::warning(Rule::NoOutline, message).help(help));
         }
+        Ok(self)
+    }
+
+    /// The board as a rectangle around its edge, or else its copper and holes, that reaches `margin` mm beyond; cut-outs stay.
+    ///
+    /// # Errors
+    /// `outline` where the rectangle cannot be made.
+    pub fn rectangular(mut self, margin: f64) -> Result<Artwork, Vec<Diagnostic>> {
+        let board = &mut self.board;
+        let Some((low, high)) = board.extents() else { return Ok(self) };
+        let mut region = rectangle(low - margin, high + margin)?;
+        if let Some(outline) = &board.outline {
+            let cut = crop::filled(outline).and_then(|filled| filled.difference(outline));
+            region = cut.and_then(|cut| region.difference(&cut)).map_err(no_rectangle)?;
+        }
+        (board.outline, board.broken_edge) = (Some(region), None);
         Ok(self)
     }
 
@@ -170,11 +180,13 @@ impl Artwork {
         let index = self.board.outline.as_ref().map(Index::new);
         let side = |face: Face, pattern: Option<Pattern>| {
             let mut board = self.board.clone();
+            let drawn = lines(&pattern);
             let (copper, joined) = united(face, pattern)?;
             let placed = |found: Box<Diagnostic>| self.placed(vec![*found]);
             let mut cropped = None;
             if copper.is_some() {
                 board.side_mut(face).copper = copper;
+                board.side_mut(face).lines = drawn;
                 if let Some((edge, index)) = &edge {
                     cropped = crop::copper(&mut board, face, edge, index).map_err(placed)?;
                 }
@@ -207,6 +219,24 @@ impl Artwork {
             None => found,
         }
     }
+}
+
+/// The board between two corners.
+fn rectangle(low: Vec2, high: Vec2) -> Result<Region, Vec<Diagnostic>> {
+    let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+    let region = Ring::polygon(&corners).and_then(|ring| Region::inside([&ring], Fill::NonZero));
+    region.map_err(no_rectangle)
+}
+
+fn no_rectangle(error: RegionError) -> Vec<Diagnostic> {
+    let message = format!("no rectangle around the board can be made: {error}");
+    let help = "give another --board-margin, or the layer of the outline";
+    vec![Diagnostic::error(Rule::Outline, message).help(help)]
+}
+
+/// The middle of the lines that the copper of a side is drawn with.
+fn lines(pattern: &Option<Pattern>) -> Vec<Element> {
+    pattern.as_ref().map_or_else(Vec::new, Pattern::lines)
 }
 
 /// What the pattern of a side covers, if there is one.

@@ -64,6 +64,23 @@ impl Pattern {
         }
     }
 
+    /// The middle of the lines that it is drawn with.
+    pub(super) fn lines(&self) -> Vec<Element> {
+        match &self.drawn {
+            Drawn::Image(image) => {
+                let dark = image.objects.iter().filter(|object| object.dark);
+                dark.filter_map(|object| Some(image.stroke(object)?.0)).collect()
+            }
+            Drawn::Shapes(shapes) => {
+                let line = |shape: &Shape| match shape {
+                    Shape::Stroke(line, _) => Some(*line),
+                    Shape::Pieces(_) => None,
+                };
+                shapes.iter().filter_map(|(shape, _)| line(shape)).collect()
+            }
+        }
+    }
+
     /// What it covers, as copper of this side.
     ///
     /// # Errors

@@ -6,6 +6,7 @@
 use super::layer::{Face, Format, Layer};
 use super::outline::BrokenEdge;
 use super::{Artwork, Board, Drawn, Pattern, covered, holes, outline};
+use crate::excellon::Unit;
 use crate::{excellon, gerber};
 use program::{Diagnostic, Rule};
 use rayon::prelude::*;
@@ -17,6 +18,8 @@ pub struct File<'a> {
     pub name: &'a str,
     /// What it holds, where somebody has said so; otherwise that is found out.
     pub layer: Option<Layer>,
+    /// The unit of a drill file that does not say it.
+    pub unit: Option<Unit>,
     /// Its bytes.
     pub text: &'a [u8],
 }
@@ -182,11 +185,11 @@ impl Known<'_> {
 
     /// A board with nothing but this layer.
     fn read(&self) -> Result<Artwork, Vec<Diagnostic>> {
-        let File { name, text, .. } = *self.file;
+        let File { name, text, unit, .. } = *self.file;
         let mut artwork = Artwork::default();
         let Artwork { board, warnings, .. } = &mut artwork;
         if let (Layer::Holes(plated), Format::Excellon) = (self.layer, self.format) {
-            let reading = excellon::read(name, text)?;
+            let reading = excellon::read_in(name, text, unit)?;
             board.holes.extend(holes::of_drill(reading.drill, plated));
             warnings.extend(reading.warnings);
             return Ok(artwork);

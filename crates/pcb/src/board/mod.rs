@@ -61,6 +61,8 @@ pub struct Side {
     pub mask: Option<Region>,
     /// What is printed on it.
     pub legend: Option<Image>,
+    /// The middle of the lines that its copper is drawn with.
+    pub lines: Vec<Element>,
 }
 
 impl Board {

@@ -58,6 +58,11 @@ impl Board {
         Ok(self.placed(&Transform::NONE, by))
     }
 
+    /// The board turned counter-clockwise about the zero, by degrees.
+    pub fn rotated(&self, degrees: f64) -> Board {
+        self.placed(&Transform::new(false, degrees, 1.0), Vec2::ZERO)
+    }
+
     /// The board turned over about `axis`: the back is looked at, and so is the front.
     pub fn turned_over(&self, axis: Axis) -> Board {
         let (mirror, at) = axis.reflection();
@@ -157,6 +162,7 @@ impl Board {
         });
         for (side, more) in [(&mut self.front, other.front), (&mut self.back, other.back)] {
             take(&mut side.mask, more.mask, Region::extend);
+            side.lines.extend(more.lines);
             take(&mut side.legend, more.legend, |legend, more| legend.objects.extend(more.objects));
             take(&mut side.copper, more.copper, |copper, more| {
                 copper.region.extend(more.region);
@@ -176,6 +182,7 @@ impl Board {
                 .map(|copper| Copper { region: place(&copper.region), nets: copper.nets.clone() }),
             mask: side.mask.as_ref().map(place),
             legend: side.legend.as_ref().map(|image| image.placed(transform, at)),
+            lines: side.lines.iter().map(|line| transform.element(line, at)).collect(),
         };
         let edge = |edge: &BrokenEdge| {
             let mut edge = edge.clone();
@@ -216,6 +223,7 @@ impl Board {
         let rings = regions.flat_map(|region| region.rings());
         let printed = sides.iter().filter_map(|side| side.legend.as_ref());
         rings.map(|ring| ring.elements().len()).sum::<usize>()
+            + sides.iter().map(|side| side.lines.len()).sum::<usize>()
             + printed.map(|image| image.objects.len()).sum::<usize>()
             + self.holes.len()
     }

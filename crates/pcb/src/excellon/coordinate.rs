@@ -17,8 +17,10 @@ pub(super) enum Zeros {
 
 /// The unit of lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Unit {
+pub enum Unit {
+    /// Inches.
     Inch,
+    /// Millimetres.
     Metric,
 }
 
@@ -105,7 +107,7 @@ impl Notation {
 
     fn unit(&self) -> Outcome<Unit> {
         self.unit.ok_or_else(|| {
-            let help = "say METRIC or INCH in the header";
+            let help = "say METRIC or INCH in the header, or --unit mm or --unit inch";
             fault(Rule::NoUnit, "a length, but the file does not say its unit", help)
         })
     }

@@ -14,6 +14,8 @@ mod route;
 mod tools;
 mod words;
 
+pub use coordinate::Unit;
+
 use crate::contour::{Contour, Piece};
 use crate::stroke::Pen;
 use crate::{HoleShape, Transform};
@@ -95,5 +97,17 @@ pub struct Reading {
 /// # Errors
 /// Every error found, at most twenty, in the order of their lines. There is no partial result.
 pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
-    reader::read(file_name, text)
+    read_in(file_name, text, None)
+}
+
+/// The same of a file that is in `unit` where it does not say so itself.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_in(
+    file_name: &str,
+    text: &[u8],
+    unit: Option<Unit>,
+) -> Result<Reading, Vec<Diagnostic>> {
+    reader::read(file_name, text, unit)
 }

@@ -47,7 +47,11 @@ struct Reader<'a> {
 }
 
 /// Reads a file; see [`super::read`].
-pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
+pub(super) fn read(
+    file_name: &str,
+    text: &[u8],
+    unit: Option<Unit>,
+) -> Result<Reading, Vec<Diagnostic>> {
     let text = encoding::without_mark(text);
     let evidence = Evidence::of(text);
     let mut reader = Reader {
@@ -55,7 +59,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
         location: Location::default(),
         cuts: Vec::new(),
         tools: Tools::of_file(file_name),
-        notation: evidence.comments,
+        notation: Notation { unit: evidence.comments.unit.or(unit), ..evidence.comments },
         evidence,
         header: false,
         incremental: false,

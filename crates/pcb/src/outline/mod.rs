@@ -14,9 +14,9 @@ use crate::isolation::Direction;
 use crate::report::{Fault, Outcome, fault};
 use crate::setting;
 use crate::tour::Tour;
-use crate::{Cut, MERGED, Operation, Path, Segment, Tool, depths};
-use geom::Vec2;
+use crate::{Cut, MERGED, Operation, Path, SAME, Segment, Tool, depths};
 use geom::region::{Fill, Region, RegionError, Ring};
+use geom::{Element, Vec2};
 use program::{Diagnostic, Rule};
 
 /// How a board is cut out.
@@ -34,6 +34,8 @@ pub struct Outline {
     pub direction: Direction,
     /// What holds the pieces; `None` where something else does.
     pub tabs: Option<Tabs>,
+    /// Where tabs are put by hand, mm: each on the nearest contour, which has no others then.
+    pub tabs_at: Vec<Vec2>,
     /// Where the tool comes from, mm.
     pub from: Vec2,
 }
@@ -95,7 +97,10 @@ impl Outline {
             for path in tour.of_paths(&contours) {
                 let Some(contour) = path.merged(MERGED) else { continue };
                 let mut spans = Vec::new();
-                if let Some(tabs) = self.tabs.filter(|_| leaves_a_piece(&contour, width)) {
+                let by_hand: Vec<Vec2> = self.by_hand(&path, &grown);
+                if let Some(tabs) = self.tabs.filter(|_| !by_hand.is_empty()) {
+                    spans = tabs.spans_at(&contour, width, &by_hand);
+                } else if let Some(tabs) = self.tabs.filter(|_| leaves_a_piece(&contour, width)) {
                     spans = tabs.spans(&contour, width, &mut warnings);
                 }
                 let cut = self.contour(&tabs::parted(&contour, &spans, path.start()), &depths);
@@ -105,6 +110,19 @@ impl Outline {
         }
         let operation = Operation { name: "outline".to_owned(), tool: self.tool.clone(), cuts };
         Ok(CutOut { operation, warnings })
+    }
+
+    /// The tabs that are put on a contour by hand: those to which it is nearest.
+    fn by_hand(&self, contour: &Path, grown: &Region) -> Vec<Vec2> {
+        let away = |elements: &[Element], at: Vec2| {
+            elements.iter().map(|element| element.away(at)).fold(f64::INFINITY, f64::min)
+        };
+        let all = |at: Vec2| grown.rings().map(move |ring| away(ring.elements(), at));
+        let is_nearest = |at: &&Vec2| {
+            let nearest = all(**at).fold(f64::INFINITY, f64::min);
+            away(contour.elements(), **at) <= nearest + SAME
+        };
+        self.tabs_at.iter().filter(is_nearest).copied().collect()
     }
 
     /// Once around at each depth, over the tabs.

@@ -60,6 +60,30 @@ impl Tabs {
         Ok(())
     }
 
+    /// Where along a closed contour of a tool of `width` mm tabs are whose middles are nearest to these places, from and to, mm
+    /// from its start.
+    pub(super) fn spans_at(&self, contour: &Path, width: f64, places: &[Vec2]) -> Vec<(f64, f64)> {
+        let length = contour.length();
+        let half = (self.width + width).min(length / 2.0) / 2.0;
+        let mut spans = Vec::with_capacity(places.len());
+        for place in places {
+            let at = contour.nearest(*place);
+            let elements = contour.elements();
+            let before: f64 = elements.iter().take(at.element).map(Element::length).sum();
+            let within = elements.get(at.element).map_or(0.0, |element| element.length() * at.t);
+            let (from, to) = (before + within - half, before + within + half);
+            spans.push((from.max(0.0), to.min(length)));
+            // Around the start of the contour.
+            if from < 0.0 {
+                spans.push((length + from, length));
+            }
+            if to > length {
+                spans.push((0.0, to - length));
+            }
+        }
+        spans
+    }
+
     /// Where along a closed contour of a tool of `width` mm the tabs are, from and to, mm from its
     /// start, in order: on straight pieces, as evenly as these let them be.
     pub(super) fn spans(

@@ -1,6 +1,7 @@
 //! What a user asks for: which programs, by which tools, how deep, how fast.
 
 use crate::board::Face;
+use crate::excellon::Unit;
 use crate::isolation::{Direction, Narrow};
 use geom::Vec2;
 use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, needs, not_both, within};
@@ -10,6 +11,8 @@ use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, needs, not_both, within};
 pub struct Settings {
     /// What to make; nothing: all that the board has and that tools are given for.
     pub only: Vec<Part>,
+    /// The unit of drill files that do not say it.
+    pub unit: Option<Unit>,
     /// How copper is isolated.
     pub isolation: Isolation,
     /// What else is cut of copper, mask and legend.
@@ -36,6 +39,9 @@ const WIDEST_GAP: f64 = 10.0;
 /// The most times around, and tabs.
 const MOST: f64 = 100.0;
 
+/// The longest start of a spindle, s.
+const LONGEST_START: f64 = 600.0;
+
 /// The most columns and rows.
 const MOST_LINES: f64 = 1000.0;
 
@@ -45,13 +51,18 @@ impl Settings {
     /// # Errors
     /// `setting`, with the name of the first that does not; two settings that exclude each other, or one that has no meaning without another.
     pub fn check(&self) -> Result<(), Box<Diagnostic>> {
-        let Settings { only: _, isolation, clearing, drilling, outline, placing, running } = self;
+        let Settings { only: _, unit: _, isolation, clearing, drilling, outline, placing, running } =
+            self;
         let given = |name, value: Option<f64>, low| (name, value.unwrap_or(low), low, MOST_SETTING);
         let lines = |name, [a, b]: [u32; 2]| [a, b].map(|n| (name, f64::from(n), 1.0, MOST_LINES));
         let widths =
             clearing.clear.iter().map(|width| ("clear", *width, LEAST_SETTING, MOST_SETTING));
         let drills =
             drilling.drills.iter().map(|width| ("drills", *width, LEAST_SETTING, MOST_SETTING));
+        let wider =
+            isolation.wider.iter().map(|width| ("tool", *width, LEAST_SETTING, MOST_SETTING));
+        let tabs = outline.tab_at.iter().flat_map(|at| at.to_array());
+        let tabs = tabs.map(|value| ("tab_at", value, -MOST_SETTING, MOST_SETTING));
         let corner = placing.corner.unwrap_or_default();
         let all = [
             given("tool", isolation.tool, LEAST_SETTING),
@@ -61,12 +72,14 @@ impl Settings {
             given("step", isolation.step, THINNEST),
             ("passes", f64::from(isolation.passes), 1.0, MOST),
             ("overlap", isolation.overlap, 0.0, 0.95),
+            given("isolation_width", isolation.isolation_width, LEAST_SETTING),
             ("margin", clearing.margin, 0.0, MOST_SETTING),
             given("mask_tool", clearing.mask_tool, LEAST_SETTING),
             given("legend_tool", clearing.legend_tool, LEAST_SETTING),
             ("engrave", clearing.engrave, LEAST_SETTING, MOST_SETTING),
             ("drill_tolerance", drilling.drill_tolerance, 0.0, MOST_SETTING),
             given("hole_mill", drilling.hole_mill, LEAST_SETTING),
+            given("mill_holes_over", drilling.mill_holes_over, 0.0),
             given("peck", drilling.peck, THINNEST),
             ("outline_tool", outline.outline_tool, LEAST_SETTING, MOST_SETTING),
             ("outline_step", outline.outline_step, THINNEST, MOST_SETTING),
@@ -77,6 +90,7 @@ impl Settings {
             given("board_margin", outline.board_margin, 0.0),
             ("thickness", placing.thickness, LEAST_SETTING, MOST_SETTING),
             ("through", placing.through, 0.0, MOST_SETTING),
+            ("rotate", placing.rotate, -360.0, 360.0),
             ("corner", corner.x, -MOST_SETTING, MOST_SETTING),
             ("corner", corner.y, -MOST_SETTING, MOST_SETTING),
             given("alignment", placing.alignment, LEAST_SETTING),
@@ -86,12 +100,14 @@ impl Settings {
             ("drill_feed", running.drill_feed, LEAST_SETTING, MOST_SETTING),
             ("outline_feed", running.outline_feed, LEAST_SETTING, MOST_SETTING),
             given("speed", running.speed, LEAST_SETTING),
+            ("spin_up", running.spin_up.unwrap_or(0.0), 0.0, LONGEST_START),
             ("travel", running.travel, LEAST_SETTING, MOST_SETTING),
             ("approach", running.approach, LEAST_SETTING, MOST_SETTING),
         ];
         let grids = lines("panel", placing.panel.unwrap_or([1, 1])).into_iter();
         let grids = grids.chain(lines("probe", running.probe.unwrap_or([1, 1])));
-        for (name, value, low, high) in all.into_iter().chain(widths).chain(drills).chain(grids) {
+        let lists = widths.chain(drills).chain(wider).chain(tabs).chain(grids);
+        for (name, value, low, high) in all.into_iter().chain(lists) {
             within(name, value, low, high)?;
         }
         let default = Settings::default();
@@ -99,6 +115,16 @@ impl Settings {
         not_both("corner", "as_drawn", placing.corner.is_some() && placing.as_drawn)?;
         let tip = isolation.tip != default.isolation.tip;
         needs("tip", "vee", tip && isolation.vee.is_none())?;
+        let passes = isolation.passes != default.isolation.passes;
+        not_both("passes", "isolation_width", passes && isolation.isolation_width.is_some())?;
+        let is_around = isolation.isolate == Isolate::Contours;
+        let width = isolation.isolation_width.is_some();
+        not_both("isolate", "isolation_width", !is_around && width)?;
+        not_both("isolate", "several tools", !is_around && !isolation.wider.is_empty())?;
+        not_both("isolate", "invert", !is_around && isolation.invert)?;
+        not_both("clear", "invert", !clearing.clear.is_empty() && isolation.invert)?;
+        let over = drilling.mill_holes_over.is_some();
+        needs("mill_holes_over", "hole_mill", over && drilling.hole_mill.is_none())?;
         let margin = clearing.margin != default.clearing.margin;
         needs("margin", "clear", margin && clearing.clear.is_empty())?;
         let spacing = placing.spacing != default.placing.spacing;
@@ -187,6 +213,9 @@ impl Part {
 /// How copper is isolated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Isolation {
+    /// Widths of end mills that cut around copper before `tool` or `vee`, the widest first, mm: each as far as it goes in, the next
+    /// one what is left.
+    pub wider: Vec<f64>,
     /// Width of the end mill that cuts around copper, mm.
     pub tool: Option<f64>,
     /// Angle between the edges of a V-bit that does it, degrees; its width follows from `tip` and `depth`.
@@ -199,6 +228,8 @@ pub struct Isolation {
     pub step: Option<f64>,
     /// How often around, each time farther out.
     pub passes: u32,
+    /// How wide around copper all passes together cut, mm, in place of a number of passes.
+    pub isolation_width: Option<f64>,
     /// Which part of the width passes overlap.
     pub overlap: f64,
     /// In which direction around.
@@ -207,21 +238,26 @@ pub struct Isolation {
     pub narrow: Narrow,
     /// Where the cuts are.
     pub isolate: Isolate,
+    /// Whether what is drawn is cut away, and all else of the board stays.
+    pub invert: bool,
 }
 
 impl Default for Isolation {
     fn default() -> Isolation {
         Isolation {
+            wider: Vec::new(),
             tool: None,
             vee: None,
             tip: 0.1,
             depth: 0.1,
             step: None,
             passes: 1,
+            isolation_width: None,
             overlap: 0.25,
             direction: Direction::Climb,
             narrow: Narrow::Bite,
             isolate: Isolate::Contours,
+            invert: false,
         }
     }
 }
@@ -233,6 +269,8 @@ pub enum Isolate {
     Contours,
     /// In the middle between nets: they keep all copper that is nearer to them than to others.
     Middle,
+    /// Along the middle of the lines that copper is drawn with, whatever their width.
+    Lines,
 }
 
 /// What else is cut of copper, mask and legend.
@@ -271,6 +309,8 @@ pub struct Drilling {
     pub drill_tolerance: f64,
     /// Width of the end mill for holes without a drill, for slots and routes, mm.
     pub hole_mill: Option<f64>,
+    /// Holes so wide and wider are milled with `hole_mill` though there is a drill, mm.
+    pub mill_holes_over: Option<f64>,
     /// How deep a drill goes at once, mm; `None`: through.
     pub peck: Option<f64>,
     /// From which side holes and edges are cut.
@@ -283,6 +323,7 @@ impl Default for Drilling {
             drills: Vec::new(),
             drill_tolerance: 0.05,
             hole_mill: None,
+            mill_holes_over: None,
             peck: None,
             from: Face::Front,
         }
@@ -298,6 +339,8 @@ pub struct Outline {
     pub outline_step: f64,
     /// How many tabs hold the board.
     pub tabs: u32,
+    /// Where tabs are put by hand, mm, as the program has it: each on the nearest contour, whose other tabs are left out.
+    pub tab_at: Vec<Vec2>,
     /// How wide a tab is, mm.
     pub tab_width: f64,
     /// How high a tab is, mm.
@@ -307,6 +350,8 @@ pub struct Outline {
     /// How far the board reaches beyond its copper and holes where no file has its edge, mm: it is a rectangle then. `None`: it
     /// has no edge.
     pub board_margin: Option<f64>,
+    /// Whether the board is a rectangle around its edge, `board_margin` larger, whatever form that has; its cut-outs stay.
+    pub rectangular: bool,
 }
 
 impl Default for Outline {
@@ -315,10 +360,12 @@ impl Default for Outline {
             outline_tool: 2.0,
             outline_step: 0.5,
             tabs: 4,
+            tab_at: Vec::new(),
             tab_width: 2.0,
             tab_height: 0.6,
             close_gaps: 0.3,
             board_margin: None,
+            rectangular: false,
         }
     }
 }
@@ -330,6 +377,8 @@ pub struct Placing {
     pub thickness: f64,
     /// How far drills and mills go through it, mm.
     pub through: f64,
+    /// By how much the board is turned counter-clockwise before it is put there, degrees.
+    pub rotate: f64,
     /// Where the lower left corner of the board is put, mm; `None`: at 0, 0.
     pub corner: Option<Vec2>,
     /// Whether the board stays where its files have it.
@@ -349,6 +398,7 @@ impl Default for Placing {
         Placing {
             thickness: 1.6,
             through: 0.2,
+            rotate: 0.0,
             corner: None,
             as_drawn: false,
             turn: Turn::Y,
@@ -381,6 +431,10 @@ pub struct Running {
     pub outline_feed: f64,
     /// Speed of the spindle, 1/min; `None`: 10000, or what the machine has.
     pub speed: Option<f64>,
+    /// How long each start of the spindle is waited for, s; `None`: as the machine's file says.
+    pub spin_up: Option<f64>,
+    /// What each program begins with behind the machine's own beginning, and ends with before its end: blocks of its control.
+    pub text: [String; 2],
     /// Height of rapid moves over the board, mm.
     pub travel: f64,
     /// Height from which tools feed, mm.
@@ -401,6 +455,8 @@ impl Default for Running {
             drill_feed: 100.0,
             outline_feed: 150.0,
             speed: None,
+            spin_up: None,
+            text: [String::new(), String::new()],
             travel: 2.0,
             approach: 0.5,
             probe: None,

@@ -27,6 +27,7 @@ impl Setup {
     /// Where it cannot be put there.
     pub fn of(face: Face, board: Board, settings: &Settings) -> Result<Setup, Box<Diagnostic>> {
         let placing = &settings.placing;
+        let board = if placing.rotate == 0.0 { board } else { board.rotated(placing.rotate) };
         let board = match placing.panel {
             Some([columns, rows]) => {
                 board.panel(columns as usize, rows as usize, Vec2::splat(placing.spacing))?

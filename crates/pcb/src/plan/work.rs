@@ -28,6 +28,18 @@ const JOINED: f64 = 0.002;
 /// How high may be what stays between the holes of a slot along its wall, mm.
 const SCALLOP: f64 = 0.02;
 
+/// How much of what a wider tool has taken the next one goes into, so that nothing stays between the two, mm.
+const TOUCHED: f64 = 0.02;
+
+/// How far apart what was worked out one after the other may be, mm.
+const HAIR: f64 = 0.003;
+
+/// The most times around.
+const MOST_PASSES: f64 = 100.0;
+
+/// Which part of a pass may be missing to a width that is asked for.
+const AS_WIDE: f64 = 1e-6;
+
 /// Which part of their width the rings overlap that clear an area.
 const RINGS_OVERLAP: f64 = 0.4;
 
@@ -150,13 +162,21 @@ impl Worker<'_> {
         let detour = running.travel + running.feed * down / running.plunge;
         let (lines, dots) = match settings.isolate {
             Isolate::Contours => {
-                let (paths, around) = self.around(work, copper, bit.cutter)?;
+                let inverted = settings.invert.then(|| inverted(copper, board)).transpose()?;
+                let (copper, area) = match &inverted {
+                    Some((inverted, area)) => (inverted, Some(area)),
+                    None => (copper, None),
+                };
+                let rest = self.by_wider(work, copper, area, width, &depths, detour)?;
+                let area = rest.as_ref().or(area);
+                let (paths, around) = self.around(work, copper, area, bit.cutter)?;
                 let (lines, dots) = merged(&linking::trails(&paths, detour));
                 (linking::linked(&lines, &around, detour), dots)
             }
             Isolate::Middle => {
                 merged(&linking::trails(&self.between(work, copper, board, width)?, detour))
             }
+            Isolate::Lines => merged(&linking::trails(&along_lines(work, board)?, detour)),
         };
         work.operations.push(Operation {
             name: format!("isolation, {}", bit.name),
@@ -174,15 +194,55 @@ impl Worker<'_> {
         Ok(())
     }
 
-    /// The paths around copper, and what the middle of the tool stays out of.
-    fn around(
+    /// Isolates by each of the wider tools as far as it goes in; answers where the middle of the one that cuts `width` mm has
+    /// still to go, `None` where there is no wider one.
+    fn by_wider(
         &self,
         work: &mut Work,
         copper: &Copper,
-        cutter: Cutter,
-    ) -> Result<(Vec<Path>, Region), Vec<Diagnostic>> {
+        area: Option<&Region>,
+        width: f64,
+        depths: &[f64],
+        detour: f64,
+    ) -> Result<Option<Region>, Vec<Diagnostic>> {
+        let wider = &self.asked.isolation.wider;
+        let narrower = wider.iter().skip(1).copied().chain([width]);
+        let mut taken = copper.region.clone();
+        let mut left: Option<Region> = None;
+        for (tool, next) in wider.iter().zip(narrower) {
+            if *tool <= next {
+                let message = format!("{tool} mm is not wider than the next tool, {next:.3} mm");
+                let help = "give the widest first: what one leaves, the next cuts";
+                return Err(vec![Diagnostic::error(Rule::ToolWidth, message).help(help)]);
+            }
+            let mill = self.end_mill(*tool);
+            let isolation = Isolation { narrow: Narrow::LeaveOut, ..self.isolation(mill.cutter)? };
+            let isolated = isolation.isolate(copper, left.as_ref().or(area))?;
+            let (lines, dots) = merged(&linking::trails(&isolated.paths, detour));
+            let lines = linking::linked(&lines, &isolated.around, detour);
+            work.operations.push(Operation {
+                name: format!("isolation, {}", mill.name),
+                tool: mill,
+                cuts: cuts(&lines, &dots, *tool, depths),
+            });
+            let farther = tool * (isolation.passes - 1) as f64 * (1.0 - isolation.overlap);
+            let swept = swept(&isolated.around, *tool, farther);
+            let rest = swept.and_then(|swept| {
+                taken = taken.union(&swept)?;
+                rest(&taken, *tool, next, area)
+            });
+            left = Some(rest.map_err(|error| too_large(&error))?);
+        }
+        Ok(left)
+    }
+
+    /// How copper is isolated by a tool.
+    ///
+    /// # Errors
+    /// `passes` where it would have to go around too often.
+    fn isolation(&self, cutter: Cutter) -> Result<Isolation, Vec<Diagnostic>> {
         let settings = &self.asked.isolation;
-        let isolation = Isolation {
+        let mut isolation = Isolation {
             cutter,
             depth: settings.depth,
             passes: settings.passes as usize,
@@ -190,7 +250,32 @@ impl Worker<'_> {
             direction: self.direction(),
             narrow: settings.narrow,
         };
-        let isolated = isolation.isolate(copper, None)?;
+        if let Some(wanted) = settings.isolation_width {
+            let width = isolation.width();
+            let more = (wanted - width) / (width * (1.0 - settings.overlap));
+            if more > MOST_PASSES {
+                let message = format!(
+                    "a cut of {width:.3} mm makes no isolation of {wanted} mm in {MOST_PASSES} times around"
+                );
+                let help =
+                    "a wider tool, or --clear with one that takes away all copper between nets";
+                return Err(vec![Diagnostic::error(Rule::Passes, message).help(help)]);
+            }
+            isolation.passes = 1 + (more - AS_WIDE).ceil().max(0.0) as usize;
+        }
+        Ok(isolation)
+    }
+
+    /// The paths around copper, and what the middle of the tool stays out of.
+    fn around(
+        &self,
+        work: &mut Work,
+        copper: &Copper,
+        area: Option<&Region>,
+        cutter: Cutter,
+    ) -> Result<(Vec<Path>, Region), Vec<Diagnostic>> {
+        let isolation = self.isolation(cutter)?;
+        let isolated = isolation.isolate(copper, area)?;
         let Isolated { paths, narrow, slots, unreached, around, is_around_all, severed } = isolated;
         let width = isolation.width();
         self.narrow(work, copper, &narrow, width, is_around_all)?;
@@ -358,7 +443,7 @@ impl Worker<'_> {
             tool: Tool { feed: running.outline_feed, ..self.end_mill(diameter) },
             step: self.asked.outline.outline_step,
             direction: self.direction(),
-            instead: f64::INFINITY,
+            instead: settings.mill_holes_over.unwrap_or(f64::INFINITY),
         });
         let drilling = Drilling {
             thickness: placing.thickness,
@@ -390,11 +475,12 @@ impl Worker<'_> {
             below: placing.through,
             step: settings.outline_step,
             direction: self.direction(),
-            tabs: (settings.tabs > 0).then_some(Tabs {
+            tabs: (settings.tabs > 0 || !settings.tab_at.is_empty()).then_some(Tabs {
                 count: settings.tabs as usize,
                 width: settings.tab_width,
                 height: settings.tab_height,
             }),
+            tabs_at: settings.tab_at.clone(),
             from: Vec2::ZERO,
         };
         let too_large = |error: RegionError| {
@@ -691,6 +777,76 @@ fn area(board: &Board) -> Result<Region, Vec<Diagnostic>> {
     let message = "no file says where the board ends";
     let help = "give the layer of its outline too, or --board-margin for a rectangle around copper and holes";
     Err(vec![Diagnostic::error(Rule::NoOutline, message).help(help)])
+}
+
+/// What a tool of `width` mm takes away around copper, from where its middle stays out of `around`, and `farther` mm beyond.
+fn swept(around: &Region, width: f64, farther: f64) -> Result<Region, RegionError> {
+    let outer = around.offset(farther + width / 2.0)?;
+    outer.difference(&around.offset(-width / 2.0)?)
+}
+
+/// Where the middle of a tool of `width` mm has still to go, within `area` where one is given, for everything to be cut that it
+/// reaches and that is not `taken` by one of `wider` mm, or copper.
+fn rest(
+    taken: &Region,
+    wider: f64,
+    width: f64,
+    area: Option<&Region>,
+) -> Result<Region, RegionError> {
+    // What is a hair apart is together.
+    let covered = taken.offset(HAIR)?.offset(-HAIR - TOUCHED - width / 2.0)?;
+    let (low, high) = taken.extents().unwrap_or_default();
+    let (low, high) = (low - wider, high + wider);
+    let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+    let all = Region::inside([&Ring::polygon(&corners)?], Fill::NonZero)?;
+    let rest = all.difference(&covered)?;
+    match area {
+        Some(area) => rest.intersection(area),
+        None => Ok(rest),
+    }
+}
+
+/// What is not copper of a board as its copper, and where there is board: within the outline, or the box around its copper.
+fn inverted(copper: &Copper, board: &Board) -> Result<(Copper, Region), Vec<Diagnostic>> {
+    let area = match &board.outline {
+        Some(outline) => Ok(outline.clone()),
+        None => {
+            let (low, high) = copper.region.extents().unwrap_or_default();
+            let corners = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+            Ring::polygon(&corners).and_then(|ring| Region::inside([&ring], Fill::NonZero))
+        }
+    };
+    let inverted = area.and_then(|area| Ok((area.difference(&copper.region)?, area)));
+    let (region, area) = inverted.map_err(|error| too_large(&error))?;
+    let nets = vec![None; region.islands().len()];
+    Ok((Copper { region, nets }, area))
+}
+
+/// The lines with which the copper of a side is drawn, those that go on from each other in one.
+///
+/// # Errors
+/// `no-such-part` where no line is drawn.
+fn along_lines(work: &mut Work, board: &Board) -> Result<Vec<Path>, Vec<Diagnostic>> {
+    let lines = &board.front.lines;
+    if lines.is_empty() {
+        let message =
+            "the copper of this side is drawn with no lines, and --isolate lines cuts along them";
+        let help = "leave it out: then it is cut around the copper";
+        return Err(vec![Diagnostic::error(Rule::NoSuchPart, message).help(help)]);
+    }
+    let message = format!(
+        "{} of the copper cut along the middle: pads and areas are not cut, and no net is isolated",
+        counted(lines.len(), "line")
+    );
+    work.warnings.push(
+        Diagnostic::warning(Rule::LinesOnly, message).help("nothing to do, if this is a drawing"),
+    );
+    Ok(lines.iter().filter_map(|line| Path::new(vec![*line])).collect())
+}
+
+fn too_large(error: &RegionError) -> Vec<Diagnostic> {
+    let finding = Diagnostic::error(Rule::BoardTooLarge, error.to_string());
+    vec![finding.help("take a part of the board")]
 }
 
 /// Whether gaps that are left out join all conductors, which are more than one, with each other.

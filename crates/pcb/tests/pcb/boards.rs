@@ -20,7 +20,7 @@ pub fn folder(folder: &Path) -> Result<Reading, Vec<Diagnostic>> {
 
 pub fn read(files: &[(&str, &[u8])]) -> Result<Reading, Vec<Diagnostic>> {
     let files: Vec<File> =
-        files.iter().map(|(name, text)| File { name, layer: None, text }).collect();
+        files.iter().map(|(name, text)| File { unit: None, name, layer: None, text }).collect();
     board::read("board", &files)
 }
 
@@ -152,8 +152,8 @@ fn a_file_is_what_it_says_or_what_its_name_says() {
 fn somebody_may_say_which_layer_it_is() {
     let (edge, copper) = (layer("", &square()), layer("", "D11*\nX10000Y10000D03*\n"));
     let files = [
-        File { name: "a.gbr", layer: Some(Layer::Outline), text: &edge },
-        File { name: "b.gbl", layer: Some(Layer::Copper(Face::Front)), text: &copper },
+        File { unit: None, name: "a.gbr", layer: Some(Layer::Outline), text: &edge },
+        File { unit: None, name: "b.gbl", layer: Some(Layer::Copper(Face::Front)), text: &copper },
     ];
     let reading = board::read("x", &files).unwrap();
     assert!(rules(&reading).is_empty() && reading.board.front.copper.is_some());
@@ -291,7 +291,7 @@ fn what_is_no_outline() {
 /// The outline of these commands with gaps of so many mm closed.
 fn mended(commands: &str, close: f64) -> Result<Reading, Vec<Diagnostic>> {
     let text = layer("", commands);
-    let files = [File { name: "edge.gko", layer: None, text: &text }];
+    let files = [File { unit: None, name: "edge.gko", layer: None, text: &text }];
     let (artwork, layers) = board::artwork("board", &files, |_| true)?;
     let (board, warnings) = artwork.outlined(close, None)?.united()?;
     Ok(Reading { board, layers, warnings })
@@ -419,7 +419,7 @@ fn how_large_a_board_is_is_known_before_its_copper_is_united() {
     let size = |front: &str, back: &str| {
         let pad = |at: &str| layer("", &format!("D11*\n{at}D03*\n"));
         let texts = [("a.gtl", pad(front)), ("a.gbl", pad(back)), ("a.gko", layer("", &square()))];
-        let file = |(name, text)| File { name, layer: None, text };
+        let file = |(name, text)| File { unit: None, name, layer: None, text };
         let files: Vec<File> =
             texts.iter().map(|(name, text)| file((*name, text.as_slice()))).collect();
         let (artwork, _) = board::artwork("board", &files, |_| true).unwrap();
@@ -502,7 +502,7 @@ fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
         ("a.drl", drill),
     ];
     let files: Vec<File> =
-        texts.iter().map(|(name, text)| File { name, layer: None, text }).collect();
+        texts.iter().map(|(name, text)| File { unit: None, name, layer: None, text }).collect();
     let (artwork, _) = board::artwork("board", &files, |_| true).unwrap();
     assert!(artwork.has_copper(Face::Front) && artwork.has_copper(Face::Back));
     let (sides, odd) = artwork.each_side(|face, board| (face, board)).unwrap();

@@ -23,6 +23,7 @@ fn outline(tabs: Option<Tabs>) -> Outline {
         step: 0.6,
         direction: Direction::Conventional,
         tabs,
+        tabs_at: Vec::new(),
         from: Vec2::new(-10.0, -10.0),
     }
 }

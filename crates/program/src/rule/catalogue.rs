@@ -903,6 +903,10 @@ rules! {
         "Moves with turning axes are split, within the tolerance."
         "nothing to do, if the tolerance suits the part; `--tolerance` sets it"
         "A five-axis move of 50 mm by 20°";
+    LinesOnly "lines-only" []
+        "The lines of the copper are cut along their middle; nothing else of it is."
+        "nothing to do for a drawing; to isolate nets leave out `--isolate lines`"
+        "`--isolate lines` for the copper of a board";
     List "list" []
         "A list of a PLY file has a length that cannot be."
         "export the body again"
@@ -1507,6 +1511,10 @@ rules! {
         "The program ends with M99, by which it begins again without end."
         "write M30 where it shall run once"
         "fanuc: `M99`";
+    ProjectKey "project-key" []
+        "Keys of a millproject that have no meaning here, or none yet: each with the reason."
+        "nothing to do where the reason is enough; else give the option that does it"
+        "`optimise=1` in a millproject";
     RParameter "r-parameter" []
         "An R parameter is out of range, or set and read in one block."
         "use R0 to R999, and set a parameter before the block that reads it"
@@ -1603,6 +1611,10 @@ rules! {
         "A setting is out of range, or two do not go together."
         "give a value within the range that is named"
         "`--tolerance 0`";
+    SettingsKey "settings-key" []
+        "A key or a value of the settings file of a board is not one of the command."
+        "the names are those of `toolpost pcb --help`, without the dashes in front"
+        "`passess = 2` in `toolpost.toml`";
     Shadowed "shadowed" []
         "Points are made below finished points that scatter their beam."
         "order by `--order fastest`"

@@ -486,7 +486,8 @@ pub struct Prove {
     /// Another value for one of the options of the machine file; may be given several times.
     #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
     pub option: Vec<(String, String)>,
-    /// File with the toolpath, as `post` takes it.
+    /// File with the toolpath, as `post` takes it; or for a program of `pcb` the board, with the report.json beside the
+    /// program, which has the options.
     #[arg(long, value_name = "SOURCE")]
     pub against: PathBuf,
     #[command(flatten)]

@@ -85,10 +85,10 @@ fn blocks_a_thousand_deep_are_a_pad() {
     front(&folder, &format!("{open}D10*\n{close}X4000Y5000D03*\nX14000Y5000D03*\n"));
     let said = call(&folder, &[]);
     assert_eq!(said.code, 0, "{said:?}");
-    let deep = folder.read("out/front.nc");
+    let deep = folder.read("out/front.gcode");
     front(&folder, FRONT);
     assert_eq!(call(&folder, &[]).code, 0);
-    assert_eq!(folder.read("out/front.nc"), deep);
+    assert_eq!(folder.read("out/front.gcode"), deep);
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn an_outline_that_is_not_closed() {
     let folder = small();
     let said = call(&folder, &[]);
     assert_eq!(said.code, 0, "{said:?}");
-    let programs = ["front.nc", "back.nc", "drill.nc"];
+    let programs = ["front.gcode", "back.gcode", "drill.gcode"];
     let whole = programs.map(|name| folder.read(&format!("out/{name}")));
     fs::remove_dir_all(folder.path().join("out")).unwrap();
     edge(&folder, &EDGE.replace("\nY0D01*", "\nY1000D01*"));
@@ -117,11 +117,11 @@ fn an_outline_that_is_not_closed() {
     // The rest of the board is made, and lies where it lies with a closed outline.
     let said = call(&folder, &[]);
     assert_eq!(said.code, 3, "{said:?}");
-    for word in words.iter().chain(&["left out", "outline.nc: the outline is not closed"]) {
+    for word in words.iter().chain(&["left out", "outline.gcode: the outline is not closed"]) {
         assert!(said.err.contains(word) || said.out.contains(word), "`{word}`: {said:?}");
     }
     assert_eq!(programs.map(|name| folder.read(&format!("out/{name}"))), whole);
-    assert!(!folder.path().join("out/outline.nc").exists());
+    assert!(!folder.path().join("out/outline.gcode").exists());
     let report = folder.read("out/report.json");
     let left_out = report.split("\"left_out\": [").nth(1).unwrap();
     for word in ["\"name\": \"outline\"", "\"rule\": \"outline-open\""] {
@@ -154,7 +154,7 @@ fn a_layer_with_nothing_on_it() {
     let names = fs::read_dir(folder.path().join("out")).unwrap();
     let mut names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names, ["back.nc", "drill.nc", "outline.nc", "report.json"]);
+    assert_eq!(names, ["back.gcode", "drill.gcode", "outline.gcode", "report.json"]);
 }
 
 #[test]
@@ -358,7 +358,7 @@ fn heights_are_not_measured_in_holes() {
     let dense = ["19x9", "--tool", "0.4"];
     let words = [
         "error[probe-in-hole]",
-        "back.nc",
+        "back.ngc",
         "X6.000 Y5.000, in the hole of 0.8 mm at X6.000 Y5.000",
         "--from back",
     ];
@@ -368,7 +368,7 @@ fn heights_are_not_measured_in_holes() {
     for (more, away) in [(&inside[..], 0.6), (&["4x3", "--vee", "90"], 1.45)] {
         let said = folder.run(&[&call[..], more].concat());
         assert_eq!(said.code, 0, "{said:?}");
-        let places = probed(&folder.read("out/back.nc"));
+        let places = probed(&folder.read("out/back.ngc"));
         let count = if more[0] == "19x3" { 57 } else { 12 };
         assert_eq!(places.len(), count, "{more:?}");
         for [x, y] in places {
@@ -380,7 +380,7 @@ fn heights_are_not_measured_in_holes() {
     // The probe of `probe.nc` is run for both sides: from the front the holes are at 4 and 14.
     let call_off = [&["pcb", "board", "-o", "off", "-m", "grbl-3018", "--probe"][..], &inside[..]];
     assert_eq!(folder.run(&call_off.concat()).code, 0);
-    let places = probed(&folder.read("off/probe.nc"));
+    let places = probed(&folder.read("off/probe.gcode"));
     let nearest = |[x, y]: &[f64; 2]| {
         [4.0, 6.0, 14.0, 16.0].map(|hole| (x - hole).hypot(y - 5.0)).into_iter().fold(9.0, f64::min)
     };

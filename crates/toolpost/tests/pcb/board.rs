@@ -115,14 +115,19 @@ impl<'a> Made<'a> {
         names.map(|name| name.as_str().unwrap().to_owned()).collect()
     }
 
+    /// The file of a program, named as its control wants it.
+    fn file(&self, part: &str) -> String {
+        format!("out/{part}.{}", machine::load(self.machine).unwrap().extension)
+    }
+
     /// The text of a program.
     pub fn text(&self, part: &str) -> String {
-        self.folder.read(&format!("out/{part}.nc"))
+        self.folder.read(&self.file(part))
     }
 
     /// The program of a part, as the control reads it.
     pub fn program(&self, part: &str) -> Program {
-        let file = self.folder.path().join(format!("out/{part}.nc"));
+        let file = self.folder.path().join(self.file(part));
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
         app::toolpath::read(&file.as_path().into(), false, &origin, None, program::Purpose::Program)
             .unwrap()

@@ -7,3 +7,4 @@ mod folder;
 mod programs;
 mod recut;
 mod scanlines;
+mod settings;

@@ -160,7 +160,7 @@ fn somebody_may_say_what_a_file_holds() {
     let call = ["pcb", "-o", "named", "-m", "grbl-3018", "--tool", "0.4", "--picture", "none"];
     let said = folder.run(&[&call[..], &named].concat());
     assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
-    assert_eq!(parts.map(|part| folder.read(&format!("named/{part}.nc"))), right);
+    assert_eq!(parts.map(|part| folder.read(&format!("named/{part}.gcode"))), right);
 }
 
 #[test]
@@ -678,7 +678,7 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
     let folder = small();
     let more = ["--tool", "0.4", "--probe", "3x3", "--on-control"];
     let made = Made::of(&folder, "board", "linuxcnc-mill", &more);
-    assert!(!folder.path().join("out/probe.nc").exists());
+    assert!(!folder.path().join("out/probe.ngc").exists());
     let plane = |x: f64, y: f64| -0.1 + 0.01 * x - 0.02 * y;
     // Unlike a plane, the heights of one place bend the surface about it.
     let bent = |x: f64, y: f64| plane(x, y) + if (x, y) == (10.0, 5.0) { 0.3 } else { 0.0 };
@@ -846,7 +846,7 @@ fn what_is_said_and_to_whom() {
     let said = folder.run(&[&["--json"], &call[..], &narrow, &["--strict"]].concat());
     assert_eq!((said.code, &said.json()["status"]), (2, &"invalid".into()));
     let said = folder.run(&call);
-    let saved = "in out: report.json, front.svg, drill.svg, back.svg, outline.svg, front.nc, drill.nc, back.nc, outline.nc";
+    let saved = "in out: report.json, front.svg, drill.svg, back.svg, outline.svg, front.gcode, drill.gcode, back.gcode, outline.gcode";
     assert!(said.out.contains(saved), "{}", said.out);
 }
 
@@ -862,9 +862,9 @@ fn a_tool_has_one_number_in_all_programs() {
         calls.map(str::to_owned).collect()
     };
     // The mill for copper, the drill, the mill for the edge, and last the probe.
-    assert_eq!((calls("front.nc"), calls("back.nc")), (vec!["T1".into()], vec!["T1".into()]));
-    assert_eq!((calls("drill.nc"), calls("outline.nc")), (vec!["T2".into()], vec!["T3".into()]));
-    assert_eq!(calls("probe.nc"), ["T4"]);
+    assert_eq!((calls("front.ngc"), calls("back.ngc")), (vec!["T1".into()], vec!["T1".into()]));
+    assert_eq!((calls("drill.ngc"), calls("outline.ngc")), (vec!["T2".into()], vec!["T3".into()]));
+    assert_eq!(calls("probe.ngc"), ["T4"]);
 }
 
 /// Programs of one number replace each other in the memory of a FANUC or Haas. Each kind has its own place, whichever of
@@ -919,7 +919,7 @@ fn programs_of_an_earlier_call_are_reported() {
     let call = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
     assert_eq!(folder.run(&call).code, 0);
     let said = folder.run(&[&call[..], &["--only", "front"]].concat());
-    let reported = "there are still drill.nc, back.nc, outline.nc";
+    let reported = "there are still drill.gcode, back.gcode, outline.gcode";
     assert!(said.code == 0 && said.err.contains(reported), "{}", said.err);
 }
 

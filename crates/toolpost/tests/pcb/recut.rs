@@ -48,10 +48,16 @@ impl Made {
         Made { report: serde_json::from_slice(&report).unwrap(), folder, machine, width, bite }
     }
 
+    /// The file of the program of a side.
+    fn file(&self, side: &str) -> std::path::PathBuf {
+        let extension = machine::load(self.machine).unwrap().extension;
+        self.folder.path().join(side).with_extension(extension)
+    }
+
     /// What a tool that is narrower by `less` mm on either side cuts for certain in the copper of a side, in the coordinates of
     /// the Gerber file.
     fn cut(&self, side: &str, lines: &Lines, less: f64) -> Lines {
-        let file = self.folder.path().join(side).with_extension("nc");
+        let file = self.file(side);
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
         let read = app::toolpath::read(
             &file.as_path().into(),
@@ -99,7 +105,7 @@ impl Made {
         let text = std::fs::read(file).unwrap();
         let image = gerber::read(&file.display().to_string(), &text).unwrap().image;
         let Some((low, high)) = image.extents() else {
-            return assert!(!self.folder.path().join(side).with_extension("nc").exists());
+            return assert!(!self.file(side).exists());
         };
         let (low, high) = (low - Vec2::splat(2.0), high + Vec2::splat(2.0));
         let none = Lines::none(low.y, high.y, STEP);

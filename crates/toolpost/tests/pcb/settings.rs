@@ -1,0 +1,370 @@
+//! What a call asks for: settings files, units, several widths, tabs by hand and the rest, as the control reads the programs.
+
+use crate::board::{CALL, EDGE, Made, call, edge, front, refused, small};
+use crate::folder::Folder;
+use std::f64::consts::TAU;
+
+/// The cut is `wide` mm, and so much of it is around both pads of 2 mm, at these distances from their edges.
+#[track_caller]
+fn around(made: &Made, rings: &[f64]) {
+    let right: f64 = rings.iter().map(|away| 2.0 * TAU * (1.0 + away)).sum();
+    let length = made.length("front");
+    // Links between the rings of a pad are gone along twice at most.
+    let most = right + 2.0 * 2.0 * rings.last().unwrap();
+    assert!((right - 0.02..most).contains(&length), "{length} mm, not {right}");
+}
+
+#[test]
+fn a_settings_file_beside_the_board_is_typed_for_the_user() {
+    let folder = small();
+    folder.write(
+        "board/toolpost.toml",
+        "# ours\ntool = \"16mil\"\ndepth = 0.15\npicture = \"none\"\nonly = [\"front\", \"drill\"]\nsplit_tools = false\n",
+    );
+    let run = |more: &[&str]| {
+        let said = folder.run(&[&["pcb", "board", "-o", "out", "-m", "grbl-3018"], more].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        said
+    };
+    // 16 mil are 0.4064 mm; the file is none of the board's.
+    let said = run(&[]);
+    assert!(
+        said.out.contains("end mill 0.4064 mm") && !said.err.contains("toolpost.toml"),
+        "{said:?}"
+    );
+    assert!(folder.read("out/front.gcode").contains("Z-0.15"));
+    assert!(!folder.path().join("out/outline.gcode").exists());
+    assert!(!folder.path().join("out/front.svg").exists());
+    // What is typed counts more, and a V-bit leaves the file's mill no meaning.
+    assert!(run(&["--tool", "0.3"]).out.contains("end mill 0.3 mm"));
+    assert!(run(&["--vee", "30"]).out.contains("V-bit 30 degrees"));
+    // Elsewhere it is named.
+    folder.write("other.toml", "tool = [0.5]\nmachine = \"grbl-3018\"\noutput = \"there\"\n");
+    let said = folder.run(&["pcb", "board", "--settings", "other.toml"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(
+        folder.read("there/front.gcode").contains("MILL_0.5")
+            || said.out.contains("end mill 0.5 mm")
+    );
+}
+
+#[test]
+fn keys_and_values_of_a_settings_file_that_are_wrong() {
+    let folder = small();
+    for (text, words) in [
+        (
+            "tool = 0.4\npassess = 2\n",
+            &["toolpost.toml:2", "settings-key", "`passess`", "passes"][..],
+        ),
+        ("tool = \"wide\"\n", &["toolpost.toml:1", "settings-key", "wide", "--tool"]),
+        ("tool = 0.4\n\npasses = [\"a\", \"b\"]\n", &["toolpost.toml:3", "settings-key"]),
+        ("tool = { a = 1 }\n", &["toolpost.toml:1", "`tool`"]),
+        ("tool = \n", &["toolpost.toml:1", "settings-key"]),
+        ("json = true\n", &["toolpost.toml:1", "`json`"]),
+        ("narrow = \"midle\"\n", &["toolpost.toml:1", "midle"]),
+    ] {
+        folder.write("board/toolpost.toml", text);
+        refused(&folder, &["pcb", "board", "-o", "out", "-m", "grbl-3018"], 2, words);
+    }
+    // Three faults are three errors.
+    folder.write("board/toolpost.toml", "a1 = 1\nb2 = 2\nc3 = 3\n");
+    let said =
+        refused(&folder, &["pcb", "board", "-o", "out", "-m", "grbl-3018"], 2, &[":1", ":2", ":3"]);
+    assert_eq!(said.err.matches("error[").count(), 3);
+}
+
+/// Inches but where `metric` or a unit says otherwise, as pcb2gcode reads them.
+#[test]
+fn a_millproject_is_imported() {
+    let folder = small();
+    folder.write(
+        "board/millproject",
+        "# of pcb2gcode\nfront=front.gbr\ndrill=holes.drl\nmill-diameters=0.4mm\nzwork=-0.002\nextra-passes=1 # twice\n\
+         mill-feed=20\nmill-speed=9000\ndrill-feed=50mm/min\ndrill-speed=8000\nzsafe=3mm\nzdrill=-1.8mm\nzchange=1\n\
+         zero-start=true\nmetricoutput=true\noptimise=1\nspinup-time=3s\nfrobnicate=7\n",
+    );
+    let file = "board/millproject";
+    let said = folder.run(&[
+        "pcb",
+        "--settings",
+        file,
+        "-o",
+        "out",
+        "-m",
+        "grbl-3018",
+        "--picture",
+        "none",
+    ]);
+    assert_eq!(said.code, 0, "{said:?}");
+    for word in [
+        "warning[project-key]",
+        "drill-speed=8000",
+        "zchange",
+        "optimise",
+        "frobnicate",
+        "metricoutput",
+        "no key that is known",
+    ] {
+        assert!(said.err.contains(word), "{word}: {}", said.err);
+    }
+    let text = folder.read("out/front.gcode");
+    // 0.002 inch deep, 20 inch/min, from 3 mm above the board; the second time around half a tool farther out.
+    for block in ["Z-0.051", "F508", "Z3", "G4 P3", "S9000"] {
+        assert!(text.contains(block), "{block}\n{text}");
+    }
+    assert!(
+        said.out.contains("front.gbr: front copper") && !said.out.contains("back copper"),
+        "{}",
+        said.out
+    );
+    let report: serde_json::Value = serde_json::from_str(&folder.read("out/report.json")).unwrap();
+    assert_eq!(report["programs"][0]["operations"][0], "isolation, end mill 0.4 mm");
+    let drill = folder.read("out/drill.gcode");
+    assert!(drill.contains("Z-1.8") && drill.contains("F50"), "{drill}");
+    for (line, word) in [
+        ("zwork\n", "key=value"),
+        ("zwork=deep\n", "`zwork=deep`"),
+        ("extra-passes=x\n", "extra-passes"),
+    ] {
+        folder.write("board/millproject", format!("front=front.gbr\n{line}"));
+        let call = ["pcb", "--settings", file, "-o", "new", "-m", "grbl-3018", "--tool", "0.4"];
+        refused(&folder, &call, 2, &["millproject:2", "settings-key", word]);
+    }
+}
+
+#[test]
+fn lengths_have_units() {
+    let folder = small();
+    for (tool, name) in
+        [("0.4mm", "0.4 mm"), ("16mil", "0.4064 mm"), ("0.02in", "0.508 mm"), ("400um", "0.4 mm")]
+    {
+        let said = folder.run(&[
+            "pcb",
+            "board",
+            "-o",
+            "out",
+            "-m",
+            "grbl-3018",
+            "--only",
+            "front",
+            "--tool",
+            tool,
+        ]);
+        assert!(said.code == 0 && said.out.contains(&format!("end mill {name}")), "{said:?}");
+    }
+    for wrong in ["0.4 feet", "mm", "0mm", "1e9in", "nan"] {
+        let said = folder.run(&["pcb", "board", "-o", "new", "-m", "grbl-3018", "--tool", wrong]);
+        assert!(said.code == 2 && said.err.contains("8mil"), "{said:?}");
+    }
+    // A drill file that says neither unit nor zeros, with a drill that may be one of 1/8 inch.
+    folder.write("board/holes.drl", "M48\nT1C0.125\n%\nT1\nX0.4Y0.2\nM30\n");
+    refused(&folder, &CALL, 2, &["error[no-unit]", "--unit"]);
+    let said = call(&folder, &["--unit", "inch", "--only", "drill", "--as-drawn"]);
+    assert!(said.code == 0 && said.out.contains("drill 3.175 mm"), "{said:?}");
+    let said = call(&folder, &["--unit", "mm", "--only", "drill"]);
+    assert!(said.code == 0 && said.out.contains("drill 0.125 mm"), "{said:?}");
+}
+
+#[test]
+fn an_isolation_is_as_wide_as_is_asked_for() {
+    let folder = small();
+    let more =
+        |width: &'static str| ["--tool", "0.4", "--isolation-width", width, "--only", "front"];
+    // Passes of 0.4 mm, 0.3 mm apart: 0.4, 0.7 and 1 mm wide.
+    around(&Made::of(&folder, "board", "grbl-3018", &more("0.3")), &[0.2]);
+    around(&Made::of(&folder, "board", "grbl-3018", &more("0.4")), &[0.2]);
+    around(&Made::of(&folder, "board", "grbl-3018", &more("0.41")), &[0.2, 0.5]);
+    around(&Made::of(&folder, "board", "grbl-3018", &more("1")), &[0.2, 0.5, 0.8]);
+    refused(
+        &folder,
+        &[&CALL[..], &["--isolation-width", "50"]].concat(),
+        2,
+        &["error[passes]", "0.400 mm"],
+    );
+    refused(
+        &folder,
+        &[&CALL[..], &["--isolation-width", "1", "--passes", "2"]].concat(),
+        2,
+        &["`passes`"],
+    );
+}
+
+/// Two pads of 2 mm, 0.3 mm apart. A mill of 0.8 mm goes around both, one of 0.2 mm into the gap, and not again all around.
+#[test]
+fn a_narrow_tool_cuts_what_a_wide_one_leaves() {
+    let folder = small();
+    front(&folder, "D10*\nX4000Y5000D03*\nX6300Y5000D03*\n");
+    let made = Made::of(&folder, "board", "grbl-3018", &["--tool", "0.8,0.2", "--only", "front"]);
+    let operations = made.operations("front");
+    assert_eq!(operations, ["isolation, end mill 0.8 mm", "isolation, end mill 0.2 mm"]);
+    assert!(!made.said.err.contains("narrow-gap"), "{}", made.said.err);
+    let cuts = made.cuts("front");
+    let of = |tool: usize| {
+        cuts.iter().filter(move |cut| cut.tool == tool).map(|cut| cut.length).sum::<f64>()
+    };
+    let (wide, narrow) = (of(1), of(2));
+    // Around each pad at 1.4 mm, but where these two circles overlap: 2 acos(1.15 / 1.4) of each.
+    let right = 2.0 * 1.4 * (TAU - 2.0 * (1.15f64 / 1.4).acos());
+    assert!((wide - right).abs() < 0.05, "{wide}, not {right}");
+    // The narrow one goes around each at 1.1 mm where a disc of 0.1 mm there is not within what the wide one took: that is
+    // up to where the wide one touches the pad in the corner between the two, and what 0.02 mm more of its disc ask for.
+    let touched = (1.15f64 / 1.4).acos();
+    let least = 2.0 * 1.1 * 2.0 * touched;
+    assert!((least..1.35 * least).contains(&narrow), "{narrow}, not {least}");
+    // It ends where it began: each net is apart from the other.
+    let gap = |cut: &&drawing::Segment| {
+        (cut.from.x - 5.15).abs() < 0.06 && (cut.from.y - 5.0).abs() < 0.3
+    };
+    assert!(cuts.iter().filter(|cut| cut.tool == 2).any(|cut| gap(&cut)));
+    let call = [&CALL[..6], &["--tool", "0.2,0.8"]].concat();
+    refused(&folder, &call, 2, &["error[tool-width]", "widest first"]);
+}
+
+/// Inverted, the pads are cut away from inside, 0.2 mm from their edges.
+#[test]
+fn what_is_drawn_can_be_cut_away_and_lines_along_their_middle() {
+    let folder = small();
+    let made =
+        Made::of(&folder, "board", "grbl-3018", &["--tool", "0.4", "--only", "front", "--invert"]);
+    made.circles("front", &[[4.0, 5.0], [14.0, 5.0]], 0.8, 0.1);
+    front(&folder, "D10*\nX4000Y5000D02*\nX14000D01*\nY8000D01*\n");
+    let lines = ["--tool", "0.4", "--only", "front", "--isolate", "lines"];
+    let made = Made::of(&folder, "board", "grbl-3018", &lines);
+    assert!((made.length("front") - 13.0).abs() < 1e-3, "{}", made.length("front"));
+    assert!(made.said.err.contains("warning[lines-only]"), "{}", made.said.err);
+    refused(
+        &folder,
+        &[&CALL[..], &["--isolate", "lines", "--only", "back", "--strict"]].concat(),
+        2,
+        &["no lines"],
+    );
+}
+
+#[test]
+fn holes_over_a_size_are_milled() {
+    let folder = small();
+    folder.write(
+        "board/holes.drl",
+        "M48\nMETRIC\nT1C0.8\nT2C3.0\n%\nT1\nX4.0Y5.0\nT2\nX14.0Y5.0\nM30\n",
+    );
+    let more = ["--only", "drill", "--hole-mill", "2", "--mill-holes-over", "2"];
+    let made = Made::of(&folder, "board", "grbl-3018", &more);
+    assert_eq!(made.operations("drill"), ["drill 0.8 mm", "mill holes"]);
+    let ends = made.cuts("drill").into_iter().flat_map(|cut| [cut.from, cut.to]);
+    let off = |end: geom::Vec3| (end.truncate().distance(geom::Vec2::new(14.0, 5.0)) - 0.5).abs();
+    assert!(ends.into_iter().all(|end| off(end) < 1e-3));
+    refused(&folder, &[&CALL[..], &["--mill-holes-over", "2"]].concat(), 2, &["`hole_mill`"]);
+}
+
+/// The mill of 2 mm goes around at 1 mm from the edge. A tab of 2 mm is under 4 mm of its path.
+#[test]
+fn tabs_are_put_by_hand() {
+    let folder = small();
+    let more = ["--only", "outline", "--tab-at", "5,-3", "--tab-at", "21,5"];
+    let made = Made::of(&folder, "board", "grbl-3018", &more);
+    let above: Vec<_> = made
+        .cuts("outline")
+        .into_iter()
+        .filter(|cut| (cut.from.z + 1.0).abs() < 1e-6 && (cut.to.z + 1.0).abs() < 1e-6)
+        .collect();
+    // At the two levels below the tabs' top each is gone over once: thickness 1.6, tabs 0.6 high.
+    let places: std::collections::BTreeSet<_> = above
+        .iter()
+        .map(|cut| cut.from.midpoint(cut.to).truncate().round().as_ivec2().to_array())
+        .collect();
+    assert_eq!(places.into_iter().collect::<Vec<_>>(), [[5, -1], [21, 5]]);
+    let length: f64 = above.iter().map(|cut| cut.length).sum();
+    assert!((length / 4.0).fract().abs() < 1e-3 || (length / 4.0).fract() > 0.999, "{length}");
+}
+
+#[test]
+fn a_board_is_cut_as_a_rectangle_and_turned() {
+    let folder = small();
+    // A corner is cut off.
+    edge(&folder, "D11*\nX0Y0D02*\nX20000D01*\nY5000D01*\nX15000Y10000D01*\nX0D01*\nY0D01*\n");
+    let whole = Made::of(
+        &folder,
+        "board",
+        "grbl-3018",
+        &["--only", "outline", "--tabs", "0", "--rectangular", "--board-margin", "1"],
+    );
+    // 22 by 12 mm, a mill of 2 mm around it, four times down: sides, and corners of 1 mm.
+    let around = 2.0 * (22.0 + 12.0) + TAU;
+    let length = whole.length("outline");
+    assert!((length - 4.0 * around).abs() < 0.05, "{length}, not {}", 4.0 * around);
+    assert_eq!(whole.report()["board"]["high_mm"][0], 22.0);
+    edge(&folder, EDGE);
+    let turned = Made::of(&folder, "board", "grbl-3018", &["--only", "drill", "--rotate", "90"]);
+    // Counter-clockwise about the lower left corner: 4, 5 goes to -5, 4, and the corner of the box is at -10, 0.
+    assert_eq!(turned.holes("drill"), [[5.0, 4.0, -1.8], [5.0, 14.0, -1.8]]);
+    assert_eq!(turned.report()["board"]["high_mm"], serde_json::json!([10.0, 20.0]));
+}
+
+#[test]
+fn a_spindle_is_waited_for_and_text_is_the_users() {
+    let folder = small();
+    let more = [
+        "--tool",
+        "0.4",
+        "--only",
+        "front",
+        "--spin-up",
+        "7",
+        "--text-before",
+        "(OURS)@G4 P0",
+        "--text-after",
+        "(BYE)",
+    ];
+    let made = Made::of(&folder, "board", "grbl-3018", &more);
+    let text = made.text("front");
+    assert!(text.contains("M3\nG4 P7\n") && !text.contains("G4 P2"), "{text}");
+    let lines: Vec<&str> = text.lines().collect();
+    let at = |line: &str| lines.iter().position(|other| *other == line).unwrap();
+    assert!(at("(OURS)") < at("T1") && at("(BYE)") < at("M30") && at("(BYE)") > at("T1"), "{text}");
+    // It is proven as everything is: what moves or switches is refused.
+    for wrong in ["G1 X9 F100", "G0 Z-1", "Q7"] {
+        let said = folder.run(&[&CALL[..], &["--only", "front", "--text-after", wrong]].concat());
+        assert_eq!(said.code, 1, "{wrong}: {said:?}");
+    }
+}
+
+/// A program that was edited is compared with its board again.
+#[test]
+fn programs_of_a_board_are_proven_again() {
+    let folder = small();
+    let made = Made::of(
+        &folder,
+        "board",
+        "grbl-3018",
+        &["--tool", "0.4", "--passes", "2", "--probe", "3x3"],
+    );
+    let _ = made;
+    let prove = |file: &str| folder.run(&["prove", file, "-m", "grbl-3018", "--against", "board"]);
+    for part in ["front", "back", "drill", "outline", "probe"] {
+        let said = prove(&format!("out/{part}.gcode"));
+        assert_eq!(said.code, 0, "{part}: {said:?}");
+        assert!(said.out.contains("match the toolpath"), "{}", said.out);
+    }
+    let text = folder.read("out/front.gcode");
+    folder.write("out/front.gcode", text.replacen("Z-0.1", "Z-0.3", 1));
+    let said = prove("out/front.gcode");
+    assert!(said.code == 1 && said.err.contains("front.gcode"), "{said:?}");
+    folder.write("out/other.gcode", &text);
+    let said = prove("out/other.gcode");
+    assert!(
+        said.code == 2 && said.err.contains("error[no-such-part]") && said.err.contains("outline"),
+        "{said:?}"
+    );
+    let alone = Folder::empty();
+    alone.write("front.gcode", &text);
+    let board = folder.path().join("board");
+    let said = alone.run(&[
+        "prove",
+        "front.gcode",
+        "-m",
+        "grbl-3018",
+        "--against",
+        &board.to_string_lossy(),
+    ]);
+    assert!(said.code == 2 && said.err.contains("report.json"), "{said:?}");
+}
