@@ -1,6 +1,11 @@
 //! A board from above and what a program does to it: copper by net, cuts as wide as their tools, holes,
 //! rapids, places with a problem.
 
+mod sheet;
+
+pub use sheet::{BoardSheet, BoardSide, board_sheet};
+
+use crate::lettering;
 use crate::paper::{COLORS, INK, RAPID, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
 use crate::trace::Trace;
 use crate::view::View;
@@ -25,19 +30,30 @@ const TOLERANCE: f64 = 0.1;
 /// The most points of all lines together: about four megabytes.
 const MAX_POINTS: usize = 500_000;
 
-/// The most lines of the legend that name tools, and problems.
-const LEGEND: (usize, usize) = (8, 10);
+/// The most places that are marked and described; of all others what stays is shaded.
+const MOST_MARKED: usize = 10;
+
+/// Where the legend begins and ends, and how wide it is, pixels.
+const LEGEND: [f64; 3] = [66.0, 690.0, 262.0];
+
+/// By how much the legend may be smaller, so that all of it has room.
+const SMALLEST: f64 = 0.55;
 
 /// The most holes that are drawn.
 const MAX_HOLES: usize = 50_000;
 
 /// How wide the ring around a problem is, pixels.
-const MARK: f64 = 9.0;
+const MARK: f64 = 15.0;
 
 /// The board without its copper.
 const BASE: &str = "#efe9d2";
 const EDGE: &str = "#8d8663";
-const HOLE: &str = "#4a4f55";
+
+/// Colours of holes, by their widths, the narrowest first.
+const HOLES: [&str; 6] = ["#4a4f55", "#7a3b2e", "#2e4f7a", "#3f6b34", "#6b3f78", "#7a6a2a"];
+
+const TAB: &str = "#111111";
+const STOCK: &str = "stroke=\"#8d8663\" stroke-width=\"1.2\" stroke-dasharray=\"7 5\"";
 const PROBLEM: &str = "#d1202f";
 const QUIET: &str = "#7b828a";
 const TURNING: &str = "stroke=\"#5b3fa0\" stroke-width=\"1.4\" stroke-dasharray=\"14 4 3 4\"";
@@ -64,6 +80,10 @@ pub struct BoardPicture<'a> {
     pub rest: &'a [Region],
     /// The line about which the board is turned over, where it is.
     pub turning: Option<Axis>,
+    /// Where tabs stay, as the path of the tool over them.
+    pub tabs: &'a [Element],
+    /// The corners of the least blank that all programs of the board need, mm.
+    pub stock: Option<(Vec2, Vec2)>,
 }
 
 /// Draws a board as SVG under a title.
@@ -93,6 +113,9 @@ impl BoardPicture<'_> {
         let mut take = |a: Vec2, b: Vec2| (low, high) = (low.min(a), high.max(b));
         let regions = [self.outline, self.copper.map(|copper| &copper.region)];
         for (a, b) in regions.into_iter().flatten().filter_map(Region::extents) {
+            take(a, b);
+        }
+        if let Some((a, b)) = self.stock {
             take(a, b);
         }
         // Coarse chords do.
@@ -187,7 +210,15 @@ impl Drawn {
     fn write(self, out: &mut String, title: &str, picture: &BoardPicture, view: &View) {
         let left = FIELD[1].x + 40.0;
         write_text(out, &shorten(title, 26), DVec2::new(left, 36.0), 11.0, INK);
-        legend(out, &self, picture, DVec2::new(left, 66.0));
+        legend(out, &self, picture, left);
+        if let Some((low, high)) = picture.stock {
+            let (a, b) = (view.at(low.extend(0.0)), view.at(high.extend(0.0)));
+            let _ = writeln!(
+                out,
+                "<path {STOCK} d=\"M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z\"/>",
+                a.x, a.y, b.x, b.y, a.x
+            );
+        }
         area(out, self.outline, BASE, EDGE);
         for (color, trace) in self.copper {
             area(out, trace, NETS[color % NETS.len()], "none");
@@ -210,13 +241,22 @@ impl Drawn {
         lines(out, self.rapids, RAPID, 0.7, "stroke-dasharray=\"50 35\"");
         turning(out, picture, view);
         area(out, self.rest, PROBLEM, PROBLEM);
-        for problem in picture.problems.iter().take(LEGEND.1) {
-            let at = view.at(problem.at.extend(0.0));
+        for tab in picture.tabs {
+            let (from, to) = (view.at(tab.start.extend(0.0)), view.at(tab.end.extend(0.0)));
             let _ = writeln!(
                 out,
-                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{MARK}\" stroke=\"{PROBLEM}\" stroke-width=\"1.6\"/>",
+                "<path stroke=\"{TAB}\" stroke-width=\"5\" stroke-linecap=\"butt\" d=\"M{:.1} {:.1}L{:.1} {:.1}\"/>",
+                from.x, from.y, to.x, to.y
+            );
+        }
+        for (i, place) in picture.problems.iter().take(MOST_MARKED).enumerate() {
+            let at = view.at(place.at.extend(0.0));
+            let _ = writeln!(
+                out,
+                "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{MARK}\" stroke=\"{PROBLEM}\" stroke-width=\"2.4\"/>",
                 at.x, at.y
             );
+            write_text(out, &(i + 1).to_string(), at + DVec2::new(MARK, -MARK), 9.0, PROBLEM);
         }
     }
 }
@@ -277,6 +317,7 @@ fn area(out: &mut String, trace: Trace, fill: &str, stroke: &str) {
 
 /// The holes, as strokes of their width with round ends.
 fn holes(out: &mut String, holes: &[Hole], view: &View) {
+    let widths = widths(holes);
     for hole in holes.iter().take(MAX_HOLES) {
         let at = |point: Vec2| view.at(point.extend(0.0));
         let mut data = String::new();
@@ -306,8 +347,28 @@ fn holes(out: &mut String, holes: &[Hole], view: &View) {
             }
         }
         let width = hole.diameter * view.scale;
-        let _ = writeln!(out, "<path stroke=\"{HOLE}\" stroke-width=\"{width:.2}\" d=\"{data}\"/>");
+        let color = hole_color(widths.keys().position(|key| *key == key_of(hole)));
+        let _ =
+            writeln!(out, "<path stroke=\"{color}\" stroke-width=\"{width:.2}\" d=\"{data}\"/>");
     }
+}
+
+/// The width of a hole in µm.
+fn key_of(hole: &Hole) -> i64 {
+    (hole.diameter * 1e3).round() as i64
+}
+
+/// How many holes of each width there are, in µm.
+fn widths(holes: &[Hole]) -> BTreeMap<i64, usize> {
+    let mut widths = BTreeMap::new();
+    for hole in holes {
+        *widths.entry(key_of(hole)).or_default() += 1;
+    }
+    widths
+}
+
+fn hole_color(index: Option<usize>) -> &'static str {
+    HOLES[index.unwrap_or(0) % HOLES.len()]
 }
 
 fn color(tool: usize) -> String {
@@ -315,49 +376,139 @@ fn color(tool: usize) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// What is seen, with lengths.
-fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2) {
-    let mut entry = |out: &mut String, stroke: &str, text: &str, more: &str| {
-        let _ = writeln!(out, "<path {stroke} d=\"M{} {}h26\"/>", at.x, at.y - 4.5);
-        write_text(out, &shorten(text, 28), at + DVec2::new(36.0, 0.0), 9.0, INK);
-        if !more.is_empty() {
-            at.y += 17.0;
-            write_text(out, &shorten(more, 28), at + DVec2::new(36.0, 0.0), 8.0, QUIET);
+/// A line of the legend: how its sample is drawn, what it is, and more about it.
+struct Entry {
+    stroke: String,
+    text: String,
+    more: Vec<String>,
+}
+
+/// Words in lines no wider than `most` pixels for letters `height` pixels tall; a word that is wider is divided.
+fn wrapped(text: &str, height: f64, most: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    let mut line = String::new();
+    for word in text.split(' ') {
+        let mut rest = word.to_owned();
+        loop {
+            let longer = if line.is_empty() { rest.clone() } else { format!("{line} {rest}") };
+            if lettering::width(&longer, height) <= most {
+                line = longer;
+                break;
+            }
+            if !line.is_empty() {
+                lines.push(std::mem::take(&mut line));
+                continue;
+            }
+            let fits = |count: &usize| {
+                let part: String = rest.chars().take(*count).collect();
+                lettering::width(&part, height) <= most
+            };
+            let count = (1..rest.chars().count()).rev().find(fits).unwrap_or(1);
+            lines.push(rest.chars().take(count).collect());
+            rest = rest.chars().skip(count).collect();
         }
-        at.y += 25.0;
+    }
+    if !line.is_empty() {
+        lines.push(line);
+    }
+    lines
+}
+
+/// Heights of letters of the legend, pixels: of what an entry is, and of more about it.
+const LETTERS: [f64; 2] = [8.0, 6.5];
+
+/// Where the text of the legend begins behind its samples, pixels.
+const INDENT: f64 = 34.0;
+
+/// What is seen, with lengths. Where there is more than has room, the last line says how much is left out.
+fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, left: f64) {
+    let entries = entries(drawn, picture);
+    let height = |entry: &Entry| 19.0 + 11.0 * entry.more.len() as f64;
+    let all: f64 = entries.iter().map(height).sum();
+    let k = ((LEGEND[1] - LEGEND[0]) / all).clamp(SMALLEST, 1.0);
+    let mut y = LEGEND[0];
+    for (i, Entry { stroke, text, more }) in entries.iter().enumerate() {
+        let is_last = i + 1 == entries.len();
+        let room = if is_last { LEGEND[1] } else { LEGEND[1] - 19.0 * k };
+        if y + k * (height(&entries[i]) - 19.0) > room + 1e-6 {
+            let rest = format!("{} LINES MORE: SEE REPORT.JSON", entries.len() - i);
+            write_text(out, &rest, DVec2::new(left, y), LETTERS[0] * k, PROBLEM);
+            break;
+        }
+        if !stroke.is_empty() {
+            let _ = writeln!(out, "<path {stroke} d=\"M{left} {:.1}h24\"/>", y - 4.0 * k);
+        }
+        write_text(out, text, DVec2::new(left + INDENT, y), LETTERS[0] * k, INK);
+        for line in more {
+            y += 11.0 * k;
+            write_text(out, line, DVec2::new(left + INDENT, y), LETTERS[1] * k, QUIET);
+        }
+        y += 19.0 * k;
+    }
+}
+
+/// All that the legend says, in its order.
+fn entries(drawn: &Drawn, picture: &BoardPicture) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    let wide = LEGEND[2] - INDENT;
+    let mut entry = |stroke: String, text: &str, more: &str| {
+        let mut lines = wrapped(text, LETTERS[0], wide);
+        let more = if more.is_empty() { Vec::new() } else { wrapped(more, LETTERS[1], wide) };
+        let first = if lines.is_empty() { String::new() } else { lines.remove(0) };
+        let more = lines.into_iter().chain(more).collect();
+        entries.push(Entry { stroke, text: first, more });
     };
-    if picture.copper.is_some() {
-        let text = format!("COPPER, {} NETS", drawn.nets);
-        entry(out, &format!("stroke=\"{}\" stroke-width=\"8\"", NETS[0]), &text, "");
-    }
-    if !picture.holes.is_empty() {
-        let text = format!("{} HOLES", picture.holes.len());
-        entry(out, &format!("stroke=\"{HOLE}\" stroke-width=\"6\""), &text, "");
-    }
-    for (tool, length) in drawn.cutting.iter().take(LEGEND.0) {
+    for (tool, length) in &drawn.cutting {
         let stroke = format!("stroke=\"{}\" stroke-width=\"3\"", color(*tool));
         let name = drawn.tools.get(*tool).map_or("", String::as_str);
-        entry(out, &stroke, name, &format!("{length:.0} MM CUT"));
-    }
-    if drawn.cutting.len() > LEGEND.0 {
-        let more = format!("{} MORE TOOLS", drawn.cutting.len() - LEGEND.0);
-        entry(out, "stroke=\"none\"", &more, "");
+        entry(stroke, name, &format!("{length:.0} MM CUT"));
     }
     let stroke = format!("stroke=\"{RAPID}\" stroke-width=\"1\" stroke-dasharray=\"5 3.5\"");
-    entry(out, &stroke, "RAPID", &format!("{:.0} MM", drawn.rapid));
+    entry(stroke, "RAPID", &format!("{:.0} MM", drawn.rapid));
+    if picture.copper.is_some() {
+        let text = format!("COPPER, {} NETS", drawn.nets);
+        entry(format!("stroke=\"{}\" stroke-width=\"8\"", NETS[0]), &text, "");
+    }
+    for (i, (width, count)) in widths(picture.holes).into_iter().enumerate() {
+        let stroke = format!("stroke=\"{}\" stroke-width=\"6\"", hole_color(Some(i)));
+        let plural = if count == 1 { "HOLE" } else { "HOLES" };
+        entry(stroke, &format!("{count} {plural} OF {} MM", width as f64 / 1e3), "");
+    }
+    if picture.holes.len() > MAX_HOLES {
+        let text = format!("{} HOLES ARE NOT DRAWN", picture.holes.len() - MAX_HOLES);
+        entry(String::new(), &text, "");
+    }
+    if !picture.tabs.is_empty() {
+        let text = format!("{} TABS", picture.tabs.len());
+        entry(format!("stroke=\"{TAB}\" stroke-width=\"5\" stroke-linecap=\"butt\""), &text, "");
+    }
+    if let Some((low, high)) = picture.stock {
+        let size = high - low;
+        let more = format!("X {:.3} TO {:.3}, Y {:.3} TO {:.3}", low.x, high.x, low.y, high.y);
+        entry(STOCK.to_owned(), &format!("BLANK, {:.1} X {:.1} MM", size.x, size.y), &more);
+    }
     match picture.turning {
-        Some(Axis::X(at)) => entry(out, TURNING, "TURNING LINE", &format!("X {at:.3}")),
-        Some(Axis::Y(at)) => entry(out, TURNING, "TURNING LINE", &format!("Y {at:.3}")),
+        Some(Axis::X(at)) => entry(TURNING.to_owned(), "TURNING LINE", &format!("X {at:.3}")),
+        Some(Axis::Y(at)) => entry(TURNING.to_owned(), "TURNING LINE", &format!("Y {at:.3}")),
         None => {}
     }
-    if !picture.problems.is_empty() {
-        let text = format!("{} PLACES TO LOOK AT", picture.problems.len());
-        entry(out, &format!("stroke=\"{PROBLEM}\" stroke-width=\"2\""), &text, "");
-        for Problem { at, what, .. } in picture.problems.iter().take(LEGEND.1) {
-            let where_ = format!("X{:.2} Y{:.2}", at.x, at.y);
-            entry(out, "stroke=\"none\"", &where_, what);
-        }
+    let problems = picture.problems;
+    if picture.rest.iter().any(|rest| !rest.is_empty()) {
+        let stroke = format!("stroke=\"{PROBLEM}\" stroke-width=\"8\"");
+        entry(stroke, "STAYS, AND SHOULD NOT", "");
     }
+    if !problems.is_empty() {
+        let stroke = format!("stroke=\"{PROBLEM}\" stroke-width=\"2.4\"");
+        let more = match problems.len().saturating_sub(MOST_MARKED) {
+            0 => String::new(),
+            more => format!("THE {MOST_MARKED} WORST ARE MARKED, {more} OTHERS SHADED ALONE"),
+        };
+        entry(stroke, &format!("{} PLACES TO LOOK AT", problems.len()), &more);
+    }
+    for (i, Problem { at, what, .. }) in problems.iter().take(MOST_MARKED).enumerate() {
+        entry(String::new(), &format!("{}: X{:.2} Y{:.2}", i + 1, at.x, at.y), what);
+    }
+    entries
 }
 
 #[cfg(test)]
@@ -367,6 +518,20 @@ mod tests {
     use pcb::job::{Heights, program};
     use pcb::plan::ProblemKind;
     use pcb::{Cut, Cutter, Operation, Segment, Tool};
+
+    #[test]
+    fn no_line_of_the_legend_is_cut_off() {
+        let text =
+            "N-00007 and N-00012 are 0.137 mm apart over 12.07 mm, left out: they stay joined here";
+        let lines = wrapped(text, 6.5, 228.0);
+        assert!(lines.len() > 1 && lines.join(" ") == text, "{lines:?}");
+        assert!(lines.iter().all(|line| lettering::width(line, 6.5) <= 228.0));
+        let long = "X".repeat(200);
+        let lines = wrapped(&long, 6.5, 228.0);
+        assert!(
+            lines.concat() == long && lines.iter().all(|line| lettering::width(line, 6.5) <= 228.0)
+        );
+    }
 
     #[test]
     fn a_board_shows_its_copper_its_cut_as_wide_as_the_tool_and_its_problems() {
@@ -397,13 +562,17 @@ mod tests {
             }],
             rest: &[],
             turning: Some(Axis::X(10.0)),
+            tabs: &[Element::line(Vec2::new(8.0, 0.0), Vec2::new(12.0, 0.0))],
+            stock: None,
         };
         let svg = board("disc", &picture);
         // The board is 20 mm high and fills 680 pixels: a tool of 1 mm is 34 of them wide, 340 tenths.
         assert!(svg.contains("stroke-width=\"340.0\""), "{svg}");
-        // From the lower to the upper edge, in the middle, and 9 pixels farther.
-        assert!(svg.contains("d=\"M460.0 729.0L460.0 31.0\"") && svg.contains("X 10.000"), "{svg}");
-        assert!(svg.contains("1 HOLES") && svg.contains("X12.00 Y12.00"));
+        // From the lower to the upper edge, in the middle, and 15 pixels farther.
+        assert!(svg.contains("d=\"M460.0 735.0L460.0 25.0\"") && svg.contains("X 10.000"), "{svg}");
+        assert!(svg.contains("1 HOLE OF 1 MM") && svg.contains("1: X12.00 Y12.00"));
+        // 8 to 12 mm of 20 on the lower edge.
+        assert!(svg.contains("d=\"M392.0 720.0L528.0 720.0\"") && svg.contains("1 TABS"), "{svg}");
         assert_eq!(svg.matches("<circle").count(), 1);
         assert!(svg.contains(&format!("fill=\"{}\"", NETS[0])));
     }

@@ -37,7 +37,7 @@ mod view;
 mod walk;
 mod wire_path;
 
-pub use board::{BoardPicture, board};
+pub use board::{BoardPicture, BoardSheet, BoardSide, board, board_sheet};
 pub use glass::{GlassPicture, glass};
 pub use tool_path::tool_path;
 pub use walk::{Segment, walk};

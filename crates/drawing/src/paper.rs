@@ -50,7 +50,8 @@ pub fn png(svg: &str) -> Result<Vec<u8>, Box<Diagnostic>> {
         |why: String| Diagnostic::error(Rule::Drawing, format!("no PNG can be made: {why}"));
     let tree = usvg::Tree::from_str(svg, &usvg::Options::default())
         .map_err(|error| failed(error.to_string()))?;
-    let (width, height) = (SIZE.x as u32 * 2, SIZE.y as u32 * 2);
+    let [width, height] =
+        [tree.size().width(), tree.size().height()].map(|side| (side * 2.0) as u32);
     let mut pixels = tiny_skia::Pixmap::new(width, height)
         .ok_or_else(|| failed(format!("{width} × {height} pixels do not fit into memory")))?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(2.0, 2.0), &mut pixels.as_mut());
@@ -128,7 +129,7 @@ pub fn scale_bar(out: &mut String, view: &View, end: DVec2) {
 }
 
 /// Text as XML; characters that XML forbids are left out.
-fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}')) {
         match c {

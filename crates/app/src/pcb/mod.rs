@@ -17,7 +17,7 @@ use ::pcb::board::{Axis, Face, Layer};
 use ::pcb::job::{self, Heights};
 use ::pcb::plan::{self, Part, Running, Settings, Setup, Work};
 use ::pcb::{Board, Operation};
-use drawing::{BoardPicture, Format};
+use drawing::{BoardPicture, BoardSheet, BoardSide, Format};
 use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
 use machine::{Machine, OptionValue};
@@ -59,6 +59,8 @@ pub struct Made {
     /// The line about which it is turned over.
     axis: Axis,
     warnings: Vec<Diagnostic>,
+    /// Both sides on a sheet to print, where the caller wants pictures.
+    sheet: Option<Vec<u8>>,
 }
 
 impl<'a> Job<'a> {
@@ -137,8 +139,9 @@ impl<'a> Job<'a> {
         if left_out.is_empty() {
             warnings = toolpath::held(warnings, self.strict)?;
         }
+        let sheet = self.picture.map(|format| format.bytes(shop.sheet())).transpose()?;
         let Setup { board: front, axis, .. } = shop.front;
-        Ok(Made { programs, left_out, files, layers, front, axis, warnings })
+        Ok(Made { programs, left_out, files, layers, front, axis, warnings, sheet })
     }
 
     /// Proves the text of the program `name` (`front`, `drill`), which is called `file`, against what the same job makes of the board.
@@ -154,8 +157,9 @@ impl<'a> Job<'a> {
     ) -> Result<Account, Stop> {
         let running = &self.settings.running;
         let Begun { shop, tasks, .. } = self.begun(board, watch)?;
-        let probe = running.probe.filter(|_| name == PROBE && !running.on_control);
-        let (toolpath, place) = match (probe, tasks.iter().find(|task| task.name == name)) {
+        let is_called = |of: &str| of == name || self.file(of) == file;
+        let probe = running.probe.filter(|_| is_called(PROBE) && !running.on_control);
+        let (toolpath, place) = match (probe, tasks.iter().find(|task| is_called(&task.name))) {
             (Some(places), _) => (shop.probe_path(places)?, Part::ALL.len()),
             (None, Some(task)) => (shop.toolpath(task)?, task.place),
             (None, None) => {
@@ -286,6 +290,7 @@ impl Made {
     pub fn contents<'a>(&'a self, job: &Job, report: &'a str) -> Vec<(String, &'a [u8])> {
         let ending = if matches!(job.picture, Some(Format::Png)) { "png" } else { "svg" };
         let mut contents = vec![(String::from("report.json"), report.as_bytes())];
+        contents.extend(self.sheet.as_deref().map(|bytes| (format!("{SHEET}.{ending}"), bytes)));
         for Program { name, picture, .. } in &self.programs {
             contents.extend(picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
         }
@@ -536,7 +541,24 @@ struct Shop<'a> {
     surface: Option<HeightMap>,
 }
 
+/// What the sheet with both sides is called.
+const SHEET: &str = "sheet";
+
 impl Shop<'_> {
+    /// Both sides on a sheet to print.
+    fn sheet(&self) -> String {
+        fn shown(setup: &Setup) -> BoardSide<'_> {
+            let Board { outline, front, .. } = &setup.board;
+            (outline.as_ref(), front.copper.as_ref(), setup.drilled().collect())
+        }
+        let sheet = BoardSheet {
+            sides: [shown(&self.front), shown(&self.back)],
+            turning: self.front.axis,
+            stock: self.front.stock(self.job.settings),
+        };
+        drawing::board_sheet(&self.front.board.name, &sheet)
+    }
+
     /// How the board lies for a program.
     fn setup(&self, part: Part) -> &Setup {
         match plan::face(part, self.job.settings) {
@@ -583,6 +605,8 @@ impl Shop<'_> {
             problems: &work.problems,
             rest: &work.rest,
             turning: self.is_turned.then_some(*axis),
+            tabs: &work.tabs,
+            stock: Some(self.setup(*part).stock(self.job.settings)),
         };
         let name = &toolpath.program.name;
         let (posted, picture) = rayon::join(

@@ -65,7 +65,9 @@ impl Graphic {
         };
         let fill = item.find("fill").and_then(|fill| fill.item(0));
         let filled = match fill.map(|fill| fill.word()) {
-            None | Some(b"no" | b"none") => false,
+            // KiCad 5 had no word for it: polygons were filled, circles and rectangles without a width too.
+            None => kind == b"poly" || width == 0.0,
+            Some(b"no" | b"none") => false,
             Some(b"yes" | b"solid") => true,
             Some(other) => {
                 let message = format!("the filling \"{}\"", String::from_utf8_lossy(other));
@@ -206,6 +208,10 @@ mod tests {
         // A square of 2 mm with half a disc upon it.
         let arched = "(gr_poly (pts (xy 2 0) (xy 2 2) (xy 0 2) (arc (start 0 0) (mid 1 -1) (end 2 0))) (width 0) (fill yes))";
         near(arched, 4.0 + PI / 2.0);
-        near("(gr_poly (pts (xy 0 0) (xy 2 2) (xy 2 0)) (width 0))", 0.0);
+        near("(gr_poly (pts (xy 0 0) (xy 2 2) (xy 2 0)) (width 0) (fill none))", 0.0);
+        // As KiCad 6 and later take what KiCad 5 has written (PCB_PARSER::parsePCB_SHAPE, no "fill").
+        near("(fp_poly (pts (xy 0 0) (xy 2 2) (xy 2 0)) (layer F.Cu) (width 0))", 2.0);
+        near("(gr_circle (center 0 0) (end 3 0) (layer F.Cu) (width 0))", 9.0 * PI);
+        near("(gr_circle (center 0 0) (end 3 0) (layer F.Cu) (width 2))", 12.0 * PI);
     }
 }

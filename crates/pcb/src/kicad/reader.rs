@@ -19,6 +19,9 @@ use std::sync::Arc;
 /// The first version that is read: `module` became `footprint`, before KiCad 6.
 const FIRST_VERSION: u32 = 20201115;
 
+/// The versions of KiCad 5, which are read too: those between had no release.
+const KICAD_5: std::ops::RangeInclusive<u32> = 20171114..=20171130;
+
 /// The last version that is read: that of KiCad 9.
 const LAST_VERSION: u32 = 20241229;
 
@@ -30,6 +33,9 @@ struct Reader<'a> {
     report: Report<'a>,
     /// The names of the nets by their numbers.
     nets: BTreeMap<u32, Arc<str>>,
+    /// The drill of vias that name none, mm, and those of nets that have another (KiCad 5).
+    via_drill: Option<f64>,
+    class_drills: BTreeMap<Arc<str>, f64>,
     front: Vec<(Shape, Net)>,
     back: Vec<(Shape, Net)>,
     holes: Vec<Hole>,
@@ -53,6 +59,8 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnost
     let mut reader = Reader {
         report: Report::new(file_name, text),
         nets: BTreeMap::new(),
+        via_drill: None,
+        class_drills: BTreeMap::new(),
         front: Vec::new(),
         back: Vec::new(),
         holes: Vec::new(),
@@ -82,13 +90,17 @@ impl Reader<'_> {
         let Some(version) = list.whole(0) else {
             return Err(list.fault(Rule::Version, "the version is no number", "see another file"));
         };
-        if version < FIRST_VERSION {
-            let message = format!("version {version} is older than KiCad 6");
+        if version < FIRST_VERSION && !KICAD_5.contains(&version) {
+            let message =
+                format!("version {version} is older than KiCad 5, or of none of its releases");
             return Err(list.fault(
                 Rule::Version,
                 message,
                 "open the board in KiCad 6 to 9, and save it",
             ));
+        }
+        if KICAD_5.contains(&version) {
+            self.header_of_5(root)?;
         }
         if version > LAST_VERSION {
             let message = format!(
@@ -105,11 +117,59 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// What a board of KiCad 5 says otherwise: its layers may have names of their own, by which items call them, and vias may
+    /// have the drill of their class of nets.
+    ///
+    /// # Errors
+    /// `layer` where a layer that is cut has another name.
+    fn header_of_5(&mut self, root: Node) -> Outcome {
+        let usual: [(&[u8], &[u8]); 3] = [(b"0", b"F.Cu"), (b"31", b"B.Cu"), (b"44", b"Edge.Cuts")];
+        for layer in root.find("layers").into_iter().flat_map(Node::items) {
+            let name = layer.item(0).map_or(&b""[..], |name| name.word());
+            let Some((_, known)) = usual.iter().find(|(number, _)| *number == layer.name()) else {
+                continue;
+            };
+            if name != *known {
+                let message = format!(
+                    "layer {} is called \"{}\", and not \"{}\"",
+                    String::from_utf8_lossy(layer.name()),
+                    String::from_utf8_lossy(name),
+                    String::from_utf8_lossy(known)
+                );
+                let help = "open the board in KiCad 6 to 9, and save it: then its layers have their own names";
+                return Err(layer.fault(Rule::Layer, message, help));
+            }
+        }
+        for class in root.all("net_class") {
+            let Some(drill) = class.find("via_drill") else { continue };
+            let drill = drill.length(0)?;
+            if class.item(0).is_some_and(|name| name.word() == b"Default") {
+                self.via_drill = Some(drill);
+            }
+            for net in class.all("add_net") {
+                if let Some(name) = net.item(0) {
+                    self.class_drills.insert(name.text().into(), drill);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The drill of a via that names none, as that of its class of nets in KiCad 5.
+    fn class_drill(&self, item: Node) -> Outcome<f64> {
+        let net = self.net(item)?;
+        let own = net.and_then(|net| self.class_drills.get(&net).copied());
+        match own.or(self.via_drill) {
+            Some(drill) => Ok(drill),
+            None => item.need("drill")?.length(0),
+        }
+    }
+
     /// Reads the items of the board.
     fn items(&mut self, root: Node) {
         for item in root.items().filter(|item| item.is_list()) {
             let done = match item.name() {
-                b"footprint" => self.footprint(item),
+                b"footprint" | b"module" => self.footprint(item),
                 b"segment" | b"arc" => self.track(item),
                 b"via" => self.via(item),
                 _ => self.item(item, Frame::BOARD),
@@ -208,8 +268,11 @@ impl Reader<'_> {
     fn via(&mut self, item: Node) -> Outcome {
         let at = item.need("at")?.point()?;
         let size = item.need("size")?;
-        let drill = item.need("drill")?;
-        let diameter = drill.length(0)?;
+        let drill = item.find("drill").unwrap_or(item);
+        let diameter = match item.find("drill") {
+            Some(drill) => drill.length(0)?,
+            None => self.class_drill(item)?,
+        };
         let layers = pad::copper(item, true)?;
         if !(layers.front && layers.back) {
             let message = "a via that does not go through the board from F.Cu to B.Cu";

@@ -55,6 +55,14 @@ impl Setup {
         Ok(Setup { board, axis, pins })
     }
 
+    /// The corners of the least blank: the board, the cut around it and the pins next to it, mm.
+    pub fn stock(&self, settings: &Settings) -> (Vec2, Vec2) {
+        let (low, high) = self.board.extents().unwrap_or_default();
+        let cut = Vec2::splat(settings.outline.outline_tool);
+        let pins = self.pins.iter().map(Hole::extents);
+        pins.fold((low - cut, high + cut), |(a, b), (low, high)| (a.min(low), b.max(high)))
+    }
+
     /// The holes that are drilled: those of the board, and those of the pins. The line about which a board is turned
     /// over is in the middle between these, so that they stay where they are.
     pub fn drilled(&self) -> impl Iterator<Item = &Hole> {

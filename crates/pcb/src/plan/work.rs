@@ -14,10 +14,11 @@ use crate::{
     Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, MERGED, Operation, Path, Tool,
     depths,
 };
-use geom::Vec2;
-use geom::region::{Fill, Region, RegionError, Ring};
+use geom::region::{Fill, Index, Region, RegionError, Ring};
+use geom::{Element, Vec2};
 use program::{Diagnostic, Rule};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// The speed of a spindle that has no limit in its machine file, 1/min.
 const USUAL_SPEED: f64 = 10_000.0;
@@ -30,6 +31,12 @@ const SCALLOP: f64 = 0.02;
 
 /// How much of what a wider tool has taken the next one goes into, so that nothing stays between the two, mm.
 const TOUCHED: f64 = 0.02;
+
+/// How far paths in few elements are off where gaps are bitten, mm.
+const BITTEN: f64 = 0.001;
+
+/// From place to place down the middle of a gap at which is looked how much is taken, mm.
+const LOOKED: f64 = 0.02;
 
 /// How far apart what was worked out one after the other may be, mm.
 const HAIR: f64 = 0.003;
@@ -52,6 +59,8 @@ pub struct Work {
     pub problems: Vec<Problem>,
     /// What stays that should not.
     pub rest: Vec<Region>,
+    /// Where tabs stay, as the path of the tool over them.
+    pub tabs: Vec<Element>,
     /// What is odd about it.
     pub warnings: Vec<Diagnostic>,
 }
@@ -170,7 +179,7 @@ impl Worker<'_> {
                 let rest = self.by_wider(work, copper, area, width, &depths, detour)?;
                 let area = rest.as_ref().or(area);
                 let (paths, around) = self.around(work, copper, area, bit.cutter)?;
-                let (lines, dots) = merged(&linking::trails(&paths, detour));
+                let (lines, dots) = merged_to(&linking::trails(&paths, detour), tolerance(work));
                 (linking::linked(&lines, &around, detour), dots)
             }
             Isolate::Middle => {
@@ -303,16 +312,16 @@ impl Worker<'_> {
             format!("{gaps} narrower than the cut of {width:.3} mm")
         };
         let joined: Vec<&NarrowGap> = of(Fate::Joined).collect();
-        for gap in &joined {
-            let NarrowGap { width, length, .. } = gap;
+        for (gap, length) in together(&joined, width, nets) {
             let what = format!(
-                "{} are {width:.3} mm apart over {length:.2} mm, left out: they stay joined here",
-                nets(gap)
+                "{} are {:.3} mm apart over {length:.2} mm, left out: they stay joined here",
+                nets(gap),
+                gap.width
             );
             work.problems.push(Problem { at: gap.at, kind: ProblemKind::Joined, what });
         }
         if let Some(widest) = joined.first().map(|gap| gap.widest_cut()) {
-            let mut help = self.fitting(widest);
+            let mut help = self.fitting(widest, "part the nets there by hand, or change the board");
             if widest > 0.0 && self.asked.isolation.narrow != Narrow::Middle {
                 help += "; or cut them by --narrow middle, whatever it takes of the copper";
             }
@@ -332,31 +341,36 @@ impl Worker<'_> {
             );
             work.warnings.push(Diagnostic::warning(Rule::NarrowGap, message).help(help));
         }
-        let cut: Vec<&NarrowGap> = of(Fate::Cut).collect();
-        let Some(worst) = cut.first() else { return Ok(()) };
+        let index = Index::new(&copper.region);
+        let bitten =
+            |gap: &'_ NarrowGap| gap.middle.as_ref().map(|middle| bite(&index, middle, width));
+        let mut cut: Vec<(&NarrowGap, (f64, Vec2))> =
+            of(Fate::Cut).filter_map(|gap| Some((gap, bitten(gap)?))).collect();
+        let narrowest = cut.first().map_or(0.0, |(gap, _)| gap.widest_cut());
+        cut.sort_by(|(_, (a, _)), (_, (b, _))| b.total_cmp(a));
+        let Some((_, (deepest, at))) = cut.first().copied() else { return Ok(()) };
         // Of bites, none of which is deep, the deepest stands for all.
         let many = if self.asked.isolation.narrow == Narrow::Bite { 1 } else { cut.len() };
-        for gap in cut.iter().take(many) {
+        for (gap, (bite, at)) in cut.iter().take(many) {
             let what = format!(
-                "{} are {:.3} mm apart over {:.2} mm, cut all the same: {:.3} mm thinner each",
+                "{} are {:.3} mm apart over {:.2} mm, cut all the same: {bite:.3} mm thinner each",
                 nets(gap),
-                gap.width,
-                gap.length,
-                gap.thinned(width)
+                width - 2.0 * bite,
+                gap.length
             );
-            work.problems.push(Problem { at: gap.at, kind: ProblemKind::Bitten, what });
+            work.problems.push(Problem { at: *at, kind: ProblemKind::Bitten, what });
         }
         let message = format!(
             "{}: cut down the middle, {:.2} mm in all, which takes at most {:.3} mm from either side, at X {:.3} Y {:.3}",
             too_narrow(Fate::Cut),
             sum(Fate::Cut),
-            worst.thinned(width),
-            worst.at.x,
-            worst.at.y
+            deepest,
+            at.x,
+            at.y
         );
         let help = format!(
             "nothing to do, if the copper may be so much thinner; {}",
-            self.fitting(worst.widest_cut())
+            self.fitting(narrowest, "it has to be")
         );
         work.warnings.push(Diagnostic::warning(Rule::NarrowGap, message).help(help));
         Ok(())
@@ -384,13 +398,13 @@ impl Worker<'_> {
         let narrowest = slots.iter().map(|slot| slot.width).fold(f64::INFINITY, f64::min);
         let help = format!(
             "nothing to do, if they only part a net from itself; {}",
-            self.fitting(narrowest)
+            self.fitting(narrowest, "the copper in them stays, or is etched or scraped out")
         );
         work.warnings.push(Diagnostic::warning(Rule::NarrowSlot, message).help(help));
     }
 
-    /// Advice on a tool that cuts no wider than `widest` mm.
-    fn fitting(&self, widest: f64) -> String {
+    /// Advice on a tool that cuts no wider than `widest` mm, or what to do `else_` where there is none.
+    fn fitting(&self, widest: f64, else_: &str) -> String {
         let depth = self.asked.isolation.depth;
         if widest <= 0.0 {
             return String::from("where copper touches no tool fits: look at the board");
@@ -406,9 +420,7 @@ impl Worker<'_> {
                 "{fits}, such as that of a V-bit, {:.3} mm (--vee {degrees} --tip {VEE_TIP} --depth {depth})",
                 width(*degrees)
             ),
-            None => format!(
-                "{fits}, and no usual tool is so thin: part the nets there by hand, or change the board"
-            ),
+            None => format!("{fits}, and no usual tool is so thin: {else_}"),
         }
     }
 
@@ -490,6 +502,7 @@ impl Worker<'_> {
         let (board, small) = by_size(&area(board)?, settings.outline_tool).map_err(too_large)?;
         self.small(work, &small, &outline).map_err(too_large)?;
         let cut = outline.cut(&board)?;
+        work.tabs = tabs(&cut.operation);
         let name = format!("outline, {}", cut.operation.tool.name);
         work.operations.push(Operation { name, ..cut.operation });
         work.warnings.extend(cut.warnings);
@@ -737,10 +750,22 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
 
 /// Paths in few elements, and where those are that have no length.
 fn merged(paths: &[Path]) -> (Vec<Path>, Vec<Vec2>) {
+    merged_to(paths, MERGED)
+}
+
+/// How far paths in few elements may be off, mm: less where they go down the middle of gaps that are bitten, since what they are
+/// off is taken from one side.
+fn tolerance(work: &Work) -> f64 {
+    let is_bitten = work.problems.iter().any(|place| place.kind == ProblemKind::Bitten);
+    if is_bitten { BITTEN } else { MERGED }
+}
+
+/// Paths in elements that are no more than `tolerance` mm off, and where those are that have no length.
+fn merged_to(paths: &[Path], tolerance: f64) -> (Vec<Path>, Vec<Vec2>) {
     let mut lines = Vec::with_capacity(paths.len());
     let mut dots = Vec::new();
     let merged: Vec<Option<Path>> =
-        paths.par_iter().with_max_len(1).map(|path| path.merged(MERGED)).collect();
+        paths.par_iter().with_max_len(1).map(|path| path.merged(tolerance)).collect();
     for (path, line) in paths.iter().zip(merged) {
         match line {
             Some(line) => lines.push(line),
@@ -804,6 +829,57 @@ fn rest(
         Some(area) => rest.intersection(area),
         None => Ok(rest),
     }
+}
+
+/// Gaps with the sum of their lengths, those of the same two nets that are no farther apart than the cut is wide as one.
+fn together<'a>(
+    gaps: &[&'a NarrowGap],
+    width: f64,
+    nets: impl Fn(&NarrowGap) -> String,
+) -> Vec<(&'a NarrowGap, f64)> {
+    let mut known: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    let mut places: Vec<(&NarrowGap, f64)> = Vec::with_capacity(gaps.len());
+    for gap in gaps {
+        let same = known.entry(nets(gap)).or_default();
+        let near = |i: &&usize| {
+            places.get(**i).is_some_and(|(other, _)| other.at.distance(gap.at) <= width)
+        };
+        match same.iter().find(near).copied() {
+            Some(i) => places[i].1 += gap.length,
+            None => {
+                same.push(places.len());
+                places.push((gap, gap.length));
+            }
+        }
+    }
+    places
+}
+
+/// How much copper a cut of `width` mm along `path` takes where it takes most, and where that is, mm.
+fn bite(copper: &Index, path: &Path, width: f64) -> (f64, Vec2) {
+    let mut most = (0.0, path.start());
+    for element in path.elements() {
+        let steps = (element.length() / LOOKED).ceil().clamp(1.0, 1e5);
+        for step in 0..=steps as usize {
+            let at = element.at(step as f64 / steps);
+            let away = copper.nearest(at, width / 2.0).map_or(width / 2.0, |near| near.distance);
+            if width / 2.0 - away > most.0 {
+                most = (width / 2.0 - away, at);
+            }
+        }
+    }
+    most
+}
+
+/// Where the tool goes over a tab, the last time around each contour.
+fn tabs(operation: &Operation) -> Vec<Element> {
+    let over = |cut: &Cut| -> Vec<Element> {
+        let Cut::Path(segments) = cut else { return Vec::new() };
+        let deepest = segments.iter().map(|segment| segment.depth).fold(0.0, f64::max);
+        let last = segments.iter().skip_while(|segment| segment.depth < deepest);
+        last.filter(|segment| segment.depth < deepest).map(|segment| segment.element).collect()
+    };
+    operation.cuts.iter().flat_map(over).collect()
 }
 
 /// What is not copper of a board as its copper, and where there is board: within the outline, or the box around its copper.

@@ -501,9 +501,55 @@ fn what_cannot_be_made_is_refused() {
     );
 }
 
+/// What KiCad 5.1 writes: modules, words without quotes, vias with the drill of their class, and polygons without a word for their
+/// filling.
+#[test]
+fn a_board_of_kicad_5() {
+    let text = "(kicad_pcb (version 20171130) (host pcbnew 5.1.9)\n(general (thickness 1.6) (nets 3))\n\
+        (layers (0 F.Cu signal) (31 B.Cu signal) (44 Edge.Cuts user))\n\
+        (net 0 \"\") (net 1 GND) (net 2 /A)\n\
+        (net_class Default \"This is the default net class.\" (via_dia 0.8) (via_drill 0.4) (add_net GND))\n\
+        (net_class Power \"\" (via_dia 1.2) (via_drill 0.6) (add_net /A))\n\
+        (module R_0805 (layer F.Cu) (tedit 5B36C52B) (tstamp 5C1B2A3D) (at 10 10 90)\n\
+        (fp_text reference R1 (at 0 0 90) (layer F.SilkS) (effects (font (size 1 1))))\n\
+        (fp_poly (pts (xy 0 0) (xy 2 0) (xy 2 2) (xy 0 2)) (layer F.Cu) (width 0))\n\
+        (pad 1 thru_hole circle (at -3 0 90) (size 2 2) (drill 0.8) (layers *.Cu *.Mask) (net 1 GND)))\n\
+        (segment (start 20 10) (end 30 10) (width 0.5) (layer B.Cu) (net 2))\n\
+        (via (at 20 10) (size 1.2) (layers F.Cu B.Cu) (net 2)) (via (at 5 5) (size 0.8) (layers F.Cu B.Cu) (net 1))\n\
+        (gr_line (start 0 0) (end 40 0) (angle 90) (layer Edge.Cuts) (width 0.1))\n\
+        (gr_line (start 40 0) (end 40 20) (layer Edge.Cuts) (width 0.1))\n\
+        (gr_line (start 40 20) (end 0 20) (layer Edge.Cuts) (width 0.1))\n\
+        (gr_line (start 0 20) (end 0 0) (layer Edge.Cuts) (width 0.1)))\n";
+    let board = read(text).unwrap().board;
+    // Y points down in the file: the module is turned by 90° counter-clockwise, its pad 3 mm below its place.
+    let mut holes: Vec<_> = board
+        .holes
+        .iter()
+        .map(|hole| match hole.shape {
+            HoleShape::Round(at) => (hole.diameter, at.x, at.y),
+            _ => panic!("{hole:?}"),
+        })
+        .collect();
+    holes.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    let near = |a: (f64, f64, f64), b: (f64, f64, f64)| {
+        (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9 && (a.2 - b.2).abs() < 1e-9
+    };
+    assert!(near(holes[0], (0.4, 5.0, -5.0)) && near(holes[1], (0.6, 20.0, -10.0)), "{holes:?}");
+    assert!(near(holes[2], (0.8, 10.0, -13.0)), "{holes:?}");
+    let front = board.front.copper.as_ref().unwrap();
+    // A pad of 2 mm, two vias of 1.2 and 0.8 mm, and a filled square of 2 mm, which goes up and to the left of its place.
+    let right = PI * (1.0 + 0.36 + 0.16) + 4.0;
+    assert!((front.region.area() - right).abs() < 1e-3, "{}", front.region.area());
+    assert!(front.region.contains(Vec2::new(11.0, -9.0)));
+    assert_eq!(board.outline.unwrap().area().round(), 800.0);
+}
+
 #[test]
 fn what_is_no_board_of_these_versions_is_refused() {
-    assert_refused("(kicad_pcb\n(version 20171130) (host pcbnew 5.1.9))", "version", 2);
+    assert_refused("(kicad_pcb\n(version 4) (host pcbnew 4.0.7))", "version", 2);
+    assert_refused("(kicad_pcb\n(version 20200119) (host pcbnew 5.99))", "version", 2);
+    let named = "(kicad_pcb (version 20171130)\n(layers (0 Dessus signal) (31 B.Cu signal)))";
+    assert_refused(named, "layer", 2);
     assert_refused("(kicad_pcb (version 20260101) (generator_version \"10.0\"))", "version", 1);
     let newer = read("(kicad_pcb (version 20260101))").unwrap_err();
     assert!(newer[0].message.contains("20260101") && newer[0].message.contains("20241229"));

@@ -846,7 +846,7 @@ fn what_is_said_and_to_whom() {
     let said = folder.run(&[&["--json"], &call[..], &narrow, &["--strict"]].concat());
     assert_eq!((said.code, &said.json()["status"]), (2, &"invalid".into()));
     let said = folder.run(&call);
-    let saved = "in out: report.json, front.svg, drill.svg, back.svg, outline.svg, front.gcode, drill.gcode, back.gcode, outline.gcode";
+    let saved = "in out: report.json, sheet.svg, front.svg, drill.svg, back.svg, outline.svg, front.gcode, drill.gcode, back.gcode, outline.gcode";
     assert!(said.out.contains(saved), "{}", said.out);
 }
 
