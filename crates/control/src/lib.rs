@@ -29,6 +29,10 @@
 //! as [`Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`Orientation::Axis`]. Kinematics are not this crate's business.
 
+// Words and events are named one by one where they are executed, resolved or passed on: there `clippy::wildcard_enum_match_arm` is denied
+// (`iso::execution`, `iso::flow`, `klartext::execution` and its M functions, `sinumerik::execution`, `kernel::compensation`). Elsewhere `_` is
+// right: in formulas, values and the statements of robots it is what is refused, or what the next function takes.
+
 mod arm;
 mod event;
 pub mod iso;

@@ -16,6 +16,10 @@ const AXES: [u8; 6] = *b"XYZABC";
 
 impl Step<'_, '_, '_> {
     /// `G92` and its kin, `G52`, `G10`.
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "`Step::motion` names each word and asks for these alone"
+    )]
     pub(super) fn coordinates(&mut self, word: G) -> Result<(), Fault> {
         if word == G::WriteData {
             return self.write_data();

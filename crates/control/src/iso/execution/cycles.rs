@@ -27,7 +27,14 @@ impl Canned {
             Canned::DwellDrill | Canned::DwellReam | Canned::HandBore => true,
             // RS274 asks for P; FANUC's G86 has none.
             Canned::Bore => rules.bore_dwells,
-            _ => false,
+            Canned::BreakChip
+            | Canned::LeftTap
+            | Canned::Drill
+            | Canned::Deep
+            | Canned::Tap
+            | Canned::Ream
+            | Canned::FineBore
+            | Canned::BackBore => false,
         }
     }
 
@@ -235,9 +242,9 @@ impl Step<'_, '_, '_> {
             let missing = if held.r.is_none() { "R" } else { "its bottom" };
             return Err(self.wrong(format!("the cycle has not been given {missing}")));
         };
-        let (upper, lower) = match held.canned {
-            Canned::BackBore => ("end of the feed", "R plane"),
-            _ => ("R plane", "bottom"),
+        let (upper, lower) = match held.canned == Canned::BackBore {
+            true => ("end of the feed", "R plane"),
+            false => ("R plane", "bottom"),
         };
         if bottom >= top {
             let message = format!("the {lower} {bottom} is not below the {upper} {top}");
@@ -312,10 +319,10 @@ impl Step<'_, '_, '_> {
             let message = "the tool goes aside while the coordinates are turned, scaled or tilted";
             return Err(self.block.whole(Rule::Frame, message));
         }
-        let turns = match held.canned {
+        let turns = match held.canned == Canned::BackBore {
             // It starts the spindle so by itself at R.
-            Canned::BackBore => matches!(self.state.spindle, Spindle::Clockwise(_)),
-            _ => self.state.spindle != Spindle::Off,
+            true => matches!(self.state.spindle, Spindle::Clockwise(_)),
+            false => self.state.spindle != Spindle::Off,
         };
         if !turns {
             return Err(self.wrong("the spindle does not turn as this cycle needs"));

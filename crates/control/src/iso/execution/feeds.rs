@@ -73,7 +73,7 @@ impl Step<'_, '_, '_> {
             _ if before == Some(inches) => Ok(before),
             FeedUnit::OfBefore if before.is_some() => Ok(before),
             FeedUnit::OfFirst if before.is_none() => Ok(Some(inches)),
-            _ => {
+            FeedUnit::OfBefore | FeedUnit::OfFirst | FeedUnit::Unclear => {
                 let message = "F in the block that changes the units counts in those of before";
                 let fault = self.block.at_word(b'F', Rule::Feed, message);
                 Err(fault.help("write G20 or G21 in a block before").into())

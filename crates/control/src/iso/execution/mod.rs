@@ -7,6 +7,8 @@
 //! counts is asked of [`numbers`], what holds of the [`state`], which knows none of the others, which expressions read by
 //! [`system`]. A straight move behind another goes [`straight`] without all that.
 
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod arcs;
 mod coordinates;
 mod cycles;

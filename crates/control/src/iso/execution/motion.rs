@@ -32,22 +32,25 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.g(Group::OneShot) else {
             return self.interpolation().and_then(|()| self.go());
         };
-        match word {
-            G::LookAhead { letter, on } => return self.look_ahead(letter, on),
+        if let G::LookAhead { letter, on } = word {
+            return self.look_ahead(letter, on);
+        }
+        let takes_axis_words = matches!(
+            word,
             G::Home
-            | G::SecondHome
-            | G::Machine
-            | G::OneSided
-            | G::Skip
-            | G::FromHome
-            | G::WriteData
-            | G::ShiftHere
-            | G::ShiftTo
-            | G::Pocket { .. }
-            | G::Pattern(_) => {
-                self.has_the_axis_words(word)?;
-            }
-            _ => {}
+                | G::SecondHome
+                | G::Machine
+                | G::OneSided
+                | G::Skip
+                | G::FromHome
+                | G::WriteData
+                | G::ShiftHere
+                | G::ShiftTo
+                | G::Pocket { .. }
+                | G::Pattern(_)
+        );
+        if takes_axis_words {
+            self.has_the_axis_words(word)?;
         }
         self.interpolation()?;
         match word {
@@ -172,20 +175,17 @@ impl Step<'_, '_, '_> {
             return Err(self.block.at_group(Group::Cycle, Rule::ModalGroup, message));
         }
         for word in [cycle, motion].into_iter().flatten() {
-            match word {
-                G::Motion(motion) => {
-                    self.end_cycle();
-                    self.state.motion = Some(motion);
+            if let G::Motion(motion) = word {
+                self.end_cycle();
+                self.state.motion = Some(motion);
+            } else if word == G::CancelCycle {
+                self.end_cycle();
+                // FANUC goes on with the interpolation of before: a cycle is no part of group 01.
+                if !self.facts.cycles.apart {
+                    self.state.motion = None;
                 }
-                G::CancelCycle => {
-                    self.end_cycle();
-                    // FANUC goes on with the interpolation of before: a cycle is no part of group 01.
-                    if !self.facts.cycles.apart {
-                        self.state.motion = None;
-                    }
-                }
-                G::Cycle(canned) => self.begin_cycle(canned)?,
-                _ => {}
+            } else if let G::Cycle(canned) = word {
+                self.begin_cycle(canned)?;
             }
         }
         Ok(())
@@ -513,9 +513,8 @@ impl Step<'_, '_, '_> {
     fn count_radii(&mut self, from: Vec3, first: usize) {
         let Some(Feed::InverseTime(f)) = self.state.feed else { return };
         let arcs = self.actions[first..].iter().enumerate().rev();
-        let found = arcs.filter_map(|(i, action)| match action {
-            Action::Arc(to) => Some((first + i, to)),
-            _ => None,
+        let found = arcs.filter_map(|(i, action)| {
+            if let Action::Arc(to) = action { Some((first + i, to)) } else { None }
         });
         let Some((at, to)) = found.take(1).next() else { return };
         let arc = Arc::new(from, to.end.point, to.center, to.normal, to.turns, f64::INFINITY);
@@ -590,7 +589,7 @@ impl Step<'_, '_, '_> {
         self.actions.push(Action::Compensation(match compensation.asked {
             Compensation::Left(register) if swaps => Compensation::Right(register),
             Compensation::Right(register) if swaps => Compensation::Left(register),
-            side => side,
+            side @ (Compensation::Off | Compensation::Left(_) | Compensation::Right(_)) => side,
         }));
     }
 

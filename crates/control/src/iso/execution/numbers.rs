@@ -115,7 +115,7 @@ impl Step<'_, '_, '_> {
         Ok(self.block.take(b'P').map(|word| match unit {
             DwellUnit::ByPoint if !word.point => word.value / 1000.0,
             DwellUnit::Milliseconds => word.value / 1000.0,
-            _ => word.value,
+            DwellUnit::Seconds | DwellUnit::ByPoint | DwellUnit::AsSetUp => word.value,
         }))
     }
 }

@@ -467,13 +467,15 @@ impl Step<'_, '_, '_> {
         let refused = |step: &Self, message: String| {
             Err(step.block.at_group(Group::Compensation, Rule::Compensation, message))
         };
-        let (side, mut register, radius) = match g {
-            G::Compensation(side) => (side, None, None),
-            G::DynamicCompensation(side) => match self.take_length(b'D')? {
+        let (side, mut register, radius) = if let G::Compensation(side) = g {
+            (side, None, None)
+        } else if let G::DynamicCompensation(side) = g {
+            match self.take_length(b'D')? {
                 Some(diameter) => (side, None, Some(diameter / 2.0)),
                 None => return refused(self, "G41.1 and G42.1 need the diameter D".into()),
-            },
-            _ => return Ok(()),
+            }
+        } else {
+            return Ok(());
         };
         if self.facts.tools.follows_tool && side != Side::Off {
             if self.state.compensation.is_on() {

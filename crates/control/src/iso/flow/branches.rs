@@ -114,9 +114,9 @@ impl<'a> Run<'a, '_> {
 
     /// Goes on behind a `do`, or at the condition of a `while`.
     fn back_to(&mut self, words: &OWords, index: usize) -> Result<(), Fault> {
-        match words.words[index].word.keyword {
-            Keyword::Do => self.go(words, index),
-            _ => self.back_to_line(words, index),
+        match words.words[index].word.keyword == Keyword::Do {
+            true => self.go(words, index),
+            false => self.back_to_line(words, index),
         }
     }
 

@@ -93,10 +93,10 @@ impl Run<'_, '_> {
             fault(self, message)
         })?;
         let Some(joint) = joint else { return self.send(line, first) };
-        match &mut first {
-            Action::Line(to) => to.point = joint.from,
-            Action::Arc(to) => to.end.point = joint.from,
-            _ => {}
+        if let Action::Line(to) = &mut first {
+            to.point = joint.from;
+        } else if let Action::Arc(to) = &mut first {
+            to.end.point = joint.from;
         }
         self.send(line, first)?;
         let to = Position { point: joint.to, ..*end };
@@ -199,9 +199,9 @@ impl Run<'_, '_> {
 
 /// Where a cut that may have a corner ends, and centre and direction of its arc.
 fn cut(action: &Action) -> Option<(&Position, Option<(Vec3, Vec3)>)> {
-    match action {
-        Action::Line(end) => Some((end, None)),
-        Action::Arc(to) if to.turns == 0 => Some((&to.end, Some((to.center, to.normal)))),
-        _ => None,
+    if let Action::Line(end) = action {
+        return Some((end, None));
     }
+    let Action::Arc(to) = action else { return None };
+    (to.turns == 0).then_some((&to.end, Some((to.center, to.normal))))
 }

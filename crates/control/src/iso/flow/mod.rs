@@ -5,6 +5,8 @@
 //! leads elsewhere. Where they lead is looked up in each file once ([`owords`], [`numbers`]); a program that is under way
 //! is a [`frame`].
 
+#![deny(clippy::wildcard_enum_match_arm)]
+
 pub(super) mod ahead;
 mod branches;
 mod calls;

@@ -244,9 +244,9 @@ impl OWords {
                     return Err("a subroutine begins inside of another O-word".into());
                 }
                 let name = word.name.as_slice().into();
-                let index = match keyword {
-                    Keyword::Sub => words.open(word, place),
-                    _ => words.single(word, place, None),
+                let index = match keyword == Keyword::Sub {
+                    true => words.open(word, place),
+                    false => words.single(word, place, None),
                 };
                 if self.subroutines.insert(name, index).is_some() {
                     return Err("this subroutine is defined twice".into());
@@ -293,7 +293,16 @@ impl Keyword {
             Keyword::ElseIf | Keyword::Else | Keyword::EndIf => Some((Keyword::If, "if")),
             Keyword::EndWhile => Some((Keyword::While, "while")),
             Keyword::EndRepeat => Some((Keyword::Repeat, "repeat")),
-            _ => None,
+            Keyword::Sub
+            | Keyword::Return
+            | Keyword::Call
+            | Keyword::If
+            | Keyword::While
+            | Keyword::Do
+            | Keyword::Repeat
+            | Keyword::Break
+            | Keyword::Continue
+            | Keyword::Program => None,
         }
     }
 }

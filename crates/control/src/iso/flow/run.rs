@@ -124,12 +124,11 @@ impl<'a, 's> Run<'a, 's> {
             }
             let line = self.caller.unwrap_or(line);
             for action in self.actions.drain(..) {
-                match action {
-                    Action::Compensation(side) => {
-                        let terms = self.control.state.compensation_terms();
-                        self.channel.switch(line, side, terms)?;
-                    }
-                    action => self.channel.take(Event { line, action })?,
+                if let Action::Compensation(side) = action {
+                    let terms = self.control.state.compensation_terms();
+                    self.channel.switch(line, side, terms)?;
+                } else {
+                    self.channel.take(Event { line, action })?;
                 }
             }
         }
@@ -149,9 +148,9 @@ impl<'a, 's> Run<'a, 's> {
             }
             return Ok(());
         }
-        let end = match self.kind() {
-            Kind::Subroutine => "endsub",
-            _ => "M99",
+        let end = match self.kind() == Kind::Subroutine {
+            true => "endsub",
+            false => "M99",
         };
         let message = format!("the called program ends without {end}");
         Err(self.here.source.located(self.at_line(Rule::Call, message)))
@@ -313,9 +312,9 @@ impl<'a, 's> Run<'a, 's> {
     fn begin_program(&mut self) -> Result<(), Fault> {
         let begun = std::mem::replace(&mut self.frame().begun, true);
         if self.block.has(b'O') && begun {
-            let message = match self.kind() {
-                Kind::Main => "another program begins here, and this one has no M30 before",
-                _ => "another program begins here, and the called one has no M99 before",
+            let message = match self.kind() == Kind::Main {
+                true => "another program begins here, and this one has no M30 before",
+                false => "another program begins here, and the called one has no M99 before",
             };
             return Err(self.block.at_word(b'O', Rule::ProgramNumber, message));
         }

@@ -6,6 +6,8 @@
 //! next one says where it ends ([`path`]). With any other tool compensation stays a state and nothing
 //! is changed. What each control does is in `docs/controls/compensation.md`, with sources.
 
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod faults;
 mod leaving;
 mod path;
@@ -75,6 +77,10 @@ impl<'a> Compensator<'a> {
 
     /// Takes any event but a change of compensation.
     #[inline]
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "what moves the tool is found by `Action::position`, which names each"
+    )]
     pub(crate) fn take(&mut self, event: Event) -> Outcome {
         match self.path {
             Some(_) => self.follow(event),
@@ -173,6 +179,10 @@ impl<'a> Compensator<'a> {
     }
 
     /// Keeps in mind what compensation will need.
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "what moves the tool is found by `Action::position`, which names each"
+    )]
     fn note(&mut self, event: &Event) -> Outcome {
         match &event.action {
             Action::Feed(feed) => self.inverse_time = matches!(feed, Feed::InverseTime(_)),

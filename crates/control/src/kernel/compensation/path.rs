@@ -84,6 +84,10 @@ impl Path {
     }
 
     /// Takes an event while compensation is on.
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "what moves the tool is found by `Action::position`, which names each"
+    )]
     pub(super) fn take(&mut self, event: Event, sink: &mut Sink) -> Outcome {
         let line = event.line;
         match &event.action {
@@ -398,7 +402,7 @@ impl Path {
                 vec![corner + (last.end + start - 2.0 * corner) / (1.0 + turn.cos())]
             }
             _ if rapid && !self.rules.rounds_rapids => return Ok(vec![straight(start)]),
-            _ => {
+            Outer::Arc | Outer::Polygon | Outer::Intersection | Outer::Peak => {
                 let turn = Turn { center: corner, sweep: -turn * self.left.signum() };
                 return Ok(vec![CentreMove { turn: Some((turn, height)), ..straight(start) }]);
             }

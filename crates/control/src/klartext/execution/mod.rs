@@ -4,6 +4,8 @@
 //! [`approach`], cycles ([`cycle`] with its [`layout`], [`hole`], [`helix`], [`older`]) at a place or over
 //! a [`pattern`], [`tool`]s, and the coordinates ([`transform`], and the tilted [`plane`]).
 
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod approach;
 mod contour;
 pub(super) mod cycle;

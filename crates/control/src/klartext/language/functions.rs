@@ -1,5 +1,7 @@
 //! M functions: what they are and when in a block they act.
 
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use super::feed::{FeedWord, Readable, feed_word, unknown};
 use super::scan::{Scanner, Word};
 use crate::kernel::Outcome;
@@ -162,17 +164,15 @@ impl Function {
             if *function == Function::ReplacesTool {
                 delay(s, control)?;
             }
-            return match function {
-                Function::Clockwise { coolant: Some(_) } => {
-                    let coolant = Some(coolant_of_m8(s, word, stated)?);
-                    Ok(Function::Clockwise { coolant })
-                }
-                Function::CounterClockwise { coolant: Some(_) } => {
-                    let coolant = Some(coolant_of_m8(s, word, stated)?);
-                    Ok(Function::CounterClockwise { coolant })
-                }
-                function => Ok(*function),
-            };
+            if let Function::Clockwise { coolant: Some(_) } = function {
+                let coolant = Some(coolant_of_m8(s, word, stated)?);
+                return Ok(Function::Clockwise { coolant });
+            }
+            if let Function::CounterClockwise { coolant: Some(_) } = function {
+                let coolant = Some(coolant_of_m8(s, word, stated)?);
+                return Ok(Function::CounterClockwise { coolant });
+            }
+            return Ok(*function);
         }
         let added = control.auxiliary().iter().find(|n| f64::from(**n) == number);
         if let Some(number) = added {
@@ -202,7 +202,19 @@ impl Function {
             | Function::CallCyclesModally
             | Function::CallCycle
             | Function::ReleaseTip => When::End,
-            _ => When::Start,
+            Function::Clockwise { .. }
+            | Function::CounterClockwise { .. }
+            | Function::Coolant(_)
+            | Function::MachineCoordinates { .. }
+            | Function::KeepTip
+            | Function::FeedPerTurn(_)
+            | Function::ShorterWay(_)
+            | Function::Auxiliary(_)
+            | Function::Nothing
+            | Function::MonitoringOff
+            | Function::ReplacesTool
+            | Function::LiftsOff
+            | Function::Retract(..) => When::Start,
         }
     }
 }

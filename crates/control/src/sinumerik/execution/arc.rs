@@ -132,9 +132,9 @@ impl Interpreter<'_, '_> {
                 let message = format!("{} is not in the plane of the arc", CENTER_NAMES[i]);
                 return Err(source.block_error(Rule::Arc, message));
             }
-            let count = match coordinate.count {
-                Count::Modal => Count::Incremental,
-                other => other,
+            let count = match coordinate.count == Count::Modal {
+                true => Count::Incremental,
+                false => coordinate.count,
             };
             let coordinate = Coordinate { count, ..coordinate };
             center[i] = self.linear(source, coordinate, ends.start[i], CENTER_NAMES[i])?;

@@ -5,6 +5,8 @@
 //! ([`cycles`], [`pattern`]) or calls again behind it ([`modal`]), and changes the [`frames`]
 //! ([`programmable`], [`offsets`], [`orientation`]), and keeps to the path as [`smoothing`] says. What holds is the [`state`].
 
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod arc;
 mod corner;
 mod cycles;

@@ -25,7 +25,7 @@ impl Interpreter<'_, '_> {
                 self.state.modal = Modal::Cycle(drilling);
             }
             Modal::Program(call) => self.state.modal = Modal::Due(call),
-            other => self.state.modal = other,
+            other @ (Modal::None | Modal::Due(_) | Modal::Running) => self.state.modal = other,
         }
         Ok(())
     }

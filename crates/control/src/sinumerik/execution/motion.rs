@@ -282,7 +282,7 @@ impl Interpreter<'_, '_> {
             Count::Shorter => from + geom::wrap((value - from).to_radians()).to_degrees(),
             Count::Positive => from + (value - from).rem_euclid(360.0),
             Count::Negative => from - (from - value).rem_euclid(360.0),
-            _ => value,
+            Count::Modal | Count::Absolute | Count::Incremental => value,
         })
     }
 
@@ -296,9 +296,9 @@ impl Interpreter<'_, '_> {
         to: f64,
     ) -> Outcome {
         let (from, counted) = (self.state.rotary[index], self.settings.modulo[index]);
-        let is_absolute = match coordinate.count {
-            Count::Modal => self.state.absolute,
-            count => count == Count::Absolute,
+        let is_absolute = match coordinate.count == Count::Modal {
+            true => self.state.absolute,
+            false => coordinate.count == Count::Absolute,
         };
         let modulo = match coordinate.count {
             Count::Shorter => Modulo::Shorter,
@@ -432,9 +432,9 @@ impl Interpreter<'_, '_> {
             normal: across.normalize_or(Vec3::Z),
             across_tool: normal == 2,
             radius: None,
-            outer: Some(match self.state.corner {
-                Outer::Arc if self.state.peak => Outer::Peak,
-                outer => outer,
+            outer: Some(match self.state.corner == Outer::Arc && self.state.peak {
+                true => Outer::Peak,
+                false => self.state.corner,
             }),
             around: self.state.goes_around,
         };

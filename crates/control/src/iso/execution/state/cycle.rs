@@ -32,9 +32,9 @@ impl Holding {
 
     /// The upper and the lower end of the feed, mm: back boring goes down to R and feeds up to Z.
     pub(crate) fn ends(&self) -> (Option<f64>, Option<f64>) {
-        match self.canned {
-            Canned::BackBore => (self.bottom, self.r),
-            _ => (self.r, self.bottom),
+        match self.canned == Canned::BackBore {
+            true => (self.bottom, self.r),
+            false => (self.r, self.bottom),
         }
     }
 }

@@ -59,7 +59,7 @@ impl Step {
         match *self {
             Step::Mirror(signs) => v * signs,
             Step::Rotation(degrees) => turned(v, degrees),
-            _ => v,
+            Step::Shift(_) | Step::Scale(_) | Step::AxisScale { .. } => v,
         }
     }
 }
@@ -165,10 +165,8 @@ impl Transforms {
 
     /// Whether circles in the plane stay circles.
     pub fn keeps_circles(&self) -> bool {
-        let uneven = |step: &Step| match step {
-            Step::AxisScale { factor, .. } => factor.x != factor.y,
-            _ => false,
-        };
+        let uneven =
+            |step: &Step| matches!(step, Step::AxisScale { factor, .. } if factor.x != factor.y);
         !self.steps().any(uneven)
     }
 }

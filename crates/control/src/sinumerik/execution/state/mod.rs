@@ -10,7 +10,9 @@ use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, GROUPS, Motion};
 use crate::sinumerik::language::value::Value;
-use crate::sinumerik::language::variables::{AssignmentTarget, Locals, Parameters, Readable};
+use crate::sinumerik::language::variables::{
+    AssignmentTarget, Locals, Parameter, Parameters, Readable,
+};
 use crate::sinumerik::models::Facts;
 use geom::{Frame, Vec3};
 use modal::Modal;
@@ -342,8 +344,8 @@ impl State {
     pub fn value_of(&self, place: AssignmentTarget) -> Option<f64> {
         match place {
             AssignmentTarget::Parameter(index) => match self.parameters.get(index) {
-                crate::sinumerik::language::variables::Parameter::Set(value) => Some(value),
-                _ => None,
+                Parameter::Set(value) => Some(value),
+                Parameter::Operator | Parameter::Unknown => None,
             },
             AssignmentTarget::Element(index, element) => {
                 self.locals.get(index)?.values.get(element)?.as_ref()?.number()
