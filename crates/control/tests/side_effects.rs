@@ -275,7 +275,7 @@ fn g254_of_haas_carries_the_work_zero_with_the_table() {
         table_axes: Some(axes.to_vec()),
         ..Settings::new(Dialect::Haas, [false, true, true])
     };
-    let run = |text: &str| common::ops(&haas, "p.nc", &format!("{START}{text}\nM30\n"));
+    let run = |text: &str| common::ops(&haas, "p.nc", format!("{START}{text}\nM30\n"));
     let cuts = |text: &str| -> Vec<Position> {
         let actions = run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
         let cut = |action| if let Action::Line(to) = action { Some(to) } else { None };
