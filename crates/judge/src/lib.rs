@@ -3,10 +3,9 @@
 //! None of them is part of the project. Where one is missing, the test says on the error stream that
 //! nothing was judged, and passes. With `CI=true` in the environment, which `.ci/run` sets, it fails.
 //!
-//! ```no_run
-//! if !judge::program("rs274", "Debian package linuxcnc-uspace") {
-//!     return;
-//! }
+//! ```
+//! // The first program of every test of this project.
+//! assert!(toolpost_judge::program("cargo", "https://rustup.rs"));
 //! ```
 
 use std::env;
