@@ -396,6 +396,7 @@ impl State {
             && compensation.active == compensation.asked
             && matches!(feed, Some(Feed::PerMinute(_)))
             && *cut
+            // A cut has moved, and so it is reported where the tool stands; asked all the same.
             && *is_reported
             && !self.awaits_tool(facts)
     }
