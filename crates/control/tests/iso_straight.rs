@@ -67,7 +67,7 @@ const BARE: &str = "G21\nG90\nG94\nS100 M3\nG1 F100";
 
 /// What may stand between: a block that moves nothing and still only says how to move, so that a move along one axis may go on from it;
 /// and an F that is another one where the word has taken it as something else.
-const BETWEEN: [&str; 3] = ["", "F100\nX6.\n", "G1 X6. F1.\n"];
+const BETWEEN: [&str; 4] = ["", "F100\nX6.\n", "G1 X6. F1.\n", "G1 X6.\nX7. F1.\n"];
 
 /// ... and straight moves behind it, along one axis after the other; then what depends on whether something has been cut.
 const BEHIND: &str = "G0 X4. Y5.\nZ6.\nG1 X7. F100\nY8. F100\nG0 X8.\nZ9.\nG1 X9. Y9. Z2.\nX1\nT2";
@@ -113,9 +113,10 @@ fn a_straight_move_does_the_same_on_the_short_path_behind_every_word() {
                     (&unknown, BEFORE, BETWEEN[1]),
                     (&unknown, BARE, BETWEEN[1]),
                     (&known, BEFORE, BETWEEN[2]),
+                    (&known, BEFORE, BETWEEN[3]),
                 ];
-                // The last asks what has become of an F.
-                let count = if parameters.contains('F') { 4 } else { 3 };
+                // The last ask what has become of an F.
+                let count = if parameters.contains('F') { 5 } else { 3 };
                 for (setup, before, between) in runs.into_iter().take(count) {
                     let text = format!("{before}\n{word}{parameters}\n{between}{BEHIND}");
                     compare(dialect, setup, &text).unwrap_or_else(|found| panic!("{found}"));
