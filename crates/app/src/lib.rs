@@ -35,6 +35,7 @@
 mod account;
 mod fcstd;
 pub mod files;
+pub mod fit;
 mod input;
 mod parallel;
 pub mod pcb;

@@ -38,10 +38,13 @@
 //! **What is not done.** Collisions are not looked at. Nor is the path of the arm between two sections. The cost of a
 //! section counts from the cheapest end of the one before, not from all its ends.
 
+mod ease;
 mod follow;
 mod grid;
 mod samples;
 mod search;
+
+pub use ease::stand;
 
 use arm::{Arm, Frame, Joints, Posture, Vec3};
 use std::fmt;

@@ -72,6 +72,7 @@ mod wire;
 mod words;
 mod writer;
 
+pub use arm::reach::{ArmLooks, ArmMargins, ArmMotion, ArmMotions, arm_motions};
 pub use catalogue::{Kind, Parameter, catalogue};
 pub use template::number_of;
 

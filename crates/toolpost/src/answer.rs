@@ -47,6 +47,11 @@ impl Answer {
         Answer { verdict, summary: true, ..Answer::product(text, data) }
     }
 
+    /// With another verdict.
+    pub fn ending(self, verdict: Verdict) -> Answer {
+        Answer { verdict, ..self }
+    }
+
     /// With findings.
     pub fn findings(mut self, findings: Vec<Diagnostic>) -> Answer {
         self.findings.extend(findings);

@@ -13,6 +13,7 @@ pub mod answer;
 mod args;
 mod arms;
 mod explain;
+mod fit;
 mod glass;
 mod machines;
 mod pcb;
@@ -75,6 +76,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Prove(args) => prove::run(&args, silent),
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),
+        Command::Fit(args) => fit::run(&args, silent),
         Command::Explain { topic } => explain::run(topic.as_deref()),
         Command::Completions { shell } => Ok(completions(shell)),
     };

@@ -5,6 +5,7 @@
 
 mod plan;
 mod rapid;
+pub(crate) mod reach;
 
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;

@@ -1,7 +1,7 @@
 //! From records to the motions of an arm: where they end, and with which joints.
 
 use ::arm::{Arm, Joints};
-use armpath::{Cell as Frames, Choice, Point, Settings, choose};
+use armpath::{Cell as Frames, Choice, Point, Settings, Worst, choose};
 use geom::{Arc, Frame, Mat3, Vec3};
 use machine::{Cell, Machine};
 use program::lowering::{HoleMove, feed_per_minute, hole};
@@ -89,10 +89,11 @@ pub(super) struct Position {
 }
 
 /// What the source says up to a tool change, and what of it are points of a path.
-struct Stretch<'a> {
-    length: Option<f64>,
-    points: Vec<Point>,
-    lines: Vec<u32>,
+pub(super) struct Stretch<'a> {
+    /// Length of its tool, where the source states it, mm.
+    pub(super) length: Option<f64>,
+    pub(super) points: Vec<Point>,
+    pub(super) lines: Vec<u32>,
     steps: Vec<Planned<'a>>,
 }
 
@@ -117,6 +118,22 @@ pub(super) fn plan<'a>(
     machine: &Machine,
     (arm, cell): (&Arm, &Cell),
 ) -> Outcome<Vec<Step<'a>>> {
+    let mut steps = Vec::new();
+    for stretch in stretches(source, machine, cell)? {
+        stretch.chosen((arm, cell), &mut steps)?;
+    }
+    Ok(steps)
+}
+
+/// What the source says, by tools.
+///
+/// # Errors
+/// What an arm cannot do.
+pub(super) fn stretches<'a>(
+    source: &'a Program,
+    machine: &Machine,
+    cell: &Cell,
+) -> Outcome<Vec<Stretch<'a>>> {
     let mut walk = Walk {
         machine,
         cell,
@@ -131,11 +148,7 @@ pub(super) fn plan<'a>(
     for record in &source.records {
         walk.record(record).map_err(|found| Box::new(found.line(record.line)))?;
     }
-    let mut steps = Vec::new();
-    for stretch in walk.stretches {
-        stretch.chosen((arm, cell), &mut steps)?;
-    }
-    Ok(steps)
+    Ok(walk.stretches)
 }
 
 impl<'a> Stretch<'a> {
@@ -155,10 +168,14 @@ impl<'a> Stretch<'a> {
         self.points.len() - 1
     }
 
-    /// The steps, with the joints that are chosen for them.
-    fn chosen(self, (arm, cell): (&Arm, &Cell), steps: &mut Vec<Step<'a>>) -> Outcome {
-        let positions = match self.points.is_empty() {
-            true => Vec::new(),
+    /// The steps, with the joints that are chosen for them; the least margins on the way.
+    pub(super) fn chosen(
+        self,
+        (arm, cell): (&Arm, &Cell),
+        steps: &mut Vec<Step<'a>>,
+    ) -> Outcome<Option<Worst>> {
+        let (positions, worst) = match self.points.is_empty() {
+            true => (Vec::new(), None),
             false => self.positions(arm, cell)?,
         };
         for step in self.steps {
@@ -169,10 +186,10 @@ impl<'a> Stretch<'a> {
                 }
             });
         }
-        Ok(())
+        Ok(worst)
     }
 
-    fn positions(&self, arm: &Arm, cell: &Cell) -> Outcome<Vec<Position>> {
+    fn positions(&self, arm: &Arm, cell: &Cell) -> Outcome<(Vec<Position>, Option<Worst>)> {
         let Some(tool) = cell.tool(self.length) else {
             let message =
                 "neither the source nor `tool_length` of the cell states the length of the tool";
@@ -213,7 +230,7 @@ impl<'a> Stretch<'a> {
                 });
             }
         }
-        Ok(positions)
+        Ok((positions, Some(choice.worst)))
     }
 }
 

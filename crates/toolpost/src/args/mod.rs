@@ -60,6 +60,8 @@ pub enum Command {
     Machines(Machines),
     /// Count and measure a toolpath, and draw it.
     Show(Show),
+    /// Look for places of the part at which a robot can make a toolpath, and print each with its margins.
+    Fit(Fit),
     /// Say what a name of machine and control files, or a rule of a finding, means.
     Explain {
         /// A key, a word, a block, a variable, or a rule; without one, all of them.
@@ -505,6 +507,22 @@ pub struct Show {
     /// In which frame an NC program is drawn.
     #[arg(long, default_value = "part", value_parser = choice(&FRAMES))]
     pub frame: Frame,
+    #[command(flatten)]
+    pub source: Source,
+}
+
+/// Arguments of `fit`.
+#[derive(Debug, Args)]
+pub struct Fit {
+    /// Name of a robot in the library, or a file ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: String,
+    /// Another value for one of the options of the machine file; may be given several times.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
+    pub option: Vec<(String, String)>,
+    /// How far the part may be moved from where the machine file puts it, along each axis, mm.
+    #[arg(long, value_name = "MM", default_value = "300", value_parser = length)]
+    pub within: f64,
     #[command(flatten)]
     pub source: Source,
 }

@@ -3,6 +3,7 @@
 mod arms;
 mod bad_input;
 mod commands;
+mod fit;
 #[path = "../folder/mod.rs"]
 mod folder;
 mod freecad;
