@@ -94,5 +94,9 @@ fn sphere(radius: f64) -> Mesh {
         [[a, b, c], [a, c, d]]
     };
     let cells = all.clone().filter(|(row, _)| *row < ROWS);
-    Mesh { vertices: all.map(place).collect(), triangles: cells.flat_map(faces).collect() }
+    Mesh {
+        vertices: all.map(place).collect(),
+        triangles: cells.flat_map(faces).collect(),
+        ..Mesh::default()
+    }
 }

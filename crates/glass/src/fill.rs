@@ -16,6 +16,8 @@ use std::collections::HashMap;
 pub enum Fill {
     /// Points all over the surface.
     Surface,
+    /// Points all over the surface, the denser the brighter it is; with this set, the denser the darker.
+    Shaded(bool),
     /// Points all over the surface and within.
     Solid,
     /// Points along the contours of parallel sections.
@@ -79,10 +81,11 @@ pub fn points(mesh: &Mesh, filling: &Filling, apart: Apart, seed: u64) -> Points
     let step = filling.step.unwrap_or(apart.rounded());
     let sampled = match filling.fill {
         Fill::Surface | Fill::Solid => sample::surface(mesh, apart, seed),
+        Fill::Shaded(invert) => shaded(mesh, apart, seed, invert),
         Fill::Sections(_) | Fill::Triangles(_) | Fill::Rays => Vec::new(),
     };
     let (others, left) = match filling.fill {
-        Fill::Surface => Default::default(),
+        Fill::Surface | Fill::Shaded(_) => Default::default(),
         Fill::Solid => solid(mesh, step, seed),
         Fill::Sections(how) => sections(mesh, &how, step, filling.direction),
         Fill::Triangles(full) => triangles(mesh, step, full),
@@ -95,7 +98,7 @@ impl Filling {
     /// Whether the points that are not sampled are as far from each other as `apart` says.
     pub fn keeps(&self, apart: Apart) -> bool {
         match self.fill {
-            Fill::Surface => true,
+            Fill::Surface | Fill::Shaded(_) => true,
             Fill::Solid => self.step.is_none_or(|step| step >= apart.rounded()),
             Fill::Sections(_) | Fill::Triangles(_) | Fill::Rays => false,
         }
@@ -107,12 +110,27 @@ impl Filling {
         let step = self.step.unwrap_or(spacing);
         let area = mesh.area();
         match self.fill {
-            Fill::Surface => area / (spacing * spacing),
+            Fill::Surface | Fill::Shaded(_) => area / (spacing * spacing),
             Fill::Solid => area / (spacing * spacing) + mesh.health().volume.abs() / step.powi(3),
             Fill::Sections(how) => area / (step * how.layer.unwrap_or(step)),
             Fill::Triangles(_) | Fill::Rays => area / (step * step),
         }
     }
+}
+
+/// Points of the surface by their rank ([`sample::ranked`]), as far as it is bright there: as many of them as its light says.
+fn shaded(mesh: &Mesh, apart: Apart, seed: u64, invert: bool) -> Vec<Point> {
+    let (points, triangles): (Vec<Point>, Vec<u32>) =
+        sample::on_triangles(mesh, apart, seed).into_iter().flatten().unzip();
+    let ranked = sample::ranked(&points, apart.spacing, seed);
+    let count = ranked.len() as f64;
+    let is_made = |(rank, &i): (usize, &u32)| {
+        let (point, triangle) = (points[i as usize], triangles[i as usize]);
+        let light = mesh.light(triangle, cloud::place(point));
+        let part = if invert { 1.0 - light } else { light };
+        (rank as f64 + 0.5 < part * count).then_some(point)
+    };
+    ranked.iter().enumerate().filter_map(is_made).collect()
 }
 
 /// The axis X, Y or Z (0 to 2) turned about X, then Y, then Z by so many degrees.

@@ -7,7 +7,7 @@
 
 use crate::cloud::{self, Point};
 use crate::mesh::{Fault, Mesh};
-use crate::sample::{self, Apart, Dice};
+use crate::sample::{self, Apart, Dice, SHRINK};
 use glam::{DVec2, DVec3};
 use image::{ImageDecoder, ImageReader, Limits};
 use program::{Diagnostic, Rule};
@@ -122,6 +122,12 @@ fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
     Ok(Picture { width, height, values, setting })
 }
 
+/// Reads the bytes of a texture: PNG, JPEG or BMP.
+pub(crate) fn texture(bytes: &[u8]) -> Result<Picture, Fault> {
+    let (manner, sheets) = (Manner::Dither, (1, None));
+    decoded(bytes, Setting { plane: Plane::Xz, width: None, manner, invert: false, sheets })
+}
+
 /// The light of a grey value of an sRGB picture, both from 0 to 1 (IEC 61966-2-1).
 pub fn light(value: f64) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
@@ -176,7 +182,7 @@ impl Picture {
     fn dots(&self, sheet: &Sheet, apart: Apart, seed: u64) -> Vec<Point> {
         let Sheet { corner, right, up } = *sheet;
         let vertices = vec![corner, corner + right, corner + right + up, corner + up];
-        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+        let mesh = Mesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
         let points = sample::surface(&mesh, apart, seed);
         let sides = DVec2::new(right.length(), up.length()) * 1e3;
         let flat = |point: &Point| DVec2::from(sheet.seen(cloud::place(*point))) * sides;
@@ -211,6 +217,23 @@ impl Picture {
             }
         }
         points
+    }
+
+    /// How many pixels it has.
+    pub(crate) fn pixels(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The value, from 0 to 1, of the pixel at a place, parts of the width from the left and of the height from below; the picture
+    /// repeats on all sides.
+    pub(crate) fn repeated(&self, [u, v]: [f64; 2]) -> f64 {
+        let number = |part: f64, count: usize| {
+            // The far edge belongs to the last pixel, not to the first one of the next picture.
+            let within = if part > 0.0 { part - part.ceil() + 1.0 } else { part - part.floor() };
+            ((within * count as f64) as usize).min(count - 1)
+        };
+        let (column, row) = (number(u, self.width), number(1.0 - v, self.height));
+        f64::from(self.values[row * self.width + column]) / f64::from(u16::MAX)
     }
 
     /// The mean value, from 0 to 1, between two places of the sheet; these are parts of its width from the left and of its height
@@ -310,9 +333,6 @@ impl Sheet {
         (part(self.right), part(self.up))
     }
 }
-
-/// By how much the distance shrinks from one turn of [`ranked`] to the next.
-const SHRINK: f64 = 0.93;
 
 /// No number of a place.
 const NONE: u32 = u32::MAX;

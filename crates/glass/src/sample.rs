@@ -13,6 +13,7 @@
 
 use crate::cloud::Point;
 use crate::mesh::Mesh;
+use crate::weld::Kept;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -65,9 +66,15 @@ impl Apart {
 
 /// Points on all faces of `mesh` (mm), as far apart as `apart` says. Another `seed` gives other points.
 pub fn surface(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Point> {
+    let of_tile = |points: Vec<(Point, u32)>| points.into_iter().map(|(point, _)| point);
+    on_triangles(mesh, apart, seed).into_iter().flat_map(of_tile).collect()
+}
+
+/// The points of [`surface`] tile by tile, each with the triangle that it lies on.
+pub(crate) fn on_triangles(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Vec<(Point, u32)>> {
     let spacing = f64::from(apart.spacing.max(1));
     let tiles = tiles(mesh, spacing);
-    let mut done: Vec<Vec<Point>> = vec![Vec::new(); tiles.len()];
+    let mut done: Vec<Vec<(Point, u32)>> = vec![Vec::new(); tiles.len()];
     for turn in 0..8 {
         let in_turn = |at: &usize| {
             let odd = tiles[*at].0.map(|number| number.rem_euclid(2));
@@ -79,7 +86,7 @@ pub fn surface(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Point> {
             room.enter(*tile, apart);
             for near in around(*tile) {
                 if let Ok(near) = tiles.binary_search_by_key(&near, |(tile, _)| *tile) {
-                    done[near].iter().for_each(|&point| room.see(point));
+                    done[near].iter().for_each(|(point, _)| room.see(*point));
                 }
             }
             (at, room.fill(mesh, triangles, seed))
@@ -87,7 +94,7 @@ pub fn surface(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Point> {
         let new: Vec<_> = turn.par_iter().map_init(Room::default, work).collect();
         new.into_iter().for_each(|(at, points)| done[at] = points);
     }
-    done.concat()
+    done
 }
 
 /// The tiles that triangles of `mesh` may reach into, in order, with those triangles.
@@ -233,23 +240,24 @@ impl Room {
     }
 
     /// Throws darts into the cells of `triangles` that belong to this tile; answers the points that they left.
-    fn fill(&mut self, mesh: &Mesh, triangles: &[u32], seed: u64) -> Vec<Point> {
+    fn fill(&mut self, mesh: &Mesh, triangles: &[u32], seed: u64) -> Vec<(Point, u32)> {
         let seed = self.number.iter().fold(seed, |seed, number| mixed(seed ^ *number as u64));
         let mut dice = Dice(seed);
         let mut cells = Vec::new();
         for &triangle in triangles {
-            self.divide(mesh.corners(triangle).map(|corner| corner * 1e3), &mut cells);
+            let corners = mesh.corners(triangle).map(|corner| corner * 1e3);
+            self.divide(corners, |cell| cells.push((cell, triangle)));
         }
         dice.shuffle(&mut cells);
         let mut points = Vec::new();
-        for cell in cells {
-            self.throw(cell, &mut dice, &mut points);
+        for (cell, triangle) in cells {
+            self.throw(cell, &mut dice, |point| points.push((point, triangle)));
         }
         points
     }
 
     /// Throws darts into a cell and its halves until all of it is covered or given up.
-    fn throw(&mut self, corners: Triangle, dice: &mut Dice, points: &mut Vec<Point>) {
+    fn throw(&mut self, corners: Triangle, dice: &mut Dice, mut found: impl FnMut(Point)) {
         let [square, coarsest, finest] =
             [1.0, COARSEST, FINEST].map(|part| (part * self.spacing).powi(2));
         let mut near = self.near(&corners);
@@ -273,7 +281,7 @@ impl Room {
                             *own |= if is_near { bit } else { 0 };
                         }
                     }
-                    points.push(dart);
+                    found(dart);
                     continue;
                 }
                 if edge <= finest {
@@ -327,7 +335,7 @@ impl Room {
     }
 
     /// The cells of `triangle` whose centroids are in this tile.
-    fn divide(&self, triangle: Triangle, cells: &mut Vec<Triangle>) {
+    fn divide(&self, triangle: Triangle, mut found: impl FnMut(Triangle)) {
         let coarsest = (PATCH * self.spacing).powi(2);
         let mut open = vec![triangle];
         while let Some(triangle) = open.pop() {
@@ -342,7 +350,7 @@ impl Room {
             }
             let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
             if middle.cmpge(self.tile.0).all() && middle.cmplt(self.tile.1).all() {
-                cells.push(triangle);
+                found(triangle);
             }
         }
     }
@@ -406,6 +414,34 @@ fn whole(value: f64) -> i32 {
     const OFF: i32 = 1 << 22;
     (value + (f64::from(OFF) + 0.5)) as i32 - OFF
 }
+
+/// The numbers of `points`, which are at least `spacing` µm apart, in an order in which the first ones always lie as far apart as that
+/// many can: those that are farther from all before them than a distance that shrinks turn by turn.
+pub(crate) fn ranked(points: &[Point], spacing: u32, seed: u64) -> Vec<u32> {
+    let mut waiting: Vec<u32> = (0..points.len() as u32).collect();
+    Dice(seed).shuffle(&mut waiting);
+    let mut ranked: Vec<u32> = Vec::with_capacity(points.len());
+    let spacing = f64::from(spacing);
+    let mut distance = spacing * (points.len() as f64).sqrt().max(1.0);
+    while !waiting.is_empty() && distance > spacing {
+        distance = (distance * SHRINK).max(spacing);
+        let mut near = Kept::new(distance.ceil() as i64);
+        ranked.iter().for_each(|&i| near.push(points[i as usize]));
+        waiting.retain(|&i| {
+            let waits = near.is_near(points[i as usize]);
+            if !waits {
+                near.push(points[i as usize]);
+                ranked.push(i);
+            }
+            waits
+        });
+    }
+    ranked.extend(waiting);
+    ranked
+}
+
+/// By how much the distance of points shrinks from turn to turn as they are ranked.
+pub(crate) const SHRINK: f64 = 0.93;
 
 /// Numbers that look like chance and are the same in every run (splitmix64).
 pub struct Dice(

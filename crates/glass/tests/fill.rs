@@ -20,7 +20,7 @@ fn cuboid(x: f64, y: f64, z: f64) -> Mesh {
     let sides: [[u32; 4]; 6] =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Mesh { vertices: (0..8).map(corner).collect(), triangles }
+    Mesh { vertices: (0..8).map(corner).collect(), triangles, ..Mesh::default() }
 }
 
 fn filled(mesh: &Mesh, fill: Fill, step: Option<f64>, direction: DVec3) -> (Vec<Point>, Left) {
@@ -74,6 +74,7 @@ fn a_twist_moves_each_contour_and_an_open_one_has_its_end() {
     let wall = Mesh {
         vertices: vec![DVec3::ZERO, DVec3::X * 10.0, DVec3::new(10.0, 0.0, 4.0), DVec3::Z * 4.0],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
     };
     let once = Sections { layer: Some(100.0), ..PLAIN };
     assert_eq!(cut(&wall, once, 1.1, DVec3::Z).0.len(), 11);
@@ -108,6 +109,7 @@ fn triangles_have_a_grid_and_small_ones_are_counted() {
             DVec3::Y * 0.4,
         ],
         triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
     };
     let (points, left) = filled(&mesh, Fill::Triangles(false), Some(1.0), DVec3::Z);
     assert_eq!((points.len(), left.triangles), (10, 0));

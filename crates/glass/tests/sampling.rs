@@ -101,8 +101,11 @@ fn the_nearest_pair_of_a_cloud_is_named_and_the_pairs_that_are_too_close_are_cou
 #[test]
 fn a_mesh_without_area_or_without_triangles_gives_no_endless_work() {
     assert!(surface(&Mesh::default(), apart(90), 1).is_empty());
-    let line =
-        Mesh { vertices: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0], triangles: vec![[0, 1, 2]] };
+    let line = Mesh {
+        vertices: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0],
+        triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
+    };
     let points = surface(&line, apart(90), 1);
     assert_eq!(distances(&points, 90).too_close, 0);
 }

@@ -22,7 +22,7 @@ use app::{Account, Stop, Verdict, Watch};
 use drawing::Format;
 use program::{Diagnostic, Rule, encoding};
 use serde_json::json;
-use std::path::Path;
+use std::path::{Component, Path};
 use std::time::{Duration, Instant};
 
 /// Obeys the command.
@@ -155,6 +155,21 @@ fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
     Ok(mesh::read(&files::read(path)?, form, &files::name(path))?)
 }
 
+/// A body with its colours and textures.
+fn painted(path: &Path, columns: Columns) -> Result<Shape, Stop> {
+    let form = form(path, columns)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut beside = |name: &str| {
+        // What a body names lies in its folder or below.
+        let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        if !Path::new(name).components().all(is_below) {
+            return Err(format!("`{name:.80}` does not lie in the folder of the body"));
+        }
+        files::read(&folder.join(name)).map_err(|found| format!("{name:.80}: {}", found.message))
+    };
+    Ok(mesh::read_painted(&files::read(path)?, form, &files::name(path), Some(&mut beside))?)
+}
+
 /// What a file of a job holds.
 fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -165,6 +180,7 @@ fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
         "png" | "jpg" | "jpeg" | "bmp" => {}
         "dxf" => return curves(curve::Form::Dxf),
         "plt" | "hpgl" | "hpg" => return curves(curve::Form::Hpgl),
+        _ if job.filling.fill == Filled::Shaded => return painted(path, job.columns),
         _ => return shape(path, job.columns),
     }
     let args = &job.image;
@@ -245,7 +261,7 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
         blocks: args.blocks,
         focal: args.lens,
         spacing: args.spacing,
-        filling: filling(&args.filling),
+        filling: filling(&args.filling, args.image.invert),
         layers: Layers {
             count: args.filling.layers,
             distance: args.filling.layer_distance,
@@ -261,9 +277,10 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
 }
 
 /// How bodies become points.
-fn filling(args: &args::Filling) -> Filling {
+fn filling(args: &args::Filling, invert: bool) -> Filling {
     let fill = match args.fill {
         Filled::Surface => Fill::Surface,
+        Filled::Shaded => Fill::Shaded(invert),
         Filled::Solid => Fill::Solid,
         Filled::Triangles => Fill::Triangles(args.full),
         Filled::Rays => Fill::Rays,
@@ -344,6 +361,7 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     let report_path = files::report_of(&args.output);
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
+    let cloud_target = args.cloud.as_ref().map(|file| Target::new(file, &inputs)).transpose()?;
     let drawing = Drawing::new(&args.job, &inputs)?;
     let progress = Progress::new(3, silent);
     progress.step("reading");
@@ -364,12 +382,15 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     let report = account.report();
     let mut saved: Vec<(&Target, &[u8])> =
         vec![(&report_target, report.as_bytes()), (&target, &made.text)];
+    let cloud = cloud_target.as_ref().map(|target| (target, mesh::ply(&made.cloud)));
+    saved.extend(cloud.iter().map(|(target, bytes)| (*target, &bytes[..])));
     saved
         .extend(drawing.iter().zip(&picture).map(|(drawing, bytes)| (&drawing.target, &bytes[..])));
     files::save(&saved)?;
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
-    account.rows.extend(args.job.picture.iter().map(|file| ("", file.display().to_string())));
+    let more = args.cloud.iter().chain(&args.job.picture);
+    account.rows.extend(more.map(|file| ("", file.display().to_string())));
     Ok(account.into())
 }
 

@@ -1,14 +1,19 @@
 //! Bodies as triangles: their readers, and what is wrong with them.
 
 mod obj;
+mod paint;
 mod ply;
 mod stl;
 mod threemf;
+
+pub use paint::Paint;
+pub use ply::write as ply;
 
 use crate::curve::Curves;
 use crate::list::{self, Columns};
 use crate::picture::Picture;
 use glam::DVec3;
+use paint::WHITE;
 use program::{Diagnostic, Rule, encoding};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -20,7 +25,14 @@ pub struct Mesh {
     pub vertices: Vec<DVec3>,
     /// Three numbers of corners each, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// What each triangle is painted with; where there is none, all are white.
+    pub paint: Vec<Paint>,
+    /// The textures of its paint.
+    pub textures: Vec<Picture>,
 }
+
+/// Reads a file that another one names, such as a library of materials or a texture; says why it cannot.
+pub type Beside<'b> = &'b mut dyn FnMut(&str) -> Result<Vec<u8>, String>;
 
 /// What a file holds.
 #[derive(Clone, Debug)]
@@ -78,6 +90,19 @@ pub(crate) const LARGEST: f64 = 1e6;
 /// # Errors
 /// What is wrong with it, with the line where there are lines.
 pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnostic>> {
+    read_painted(bytes, form, file, None)
+}
+
+/// As [`read`]; with `beside`, colours and textures of OBJ and PLY are read too.
+///
+/// # Errors
+/// As [`read`]; or where a file that this one names cannot be read.
+pub fn read_painted(
+    bytes: &[u8],
+    form: Form,
+    file: &str,
+    beside: Option<Beside>,
+) -> Result<Shape, Box<Diagnostic>> {
     // An archive is no text, nor is the title of a binary file.
     let bytes = if form == Form::ThreeMf || (form == Form::Stl && stl::is_binary(bytes)) {
         bytes
@@ -88,8 +113,8 @@ pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnosti
     };
     let read = match form {
         Form::Stl => stl::read(bytes).map(Shape::Mesh),
-        Form::Obj => obj::read(bytes).map(Shape::Mesh),
-        Form::Ply => ply::read(bytes),
+        Form::Obj => obj::read(bytes, beside).map(Shape::Mesh),
+        Form::Ply => ply::read(bytes, beside.is_some()),
         Form::ThreeMf => threemf::read(bytes).map(Shape::Mesh),
         Form::List(columns) => list::read(bytes, columns).map(Shape::Points),
     };
@@ -213,6 +238,16 @@ impl Mesh {
     pub fn join(&mut self, other: Mesh) {
         let first = self.vertices.len() as u32;
         self.vertices.extend(other.vertices);
+        if !(self.paint.is_empty() && other.paint.is_empty()) {
+            let textures = self.textures.len() as u32;
+            self.paint.resize(self.triangles.len(), WHITE);
+            self.paint.extend(other.paint.into_iter().map(|paint| match paint {
+                Paint::Corners(_) => paint,
+                Paint::Texture(number, places) => Paint::Texture(number + textures, places),
+            }));
+            self.paint.resize(self.triangles.len() + other.triangles.len(), WHITE);
+            self.textures.extend(other.textures);
+        }
         self.triangles
             .extend(other.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     }

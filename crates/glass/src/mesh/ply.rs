@@ -1,6 +1,8 @@
 //! PLY: vertices and faces, as text or in binary. A file without faces is a cloud of points.
 
+use super::paint::{Paint, WHITE, luminance};
 use super::{Fault, MOST, Mesh, Shape, fan};
+use crate::cloud::{Point, place};
 use glam::DVec3;
 use program::Rule;
 
@@ -18,6 +20,16 @@ struct Kind {
     bytes: usize,
     real: bool,
     signed: bool,
+}
+
+impl Kind {
+    /// What a colour of this kind has where it is brightest.
+    fn white(self) -> f64 {
+        match (self.real, self.bytes) {
+            (true, _) => 1.0,
+            (false, bytes) => (1u64 << (8 * bytes - usize::from(self.signed))) as f64 - 1.0,
+        }
+    }
 }
 
 fn kind(name: &str) -> Option<Kind> {
@@ -91,10 +103,27 @@ impl Numbers<'_> {
 /// The most items that a list may hold: corners of a face.
 const LONGEST_LIST: f64 = 1e6;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Shape, Fault> {
+/// A cloud as binary PLY, in mm: what the programs that look at clouds open. Numbers of four bytes hold whole µm up to 4 m.
+pub fn write(points: &[Point]) -> Vec<u8> {
+    let head = format!(
+        "ply\nformat binary_little_endian 1.0\ncomment Toolpost: points in glass, mm, in their order\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nend_header\n",
+        points.len()
+    );
+    let mut bytes = Vec::with_capacity(head.len() + 12 * points.len());
+    bytes.extend_from_slice(head.as_bytes());
+    for point in points {
+        let values = place(*point).to_array().map(|value| (value as f32).to_le_bytes());
+        bytes.extend(values.as_flattened());
+    }
+    bytes
+}
+
+/// Reads a file, with its colours where they are asked for.
+pub(super) fn read(bytes: &[u8], painted: bool) -> Result<Shape, Fault> {
     let (writing, elements, body) = head(bytes)?;
     let mut numbers = Numbers { bytes: body, writing };
     let mut mesh = Mesh::default();
+    let mut lights: Vec<Option<f32>> = Vec::new();
     for element in &elements {
         // Each item takes a byte at least: a count that the file cannot hold is not believed.
         let least = if element.properties.is_empty() { 0 } else { element.count };
@@ -109,7 +138,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Shape, Fault> {
             continue;
         }
         for _ in 0..element.count {
-            item(element, &mut numbers, &mut mesh)?;
+            item(element, &mut numbers, &mut mesh, &mut lights)?;
         }
     }
     let has_faces = elements.iter().any(|element| element.name == "face" && element.count > 0);
@@ -120,12 +149,26 @@ pub(super) fn read(bytes: &[u8]) -> Result<Shape, Fault> {
             format!("a face names a vertex beyond the {count} that there are"),
         ));
     }
+    if painted && has_faces && lights.iter().any(Option::is_some) {
+        let light = |corner: u32| lights.get(corner as usize).copied().flatten();
+        let paint = |corners: &[u32; 3]| match corners.map(light) {
+            [Some(a), Some(b), Some(c)] => Paint::Corners([a, b, c]),
+            _ => WHITE,
+        };
+        mesh.paint = mesh.triangles.iter().map(paint).collect();
+    }
     Ok(if has_faces { Shape::Mesh(mesh) } else { Shape::Points(mesh.vertices) })
 }
 
 /// Reads one item of an element.
-fn item(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(), Fault> {
+fn item(
+    element: &Element,
+    numbers: &mut Numbers,
+    mesh: &mut Mesh,
+    lights: &mut Vec<Option<f32>>,
+) -> Result<(), Fault> {
     let mut place = DVec3::NAN;
+    let mut colour = [f64::NAN; 3];
     for Property { name, count, kind } in &element.properties {
         let Some(count) = count else {
             let value = numbers.next(*kind)?;
@@ -133,6 +176,9 @@ fn item(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(),
                 "x" => place.x = value,
                 "y" => place.y = value,
                 "z" => place.z = value,
+                "red" | "r" => colour[0] = value / kind.white(),
+                "green" | "g" => colour[1] = value / kind.white(),
+                "blue" | "b" => colour[2] = value / kind.white(),
                 _ => {}
             }
             continue;
@@ -158,6 +204,8 @@ fn item(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(),
     }
     if element.name == "vertex" {
         mesh.vertices.push(place);
+        let is_painted = colour.iter().all(|part| part.is_finite());
+        lights.push(is_painted.then(|| luminance(colour)));
     }
     if mesh.vertices.len().max(mesh.triangles.len()) > MOST {
         return Err(Fault::new(Rule::TooLarge, "has more triangles than can be counted"));

@@ -336,7 +336,7 @@ impl Parts<'_> {
                 if placed.turn.determinant() < 0.0 {
                     triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
                 }
-                mesh.join(Mesh { vertices, triangles });
+                mesh.join(Mesh { vertices, triangles, ..Mesh::default() });
                 return Ok(());
             }
         };

@@ -112,6 +112,9 @@ pub struct Engrave {
     /// Where to save the program; the report goes next to it.
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Where to save the points in the glass, in their order, as binary PLY.
+    #[arg(long, value_name = "FILE")]
+    pub cloud: Option<PathBuf>,
     #[command(flatten)]
     pub ordering: Ordering,
     /// By which ray of the beam the focus is found.
@@ -209,6 +212,8 @@ pub struct Filling {
 pub enum Filled {
     /// On its surface.
     Surface,
+    /// On its surface, as dense as it is bright.
+    Shaded,
     /// Within as well.
     Solid,
     /// Along sections.
@@ -219,8 +224,13 @@ pub enum Filled {
     Rays,
 }
 
-const FILLS: [Choice<Filled>; 5] = [
+const FILLS: [Choice<Filled>; 6] = [
     ("surface", "All over the surface, evenly and without order", Filled::Surface),
+    (
+        "shaded",
+        "All over the surface, the denser the brighter its colours and textures are",
+        Filled::Shaded,
+    ),
     ("solid", "All over the surface, and within", Filled::Solid),
     ("sections", "Along the contours of parallel sections", Filled::Sections),
     ("triangles", "In a grid in each triangle", Filled::Triangles),
@@ -240,7 +250,7 @@ pub struct Image {
     /// How wide it is [default: as large as fits within the margins].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub width: Option<f64>,
-    /// Exchange black and white.
+    /// Exchange black and white, also of `shaded`.
     #[arg(long)]
     pub invert: bool,
     /// From which part of white on a cell of `raster` gets a point.

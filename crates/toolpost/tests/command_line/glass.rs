@@ -270,3 +270,40 @@ fn a_photograph_a_depth_map_and_a_3mf_become_proven_programs() {
     let said = engrave(&["face.jpg"]);
     assert!(said.code == 2 && said.err.contains("face.jpg: error[image]"), "{said:?}");
 }
+
+#[test]
+fn a_cloud_is_saved_for_other_programs_and_colours_lie_in_the_folder_of_the_body() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    let said = engrave(&folder, &["--cloud", "roof.ply"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let points = folder.read("roof.prg").lines().count() - 2;
+    let bytes = std::fs::read(folder.path().join("roof.ply")).unwrap();
+    let head = format!(
+        "element vertex {points}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+    );
+    let at = bytes.windows(head.len()).position(|own| own == head.as_bytes()).unwrap();
+    assert_eq!(bytes.len(), at + head.len() + 12 * points);
+    // The points are those of the program, exactly.
+    let said = folder.run(&["glass", "check", "roof.ply", "--spacing", "0.13", "--json"]);
+    assert_eq!((said.code, said.json()["points"].as_u64()), (0, Some(points as u64)), "{said:?}");
+
+    let text = "mtllib ../sheet.mtl\nv 0 0 0\nv 9 0 0\nv 0 9 0\nusemtl paper\nf 1 2 3\n";
+    folder.write("sheet.obj", text);
+    let words = ["glass", "sheet.obj", "--block", "20x20x30", "--material", "k9", "--lens", "70"];
+    let shaded =
+        ["--machine", "glass-xyz-100hz", "--rounds", "0", "--fill", "shaded", "-o", "a.prg"];
+    let words = [&words[..], &shaded[..]].concat();
+    let said = folder.run(&words);
+    assert!(said.code != 0 && said.err.contains("does not lie in the folder"), "{said:?}");
+    folder.write("sheet.obj", text.replace("../", ""));
+    assert!(folder.run(&words).err.contains("sheet.mtl"));
+    folder.write("sheet.mtl", "newmtl paper\nKd 0.5 0.5 0.5\n");
+    assert_eq!(folder.run(&words).code, 0);
+    let grey = folder.read("a.prg").lines().count() - 2;
+    assert_eq!(folder.run(&[&words[..], &["--invert"]].concat()).code, 0);
+    let dark = folder.read("a.prg").lines().count() - 2;
+    // A grey of 0.5 has 0.214 of the light of white.
+    let part = grey as f64 / (grey + dark) as f64;
+    assert!((part - 0.214).abs() < 0.001, "{grey} {dark}");
+}
