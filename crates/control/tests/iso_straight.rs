@@ -28,7 +28,7 @@ fn dialects() -> impl Iterator<Item = Dialect> {
 }
 
 /// What stands behind a word: what some of them need, and what a modal one makes of a move.
-const PARAMETERS: [&str; 27] = [
+const PARAMETERS: [&str; 28] = [
     "",
     " X5.",
     " Z0.",
@@ -50,6 +50,7 @@ const PARAMETERS: [&str; 27] = [
     " X1. Y1. Z1. I1. J1. K1. P2.",
     " X0. Y0. Z0. I10. J20. K0.",
     " Z-9. R-2. F50.",
+    " X5. Y6. ,C1.",
     " Z-5. F1.",
     " Q1 E0.1",
     " S100",
@@ -67,10 +68,18 @@ const BARE: &str = "G21\nG90\nG94\nS100 M3\nG1 F100";
 
 /// What may stand between: a block that moves nothing and still only says how to move, so that a move along one axis may go on from it;
 /// and an F that is another one where the word has taken it as something else.
-const BETWEEN: [&str; 4] = ["", "F100\nX6.\n", "G1 X6. F1.\n", "G1 X6.\nX7. F1.\n"];
+const BETWEEN: [&str; 4] = ["", "F100\nX6.\nN-5 X7.\n", "G1 X6. F1.\n", "G1 X6.\nX7. F1.\n"];
 
 /// ... and straight moves behind it, along one axis after the other; then what depends on whether something has been cut.
 const BEHIND: &str = "G0 X4. Y5.\nZ6.\nG1 X7. F100\nY8. F100\nG0 X8.\nZ9.\nG1 X9. Y9. Z2.\nX1\nT2";
+
+/// The program that `G65`, `G66` and `M98` call by `P1`.
+const CALLED: &str = "\nM30\nO1\nG4 P100\nM99";
+
+/// A move that no line of a GRBL is long enough for.
+fn long() -> String {
+    format!("\nX{}7.", "0".repeat(300))
+}
 
 /// Runs the lines on the short path and past it, without the lines that are refused.
 fn compare(dialect: Dialect, setup: &Setup, text: &str) -> Result<(), String> {
@@ -99,6 +108,14 @@ fn blanks_within_words(text: &str) -> String {
 }
 
 #[test]
+fn a_straight_move_on_a_long_line_does_the_same_on_the_short_path() {
+    for dialect in dialects() {
+        let text = format!("{BEFORE}\nX4.{}\nX5.", long());
+        compare(dialect, &Setup::default(), &text).unwrap_or_else(|found| panic!("{found}"));
+    }
+}
+
+#[test]
 fn a_straight_move_does_the_same_on_the_short_path_behind_every_word() {
     let known =
         Setup { start: Some(Vec3::ZERO), whole_numbers: WholeNumbers::Units, ..Setup::default() };
@@ -118,7 +135,8 @@ fn a_straight_move_does_the_same_on_the_short_path_behind_every_word() {
                 // The last ask what has become of an F.
                 let count = if parameters.contains('F') { 5 } else { 3 };
                 for (setup, before, between) in runs.into_iter().take(count) {
-                    let text = format!("{before}\n{word}{parameters}\n{between}{BEHIND}");
+                    let called = if ["G65", "G66", "M98"].contains(&&**word) { CALLED } else { "" };
+                    let text = format!("{before}\n{word}{parameters}\n{between}{BEHIND}{called}");
                     compare(dialect, setup, &text).unwrap_or_else(|found| panic!("{found}"));
                 }
             }
@@ -135,8 +153,8 @@ fn straight() -> impl Strategy<Value = String> {
         ];
         prop::option::of(number.prop_map(move |number| format!(" {letter}{number}")))
     };
-    const HEADS: [&str; 11] =
-        ["", "", "N5", "N5.", "G1", "G01", "G0", "N7 G1", "G1 G1", "G1 N7", "G2"];
+    const HEADS: [&str; 12] =
+        ["", "", "N5", "N-5", "N5.", "G1", "G01", "G0", "N7 G1", "G1 G1", "G1 N7", "G2"];
     const TAILS: [&str; 12] =
         ["", "", "", " F100", " F100.", " F100", " F50", " F0", " F200", " X1.", " A9.", " T2"];
     let (head, tail) = (prop::sample::select(&HEADS), prop::sample::select(&TAILS));
