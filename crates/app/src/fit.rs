@@ -6,7 +6,7 @@
 use crate::account::Stop;
 use crate::toolpath::Toolpath;
 use crate::watch::Watch;
-use ::post::{ArmLooks, ArmMargins, arm_motions};
+use ::post::{ArmLooks, ArmMargins, arm_margins};
 use geom::{Euler, Frame, Mat3, Vec3};
 use machine::{Cell, Machine};
 use program::{Diagnostic, Rule};
@@ -115,8 +115,8 @@ pub fn search(
             Box::new(findings.swap_remove(0))
         };
         ::post::write(program, &machine).map_err(first)?;
-        let motions = arm_motions(program, &machine).map_err(first)?;
-        motions.margins.ok_or_else(|| {
+        let margins = arm_margins(program, &machine).map_err(first)?;
+        margins.ok_or_else(|| {
             let found = Diagnostic::error(Rule::Empty, "the toolpath moves nothing");
             Box::new(found.help("check the source"))
         })

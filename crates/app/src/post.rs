@@ -145,7 +145,7 @@ pub(crate) fn write(
 }
 
 /// Whose fault it is that nothing could be written.
-fn verdict(findings: &[Diagnostic]) -> Verdict {
+pub fn verdict(findings: &[Diagnostic]) -> Verdict {
     let mut errors = findings.iter().filter(|finding| finding.is_error());
     match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
         true => Verdict::Failed,

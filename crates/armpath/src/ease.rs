@@ -24,6 +24,11 @@ impl Worst {
     }
 }
 
+/// How easily the arm stands with these joints, as [`Worst::ease`] without speeds.
+pub fn ease_of(arm: &Arm, joints: &Joints) -> f64 {
+    ease(room_of(arm, joints), &arm.margins(joints))
+}
+
 fn ease(limit: f64, margins: &Margins) -> f64 {
     let angle = limit.min(margins.wrist).min(margins.elbow);
     (angle / AMPLE_ANGLE).min(margins.shoulder / AMPLE_SHOULDER)
@@ -72,9 +77,10 @@ pub fn stand(arm: &Arm, cell: &Cell, points: &[Point], turns: u16) -> Option<f64
 
 /// How far the joints are from their limits, radians, in that revolution of each in which it is most; `None` where a limit is passed.
 fn room(arm: &Arm, joints: &Joints) -> Option<f64> {
-    let room = |joints: &Joints| {
-        let all = arm.joints().iter().zip(joints);
-        all.map(|(joint, at)| (at - joint.min).min(joint.max - at)).fold(f64::INFINITY, f64::min)
-    };
-    arm.within(joints).map(|joints| room(&joints)).reduce(f64::max)
+    arm.within(joints).map(|joints| room_of(arm, &joints)).reduce(f64::max)
+}
+
+fn room_of(arm: &Arm, joints: &Joints) -> f64 {
+    let all = arm.joints().iter().zip(joints);
+    all.map(|(joint, at)| (at - joint.min).min(joint.max - at)).fold(f64::INFINITY, f64::min)
 }

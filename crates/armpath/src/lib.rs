@@ -44,7 +44,7 @@ mod grid;
 mod samples;
 mod search;
 
-pub use ease::stand;
+pub use ease::{ease_of, stand};
 
 use arm::{Arm, Frame, Joints, Posture, Vec3};
 use std::fmt;

@@ -1,4 +1,4 @@
-//! Pictures, as SVG or PNG: of a tool path, of the path of a wire, of a board, of points in glass.
+//! Pictures, as SVG or PNG: of a tool path, of the arm that leads it, of the path of a wire, of a board, of points in glass.
 //!
 //! The crate promises the same bytes for the same input on every machine (letters are strokes of our own, there are no fonts in
 //! them), of bounded size, however long the program.
@@ -27,6 +27,7 @@
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod arm_path;
 mod board;
 mod glass;
 mod lettering;
@@ -37,6 +38,7 @@ mod view;
 mod walk;
 mod wire_path;
 
+pub use arm_path::{ArmPicture, ArmSample, arm_path};
 pub use board::{BoardPicture, BoardSheet, BoardSide, board, board_sheet};
 pub use glass::{GlassPicture, glass};
 pub use tool_path::tool_path;

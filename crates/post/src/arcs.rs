@@ -527,6 +527,12 @@ fn through_in_space(start: Vec3, middle: Vec3, end: Vec3) -> Option<SpaceCircle>
     center.is_finite().then(|| SpaceCircle { center, normal, radius: center.distance(start) })
 }
 
+/// The arc through three points; `None` where they lie on a line.
+pub(crate) fn arc_through(start: Vec3, middle: Vec3, end: Vec3) -> Option<Arc> {
+    let circle = through_in_space(start, middle, end)?;
+    Arc::new(start, end, circle.center, circle.normal, 0, circle.radius * 1e-6).ok()
+}
+
 /// The centre of the circle through three points of a plane.
 fn through(start: Vec3, middle: Vec3, end: Vec3) -> Option<[f64; 2]> {
     let (a, b) = (middle - start, end - start);

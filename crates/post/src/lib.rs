@@ -72,7 +72,7 @@ mod wire;
 mod words;
 mod writer;
 
-pub use arm::reach::{ArmLooks, ArmMargins, ArmMotion, ArmMotions, arm_motions};
+pub use arm::reach::{ArmLooks, ArmMargins, ArmSample, arm_margins, arm_samples};
 pub use catalogue::{Kind, Parameter, catalogue};
 pub use template::number_of;
 

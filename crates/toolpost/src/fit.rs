@@ -75,7 +75,8 @@ fn numbers(part: &[f64; 6]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-fn margins(margins: &ArmMargins) -> String {
+/// Margins for a person.
+pub fn margins(margins: &ArmMargins) -> String {
     let ArmMargins { limit, wrist, elbow, shoulder, speed, ease } = margins;
     format!(
         "margin {:.0} %: {limit:.1}° from a limit, joint 5 {wrist:.1}° and the elbow {elbow:.1}° from stretched, the wrist {shoulder:.0} mm from \
@@ -88,7 +89,8 @@ fn refusal(found: &Diagnostic) -> String {
     format!("refused: {} (line {})", found.message, found.line)
 }
 
-fn data(margins: &ArmMargins) -> Value {
+/// Margins for a machine.
+pub fn data(margins: &ArmMargins) -> Value {
     json!({
         "limit_degrees": margins.limit,
         "wrist_degrees": margins.wrist,

@@ -1,16 +1,21 @@
 //! What an arm makes of a toolpath before anything is written: its joints along the way, its margins, and how it would be elsewhere.
 
-use super::plan::{self, Kind, Step, stretches};
+use super::plan::{Act, Kind, Motion, Position, Step, stretches};
+use crate::arcs::arc_through;
 use crate::center;
 use ::arm::{Arm, Joints};
-use armpath::{Cell as Frames, Point, Worst, stand};
-use geom::Frame;
+use armpath::{Cell as Frames, Point, SPACING, Settings, Worst, ease_of, stand};
+use geom::{Frame, Mat3, Quat, Vec3, angle_between, wrap};
 use machine::{Cell, Machine};
 use program::{Diagnostic, Program};
 use std::borrow::Cow;
 
 /// At so many points of a tool's path the arm is looked at elsewhere.
 const LOOKS: usize = 48;
+
+/// Between samples of a cut the tool turns by no more than this, radians (2 degrees), and there are no more of them.
+const LEAN: f64 = std::f64::consts::PI / 90.0;
+const MOST: f64 = 10_000.0;
 
 /// At so many turns about the tool.
 const TURNS: u16 = 24;
@@ -32,30 +37,23 @@ pub struct ArmMargins {
     pub ease: f64,
 }
 
-/// A motion of an arm.
+/// Where an arm stands along a toolpath.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ArmMotion {
+pub struct ArmSample {
     /// Line of the source.
     pub line: u32,
-    /// Whether it cuts; else it is a rapid.
+    /// Whether the tool cuts on the way here; else it comes by rapid.
     pub cuts: bool,
-    /// mm/min.
-    pub feed: f64,
-    /// Length of the straight line to its end, mm; of an arc, at least that of the two lines through its middle.
-    pub length: f64,
-    /// The tool at its end, in the frame of the part.
-    pub tool: Frame,
-    /// The joints at its end, radians.
-    pub joints: Joints,
-}
-
-/// The motions of an arm along a toolpath.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ArmMotions {
-    /// In their order.
-    pub motions: Vec<ArmMotion>,
-    /// None where nothing moves.
-    pub margins: Option<ArmMargins>,
+    /// Seconds from the first sample, at the feeds of the source, slower where the tool turns by more than 60° a second, and the rapid of the cell; without acceleration.
+    pub time: f64,
+    /// The tool tip in the frame of the part, mm.
+    pub tip: Vec3,
+    /// Degrees, as the model of the arm counts them.
+    pub joints: [f64; 6],
+    /// Which part of its speed each joint needs on the way here, where the tool cuts.
+    pub speeds: [f64; 6],
+    /// How easily it stands, as [`ArmMargins::ease`] without speeds.
+    pub ease: f64,
 }
 
 /// A toolpath at so few points that many places of the part can be looked at.
@@ -78,35 +76,142 @@ struct ToolPoints {
     looks: Vec<usize>,
 }
 
-/// The joints that the writer chooses along `program` for `machine`, a robot, and the margins.
+/// The least margins of the joints that the writer chooses along `program` for `machine`, a robot; none where nothing moves.
 ///
 /// # Errors
 /// What an arm cannot do, or this one cannot reach, with the line of the source and the margin; the machine is no robot.
-pub fn arm_motions(program: &Program, machine: &Machine) -> Result<ArmMotions, Vec<Diagnostic>> {
+pub fn arm_margins(
+    program: &Program,
+    machine: &Machine,
+) -> Result<Option<ArmMargins>, Vec<Diagnostic>> {
+    chosen(&*followed(program, machine)?, machine).map(|(_, margins)| margins)
+}
+
+/// Where the writer lets the arm stand along `program`, at its points and every 5 mm or 2° between those of cuts, and the margins.
+///
+/// # Errors
+/// As [`arm_margins`].
+pub fn arm_samples(
+    program: &Program,
+    machine: &Machine,
+) -> Result<(Vec<ArmSample>, Option<ArmMargins>), Vec<Diagnostic>> {
     let (arm, cell) = robot(machine)?;
     let program = followed(program, machine)?;
+    let (steps, margins) = chosen(&program, machine)?;
+    let mut along = Along {
+        arm,
+        part: cell.part,
+        tool: cell.tool(None),
+        here: None,
+        time: 0.0,
+        samples: Vec::new(),
+    };
+    for step in &steps {
+        match step {
+            Step::Act(Act::Tool(tool), _) => {
+                (along.tool, along.here) = (cell.tool(tool.length), None);
+            }
+            Step::Act(Act::Home, _) => along.here = None,
+            Step::Act(..) => {}
+            Step::Move(motion) => along.go(motion),
+        }
+    }
+    Ok((along.samples, margins))
+}
+
+/// The steps of a program, and the least margins of all tools.
+fn chosen<'a>(
+    program: &'a Program,
+    machine: &Machine,
+) -> Result<(Vec<Step<'a>>, Option<ArmMargins>), Vec<Diagnostic>> {
+    let robot = robot(machine)?;
     let mut steps = Vec::new();
     let mut margins: Option<ArmMargins> = None;
-    let found = stretches(&program, machine, cell).and_then(|stretches| {
+    let found = stretches(program, machine, robot.1).and_then(|stretches| {
         for stretch in stretches {
-            if let Some(worst) = stretch.chosen((arm, cell), &mut steps)? {
+            if let Some(worst) = stretch.chosen(robot, &mut steps)? {
                 margins = Some(margins.map_or(ArmMargins::of(&worst), |known| known.least(&worst)));
             }
         }
         Ok(())
     });
     found.map_err(|found| vec![*found])?;
-    let mut here: Option<plan::Position> = None;
-    let motions = steps.iter().filter_map(|step| match step {
-        Step::Act(..) => None,
-        Step::Move(motion) => {
-            let length = here.replace(motion.end).map_or(0.0, |from| motion.length(&from));
-            let plan::Position { tool, joints } = motion.end;
-            let cuts = motion.kind != Kind::Rapid;
-            Some(ArmMotion { line: motion.line, cuts, feed: motion.feed, length, tool, joints })
+    Ok((steps, margins))
+}
+
+/// An arm on its way.
+struct Along<'a> {
+    arm: &'a Arm,
+    part: Frame,
+    tool: Option<Frame>,
+    here: Option<Position>,
+    time: f64,
+    samples: Vec<ArmSample>,
+}
+
+impl Along<'_> {
+    fn go(&mut self, motion: &Motion) {
+        let from = self.here.replace(motion.end);
+        let length = from.as_ref().map_or(0.0, |from| motion.length(from));
+        let whole = 60.0 * length / motion.feed;
+        let between = from.zip(self.tool).filter(|_| motion.kind != Kind::Rapid);
+        if let Some((from, tool)) = between {
+            let [a, b] = [&from.tool.matrix3, &motion.end.tool.matrix3].map(Quat::from_mat3);
+            // Controllers go slower than the feed where the tool would turn too fast.
+            let lean = angle_between(from.tool.matrix3.z_axis, motion.end.tool.matrix3.z_axis);
+            let whole = whole.max(lean / Settings::default().turn_rate);
+            let parts = (length / SPACING).max(a.angle_between(b) / LEAN).ceil().clamp(1.0, MOST);
+            let tip = path(motion.kind, from.tool.translation, motion.end.tool.translation);
+            let posture = self.arm.posture(&motion.end.joints);
+            let mut before = from.joints;
+            for k in 1..parts as usize {
+                let part = k as f64 / parts;
+                let turned = Mat3::from_quat(a.slerp(b, part));
+                let at = Frame::from_mat3_translation(turned, tip(part));
+                let found = self.arm.inverse(&(self.part * at * tool.inverse()), before[3]);
+                let Some(joints) = found.get(posture) else { continue };
+                let joints: Joints =
+                    std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
+                self.sample(motion, (at.translation, joints), (before, whole / parts));
+                before = joints;
+            }
+            let end = (motion.end.tool.translation, motion.end.joints);
+            return self.sample(motion, end, (before, whole / parts));
         }
-    });
-    Ok(ArmMotions { motions: motions.collect(), margins })
+        let end = (motion.end.tool.translation, motion.end.joints);
+        self.sample(motion, end, (motion.end.joints, whole));
+    }
+
+    fn sample(
+        &mut self,
+        motion: &Motion,
+        (tip, joints): (Vec3, Joints),
+        (before, time): (Joints, f64),
+    ) {
+        self.time += time;
+        let speed = |i: usize| match time > 0.0 {
+            true => (joints[i] - before[i]).abs() / (time * self.arm.joints()[i].speed),
+            false => 0.0,
+        };
+        self.samples.push(ArmSample {
+            line: motion.line,
+            cuts: motion.kind != Kind::Rapid,
+            time: self.time,
+            tip,
+            joints: joints.map(f64::to_degrees),
+            speeds: std::array::from_fn(speed),
+            ease: ease_of(self.arm, &joints),
+        });
+    }
+}
+
+/// The tip along a cut, from 0 to 1.
+fn path(kind: Kind, from: Vec3, to: Vec3) -> impl Fn(f64) -> Vec3 {
+    let arc = match kind {
+        Kind::Arc(via) => arc_through(from, via, to),
+        Kind::Line | Kind::Rapid => None,
+    };
+    move |part| arc.map_or_else(|| from.lerp(to, part), |arc| arc.at(part))
 }
 
 impl<'m> ArmLooks<'m> {

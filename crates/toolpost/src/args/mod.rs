@@ -507,6 +507,10 @@ pub struct Show {
     /// In which frame an NC program is drawn.
     #[arg(long, default_value = "part", value_parser = choice(&FRAMES))]
     pub frame: Frame,
+    /// A robot, which leads the tool: its margins in colours along the path, and its joints and their speeds with their limits. A name in
+    /// the library, or a file ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: Option<String>,
     #[command(flatten)]
     pub source: Source,
 }

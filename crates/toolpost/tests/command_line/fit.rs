@@ -1,4 +1,4 @@
-//! Where a part would fit a robot.
+//! How a robot leads a tool: where a part would fit it, and its joints as a picture.
 
 use crate::folder::Folder;
 use std::process::Command;
@@ -69,4 +69,32 @@ fn where_nothing_fits_it_is_said_with_the_reasons() {
     assert!(said.code == 1 && said.out.contains("none: a larger --within"), "{said:?}");
     let said = folder.run(&["fit", "job.cls", "-m", "emco-concept-mill-105"]);
     assert!(said.code == 2 && said.err.contains("is no robot"), "{said:?}");
+}
+
+/// Joints and margins in a picture, the same figures in words, and the reason where the robot cannot lead the tool.
+#[test]
+fn the_joints_of_a_robot_are_drawn() {
+    let folder = Folder::new();
+    folder.write("job.cls", JOB);
+    let words = ["show", "job.cls", "-m", "kuka-kr6-r900", "-o", "job.svg"];
+    let said = folder.run(&words);
+    assert!(said.code == 0 && said.out.contains("of a joint's speed"), "{said:?}");
+    let drawn = folder.read("job.svg");
+    // The limits of joint 2 in the data sheet.
+    for text in ["JOINT 6", "\"-190\"", "\"45\"", "MARGIN BELOW 25 %"] {
+        assert!(drawn.contains(text), "{text}: {drawn}");
+    }
+    let found = folder.run(&[&words[..], &["--json"]].concat()).json();
+    let fit = folder.run(&["fit", "job.cls", "-m", "kuka-kr6-r900", "--json"]).json();
+    assert_eq!(found["margins"], fit["here"]["margins"]);
+    assert!(found["margins"]["speed_percent"].as_f64().unwrap() > 0.0, "{found}");
+    folder.write("far.toml", cell("[1000, 0, 150, 0, 0, 0]"));
+    let said = folder.run(&["show", "job.cls", "-m", "far.toml", "-o", "far.png"]);
+    assert!(
+        said.code == 1 && said.err.contains("job.cls:6") && said.err.contains("out of reach"),
+        "{said:?}"
+    );
+    assert!(!folder.names().contains(&String::from("far.png")));
+    let said = folder.run(&["show", "job.cls", "-m", "emco-concept-mill-105"]);
+    assert!(said.err.contains("is no robot"), "{said:?}");
 }

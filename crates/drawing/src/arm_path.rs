@@ -1,0 +1,240 @@
+//! The path of a tool that an arm leads: how easily the arm stands along it, in colours, and each joint with its limits and its speed.
+
+use crate::paper::{INK, RAPID, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
+use crate::trace::Trace;
+use crate::view::View;
+use geom::Vec3;
+use glam::DVec2;
+use std::fmt::Write as _;
+
+/// The field of the path: low and high corner, pixels.
+const PATH: [DVec2; 2] = [DVec2::new(50.0, 110.0), DVec2::new(560.0, 590.0)];
+
+/// From where to where the joints are drawn: across, the top of the first, and the height of one with its speed.
+const ACROSS: [f64; 2] = [700.0, 1150.0];
+const TOP: f64 = 100.0;
+const ROW: f64 = 103.0;
+
+/// How high the angles of a joint are drawn, and its speeds below them, pixels.
+const ANGLES: f64 = 56.0;
+const SPEEDS: f64 = 22.0;
+
+/// How far a drawn line may be from the path, pixels; doubled until the picture is small enough.
+const TOLERANCE: f64 = 0.1;
+
+/// The most points of the path.
+const MAX_POINTS: usize = 200_000;
+
+/// Margins up to this part of what is ample have this colour; more than the last has the colour of what is ample.
+const CLASSES: [(f64, &str); 4] =
+    [(0.25, "#b3261e"), (0.5, "#de7a18"), (0.75, "#c9a514"), (1.0, "#6c9a2e")];
+const AMPLE: &str = "#2678be";
+
+const FRAME: &str = "#c9ced4";
+const ANGLE: &str = "#2678be";
+const SPEED: &str = "#de7a18";
+const LIMIT: &str = "#b3261e";
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct ArmPicture {
+    /// In their order.
+    pub samples: Vec<ArmSample>,
+    /// The limits of each joint, degrees.
+    pub limits: [[f64; 2]; 6],
+    /// What is said below the title.
+    pub text: String,
+}
+
+/// Where an arm stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmSample {
+    /// Whether the tool cuts on the way here.
+    pub cuts: bool,
+    /// Seconds from the first one.
+    pub time: f64,
+    /// The tool tip, mm.
+    pub tip: Vec3,
+    /// Degrees.
+    pub joints: [f64; 6],
+    /// Which part of its speed each joint needs on the way here.
+    pub speeds: [f64; 6],
+    /// The least margin as a part of what is ample.
+    pub ease: f64,
+}
+
+/// Draws it as SVG under a title.
+pub fn arm_path(title: &str, picture: &ArmPicture) -> String {
+    let mut out = begin(&format!("Joints of the arm along {title}"));
+    write_text(&mut out, &shorten(title, 70), DVec2::new(40.0, 40.0), 12.0, INK);
+    write_text(&mut out, &shorten(&picture.text, 160), DVec2::new(40.0, 62.0), 7.0, INK);
+    path(&mut out, &picture.samples);
+    for joint in 0..6 {
+        row(&mut out, picture, joint);
+    }
+    let seconds = picture.samples.last().map_or(0.0, |last| last.time);
+    let below = TOP + 6.0 * ROW - 4.0;
+    write_text(&mut out, "0", DVec2::new(ACROSS[0], below), 8.0, INK);
+    let end = format!("{seconds:.0} S");
+    let start = ACROSS[1] - crate::lettering::width(&end, 8.0);
+    write_text(&mut out, &end, DVec2::new(start, below), 8.0, INK);
+    out.push_str("</svg>\n");
+    out
+}
+
+/// The class of a margin.
+fn class(ease: f64) -> usize {
+    CLASSES.iter().position(|(most, _)| ease < *most).unwrap_or(CLASSES.len())
+}
+
+fn color(class: usize) -> &'static str {
+    CLASSES.get(class).map_or(AMPLE, |(_, color)| color)
+}
+
+fn path(out: &mut String, samples: &[ArmSample]) {
+    let none = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    let corners = samples.iter().fold(none, |[low, high], at| [low.min(at.tip), high.max(at.tip)]);
+    if samples.is_empty() {
+        return;
+    }
+    let view = View::from_above(corners, PATH);
+    let mut tolerance = TOLERANCE;
+    let (rapids, cuts) = loop {
+        let mut rapids = Trace::new(tolerance);
+        let mut cuts: [Trace; CLASSES.len() + 1] = std::array::from_fn(|_| Trace::new(tolerance));
+        for pair in samples.windows(2) {
+            let [from, to] = [&pair[0], &pair[1]].map(|sample| view.at(sample.tip));
+            match pair[1].cuts {
+                true => cuts[class(pair[0].ease.min(pair[1].ease))].segment(from, to),
+                false => rapids.segment(from, to),
+            }
+        }
+        let points = cuts.iter().map(Trace::points).sum::<usize>() + rapids.points();
+        if points <= MAX_POINTS {
+            break (rapids, cuts);
+        }
+        tolerance *= 2.0;
+    };
+    lines(out, rapids, RAPID, 0.8, "stroke-dasharray=\"40 40\"");
+    // What is near to a limit lies on top.
+    for (class, trace) in cuts.into_iter().enumerate().rev() {
+        lines(out, trace, color(class), 2.0, "");
+    }
+    triad(out, &view, DVec2::new(90.0, 690.0));
+    scale_bar(out, &view, DVec2::new(560.0, 640.0));
+    for class in 0..=CLASSES.len() {
+        let at = DVec2::new(180.0, 660.0 + 16.0 * class as f64);
+        let _ = writeln!(
+            out,
+            "<path stroke=\"{}\" stroke-width=\"3\" d=\"M{:.1} {:.1}h24\"/>",
+            color(class),
+            at.x,
+            at.y - 3.5
+        );
+        let text = match CLASSES.get(class) {
+            Some((most, _)) => format!("MARGIN BELOW {:.0} %", 100.0 * most),
+            None => String::from("AMPLE: 30 DEGREES, 200 MM FROM AXIS 1"),
+        };
+        write_text(out, &text, DVec2::new(at.x + 34.0, at.y), 7.5, INK);
+    }
+}
+
+/// The least and the largest of one column of pixels.
+#[derive(Clone, Copy)]
+struct Column {
+    angles: Option<[f64; 2]>,
+    speed: f64,
+}
+
+/// A joint along the time: its angle between its limits, and which part of its speed it needs.
+fn row(out: &mut String, picture: &ArmPicture, joint: usize) {
+    let [left, right] = ACROSS;
+    let top = TOP + ROW * joint as f64;
+    let [min, max] = picture.limits[joint];
+    let whole = picture.samples.last().map_or(0.0, |last| last.time).max(1e-9);
+    let mut columns: Vec<Option<Column>> = vec![None; (right - left) as usize + 1];
+    let last = columns.len() - 1;
+    let mut from = 0;
+    for sample in &picture.samples {
+        let at = ((sample.time / whole * last as f64) as usize).min(last);
+        for column in columns[from..at].iter_mut().filter(|_| sample.cuts) {
+            let speed = sample.speeds[joint];
+            let known = column.get_or_insert(Column { angles: None, speed });
+            known.speed = known.speed.max(speed);
+        }
+        from = at;
+        let (angle, speed) = (sample.joints[joint], sample.speeds[joint]);
+        let before = columns[at].unwrap_or(Column { angles: None, speed });
+        let [low, high] = before.angles.unwrap_or([angle; 2]);
+        let angles = Some([low.min(angle), high.max(angle)]);
+        columns[at] = Some(Column { angles, speed: before.speed.max(speed) });
+    }
+    let place = |angle: f64| top + ANGLES * (1.0 - (angle - min) / (max - min));
+    let (mut angles, mut speeds) = (String::new(), String::new());
+    let floor = top + ANGLES + 6.0 + SPEEDS;
+    let mut most: f64 = 0.0;
+    for (i, column) in columns.iter().enumerate() {
+        let Some(Column { angles: found, speed }) = column else { continue };
+        let x = left + i as f64;
+        if let Some([low, high]) = found {
+            let pen = if angles.is_empty() { 'M' } else { 'L' };
+            let _ = write!(angles, "{pen}{x} {:.1}L{x} {:.1}", place(*low), place(*high));
+        }
+        if *speed > 0.0 {
+            let _ = write!(speeds, "M{x} {floor}V{:.1}", floor - SPEEDS * speed.min(1.0));
+        }
+        most = most.max(*speed);
+    }
+    let _ = writeln!(
+        out,
+        "<path stroke=\"{FRAME}\" d=\"M{left} {top}h{0}v{ANGLES}h-{0}zM{left} {floor}h{0}\"/>\n\
+         <path stroke=\"{LIMIT}\" stroke-width=\"0.8\" d=\"M{left} {top}H{right}M{left} {1}H{right}M{left} {2}H{right}\"/>\n\
+         <path stroke=\"{SPEED}\" d=\"{speeds}\"/>\n<path stroke=\"{ANGLE}\" stroke-width=\"1.6\" d=\"{angles}\"/>",
+        right - left,
+        top + ANGLES,
+        floor - SPEEDS,
+    );
+    let name = DVec2::new(left - 92.0, top + ANGLES / 2.0 + 4.0);
+    write_text(out, &format!("JOINT {}", joint + 1), name, 9.0, INK);
+    let mut beside = |text: String, y: f64| {
+        let x = left - 6.0 - crate::lettering::width(&text, 6.5);
+        write_text(out, &text, DVec2::new(x, y), 6.5, LIMIT);
+    };
+    beside(format!("{max:.0}"), top + 5.0);
+    beside(format!("{min:.0}"), top + ANGLES + 1.0);
+    beside(format!("{:.0} % OF ITS SPEED", 100.0 * most), floor);
+    debug_assert!(floor < SIZE.y, "the rows are within the paper");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(time: f64, ease: f64, angle: f64, speed: f64) -> ArmSample {
+        let tip = Vec3::new(10.0 * time, 0.0, 0.0);
+        ArmSample { cuts: true, time, tip, joints: [angle; 6], speeds: [speed; 6], ease }
+    }
+
+    /// The colour of the class in which a margin is, and a column as high as the part of the speed.
+    #[test]
+    fn margins_have_colours_and_speeds_are_columns() {
+        let picture = |ease: f64, speed: f64| ArmPicture {
+            samples: vec![sample(0.0, ease, 0.0, 0.0), sample(1.0, ease, 45.0, speed)],
+            limits: [[-90.0, 90.0]; 6],
+            text: String::new(),
+        };
+        let near = arm_path("job", &picture(0.1, 0.5));
+        let line = |color: &str| format!("stroke=\"{color}\" stroke-width=\"20\"");
+        assert!(near.contains(&line(CLASSES[0].1)) && !near.contains(&line(AMPLE)), "{near}");
+        let ample = arm_path("job", &picture(1.2, 0.5));
+        assert!(ample.contains(&line(AMPLE)) && !ample.contains(&line(CLASSES[0].1)));
+        // By hand: the floor of joint 1 is at 100 + 56 + 6 + 22 = 184; half of 22 pixels above it is 173.
+        assert!(near.contains("M1150 184V173.0"), "{near}");
+        // 45 of -90 to 90 degrees: a quarter of 56 pixels below the top.
+        assert!(near.contains("L1150 114.0"), "{near}");
+        assert!(
+            arm_path("nothing", &ArmPicture { samples: Vec::new(), ..picture(1.0, 0.0) })
+                .ends_with("</svg>\n")
+        );
+    }
+}
