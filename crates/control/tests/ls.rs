@@ -269,6 +269,7 @@ fn what_is_not_understood_is_refused_with_its_line() {
     for (line, what) in [
         ("  FOO", "FOO is no word"),
         ("  IF R[1]=1,JMP LBL[1]", "IF is not followed"),
+        ("L P[2] 10mm/sec FINE ACC500", "ACC is 0 to 150 percent"),
         ("  JMP LBL[1]", "JMP is not followed"),
         ("  RO[1]=ON", "RO is not followed"),
         ("L PR[1] 10mm/sec FINE", "position register is not followed"),

@@ -101,8 +101,8 @@ fn the_job_of_the_specification_makes_its_motion() {
     ] {
         assert!(events.iter().any(|event| event.action == action), "{action:?}");
     }
-    // The name doSpindle is that of the controller's configuration.
-    assert_eq!(events.iter().filter(|event| matches!(event.action, Action::Risk(_))).count(), 2);
+    // The name doSpindle is that of the controller's configuration; and the job ends without EXIT.
+    assert_eq!(events.iter().filter(|event| matches!(event.action, Action::Risk(_))).count(), 3);
     assert_eq!(events.last().unwrap().action, Action::End);
 }
 
@@ -295,6 +295,13 @@ fn procedures_are_called_and_the_program_ends_at_exit() {
     let events = run_with(&settings(), text).unwrap();
     let expected = [(7, Action::Message("a; ! \"b\"".into())), (8, Action::End)];
     assert_eq!(events, expected.map(|(line, action)| Event { line, action }));
+    // The same without EXIT: in continuous mode it would begin anew (Technical reference manual RAPID, "EXIT").
+    let events = run_with(&settings(), &text.replace("EXIT;\n", "")).unwrap();
+    let found = events.iter().find_map(|event| match &event.action {
+        Action::Risk(risk) => Some((event.line, risk.rule.name(), risk.refused)),
+        _ => None,
+    });
+    assert_eq!(found, Some((5, "no-end", true)));
     let deep = "MODULE Job\nPROC main()\nmain;\nENDPROC\nENDMODULE\n";
     assert!(run_with(&settings(), deep).unwrap_err().contains("nest deeper than 20"));
 }
@@ -319,6 +326,10 @@ fn what_is_not_understood_is_refused_with_its_line() {
         ("AccSet 5,100;", "20 to 100 percent"),
         ("a_name_that_is_longer_than_thirty_two:=1;", "at most 32 letters"),
         ("TPWrite \"no end;", "the text has no end"),
+        (
+            "VAR tooldata t:=[TRUE,[[0,0,1],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];",
+            "PERS TOOLDATA",
+        ),
         ("VAR num list{5};", "arrays are not followed"),
         ("VAR clock c;", "the type CLOCK"),
         ("VAR num exit;", "EXIT is a word of RAPID"),

@@ -80,7 +80,8 @@ const DAMAGES: &[(&str, &str, &str)] = &[
         "MoveAbsJ [[0.0000,0.0000,5.0000,0.0000,60.0000",
         "home",
     ),
-    ("EXIT;\r\n", "SetDO DO10_2,1;\r\n", "left-on"),
+    ("EXIT;\r\n", "SetDO DO10_2,1;\r\nEXIT;\r\n", "left-on"),
+    ("EXIT;\r\n", "", "no-end"),
 ];
 
 #[test]

@@ -3,7 +3,7 @@
 use super::execution::State;
 use super::language::{Name, REFUSED, RESERVED, Routine, Scan, Statement, declaration, read};
 use crate::Settings;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::kernel::Channel;
 use crate::kernel::flow::BlockLocation;
 use program::{Diagnostic, Outcome, OutputValue, Rule};
@@ -38,9 +38,23 @@ pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Ou
         return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
     };
     let mut run = Run { settings, state, channel };
-    let (Ended::Routine(end) | Ended::Program(end)) = run.routine(&module, main, 0)?;
+    let end = match run.routine(&module, main, 0)? {
+        Ended::Program(end) => end,
+        Ended::Routine(end) => {
+            run.channel.report(end, Action::Risk(BEGINS_ANEW.into()))?;
+            end
+        }
+    };
     run.channel.report(end, Action::End)
 }
+
+/// Technical reference manual RAPID, `EXIT`, and "Running modes": at the end of `main` a program in continuous mode begins at its start.
+const BEGINS_ANEW: Risk = Risk {
+    rule: Rule::NoEnd,
+    what: "ends without EXIT: in continuous mode it begins anew and cuts the part once more",
+    help: "EXIT; before ENDPROC of main",
+    refused: true,
+};
 
 impl<'t> Module<'t> {
     /// Takes the data of a module, and finds its procedures.

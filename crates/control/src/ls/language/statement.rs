@@ -338,13 +338,22 @@ fn termination(scan: &mut Scan) -> Outcome<Termination> {
     }
 }
 
+/// The largest acceleration that a motion may ask for, percent of what the controller would take.
+const MOST_ACC: f64 = 150.0;
+
 /// What stands behind: whether the wrist's joints go evenly.
 fn options(scan: &mut Scan) -> Outcome<bool> {
     let mut by_wrist = false;
     while scan.peek().is_some() {
         let from = scan.at;
         match scan.letters_alone() {
-            Some("ACC") if scan.decimal().is_some() => {}
+            Some("ACC") => {
+                let within = scan.decimal().is_some_and(|part| (0.0..=MOST_ACC).contains(&part));
+                if !within {
+                    let message = "ACC is 0 to 150 percent of the acceleration";
+                    return Err(scan.since(from, Rule::Number, message));
+                }
+            }
             Some("Wjnt") => by_wrist = true,
             _ => return Err(unknown_option(scan, from)),
         }

@@ -145,6 +145,10 @@ pub(crate) fn declaration(
         true => Some(read_as(scan, variables, kind)?),
         false => None,
     };
+    if matches!(kind, "TOOLDATA" | "WOBJDATA") && first.as_str() != "PERS" {
+        let message = format!("{first} {kind}: motions take persistent ones alone, PERS {kind}");
+        return Err(scan.since(from, Rule::Definition, message));
+    }
     if value.is_none() && first.as_str() != "VAR" {
         let message = format!("{first} data have a value from their declaration on");
         return Err(scan.since(from, Rule::Definition, message));
