@@ -139,7 +139,10 @@ begin FOOTER
                  {{ t.name[:40] }}{% endif %}{% if t.diameter %} D{{ t.diameter }}{% endif %})\n{% endfor %}\n\
                  G21 G17 G40 G49 G90 G94 G54\n(shop)",
             ),
-            ("program_end", "G53 G0 {{SAFE_HEIGHT}}\nM5\nM2"),
+            (
+                "program_end",
+                "{% if options.retract_height %}G0 {{RETRACT_HEIGHT}}{% else %}G53 G0 {{SAFE_HEIGHT}}{% endif %}\nM5\nM2",
+            ),
         ],
     );
     let x = &machine.words["X"];

@@ -130,7 +130,11 @@ fn the_spindle_turns_until_the_tool_is_out_of_the_cut() {
         let blocks: Vec<&str> = text.lines().collect();
         for (i, _) in blocks.iter().enumerate().filter(|(_, block)| says(block, "M5")) {
             let up = ["G28 Z0", "G53", "SUPA", "M91", "G75", "G90", "G49"];
-            let is_out = i == 0 || up.iter().any(|word| blocks[i - 1].contains(word));
+            let over_work = machine.retract_height().is_some();
+            let is_up = |block: &str| {
+                up.iter().any(|word| block.contains(word)) || over_work && block == "G0 Z40"
+            };
+            let is_out = i == 0 || is_up(blocks[i - 1]);
             let tool_is_unknown = !blocks[..i].iter().any(|block| block.contains("M3"));
             let turret = machine.name.ends_with("emco-post");
             assert!(

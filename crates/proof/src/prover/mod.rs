@@ -70,6 +70,8 @@ pub struct Prover<'a> {
     accepted: Accepted,
     /// Whether Z is home, or where the tool change brings it, so that axes may turn.
     raised: bool,
+    /// The height over the work zero to which a machine without switches has retracted, mm: from there it only comes down.
+    top: f64,
     /// Whether the control has turned the rotary axes to a tilted plane, and nothing has moved since.
     swivelled: bool,
     /// Whether the tool has stood at a place that is known.
@@ -149,6 +151,7 @@ impl<'a> Prover<'a> {
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
             raised: false,
+            top: f64::NEG_INFINITY,
             swivelled: false,
             has_stood: false,
             down: None,

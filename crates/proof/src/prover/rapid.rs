@@ -233,8 +233,16 @@ impl Prover<'_> {
         };
         let is_sources = matches!(&self.cursor.step, Step::Move(goal)
             if in_hole(goal) || self.gauge.at(&self.gauge.resolve(0, *to), &goal.to));
+        // Where the tool stands there already, it counts before a stop, a tool and the end alone.
+        let stands = *to == self.here.position;
+        let is_due = || {
+            self.stops_next()
+                || self.cursor.at_tool_change()
+                || matches!(self.cursor.step, Step::End)
+        };
         at.z >= height - machine.resolution() / 2.0
-            && (from.z.is_nan() || from.z <= at.z)
+            && (!stands || is_due())
+            && (if from.z.is_nan() { self.top } else { from.z }) <= at.z + SAME
             && same(from.x, at.x)
             && same(from.y, at.y)
             && !is_sources
@@ -243,6 +251,7 @@ impl Prover<'_> {
     /// A retract to the `retract_height`, which is home on a machine without switches: above all that the source cuts.
     pub(super) fn retract(&mut self, line: u32, to: &Position) -> Outcome {
         let to = self.gauge.resolve(line, *to);
+        self.top = to.position.point.z;
         self.check_offsets(&to);
         self.hold_travel(&to, None);
         let short = self.short_below(&to, Vec3::Z);
