@@ -11,9 +11,6 @@ pub const MOST_BITE: f64 = 0.03;
 /// The most that it takes of the copper behind the edge, as a part.
 const MOST_PART: f64 = 0.1;
 
-/// How far the path that is cut may be off the middle, mm: in few chords, and merged.
-const OFF: f64 = 0.002;
-
 /// So much of the copper behind an edge belongs to the edge itself, mm: twice what a region may be off.
 const EDGE: f64 = 0.002;
 
@@ -43,7 +40,7 @@ impl<'a> Bite<'a> {
             Narrow::Middle => true,
             Narrow::Bite => self.feet(at).into_iter().all(|(_, foot)| {
                 let bite = self.width / 2.0 - foot.distance(at);
-                bite <= MOST_BITE - OFF && self.is_thick(at, foot, bite / MOST_PART)
+                bite <= MOST_BITE && self.is_thick(at, foot, bite / MOST_PART)
             }),
         }
     }

@@ -446,6 +446,60 @@ fn machines_that_cannot_do_it() {
     assert_eq!(said.err.matches("error[").count(), 2, "{}", said.err);
 }
 
+/// A hundred thousand holes of 0.1 mm, 0.25 mm apart.
+#[test]
+fn a_board_of_a_hundred_thousand_holes() {
+    let folder = small();
+    let holes = (0..316).flat_map(|row| (0..317).map(move |column| (column, row)));
+    let holes: String = holes
+        .map(|(x, y)| {
+            format!("X{:.2}Y{:.2}\n", 1.0 + 0.25 * f64::from(x), 1.0 + 0.25 * f64::from(y))
+        })
+        .collect();
+    folder.write("board/holes.drl", format!("M48\nMETRIC\nT1C0.1\n%\nT1\n{holes}M30\n"));
+    edge(&folder, "D11*\nX0Y0D02*\nX82000D01*\nY82000D01*\nX0D01*\nY0D01*\n");
+    let begun = Instant::now();
+    let call = ["pcb", "board", "-o", "out", "-m", "linuxcnc-mill", "--only", "drill", "-q"];
+    let said = folder.run(&[&call[..], &["--picture", "none"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    let report: serde_json::Value = serde_json::from_str(&folder.read("out/report.json")).unwrap();
+    assert_eq!(report["board"]["holes"], 100_172);
+    assert!(begun.elapsed().as_secs() < 300, "{:?}", begun.elapsed());
+}
+
+/// 200 squares of 1 mm, 0.01 mm apart: nothing that one can buy goes between any two, and a bite of 0.03 mm does not either.
+#[test]
+fn gaps_of_ten_micrometres_everywhere() {
+    let folder = small();
+    let squares: String = (0..200)
+        .map(|i| format!("X{}Y{}D03*\n", 500 + 1010 * (i % 20), 500 + 1010 * (i / 20)))
+        .collect();
+    front(&folder, &format!("%ADD13R,1X1*%\nD13*\n{squares}"));
+    edge(&folder, "D11*\nX0Y0D02*\nX21000D01*\nY11000D01*\nX0D01*\nY0D01*\n");
+    let words = ["error[tool-too-wide]", "0.400 mm", "nothing would be isolated"];
+    let only = ["--only", "front"];
+    bad_call(&folder, &only, &words);
+    // All others are made.
+    let said = call(&folder, &["--picture", "none"]);
+    assert_eq!(said.code, 3, "{said:?}");
+    assert!(said.err.contains("tool-too-wide") && folder.path().join("out/drill.gcode").exists());
+}
+
+/// A second closed contour next to the first is a second piece, which is cut out as well.
+#[test]
+fn two_outlines() {
+    let folder = small();
+    edge(&folder, &format!("{EDGE}X30000Y0D02*\nX40000D01*\nY10000D01*\nX30000D01*\nY0D01*\n"));
+    let said = call(&folder, &["--only", "outline", "--tabs", "0", "--picture", "none"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let report: serde_json::Value = serde_json::from_str(&folder.read("out/report.json")).unwrap();
+    assert_eq!(report["board"]["high_mm"][0], 40.0);
+    // Around 20 by 10 and 10 by 10 mm with a mill of 2 mm, four times: sides, and corners of 1 mm.
+    let right = 4.0 * (60.0 + 40.0 + 2.0 * std::f64::consts::TAU);
+    let cut = report["programs"][0]["source"]["measures"]["cutting_length"].as_f64().unwrap();
+    assert!((right..right + 10.0).contains(&cut), "{cut}, not {right}");
+}
+
 #[test]
 fn a_folder_with_two_boards() {
     let folder = small();

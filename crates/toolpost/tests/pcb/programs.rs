@@ -820,8 +820,8 @@ fn the_same_board_is_the_same_programs_to_the_last_byte() {
         files
     };
     let first = read();
-    // Five programs, four pictures, a report.
-    assert_eq!(first.len(), 10);
+    // Five programs, four pictures, a sheet with both sides, a report.
+    assert_eq!(first.len(), 11);
     assert!(first == read());
 }
 
@@ -848,6 +848,13 @@ fn what_is_said_and_to_whom() {
     let said = folder.run(&call);
     let saved = "in out: report.json, sheet.svg, front.svg, drill.svg, back.svg, outline.svg, front.gcode, drill.gcode, back.gcode, outline.gcode";
     assert!(said.out.contains(saved), "{}", said.out);
+    // Both sides to print, with the blank: 2 mm around 20 by 10 mm, 1:1 on A4.
+    let sheet = folder.read("out/sheet.svg");
+    for word in
+        ["width=\"210mm\"", "24.0 X 14.0 MM BLANK, SCALE 1:1", "FRONT UP", "BACK UP", "2 OF 0.8 MM"]
+    {
+        assert!(sheet.contains(word), "{word}");
+    }
 }
 
 #[test]
