@@ -3,7 +3,7 @@
 
 use glass::curve::{self, Layers};
 use glass::list::Columns;
-use glass::mesh::{Form, Shape, read};
+use glass::mesh::{Form, Shape, read_painted};
 use libfuzzer_sys::fuzz_target;
 
 const FORMS: [Form; 5] =
@@ -15,13 +15,16 @@ fuzz_target!(|data: &[u8]| {
     let number = usize::from(*first) % (FORMS.len() + drawings.len());
     let read = match drawings.get(number.wrapping_sub(FORMS.len())) {
         Some(form) => curve::read(bytes, *form, "fuzz").map(Shape::Curves),
-        None => read(bytes, FORMS[number], "fuzz"),
+        // What a body names is the body itself: its materials stand between its faces.
+        None => read_painted(bytes, FORMS[number], "fuzz", Some(&mut |_| Ok(bytes.to_vec()))),
     };
     match read {
         Ok(Shape::Mesh(mesh)) => {
             let count = mesh.vertices.len();
             assert!(mesh.triangles.iter().flatten().all(|corner| (*corner as usize) < count));
             mesh.health();
+            let light = (0..mesh.triangles.len() as u32).map(|i| mesh.light(i, mesh.corners(i)[0]));
+            assert!(mesh.paint.is_empty() || light.take(100).all(|light| !(light < 0.0)));
         }
         Ok(Shape::Points(points)) => assert!(points.iter().all(|point| point.is_finite())),
         Ok(Shape::Curves(curves)) => {

@@ -5,7 +5,7 @@
 //! compute with the same numbers, so that a ray goes between no two of them and meets no edge twice.
 
 use crate::cloud::{self, Point};
-use crate::mesh::Mesh;
+use crate::mesh::{Depth, Mesh};
 use crate::sample::{self, Apart, Dice};
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
@@ -50,6 +50,15 @@ pub struct Filling {
     pub step: Option<f64>,
     /// Across the planes, along the rays; of length 1.
     pub direction: DVec3,
+}
+
+/// Copies of the surface within a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shells {
+    /// How many surfaces there are, the body's own among them; 1 at least.
+    pub count: u32,
+    /// From each to the next, mm; without, the smallest distance of points and half as much again.
+    pub distance: Option<f64>,
 }
 
 /// What was left out.
@@ -116,6 +125,24 @@ impl Filling {
             Fill::Triangles(_) | Fill::Rays => area / (step * step),
         }
     }
+}
+
+/// What part of its depth the distance of a shell from the surface may miss, where the surface is curved or has many corners.
+const MISSED: f64 = 0.05;
+
+/// The points of the shells within a body: on each as far apart as those of its surface, and no part of the surface nearer than the
+/// shell is deep.
+pub fn shells(mesh: &Mesh, shells: Shells, apart: Apart, seed: u64) -> Vec<Point> {
+    let distance = shells.distance.unwrap_or(1.5 * apart.rounded());
+    let depths = (1..shells.count).map(|number| f64::from(number) * distance);
+    let Some(deepest) = depths.clone().next_back() else { return Vec::new() };
+    let depth = Depth::new(mesh, deepest);
+    let of = |own: f64| {
+        let points = sample::surface(&mesh.shell(own), apart, seed.wrapping_add(own.to_bits()));
+        let is_in = |point: &Point| depth.is_within(cloud::place(*point), own * (1.0 - MISSED));
+        points.into_par_iter().filter(is_in).collect::<Vec<Point>>()
+    };
+    depths.flat_map(of).collect()
 }
 
 /// Points of the surface by their rank ([`sample::ranked`]), as far as it is bright there: as many of them as its light says.

@@ -2,7 +2,7 @@
 
 use crate::cloud::{self, Distances, Point};
 use crate::curve::Layers;
-use crate::fill::{self, Fill, Filling, Left};
+use crate::fill::{self, Fill, Filling, Left, Shells};
 use crate::fly::{self, Run};
 use crate::machine::{Lens, Machine};
 use crate::material::Material;
@@ -63,6 +63,8 @@ pub struct Settings {
     pub spacing: Option<f64>,
     /// How bodies become points.
     pub filling: Filling,
+    /// Copies of the surface within bodies, of [`Fill::Surface`].
+    pub shells: Shells,
     /// How often curves are repeated, and where points lie along them.
     pub layers: Layers,
     /// By which ray the focus is found.
@@ -770,7 +772,8 @@ fn discretise(
     let sides = parts.curves().flat_map(|curve| curve.windows(2));
     let curves =
         sides.map(|side| side[0].distance(side[1])).sum::<f64>() / step * f64::from(layers.count);
-    let expected = sheets + curves + filling.expected(mesh, apart.spacing);
+    let surfaces = f64::from(settings.shells.count.max(1));
+    let expected = sheets + curves + surfaces * filling.expected(mesh, apart.spacing);
     if expected > MOST_POINTS {
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
@@ -778,6 +781,9 @@ fn discretise(
     }
     let fill::Points { sampled: mut cloud, mut others, left } =
         fill::points(mesh, filling, apart, *seed);
+    if filling.fill == Fill::Surface {
+        others = fill::shells(mesh, settings.shells, apart, *seed);
+    }
     let mut asked = cloud.len() + others.len();
     let given: Option<Vec<Point>> = points.iter().map(|place| cloud::point(*place)).collect();
     let Some(mut given) = given else {
@@ -801,7 +807,8 @@ fn discretise(
         others = weld::clear(&others, &cloud, apart);
     }
     cloud.append(&mut others);
-    if !given.is_empty() || !filling.keeps(apart) {
+    // Shells come near each other where the body is hollow.
+    if !given.is_empty() || !filling.keeps(apart) || settings.shells.count > 1 {
         cloud.append(&mut given);
         cloud = weld::welded(&cloud, apart.spacing);
     }

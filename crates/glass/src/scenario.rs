@@ -75,6 +75,16 @@ impl Blocks<'_> {
         self.pose(at).is_some_and(|[arm, _]| (low..=high).contains(&arm))
     }
 
+    /// Whether the arm gets to the middle of each cell of the block, row by row from its near side, `columns` in a row.
+    pub fn map(&self, columns: u32) -> Vec<bool> {
+        let step = self.block[0] / f64::from(columns);
+        let rows = (self.block[1] / step).round().max(1.0) as u32;
+        let up = self.block[1] / f64::from(rows);
+        let middle = |i: u32, step: f64| ((f64::from(i) + 0.5) * step * 1e3).round() as i32;
+        let cell = |(row, column)| self.reaches([middle(column, step), middle(row, up), 0]);
+        (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))).map(cell).collect()
+    }
+
     /// Steps of arm and table.
     fn steps(&self, degrees: [f64; 2]) -> [i32; 2] {
         let [arm, table, _] = self.machine.coordinates().map(|of| of.steps());

@@ -100,7 +100,10 @@ fn what_a_body_names_must_be_there() {
     let text = sheet([""; 4]) + TEXTURED;
     assert_eq!(read(text.as_bytes(), Form::Obj, &[]).unwrap_err(), ("image", 5));
     let library = ("sheet.mtl", b"newmtl paper\nmap_Kd grey.png\n".to_vec());
-    assert_eq!(read(text.as_bytes(), Form::Obj, &[library.clone()]).unwrap_err().0, "image");
+    assert_eq!(
+        read(text.as_bytes(), Form::Obj, std::slice::from_ref(&library)).unwrap_err().0,
+        "image"
+    );
     let cut = ("grey.png", png(&[1, 2, 3])[..40].to_vec());
     assert_eq!(read(text.as_bytes(), Form::Obj, &[library, cut]).unwrap_err().0, "image");
     let other = ("sheet.mtl", b"newmtl glass\n".to_vec());

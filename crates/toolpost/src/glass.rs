@@ -6,7 +6,7 @@ use crate::args::glass::{
 };
 use crate::progress::Progress;
 use ::glass::curve::{self, Layers};
-use ::glass::fill::{self, Fill, Filling, Sections};
+use ::glass::fill::{self, Fill, Filling, Sections, Shells};
 use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
 use ::glass::machine::{LIBRARY, Machine};
@@ -14,7 +14,7 @@ use ::glass::mesh::{self, Form, Shape};
 use ::glass::optics::Ray;
 use ::glass::order::Effort;
 use ::glass::picture::{self, Manner};
-use ::glass::scenario::Scenario;
+use ::glass::scenario::{Blocks, Scenario};
 use ::glass::simulate::{Events, simulate};
 use ::glass::{cloud, control, material, source};
 use app::files::{self, Target};
@@ -52,6 +52,9 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
             };
             simulated(program, machine, events, *start, output.as_deref())
         }
+        Glass::Command(GlassCommand::Reach { machine, block, output }) => {
+            reach(machine, *block, output)
+        }
         Glass::Command(GlassCommand::Check { points, spacing, columns }) => {
             check(points, *spacing, *columns)
         }
@@ -62,6 +65,43 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
 fn tables() -> Answer {
     let data = json!({ "series": source::series(), "checks": source::checks() });
     Answer::product(source::report(), data)
+}
+
+/// Cells of a map of reach along X.
+const CELLS: u32 = 200;
+
+/// Draws what an arm reaches.
+fn reach(name: &str, block: [f64; 3], output: &Path) -> Result<Answer, Stop> {
+    let target = Target::new(output, &[Path::new(name)])?;
+    let format = Format::of(output)?;
+    let machine = machine(name)?;
+    let Some(table) = machine.polar else {
+        let message = format!("{} has no arm and no turning table", machine.title);
+        let found = Diagnostic::error(Rule::GlassBlock, message);
+        return Err(found.help("name a machine of kind = \"polar\"").into());
+    };
+    if let Some(message) = machine.refuses(block, 1) {
+        let found = Diagnostic::error(Rule::GlassBlock, message);
+        return Err(found.help("take a smaller --block").into());
+    }
+    let cells = Blocks { machine: &machine, table, block, count: 1 }.map(CELLS);
+    let picture = drawing::ReachPicture {
+        block: [block[0], block[1]],
+        offset: table.offset,
+        table: table.radius,
+        arm: [table.distance, table.arm],
+        cells: (CELLS as usize, &cells),
+    };
+    let bytes = format.bytes(drawing::reach(&machine.title, &picture))?;
+    files::save(&[(&target, &bytes)])?;
+    let missed = cells.iter().filter(|reached| !**reached).count() as f64 / cells.len() as f64;
+    let rows = [
+        ("machine", machine.title.clone()),
+        ("not reached", format!("{:.1} % of the block", 100.0 * missed)),
+        ("saved", output.display().to_string()),
+    ];
+    let data = json!({ "machine": machine.title, "block": block, "unreachable": missed });
+    Ok(Answer::summary(Verdict::Done, app::summary::rows(&rows), data))
 }
 
 /// Runs a program tick by tick.
@@ -262,6 +302,7 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
         focal: args.lens,
         spacing: args.spacing,
         filling: filling(&args.filling, args.image.invert),
+        shells: Shells { count: args.filling.shells, distance: args.filling.shell_distance },
         layers: Layers {
             count: args.filling.layers,
             distance: args.filling.layer_distance,

@@ -3,11 +3,13 @@
 mod obj;
 mod paint;
 mod ply;
+mod shell;
 mod stl;
 mod threemf;
 
 pub use paint::Paint;
 pub use ply::write as ply;
+pub use shell::Depth;
 
 use crate::curve::Curves;
 use crate::list::{self, Columns};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use toolpost_glass::curve::Layers;
-use toolpost_glass::fill::{Fill, Filling};
+use toolpost_glass::fill::{Fill, Filling, Shells};
 use toolpost_glass::job::{Order, Placing, Settings};
 use toolpost_glass::material::{Material, TABLE, find};
 use toolpost_glass::optics::Ray;
@@ -30,6 +30,7 @@ pub fn settings(block: [f64; 3], tries: u64) -> Settings {
         focal: 70.0,
         spacing: None,
         filling: Filling { fill: Fill::Surface, step: None, direction: DVec3::Z },
+        shells: Shells { count: 1, distance: None },
         layers: Layers::default(),
         ray: Ray::Marginal,
         order: Order::Fastest,

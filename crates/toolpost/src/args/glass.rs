@@ -91,6 +91,18 @@ pub enum GlassCommand {
         #[arg(long, short, value_name = "FILE")]
         output: Option<PathBuf>,
     },
+    /// Draw what the arm of a polar machine reaches of a block, from above.
+    Reach {
+        /// Name in the library, or a file ending in .toml.
+        #[arg(long, short, value_name = "NAME|FILE")]
+        machine: String,
+        /// Sides of the block along X, Y and Z.
+        #[arg(long, value_name = "XxYxZ", value_parser = block)]
+        block: [f64; 3],
+        /// Where to save the picture, as .svg or .png.
+        #[arg(long, short, value_name = "FILE")]
+        output: PathBuf,
+    },
     /// Check the smallest distance of the points of a list or a cloud, and name the nearest two.
     Check {
         /// The points (.xyz, .txt, .csv, .cft, .ply).
@@ -177,6 +189,12 @@ pub struct Filling {
     /// Where a body gets points.
     #[arg(long, value_name = "HOW", default_value = "surface", value_parser = choice(&FILLS))]
     pub fill: Filled,
+    /// How many surfaces a body has, itself and copies within it, of `surface`.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub shells: u32,
+    /// Distance of those surfaces [default: the spacing and half as much again].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub shell_distance: Option<f64>,
     /// Distance of points along contours and curves, in triangles and columns, and of rays [default: the spacing and what rounding
     /// takes].
     #[arg(long, value_name = "MM", value_parser = length)]

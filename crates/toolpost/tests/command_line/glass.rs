@@ -307,3 +307,46 @@ fn a_cloud_is_saved_for_other_programs_and_colours_lie_in_the_folder_of_the_body
     let part = grey as f64 / (grey + dark) as f64;
     assert!((part - 0.214).abs() < 0.001, "{grey} {dark}");
 }
+
+#[test]
+fn what_an_arm_reaches_is_drawn() {
+    let folder = Folder::empty();
+    let machine = folder.run(&["glass", "show", "glass-polar-100hz"]).out;
+    // The example of the source: the arm misses 17.4 % of a block of 50 mm.
+    folder.write("short.toml", machine.replace("arm = 135", "arm = 120"));
+    let words = ["glass", "reach", "-m", "short.toml", "--block", "50x50x80", "-o", "reach.svg"];
+    let said = folder.run(&[&words[..], &["--json"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    let missed = said.json()["unreachable"].as_f64().unwrap();
+    assert!((missed - 0.1736).abs() < 0.001, "{missed}");
+    assert!(folder.read("reach.svg").starts_with("<svg"), "{:.60}", folder.read("reach.svg"));
+    let wrong = folder.run(&[
+        "glass",
+        "reach",
+        "-m",
+        "glass-xyz-100hz",
+        "--block",
+        "50x50x80",
+        "-o",
+        "a.svg",
+    ]);
+    assert!(wrong.code != 0 && wrong.err.contains("no arm"), "{wrong:?}");
+}
+
+#[test]
+fn shells_and_channels_are_given_on_the_command_line() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    assert_eq!(engrave(&folder, &[]).code, 0);
+    let one = folder.read("roof.prg").lines().count();
+    assert_eq!(engrave(&folder, &["--shells", "2"]).code, 0);
+    assert!(folder.read("roof.prg").lines().count() * 10 > one * 12);
+    // Four beams, two of them open: the program says so, and its pulses are those of one block.
+    let beams = ["--machine", "glass-xyz-50hz", "--blocks", "2"];
+    let said = engrave(&folder, &beams);
+    assert_eq!(said.code, 0, "{said:?}");
+    let first = folder.read("roof.prg");
+    assert!(first.lines().next().unwrap().ends_with("BLOCKS 2"), "{first:.100}");
+    assert_eq!(first.lines().count(), one);
+    assert!(engrave(&folder, &["--machine", "glass-xyz-50hz", "--blocks", "5"]).code != 0);
+}
