@@ -21,8 +21,8 @@ pub struct Pulse {
 pub enum Pulses {
     /// Pulses with their lines.
     Listed(Vec<Pulse>),
-    /// Pulses of a binary program, whole µm.
-    Whole(Vec<[i32; 3]>),
+    /// Pulses of a binary program, in whole steps of each axis, and how many of those are a mm or a degree.
+    Whole(Vec<[i32; 3]>, [f64; 3]),
 }
 
 impl Default for Pulses {
@@ -36,7 +36,7 @@ impl Pulses {
     pub fn len(&self) -> usize {
         match self {
             Pulses::Listed(pulses) => pulses.len(),
-            Pulses::Whole(places) => places.len(),
+            Pulses::Whole(places, _) => places.len(),
         }
     }
 
@@ -49,9 +49,10 @@ impl Pulses {
     pub fn get(&self, number: usize) -> Option<Pulse> {
         match self {
             Pulses::Listed(pulses) => pulses.get(number).copied(),
-            Pulses::Whole(places) => {
+            Pulses::Whole(places, steps) => {
                 let line = u32::try_from(number + 1).unwrap_or(u32::MAX);
-                let at = places.get(number)?.map(|value| f64::from(value) / 1e3);
+                let place = places.get(number)?;
+                let at = [0, 1, 2].map(|axis| f64::from(place[axis]) / steps[axis]);
                 Some(Pulse { line, at, passed: 0 })
             }
         }
@@ -110,8 +111,8 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
     let read = match machine.program.format {
         Format::Numbered => numbered(text, machine),
         Format::Points => points(text),
-        Format::Binary => binary(text).map_err(|message| (0, message)),
-        Format::Gcode => gcode(text, machine.program.fire.as_deref().unwrap_or_default()),
+        Format::Binary => binary(text, machine).map_err(|message| (0, message)),
+        Format::Gcode => gcode(text, machine),
     };
     let run = read.map_err(|(line, message)| {
         let mut found = Diagnostic::error(Rule::GlassProgram, message);
@@ -136,7 +137,7 @@ pub fn read(text: &[u8], machine: &Machine) -> Result<Run, Vec<Diagnostic>> {
 const HEAD: usize = 8 + 12 + 8;
 const SUM: usize = 4;
 
-fn binary(bytes: &[u8]) -> Result<Run, String> {
+fn binary(bytes: &[u8], machine: &Machine) -> Result<Run, String> {
     let whole = |at: usize| -> Option<i32> {
         Some(i32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?))
     };
@@ -156,7 +157,8 @@ fn binary(bytes: &[u8]) -> Result<Run, String> {
     let pulse = |at| Some([whole(at)?, whole(at + 4)?, whole(at + 8)?]);
     let pulses = (HEAD..own.len()).step_by(12).filter_map(pulse).collect();
     let block = pulse(8).map(|sides| sides.map(|side| f64::from(side) / 1e3));
-    Ok(Run { block, pulses: Pulses::Whole(pulses), ..Run::default() })
+    let steps = machine.coordinates().map(|of| of.steps());
+    Ok(Run { block, pulses: Pulses::Whole(pulses, steps), ..Run::default() })
 }
 
 /// A line, from 1 (0 of a binary program), and what is wrong with it.
@@ -396,6 +398,8 @@ fn points(text: &[u8]) -> Result<Run, Wrong> {
 /// M30. G1 is none of its words: it needs a feed, and how long it takes depends on that.
 struct Gcode<'f> {
     fire: &'f str,
+    /// What its axes are called.
+    names: [&'static str; 3],
     metric: bool,
     absolute: bool,
     rapid: bool,
@@ -449,7 +453,7 @@ impl Gcode<'_> {
                 "G90" => self.absolute = true,
                 "G0" => self.rapid = true,
                 _ => {
-                    let axis = ["X", "Y", "Z"].iter().position(|name| word.starts_with(name));
+                    let axis = self.names.iter().position(|name| word.starts_with(name));
                     let (Some(axis), Some(value)) = (axis, word.get(1..).and_then(decimal)) else {
                         return Err(format!("`{word}` is no word of this machine"));
                     };
@@ -471,9 +475,10 @@ impl Gcode<'_> {
     }
 }
 
-fn gcode(text: &[u8], fire: &str) -> Result<Run, Wrong> {
+fn gcode(text: &[u8], machine: &Machine) -> Result<Run, Wrong> {
     let mut machine = Gcode {
-        fire,
+        fire: machine.program.fire.as_deref().unwrap_or_default(),
+        names: machine.coordinates().map(|of| of.word),
         metric: false,
         absolute: false,
         rapid: false,

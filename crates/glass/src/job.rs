@@ -1,5 +1,6 @@
 //! A job: bodies and points placed in a block, made into a cloud, ordered, written, read back and proven.
 
+use crate::chain::Chain;
 use crate::cloud::{self, Distances, Point};
 use crate::curve::Layers;
 use crate::fill::{self, Fill, Filling, Left, Shells};
@@ -16,6 +17,7 @@ use crate::scenario::{Blocks, Scenario};
 use crate::{control, post, stitch, weld};
 use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// In which order points are made.
@@ -232,7 +234,7 @@ impl<'m> Job<'m> {
         let beam = Beam::new(&lens, machine.laser.beam, material.index);
         // Two heights are rounded by half a µm of drive each.
         // Angles are rounded too: less than a µm of the place of two points.
-        let more = u32::from(machine.polar.is_some());
+        let more = u32::from(machine.polar.is_some() || machine.chain.is_some());
         let apart = Apart { spacing: micrometres + more, lost: 1.0 / beam.drive(Ray::Marginal) };
         on_machine(machine, settings)?;
         let Placing { block, margin, .. } = settings.placing;
@@ -246,6 +248,9 @@ impl<'m> Job<'m> {
         )?;
         let (cloud, welded, left) = discretise(&parts, settings, apart)?;
         findings.extend(left_out(&left, &settings.filling));
+        if let Some(chain) = &machine.chain {
+            chain_reaches(&cloud, chain, machine)?;
+        }
         if let Some(blocks) = blocks_of(machine, settings) {
             within_reach(&cloud, &blocks)?;
         }
@@ -302,7 +307,16 @@ impl<'m> Job<'m> {
                 let poses = blocks.poses(&self.cloud);
                 poses.iter().zip(&self.cloud).map(|(&[a, b], at)| [a, b, down(at)]).collect()
             }
-            None => self.cloud.iter().map(|at| [at[0], at[1], down(at)]).collect(),
+            None => {
+                let posed = |at: &Point| {
+                    let [a, b] = machine
+                        .chain
+                        .and_then(|chain| positions(at, &chain, machine))
+                        .unwrap_or([at[0], at[1]]);
+                    [a, b, down(at)]
+                };
+                self.cloud.par_iter().map(posed).collect()
+            }
         };
         let shadow = Shadow {
             slope: beam.slope_in_glass() * WIDER,
@@ -470,11 +484,35 @@ fn on_machine(machine: &Machine, settings: &Settings) -> Result<(), Vec<Diagnost
         let message = format!("{} goes from field to field in an order of its own", machine.title);
         return Err(error(Rule::GlassBlock, message, "leave --order out"));
     }
-    if matches!(settings.order, Order::Scenario(_)) && machine.polar.is_none() {
-        let message = format!("{} has no arm and no turning table", machine.title);
+    if matches!(settings.order, Order::Scenario(_))
+        && (machine.polar.is_none() || !machine.program.runs)
+    {
+        let message = match machine.polar {
+            Some(_) => format!("{} does not fire in motion: `runs` is not set", machine.title),
+            None => format!("{} has no arm and no turning table", machine.title),
+        };
         return Err(error(Rule::GlassBlock, message, "take another --order, or a polar machine"));
     }
     Ok(())
+}
+
+/// The steps of both declared axes at a point.
+fn positions(at: &Point, chain: &Chain, machine: &Machine) -> Option<[i32; 2]> {
+    let [a, b, _] = machine.coordinates();
+    let found = chain.inverse(cloud::place(*at).truncate(), [a.axis.travel, b.axis.travel])?;
+    Some([(found[0] * a.steps()).round() as i32, (found[1] * b.steps()).round() as i32])
+}
+
+/// All points lie where the declared axes bring the beam.
+fn chain_reaches(cloud: &[Point], chain: &Chain, machine: &Machine) -> Result<(), Vec<Diagnostic>> {
+    let missed = |at: &&Point| positions(at, chain, machine).is_none();
+    let Some(first) = cloud.par_iter().find_first(missed) else { return Ok(()) };
+    let count = cloud.par_iter().filter(missed).count();
+    let message = format!(
+        "the axes a and b do not bring the beam to {count} points within their travels, the first one at {:.3} mm",
+        cloud::place(*first)
+    );
+    Err(error(Rule::Travel, message, "take a smaller block, move the body, or look at chain.near"))
 }
 
 /// All points lie within the reach of the arm.

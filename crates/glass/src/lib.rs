@@ -18,6 +18,7 @@
 //! assert_eq!(clock.step([0, 0, 0], [188, 0, 0]), 2);
 //! ```
 
+pub mod chain;
 pub mod clock;
 pub mod cloud;
 pub mod comparison;

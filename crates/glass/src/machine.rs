@@ -2,6 +2,7 @@
 //!
 //! This is all that the writer and the judge share.
 
+use crate::chain::{Chain, Joint};
 use crate::clock::Clock;
 use crate::polar::{Branch, Polar};
 use crate::profile::{Limits, Profile};
@@ -35,6 +36,9 @@ pub struct Machine {
     /// Table and arm, of a polar machine only.
     #[serde(default)]
     pub polar: Option<Table>,
+    /// What moves block and beam, of a machine by declared axes only.
+    #[serde(default)]
+    pub chain: Option<Chain>,
     /// What carries the block from field to field, of a scanner only.
     #[serde(default)]
     pub stage: Option<Stage>,
@@ -52,6 +56,8 @@ pub enum Kind {
     Xyz,
     /// The blocks on a turning table, the lens on an arm, and in Z.
     Polar,
+    /// By declared axes: two in the plane, each on block or beam, and the lens in Z.
+    Chain,
     /// Mirrors in a field, the lens in Z, the block on a stage from field to field.
     Galvo,
 }
@@ -179,11 +185,13 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axes {
-    /// Along the block's first side; of a polar machine the arm, of a scanner its first mirror.
-    #[serde(alias = "arm", alias = "u")]
+    /// Along the block's first side; of a polar machine the arm, of a scanner its first mirror,
+    /// of declared axes the first.
+    #[serde(alias = "arm", alias = "u", alias = "a")]
     pub x: Axis,
-    /// Along its second side; of a polar machine the table, of a scanner its second mirror.
-    #[serde(alias = "table", alias = "v")]
+    /// Along its second side; of a polar machine the table, of a scanner its second mirror, of declared axes the
+    /// second.
+    #[serde(alias = "table", alias = "v", alias = "b")]
     pub y: Axis,
     /// Up.
     pub z: Axis,
@@ -314,10 +322,25 @@ impl Machine {
             (Kind::Polar, None) => {
                 return Err(String::from("[polar] is missing: the lengths of table and arm"));
             }
-            (Kind::Xyz | Kind::Galvo, Some(_)) => {
+            (Kind::Xyz | Kind::Galvo | Kind::Chain, Some(_)) => {
                 return Err(String::from("[polar] is for kind = \"polar\" only"));
             }
             _ => {}
+        }
+        match (self.kind, &self.chain) {
+            (Kind::Chain, None) => {
+                return Err(String::from(
+                    "[chain] is missing: the axes a and b, spot, corner and near",
+                ));
+            }
+            (Kind::Xyz | Kind::Galvo | Kind::Polar, Some(_)) => {
+                return Err(String::from("[chain] is for kind = \"chain\" only"));
+            }
+            (Kind::Chain, Some(chain)) => chain.check()?,
+            (Kind::Xyz | Kind::Galvo | Kind::Polar, None) => {}
+        }
+        if self.kind == Kind::Chain && self.program.runs {
+            return Err(String::from("program.runs is not for kind = \"chain\""));
         }
         for (name, value, range) in self.figures() {
             // NaN is in no range.
@@ -354,10 +377,18 @@ impl Machine {
                 "program.runs is not for a scanner: its steps take a tick as it is",
             ));
         }
-        if self.program.format != Format::Numbered && (self.program.runs || self.kind != Kind::Xyz)
+        if self.program.format != Format::Numbered
+            && (self.program.runs || self.kind == Kind::Galvo)
         {
             return Err(String::from(
-                "program.format must be \"numbered\" for a polar machine or a scanner, and for `runs`",
+                "program.format must be \"numbered\" for a scanner, and for `runs`",
+            ));
+        }
+        // A table that turns on and on takes the shorter way; which way G-code turns it depends on the sign of the word, and on
+        // the control.
+        if self.kind == Kind::Polar && self.program.format == Format::Gcode {
+            return Err(String::from(
+                "program.format = \"gcode\" does not say which way a table turns: take numbered, points or binary, or kind = \"chain\", whose axes turn between the ends of their travels",
             ));
         }
         match (&self.program.fire, self.program.format) {
@@ -459,6 +490,7 @@ impl Machine {
             Kind::Xyz => ["x", "y", "z"],
             Kind::Polar => ["arm", "table", "z"],
             Kind::Galvo => ["u", "v", "z"],
+            Kind::Chain => ["a", "b", "z"],
         }
     }
 
@@ -473,6 +505,15 @@ impl Machine {
             Kind::Xyz => [linear("X", x), linear("Y", y), linear("Z", z)],
             Kind::Polar => [turning("A", false, x), turning("C", true, y), linear("Z", z)],
             Kind::Galvo => [linear("U", x), linear("V", y), linear("Z", z)],
+            Kind::Chain => {
+                let turns = |joint: Option<Joint>| joint.is_some_and(|joint| joint.turns());
+                let [a, b] = [self.chain.map(|chain| chain.a), self.chain.map(|chain| chain.b)];
+                let of = |turns: bool, words: [&'static str; 2], axis| match turns {
+                    true => turning(words[1], false, axis),
+                    false => linear(words[0], axis),
+                };
+                [of(turns(a), ["X", "A"], x), of(turns(b), ["Y", "C"], y), linear("Z", z)]
+            }
         }
     }
 
@@ -495,8 +536,11 @@ impl Machine {
         self.laser.delay * 1e-6 * self.laser.rate
     }
 
-    /// How many equal blocks it can make at most.
+    /// How many equal blocks it can make at most: only the numbered form says how many there are.
     pub fn blocks(&self) -> u32 {
+        if self.program.format != Format::Numbered {
+            return 1;
+        }
         self.polar.map_or(self.laser.channels, |table| table.blocks)
     }
 }

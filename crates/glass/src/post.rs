@@ -2,7 +2,7 @@
 
 use crate::cloud::Point;
 use crate::fly::Run;
-use crate::machine::{Coordinate, Format, Machine};
+use crate::machine::{Coordinate, Format, Kind, Machine};
 
 /// The program of pulses at `axes` (steps of the machine's coordinates), in their order, in `blocks` equal blocks of `block` (mm);
 /// those of `runs` are fired in motion. `fields` are those of a scanner: the first pulse of each, and its middle.
@@ -19,21 +19,31 @@ pub fn write(
     match (machine.program.format, &machine.program.fire) {
         (Format::Binary, _) => return binary(axes, sides),
         (Format::Points, _) => {
-            text.line(
-                "# Toolpost: X Y Z of each pulse in mm, from the block's corner and its top face",
-            );
-            axes.iter().for_each(|&at| text.point(at));
+            let [a, b, c] = machine.coordinates().map(|of| of.word);
+            text.line(&match machine.kind {
+                Kind::Xyz | Kind::Galvo => String::from(
+                    "# Toolpost: X Y Z of each pulse in mm, from the block's corner and its top face",
+                ),
+                Kind::Polar | Kind::Chain => {
+                    format!("# Toolpost: {a} {b} {c} of each pulse, mm and degrees")
+                }
+            });
+            axes.iter().for_each(|&at| text.point(at, machine));
         }
         (Format::Gcode, fire) => {
             let fire = fire.as_deref().unwrap_or_default();
             text.line("(Toolpost: pulses inside glass)");
-            text.line(
-                "(X and Y from a corner of the block, Z of the focus in air from its top face)",
-            );
+            if machine.chain.is_none() {
+                text.line(
+                    "(X and Y from a corner of the block, Z of the focus in air from its top face)",
+                );
+            }
             text.line("G21 G90");
             for &at in axes {
                 text.word("G0");
-                text.axes(at);
+                for (of, at) in machine.coordinates().iter().zip(at) {
+                    text.coordinate(of, at);
+                }
                 text.end();
                 text.line(fire);
             }
@@ -153,6 +163,10 @@ impl Text {
     fn coordinate(&mut self, of: &Coordinate, at: i32) {
         self.0.push(b' ');
         self.word(of.word);
+        self.value(of, at);
+    }
+
+    fn value(&mut self, of: &Coordinate, at: i32) {
         let turn = (360.0 * of.steps()) as i32;
         let at = if of.endless { at.rem_euclid(turn) } else { at };
         self.fixed(at, of.decimals);
@@ -198,12 +212,12 @@ impl Text {
         }
     }
 
-    fn point(&mut self, at: Point) {
-        for (i, value) in at.into_iter().enumerate() {
+    fn point(&mut self, at: Point, machine: &Machine) {
+        for (i, (of, value)) in machine.coordinates().iter().zip(at).enumerate() {
             if i > 0 {
                 self.0.push(b' ');
             }
-            self.length(value);
+            self.value(of, value);
         }
         self.end();
     }

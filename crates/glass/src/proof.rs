@@ -98,7 +98,10 @@ impl<'t> Glass<'t> {
         let [a, b, z] = self.pulses.get(number).map_or([0.0; 3], |pulse| pulse.at);
         let (flat, block) = match &self.task.machine.polar {
             Some(table) => on_table(a, b, table, &self.task),
-            None => (DVec2::new(a, b), 0),
+            None => {
+                let chain = &self.task.machine.chain;
+                (chain.map_or(DVec2::new(a, b), |chain| chain.forward([a, b])), 0)
+            }
         };
         (flat.extend(self.task.block[2] + z * self.deeper), block)
     }
