@@ -24,6 +24,7 @@ pub mod cloud;
 pub mod comparison;
 pub mod control;
 pub mod curve;
+pub mod engraver;
 pub mod fill;
 pub mod fly;
 pub mod job;

@@ -4,6 +4,7 @@
 //! feedback a pulse that made none is fired again on the next tick, where the axes stand still.
 
 use crate::control::Run;
+use crate::engraver::{Event, Settled, State};
 use crate::machine::Machine;
 use crate::proof;
 use crate::sample::Dice;
@@ -19,6 +20,8 @@ pub struct Events {
     pub from: u32,
     /// When the run is stopped, s; without, at its end.
     pub until: Option<f64>,
+    /// When the door is opened, s.
+    pub door: Option<f64>,
     /// The part of the pulses that make no point, from 0 to 1.
     pub misses: f64,
     /// Whether the sensor is listened to.
@@ -48,6 +51,8 @@ pub struct Statistics {
     pub predicted: f64,
     /// The point to go on from, where the run was stopped.
     pub next: Option<u32>,
+    /// What the engraver did, from the list before the run to its end.
+    pub states: Vec<State>,
 }
 
 impl Statistics {
@@ -135,11 +140,14 @@ pub fn simulate(run: &Run, machine: &Machine, events: Events) -> Statistics {
         seconds: 0.0,
         predicted: 0.0,
         next: None,
+        states: Vec::new(),
     };
     let mut tick = 0u64;
+    // Whichever comes first.
+    let stop = [events.until, events.door].into_iter().flatten().reduce(f64::min);
     for i in skipped..steps.len() {
         let step = if i == skipped { 1 } else { steps.get(i) };
-        if events.until.is_some_and(|until| (tick + step) as f64 / rate > until) {
+        if stop.is_some_and(|until| (tick + step) as f64 / rate > until) {
             statistics.next = Some(i as u32 + 1);
             break;
         }
@@ -167,7 +175,33 @@ pub fn simulate(run: &Run, machine: &Machine, events: Events) -> Statistics {
         Some(next) => (next as usize - 1..steps.len()).map(|i| steps.get(i)).sum(),
         None => 0,
     };
+    let door_opened = statistics.next.is_some() && events.door == stop;
+    statistics.states = states(match statistics.next {
+        Some(_) if door_opened => &[Event::OpenDoor],
+        Some(_) => &[Event::Stop],
+        None => &[Event::End, Event::Unload, Event::Arrive],
+    });
     statistics.seconds = tick as f64 / rate;
     statistics.predicted = (tick + left) as f64 / rate;
     statistics
+}
+
+/// The states of a run whose list is settled, as it is of every program that was proven against its block, and which ends so.
+fn states(end: &[Event]) -> Vec<State> {
+    let settled =
+        Settled { taught: true, extents: true, material: true, sorted: true, tested: true };
+    let begin = [
+        Event::Check(settled),
+        Event::Confirm,
+        Event::Warn,
+        Event::Start,
+        Event::Arrive,
+        Event::Warm,
+    ];
+    let mut states = vec![State::Idle];
+    for event in begin.iter().chain(end) {
+        let now = states.last().copied().unwrap_or(State::Idle);
+        states.extend(now.after(*event));
+    }
+    states
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 use toolpost_glass::cloud::distances;
 use toolpost_glass::control::read;
 use toolpost_glass::fill::Fill;
-use toolpost_glass::job::{self, Made, Order, Settings, make};
+use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
 use toolpost_glass::mesh::Shape;
 use toolpost_glass::scenario::Scenario;
@@ -211,4 +211,29 @@ fn the_ticks_of_many_motions_are_those_that_were_planned() {
             made(Shape::Mesh(sphere(7.0, 60)), &plain(), &settings(4, Order::Scenario(scenario)));
         assert!(made.report.in_motion > 20_000, "{}", made.report.in_motion);
     }
+}
+
+#[test]
+fn a_polar_machine_takes_lists_and_binary_programs_but_no_g_code() {
+    let text = library("glass-polar-100hz").unwrap().replace("runs = true", "runs = false");
+    let settings = common::settings([50.0, 50.0, 80.0], 100);
+    let settings =
+        Settings { placing: Placing { shift: [0.0, 5.0, 0.0], ..settings.placing }, ..settings };
+    for format in ["points", "binary"] {
+        let own = text.replace("format = \"numbered\"", &format!("format = \"{format}\""));
+        let machine = Machine::read(&own, "").unwrap();
+        let body = || vec![Shape::Mesh(sphere(1.5, 30))];
+        let made = make(body(), &k9(), &machine, &settings).unwrap_or_else(|e| panic!("{e:?}"));
+        assert!(made.proven && made.report.proof.across < 0.000_3, "{:?}", made.report.proof);
+        // Only the numbered form says how many blocks there are, and fires in motion.
+        assert!(
+            make(body(), &k9(), &machine, &Settings { blocks: 2, ..settings.clone() }).is_err()
+        );
+        let arcs = Settings { order: Order::Scenario(Scenario::Arcs), ..settings.clone() };
+        let found = make(body(), &k9(), &machine, &arcs).unwrap_err();
+        assert!(found[0].message.contains("does not fire in motion"), "{found:?}");
+    }
+    let gcode = text.replace("\"numbered\"", "\"gcode\"\nfire = \"M101\"");
+    let found = Machine::read(&gcode, "own.toml").unwrap_err();
+    assert!(found.message.contains("which way a table turns"), "{}", found.message);
 }

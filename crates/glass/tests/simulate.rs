@@ -1,10 +1,12 @@
 //! Runs of programs, with pulses that make no point, a stop, and going on.
 
 use toolpost_glass::control::{Run, read};
+use toolpost_glass::engraver::{Event, Refused, Settled, State};
 use toolpost_glass::machine::{Machine, library};
 use toolpost_glass::simulate::{Events, seconds_of, simulate};
 
-const PLAIN: Events = Events { from: 1, until: None, misses: 0.0, feedback: false, seed: 1 };
+const PLAIN: Events =
+    Events { from: 1, until: None, door: None, misses: 0.0, feedback: false, seed: 1 };
 
 fn machine() -> Machine {
     let text = library("glass-xyz-100hz").unwrap().replace("\"numbered\"", "\"points\"");
@@ -86,4 +88,61 @@ fn the_file_of_statistics_has_what_that_of_the_source_has() {
         made.text(951_782_399),
         "Duration: 0:00:01\nProgress: 50.0 %\nStart date: 2000-02-28 23:59:59\nPredicted end: 2000-02-29 00:00:01\nCounted points: 50 of 100\n"
     );
+}
+
+const SETTLED: Settled =
+    Settled { taught: true, extents: true, material: true, sorted: true, tested: true };
+
+#[test]
+fn an_engraver_fires_only_after_all_is_settled_and_confirmed() {
+    let unsettled = Settled { taught: false, sorted: false, ..SETTLED };
+    let refused = State::Idle.after(Event::Check(unsettled)).unwrap_err();
+    let missing = vec!["zero taught for the lens", "order of the points"];
+    assert_eq!(refused, Refused::Unsettled(missing));
+    // The chain of the specification (4.16), and nothing that leaves a step out.
+    let chain = [
+        (Event::Check(SETTLED), State::Checked),
+        (Event::Confirm, State::Confirmed),
+        (Event::Warn, State::Warned),
+        (Event::Start, State::MovingToLoad),
+        (Event::Arrive, State::WarmingUp),
+        (Event::Warm, State::Running),
+        (Event::Stop, State::Stopped),
+        (Event::Continue, State::Running),
+        (Event::End, State::Finished),
+        (Event::Unload, State::MovingToSample),
+        (Event::Arrive, State::Idle),
+    ];
+    let mut now = State::Idle;
+    for (at, (event, expected)) in chain.iter().enumerate() {
+        for (later, _) in chain.iter().skip(at + 1).filter(|(later, _)| later != event) {
+            let skipped = now.after(*later);
+            // A run may end at once, and a stopped one too.
+            let may = now == State::Running && *later == Event::End;
+            assert!(may || now == State::Stopped || skipped == Err(Refused::Now(now)), "{now:?}");
+        }
+        now = now.after(*event).unwrap();
+        assert_eq!((now, now.fires()), (*expected, *expected == State::Running));
+        // From each state the door leads to a fault, in which nothing but a reset goes on.
+        for stop in [Event::OpenDoor, Event::EmergencyStop] {
+            let fault = now.after(stop).unwrap();
+            assert!(fault == State::Fault && !fault.fires());
+            assert!(fault.after(Event::Continue).is_err() && fault.after(Event::Warm).is_err());
+            assert_eq!(fault.after(Event::Reset), Ok(State::Idle));
+        }
+    }
+}
+
+#[test]
+fn an_open_door_stops_a_run_which_goes_on_from_the_next_point() {
+    // In 1 s there are 50 pulses (above); the door is opened before the stop that was asked for.
+    let events = Events { until: Some(1.5), door: Some(1.0), ..PLAIN };
+    let made = simulate(&row(), &machine(), events);
+    assert_eq!((made.counted, made.next, made.states.last()), (50, Some(51), Some(&State::Fault)));
+    let stopped =
+        simulate(&row(), &machine(), Events { until: Some(1.0), door: Some(1.5), ..PLAIN });
+    assert_eq!((stopped.next, stopped.states.last()), (Some(51), Some(&State::Stopped)));
+    let whole = simulate(&row(), &machine(), Events { door: Some(60.0), ..PLAIN });
+    assert_eq!((whole.next, whole.states.last()), (None, Some(&State::Idle)));
+    assert!(whole.states.contains(&State::Finished) && whole.states[1] == State::Checked);
 }

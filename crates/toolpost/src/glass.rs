@@ -6,6 +6,7 @@ use crate::args::glass::{
 };
 use crate::progress::Progress;
 use ::glass::curve::{self, Layers};
+use ::glass::engraver::State;
 use ::glass::fill::{self, Fill, Filling, Sections, Shells};
 use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
@@ -37,6 +38,7 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
             machine,
             from,
             until,
+            door,
             misses,
             feedback,
             seed,
@@ -46,6 +48,7 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
             let events = Events {
                 from: *from,
                 until: *until,
+                door: *door,
                 misses: misses.unwrap_or_default(),
                 feedback: *feedback,
                 seed: *seed,
@@ -147,7 +150,11 @@ fn simulated(
     if let Some(next) = made.next {
         rows.push((
             "stopped",
-            format!("{:.1} % done; go on by --from {next}", 100.0 * made.progress()),
+            format!(
+                "{}{:.1} % done; go on by --from {next}",
+                if made.states.contains(&State::Fault) { "the door is open; " } else { "" },
+                100.0 * made.progress()
+            ),
         ));
     }
     rows.extend(output.map(|file| ("saved", file.display().to_string())));

@@ -75,6 +75,9 @@ pub enum GlassCommand {
         /// When the run is stopped [default: at its end].
         #[arg(long, value_name = "S", value_parser = length)]
         until: Option<f64>,
+        /// When the door is opened, which stops the laser and the axes.
+        #[arg(long, value_name = "S", value_parser = length)]
+        door: Option<f64>,
         /// The part of the pulses that make no point.
         #[arg(long, value_name = "PART", value_parser = part)]
         misses: Option<f64>,

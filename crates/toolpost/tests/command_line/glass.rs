@@ -141,6 +141,10 @@ fn a_run_is_simulated_stopped_and_goes_on() {
     );
     let said = simulate(&["--misses", "0.1", "--feedback"]);
     assert!(said.code == 0, "{said:?}");
+    let said = simulate(&["--door", "1"]);
+    assert!(said.out.contains("the door is open; ") && said.out.contains("--from "), "{said:?}");
+    let states = simulate(&["--door", "1", "--json"]).json()["statistics"]["states"].clone();
+    assert_eq!(states.as_array().unwrap().last().unwrap(), "fault");
     assert!(simulate(&["--from", "99999999"]).err.contains("no point 99999999"));
     assert_eq!(simulate(&["--start", "tomorrow"]).code, 2);
     folder.write("roof.prg", "N1 BEGIN\n");
