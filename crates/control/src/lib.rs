@@ -53,7 +53,7 @@ use iso::Facts;
 use iso::dialects::{fanuc, grbl, haas, linuxcnc, mach3, marlin, wire};
 use kernel::compensation::Rules;
 pub use kernel::folders::Folders;
-use program::{Diagnostic, Purpose, WorkOffset};
+use program::{Diagnostic, Purpose, Rule, WorkOffset};
 
 /// The languages that are understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -518,6 +518,27 @@ pub fn vocabulary(dialect: Dialect) -> Vec<String> {
 pub fn percent_signs(text: &[u8]) -> usize {
     let lines = text.split(|byte| matches!(byte, b'\n' | b'\r'));
     lines.filter(|line| line.trim_ascii_start().first() == Some(&b'%')).count()
+}
+
+/// Whether the machine file gives coolant M functions for which the control has another use.
+///
+/// # Errors
+/// The first of them, without a place.
+pub fn check_coolant(settings: &Settings) -> Result<(), Box<Diagnostic>> {
+    for number in settings.coolant.numbers() {
+        let block = match settings.dialect.language() {
+            Language::Klartext => format!("0 BEGIN PGM C MM\n1 M{number}\n"),
+            _ => format!("M{number}\n"),
+        };
+        let found = read(settings, "", block.as_bytes(), &mut |_| Ok(()));
+        // Nothing runs, so that there is no other doubt about coolant.
+        if let Err(found) = found
+            && found.rule == Rule::Coolant
+        {
+            return Err(Diagnostic::error(found.rule, found.message).help(found.help).into());
+        }
+    }
+    Ok(())
 }
 
 /// Runs `text` on the virtual control of `settings` and hands each event to `sink`, in order. The

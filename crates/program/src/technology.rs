@@ -84,6 +84,11 @@ impl CoolantFunctions {
         found.next().map(|(_, switch)| switch)
     }
 
+    /// The numbers that the machine file gives to coolant.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+        self.rows().into_iter().filter_map(|(stated, _)| stated)
+    }
+
     /// Whether the machine file gives this to another function than the usual one.
     pub fn is_stated(&self, switch: CoolantSwitch) -> bool {
         !self.rows().contains(&(None, switch))
@@ -91,8 +96,7 @@ impl CoolantFunctions {
 
     /// Whether one function does two things.
     pub fn contradicts(&self) -> bool {
-        let mut numbers: Vec<u32> =
-            self.rows().into_iter().filter_map(|(stated, _)| stated).collect();
+        let mut numbers: Vec<u32> = self.numbers().collect();
         let count = numbers.len();
         numbers.sort_unstable();
         numbers.dedup();

@@ -266,6 +266,9 @@ fn check(file: &str) -> Result<Answer, Stop> {
         return Ok(arms::check(&machine, arm));
     }
     post::check(&machine).map_err(|findings| Stop { verdict: Verdict::Invalid, findings })?;
+    nc::settings(&machine, control::Setup::default())
+        .and_then(|settings| control::check_coolant(&settings))
+        .map_err(|found| Box::new(found.file(file)))?;
     let unchecked = unchecked(&machine);
     let lines = [
         ("machine", machine.title.clone()),

@@ -178,6 +178,32 @@ fn a_check_says_what_it_leaves_open() {
     assert!(!stated.contains("work_zero") && stated.contains("read it"), "{stated}");
 }
 
+/// A number for which the control has another use switches no coolant: it opens a brake, changes the tool, jumps.
+#[test]
+fn a_check_refuses_coolant_by_a_function_of_the_control() {
+    let folder = Folder::new();
+    for (base, number) in [
+        ("generic-3axis-haas", 11),
+        ("generic-3axis-haas", 16),
+        ("generic-3axis-haas", 96),
+        ("generic-3axis-fanuc", 98),
+        ("generic-3axis-fanuc", 198),
+        ("generic-3axis-sinumerik", 17),
+        ("generic-3axis-sinumerik", 70),
+        ("generic-3axis-heidenhain", 91),
+        ("generic-3axis-marlin", 112),
+    ] {
+        let text = format!("extends = \"{base}\"\n[coolant]\nflood = {number}\n");
+        folder.write("own.toml", text);
+        let said = folder.run(&["machines", "check", "own.toml"]);
+        assert_eq!(said.code, 2, "{base} {number}: {said:?}");
+        assert!(said.err.contains(&format!("M{number} is a function of the control")), "{said:?}");
+    }
+    let own = "extends = \"generic-3axis-haas\"\n[coolant]\nflood = 51\n";
+    folder.write("own.toml", own);
+    assert_eq!(folder.run(&["machines", "check", "own.toml"]).code, 0);
+}
+
 #[test]
 fn a_mistyped_machine_brings_the_nearest_alone() {
     let folder = Folder::new();

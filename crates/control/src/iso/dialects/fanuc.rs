@@ -58,7 +58,10 @@ const WORDS: Dictionary = mill(b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .with(MACRO_G, &[])
     .with(&cycles(Group::Cycle), &[])
     .with(G_WORDS, M_WORDS)
-    .refusing(REFUSED_G, &[]);
+    .refusing(
+        REFUSED_G,
+        &[(198, "a program in the memory of another device is not read; copy it next to this one")],
+    );
 
 pub(crate) static FACTS: Facts = Facts {
     syntax: Syntax { corners: CornerWords::AtAll, repeats_in_p: true, ..Syntax::FANUC },

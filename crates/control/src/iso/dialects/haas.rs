@@ -79,6 +79,23 @@ const REFUSED_G: &[Refused] = &[
     (1740, "tapping out of the vertical is not followed"),
 ];
 
+/// *Mill Operator's Manual*, chapter "M-Codes".
+const REFUSED_M: &[Refused] = &[
+    (10, BRAKE),
+    (11, BRAKE),
+    (12, BRAKE),
+    (13, BRAKE),
+    (16, "the tool changes by M6"),
+    (82, "the tool is let go at the machine alone"),
+    (86, "the tool is clamped at the machine alone"),
+    (95, "how long the machine sleeps, no proof follows"),
+    (96, "a jump that an input decides is not followed"),
+    (109, "what the operator answers is known only at the machine"),
+];
+
+const BRAKE: &str =
+    "it works the brake of a rotary axis: name it as clamp_open or clamp_close of [[rotary]]";
+
 const WORDS: Dictionary = mill(b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .with(MILL_G, END_M)
     .with(TOOL_G, TOOL_M)
@@ -86,7 +103,7 @@ const WORDS: Dictionary = mill(b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .with(MACRO_G, &[])
     .with(&cycles(Group::Cycle), &[])
     .with(G_WORDS, M_WORDS)
-    .refusing(REFUSED_G, &[]);
+    .refusing(REFUSED_G, REFUSED_M);
 
 pub(crate) static FACTS: Facts = Facts {
     syntax: Syntax {

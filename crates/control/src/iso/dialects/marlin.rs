@@ -41,6 +41,7 @@ const REFUSED_M: &[Refused] = &[
     (2, "this control has no program end: the program ends with its last line"),
     (6, "tool changes are T alone; stop with M0 to change by hand"),
     (30, "on this control M30 deletes a file; the program ends with its last line"),
+    (81, "it switches the supply of the machine off"),
     (104, "a hot end is no tool of a mill"),
     (
         106,
@@ -50,6 +51,8 @@ const REFUSED_M: &[Refused] = &[
         107,
         "what hangs at the fan output is the builder's; list M107 among the machine's own functions",
     ),
+    (109, "a hot end is no tool of a mill"),
+    (112, "it is the emergency stop"),
     (220, "it changes every feed that follows"),
 ];
 

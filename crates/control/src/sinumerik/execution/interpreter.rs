@@ -59,6 +59,9 @@ const COOLANT: &[u32] = &[7, 8, 9];
 const AUTOMATIC_GEAR: u32 = 40;
 const GEARS: std::ops::RangeInclusive<u32> = 41..=45;
 
+/// `M70`: the spindle becomes an axis. It is not followed.
+const SPINDLE_AS_AXIS: u32 = 70;
+
 /// Whether an M function is the control's own, and not one of the builder's.
 fn is_own(m: u32) -> bool {
     matches!(m, 6 | 19 | AUTOMATIC_GEAR)
@@ -262,7 +265,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         for m in block.m.iter().flatten() {
             let is_coolant = self.settings.coolant.switch(*m).is_some();
-            if is_coolant && is_own(*m) && !COOLANT.contains(m) {
+            if is_coolant && (is_own(*m) && !COOLANT.contains(m) || *m == SPINDLE_AS_AXIS) {
                 return Err(refused(source, Doubtful::of_the_control(&format!("M{m}"))));
             }
             let is_known = match COOLANT.contains(m) {
