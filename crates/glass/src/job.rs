@@ -112,6 +112,8 @@ pub struct Report {
     pub cut: Cut,
     /// Equal blocks, each with all points.
     pub blocks: u32,
+    /// Energy of a pulse in the glass of each block, mJ; of a laser that states its energy only.
+    pub energy: Option<f64>,
     /// Fields of a scanner.
     pub fields: u64,
     /// Pulses in motion at constant speed.
@@ -237,6 +239,7 @@ impl<'m> Job<'m> {
         let more = u32::from(machine.polar.is_some() || machine.chain.is_some());
         let apart = Apart { spacing: micrometres + more, lost: 1.0 / beam.drive(Ray::Marginal) };
         on_machine(machine, settings)?;
+        enough_energy(material, machine, &lens, settings)?;
         let Placing { block, margin, .. } = settings.placing;
         let room = DVec3::from_array(block) - 2.0 * margin;
         let mut parts = Parts::new(shapes, room, apart)?;
@@ -415,6 +418,7 @@ impl<'m> Job<'m> {
             rays_apart: deepest * (beam.drive(Ray::Paraxial) / beam.drive(Ray::Marginal) - 1.0),
             cut,
             blocks: settings.blocks,
+            energy: energy(material, machine, settings),
             fields: run.fields.len() as u64,
             in_motion: run.motions.iter().map(|motion| u64::from(motion.count)).sum(),
             moved,
@@ -467,6 +471,38 @@ pub fn places(
 fn blocks_of<'m>(machine: &'m Machine, settings: &Settings) -> Option<Blocks<'m>> {
     let (block, count) = (settings.placing.block, settings.blocks);
     machine.polar.map(|table| Blocks { machine, table, block, count })
+}
+
+/// The energy of a pulse in the glass of each block, mJ: beams that are open share it evenly.
+fn energy(material: &Material, machine: &Machine, settings: &Settings) -> Option<f64> {
+    let beams = if machine.polar.is_some() { 1 } else { settings.blocks };
+    Some(machine.laser.energy? * material.passes() / f64::from(beams))
+}
+
+/// Whether a pulse has what a crack of the lens needs, where both are stated.
+fn enough_energy(
+    material: &Material,
+    machine: &Machine,
+    lens: &Lens,
+    settings: &Settings,
+) -> Result<(), Vec<Diagnostic>> {
+    let (Some(own), Some([least, most])) = (energy(material, machine, settings), lens.energy)
+    else {
+        return Ok(());
+    };
+    if (least..=most).contains(&own) {
+        return Ok(());
+    }
+    let message = format!(
+        "a pulse has {own:.3} mJ in the glass of each block; cracks of f = {} mm take {least} to {most} mJ",
+        lens.focal
+    );
+    let help = if own < least {
+        "open fewer beams: take fewer --blocks"
+    } else {
+        "weaken the beam: laser.energy"
+    };
+    Err(error(Rule::GlassBlock, message, help))
 }
 
 /// Whether the machine has what is asked for besides points.

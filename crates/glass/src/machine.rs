@@ -3,7 +3,7 @@
 //! This is all that the writer and the judge share.
 
 use crate::chain::{Chain, Joint};
-use crate::clock::Clock;
+use crate::clock::{Clock, pump_limit};
 use crate::polar::{Branch, Polar};
 use crate::profile::{Limits, Profile};
 use program::{Diagnostic, Rule};
@@ -163,6 +163,12 @@ pub struct Laser {
     /// Distance of those beams along X, mm; of several only.
     #[serde(default)]
     pub channel_distance: f64,
+    /// Energy that the pump takes for a pulse, J: where it is stated, that of a second must be below 1000 W.
+    #[serde(default)]
+    pub pump: Option<f64>,
+    /// Energy of a pulse, mJ, before it is divided among the beams that are open.
+    #[serde(default)]
+    pub energy: Option<f64>,
     /// From the place at which a pulse in motion is asked for until it fires, µs.
     #[serde(default)]
     pub delay: f64,
@@ -221,6 +227,9 @@ pub struct Lens {
     pub spacing: f64,
     /// The highest block, mm.
     pub block: f64,
+    /// From which energy of a pulse in the glass to which it makes that crack, mJ.
+    #[serde(default)]
+    pub energy: Option<[f64; 2]>,
 }
 
 impl Lens {
@@ -351,6 +360,13 @@ impl Machine {
                 ));
             }
         }
+        let Laser { rate, pump, .. } = self.laser;
+        if let Some(limit) = pump.map(pump_limit).filter(|limit| rate >= *limit) {
+            return Err(format!(
+                "laser.rate = {rate} with laser.pump = {} J is 1000 W or more: the rate must be below {limit} Hz",
+                pump.unwrap_or_default()
+            ));
+        }
         if self.lenses.is_empty() {
             return Err(String::from("there is no lens: add [[lenses]]"));
         }
@@ -408,7 +424,8 @@ impl Machine {
 
     /// Every figure with its name, and from what to what it may be.
     fn figures(&self) -> Vec<(String, f64, [f64; 2])> {
-        let Laser { rate, wavelength, beam, channels, channel_distance, delay } = self.laser;
+        let Laser { rate, wavelength, beam, channels, channel_distance, delay, pump, energy } =
+            self.laser;
         let mut figures = vec![
             (String::from("laser.rate"), rate, [0.1, 1e6]),
             (String::from("laser.wavelength"), wavelength, [100.0, 20_000.0]),
@@ -417,6 +434,8 @@ impl Machine {
             (String::from("laser.channels"), f64::from(channels), [1.0, 64.0]),
             (String::from("laser.channel_distance"), channel_distance, [0.0, 5000.0]),
         ];
+        figures.extend(pump.map(|joule| (String::from("laser.pump"), joule, [1e-3, 1e4])));
+        figures.extend(energy.map(|mj| (String::from("laser.energy"), mj, [1e-6, 1e6])));
         if let Some(Table { distance, arm, offset, radius, blocks, .. }) = self.polar {
             let lengths =
                 [("distance", distance), ("arm", arm), ("offset", offset), ("radius", radius)];
@@ -439,7 +458,9 @@ impl Machine {
             let length = axis.travel[1] - axis.travel[0];
             figures.push((format!("stage.{name}: the length of `travel`"), length, [0.1, 1e4]));
         }
-        for Lens { focal, crack, spacing, block } in &self.lenses {
+        for Lens { focal, crack, spacing, block, energy } in &self.lenses {
+            let energies = energy.iter().flatten();
+            figures.extend(energies.map(|mj| (String::from("lenses.energy"), *mj, [0.0, 1e6])));
             figures.push((String::from("lenses.focal"), *focal, [1.0, 2000.0]));
             figures.extend(crack.map(|size| (String::from("lenses.crack"), size, [1e-3, 1.0])));
             figures.push((String::from("lenses.spacing"), *spacing, [1e-3, 10.0]));

@@ -494,3 +494,34 @@ fn a_solid_keeps_the_distance_in_the_glass_too() {
     assert!(proof.too_close == 0 && proof.nearest.unwrap().distance >= 0.13, "{proof:?}");
     assert!(made.report.welded > 1000 && made.report.points > 15_000, "{:?}", made.report.points);
 }
+
+#[test]
+fn open_beams_share_the_energy_of_a_pulse() {
+    // 30 mJ, of which a face of K9 lets 95.75 % pass: ((1.5195 - 1) / (1.5195 + 1))² = 0.042515. Four beams have 7.18 mJ each.
+    let text = library("glass-xyz-50hz").unwrap().replacen("beam = 5", "energy = 30\nbeam = 5", 1);
+    let with = |least: f64| {
+        let own = format!("focal = 70\nenergy = [{least}, 20]");
+        Machine::read(&text.replace("focal = 70", &own), "").unwrap()
+    };
+    let settings = Settings { blocks: 4, ..settings() };
+    let made = make(vec![body()], &k9(), &with(7.0), &settings).unwrap();
+    assert!((made.report.energy.unwrap() - 30.0 * 0.957_485 / 4.0).abs() < 1e-5);
+    let found = make(vec![body()], &k9(), &with(7.2), &settings).unwrap_err();
+    assert!(found[0].message.contains("7.181 mJ") && found[0].help.contains("fewer"), "{found:?}");
+    // One beam alone has 28.7 mJ.
+    let found = make(vec![body()], &k9(), &with(7.0), &Settings { blocks: 1, ..settings });
+    assert!(found.unwrap_err()[0].message.contains("28.725 mJ"));
+}
+
+#[test]
+fn the_light_that_a_material_reflects_absorbs_and_lets_pass_is_one_in_all() {
+    use toolpost_glass::material::find;
+    let table = |parts: &str| {
+        format!("[own]\ntitle = \"own\"\nindex = 1.5\nwavelength = 532\nparts = {parts}\n")
+    };
+    assert_eq!(find(&table("[0.08, 0.05, 0.87]"), "t", "own", 532.0).unwrap().passes(), 0.87);
+    for wrong in ["[0.08, 0.05, 0.9]", "[-0.1, 0.2, 0.9]", "[nan, 0.1, 0.9]"] {
+        let found = find(&table(wrong), "t.toml", "own", 532.0).unwrap_err();
+        assert!(found.message.contains("1 in all") && found.file == "t.toml", "{found}");
+    }
+}

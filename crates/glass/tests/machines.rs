@@ -32,6 +32,10 @@ fn a_machine_file_that_cannot_be_is_refused_with_its_line() {
     let line = |text: &str| 1 + good[..good.find(text).unwrap()].lines().count() as u32;
     assert_eq!(refused("rate = 100", "rate = fast").0, line("rate = 100"));
     assert_eq!(refused("beam = 5", "bean = 5").0, line("beam = 5"));
+    // E f < 1000 W, strictly: 10 J at 100 Hz are on the limit.
+    assert!(refused("rate = 100", "rate = 100\npump = 10").1.contains("below 100 Hz"));
+    assert!(Machine::read(&good.replacen("rate = 100", "rate = 100\npump = 9.99", 1), "").is_ok());
+    assert!(refused("rate = 100", "rate = 100\nenergy = nan").1.contains("laser.energy"));
     assert!(refused("rate = 100", "rate = 0").1.contains("laser.rate"));
     assert!(refused("travel = [0, 170]", "travel = [170, 0]").1.contains("travel"));
     assert!(refused("spacing = 0.09", "spacing = nan").1.contains("spacing"));

@@ -524,6 +524,9 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
         ));
     }
     rows.push(("nearest", nearest(&report.distances, cloud)));
+    if let Some(energy) = report.energy {
+        rows.push(("energy", format!("{energy:.3} mJ of a pulse in the glass of each block")));
+    }
     if report.blocks > 1 {
         rows.push(("blocks", format!("{}, each with all points", report.blocks)));
     }
