@@ -162,3 +162,23 @@ fn a_solid_is_filled_within_and_an_open_one_reports_where() {
     let (_, left) = filled(&open, Fill::Solid, Some(0.3), DVec3::Z);
     assert!(left.columns > 10 && left.first_column.is_some(), "{left:?}");
 }
+
+#[test]
+fn a_body_that_crosses_itself_is_filled_once() {
+    let mut both = sphere(3.0, 60);
+    let mut other = sphere(3.0, 60);
+    other.vertices.iter_mut().for_each(|place| place.x += 3.0);
+    both.join(other);
+    let filling = Filling { fill: Fill::Solid, step: Some(0.3), direction: DVec3::Z };
+    let made = points(&both, &filling, APART, 1);
+    assert_eq!(made.left, Left::default());
+    let is_within = |point: &Point| {
+        let place = place(*point);
+        place.length().min((place - DVec3::X * 3.0).length()) < 2.9
+    };
+    let within = made.others.iter().filter(|point| is_within(point)).count() as f64;
+    // Two balls of 2.9 mm 3 mm apart share a lens of pi (4 r + d) (2 r - d)² / 12 = 29.97 mm³, which is filled once.
+    let volume = 2.0 * 4.0 / 3.0 * std::f64::consts::PI * 2.9f64.powi(3) - 29.97;
+    let expected = volume / (0.027 * 0.75f64.sqrt());
+    assert!((within / expected - 1.0).abs() < 0.02, "{within} {expected}");
+}
