@@ -53,6 +53,8 @@ pub struct Proof {
     pub too_close: u64,
     /// Points that a point finished before them shadows.
     pub shadowed: u64,
+    /// From pulse to pulse through the glass, mm; between blocks nothing.
+    pub travel: f64,
     /// Ticks of the laser.
     pub ticks: u64,
     /// Time, s.
@@ -204,6 +206,7 @@ pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Dia
         nearest,
         too_close,
         shadowed: shadowed.len() as u64,
+        travel: travel(&glass),
         ticks,
         seconds: ticks as f64 / task.machine.laser.rate,
         used: pulses.len() as f64 / ticks as f64,
@@ -584,6 +587,15 @@ fn nearest_points(places: &Places, task: &Task) -> (Vec<u32>, f64, f64) {
         }
     }
     (found, most_across * 1e-3, most_along * 1e-3)
+}
+
+/// The length of the lines from pulse to pulse, mm. Each is rounded to µm, so that their sum does not depend on who adds which.
+fn travel(glass: &Glass) -> f64 {
+    let length = |number: usize| {
+        let ((from, before), (to, after)) = (glass.place(number - 1), glass.place(number));
+        if before == after { (from.distance(to) * 1e3).round() as u64 } else { 0 }
+    };
+    (1..glass.len()).into_par_iter().map(length).sum::<u64>() as f64 * 1e-3
 }
 
 /// The line of a pulse.

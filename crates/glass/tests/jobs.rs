@@ -51,8 +51,18 @@ fn a_body_becomes_a_proven_program_in_every_form() {
             let made = made(body(), format, &settings);
             let report = &made.report;
             assert!(made.proven && made.findings.is_empty(), "{format}: {:?}", made.findings);
-            let Proof { pulses, across, along, nearest, too_close, shadowed, ticks, seconds, used } =
-                report.proof;
+            let Proof {
+                pulses,
+                across,
+                along,
+                nearest,
+                too_close,
+                shadowed,
+                ticks,
+                seconds,
+                used,
+                ..
+            } = report.proof;
             assert_eq!((pulses, shadowed, Some(ticks)), (report.points, 0, report.planned_ticks));
             // Rounding the drive to whole µm keeps the distance.
             assert!(too_close == 0 && nearest.unwrap().distance >= 0.13, "{format} {nearest:?}");

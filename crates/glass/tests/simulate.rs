@@ -146,3 +146,24 @@ fn an_open_door_stops_a_run_which_goes_on_from_the_next_point() {
     assert_eq!((whole.next, whole.states.last()), (None, Some(&State::Idle)));
     assert!(whole.states.contains(&State::Finished) && whole.states[1] == State::Checked);
 }
+
+#[test]
+fn the_travel_of_a_program_is_the_length_of_its_lines() {
+    use toolpost_glass::proof::{Task, prove};
+    let machine = machine();
+    let task = Task {
+        // 5 mm of drive are 7.6 mm deep in K9 (Snell's law: 5 / 0.657873).
+        cloud: &[[0, 5_000, 22_400], [3_000, 9_000, 22_400], [3_000, 10_000, 22_400]],
+        machine: &machine,
+        lens: machine.lens(70.0).unwrap(),
+        index: 1.5195,
+        block: [20.0, 20.0, 30.0],
+        blocks: 1,
+        spacing: 0.13,
+        accept_shadowed: false,
+    };
+    let run = read(b"0.000 5.000 -5.000\n3.000 9.000 -5.000\n3.000 10.000 -5.000\n", &machine);
+    let (proof, found) = prove(&run.unwrap(), &task).unwrap();
+    // 3 and 4 mm are 5 mm, and 1 mm.
+    assert_eq!((proof.travel, found.len()), (6.0, 0), "{found:?}");
+}

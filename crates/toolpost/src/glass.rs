@@ -565,6 +565,7 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
             100.0 * proof.used
         ),
     ));
+    rows.push(("travel", format!("{:.1} mm from pulse to pulse", proof.travel)));
     rows.push(("proof", match made.proven {
         true => format!(
             "passed: {} pulses, each within {:.4} mm across and {:.4} mm along the beam of its point{}; {} points shadowed",
