@@ -79,7 +79,13 @@ def test_the_programs_of_a_board_are_those_of_the_command(native, tmp_path, run)
     made.save(own)
     names = sorted(file.name for file in command.iterdir())
     assert sorted(file.name for file in own.iterdir()) == names
-    assert all((own / name).read_bytes() == (command / name).read_bytes() for name in names)
+    files = [name for name in names if name != "report.json"]
+    assert all((own / name).read_bytes() == (command / name).read_bytes() for name in files)
+    # The words that were typed are the command's alone.
+    typed, built = (json.loads((at / "report.json").read_text()) for at in (command, own))
+    assert typed.pop("options") == ["--tool=0.3", "--passes=2"]
+    assert built.pop("options") == []
+    assert built == typed
     assert list(made.programs) == ["front", "drill", "back", "outline"]
     assert made.report.proven
     assert json.loads(made.files["report.json"]) == made.report.data()

@@ -72,7 +72,7 @@ macro_rules! sheet {
 sheet!(Sheet "" {
     extends: Spanned<String>, "", "The machine or control that this file changes: a name in the library, or the path of a file.";
     title: String, "", "What a person calls it.";
-    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, klartext, fanuc, haas, linuxcnc, mach3, grbl, marlin, fanuc-wire, sodick, agie, points, krl.";
+    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, sinumerik-828d, klartext, fanuc, haas, linuxcnc, mach3, grbl, marlin, fanuc-wire, sodick, agie, points, krl, urscript, ls, rapid.";
     extension: String, "", "Ending of its programs, without the dot.";
     capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
     format: FormatSheet, "", "Table: how text is put together.";

@@ -64,7 +64,7 @@ fn two_levels_of_the_switch_are_not_proven_together() {
 #[test]
 fn a_source_with_blocks_that_may_be_switched_off_is_reported() {
     let machine = load("generic-3axis-fanuc").unwrap();
-    let text = "%\nO1\nG21\n/M8\r\nT1 M6\n/S9 M3\nM30\n%\n";
+    let text = "%\nO1\nG21\n/G4 X1.\r\nT1 M6\n/S9 M3\nM30\n%\n";
     let read = nc::read(&machine, Default::default(), "s.nc", text.as_bytes()).unwrap();
     let [found] = &read.warnings[..] else { panic!("{:?}", read.warnings) };
     assert_eq!((found.rule.name(), found.line, found.count), ("block-skip", 4, 2));

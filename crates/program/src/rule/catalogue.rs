@@ -463,10 +463,6 @@ rules! {
         "What the dwell counts in depends on a setting that is not known."
         "write G4 X with a decimal point, or state `dwell_p_milliseconds` in [settings] of the machine file"
         "fanuc: `G4 P500`";
-    DynamicOffset "dynamic-offset" []
-        "The work zero that turns with the table goes on or off where the control does not take it, or something happens under it that is not followed."
-        "turn first, then write G254 in a block of its own, then X and Y, then Z; write G255 before the next turn, work offset or shift"
-        "haas: `G254` and then `B30.`";
     DxfBinary "dxf-binary" []
         "The drawing is a binary DXF file."
         "save the drawing as ASCII DXF"
@@ -523,6 +519,10 @@ rules! {
         "The unit of a drawing is not known."
         "set the unit of the drawing ($INSUNITS) in the CAD program"
         "A drawing without $INSUNITS";
+    DynamicOffset "dynamic-offset" []
+        "The work zero that turns with the table goes on or off where the control does not take it, or something happens under it that is not followed."
+        "turn first, then write G254 in a block of its own, then X and Y, then Z; write G255 before the next turn, work offset or shift"
+        "haas: `G254` and then `B30.`";
     Empty "empty" []
         "A file has no triangle and no point."
         "give a body or points"

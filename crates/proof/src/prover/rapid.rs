@@ -233,15 +233,18 @@ impl Prover<'_> {
         };
         let is_sources = matches!(&self.cursor.step, Step::Move(goal)
             if in_hole(goal) || self.gauge.at(&self.gauge.resolve(0, *to), &goal.to));
+        // Any other rapid that goes as high is one of the source, or on its way.
+        let is_due = matches!(&self.cursor.step, Step::Move(goal)
+            if goal.from.is_none() || goal.tool_change || goal.homed);
         // Where the tool stands there already, it counts before a stop, a tool and the end alone.
         let stands = *to == self.here.position;
-        let is_due = || {
+        let ends = || {
             self.stops_next()
                 || self.cursor.at_tool_change()
                 || matches!(self.cursor.step, Step::End)
         };
         at.z >= height - machine.resolution() / 2.0
-            && (!stands || is_due())
+            && (ends() || is_due && !stands)
             && (if from.z.is_nan() { self.top } else { from.z }) <= at.z + SAME
             && same(from.x, at.x)
             && same(from.y, at.y)

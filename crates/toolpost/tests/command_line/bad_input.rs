@@ -320,6 +320,21 @@ fn a_byte_order_mark_is_no_part_of_a_text_and_utf_16_is_said() {
 const READERS: &[(&str, &str, &str)] = &[
     ("apt/nx.cls", "in.cls", "show in.cls"),
     ("apt/nx.cls", "in.cls", "wire in.cls -m fanuc-wire -o out.nc"),
+    ("apt/nx.cls", "in.cls", "fit in.cls -m universal-ur5e"),
+    (
+        "../../examples/flange.tbl",
+        "in.tbl",
+        "fit flange.nc --from fanuc-31i --tools in.tbl -m generic-3axis-fanuc",
+    ),
+    ("CALLED", "O0100", "fit calls.nc --from fanuc-31i --folder . -m generic-3axis-fanuc"),
+    ("MACHINE", "in.toml", "fit fanuc.nc --from in.toml -m generic-3axis-fanuc"),
+    ("MACHINE", "in.toml", "fit part.cls -m in.toml"),
+    ("MACHINE", "in.toml", "show part.cls -m in.toml"),
+    (
+        "../../crates/glass/machines/glass-polar-100hz.toml",
+        "in.toml",
+        "glass reach -m in.toml --block 20x20x30",
+    ),
     ("../../examples/plate.cls", "in.cls", "post in.cls -m generic-3axis-fanuc -o out.nc"),
     (
         "../../machines/samples/three-axes.cls",

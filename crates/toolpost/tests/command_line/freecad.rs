@@ -59,6 +59,23 @@ fn the_example_is_posted_and_proven_on_robots_of_each_language() {
     }
 }
 
+/// A helix is written as chords: the tool that leans at one of their ends is not the source's.
+#[test]
+fn a_tool_that_leans_within_a_helix_of_a_robot_is_refused() {
+    let folder = folder();
+    let robot = "kuka-kr6-r900";
+    assert_eq!(folder.run(&["post", "bracket.json", "-o", "out.src", "-m", robot]).code, 0);
+    let (good, text) = ("Z -0.250,A 0.0000,B 0.0000,C 180.0000", folder.read("out.src"));
+    assert!(text.contains(good));
+    for bad in ["Z -0.250,A 0.0000,B 0.0000,C 178.0000", "Z -0.250,A 0.0000,B 1.0000,C 180.0000"] {
+        folder.write("out.src", text.replacen(good, bad, 1));
+        let prove = ["prove", "out.src", "--against", "bracket.json", "-m", robot];
+        let said = folder.run(&prove);
+        assert_eq!(said.code, 1, "{said:?}");
+        assert!(said.err.contains("off that of the source on the arc"), "{said:?}");
+    }
+}
+
 /// The second `G1` of the profile goes to X-3 Y32.
 #[test]
 fn a_proof_that_fails_names_operation_and_command() {

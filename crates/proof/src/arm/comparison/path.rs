@@ -71,8 +71,8 @@ impl Comparison<'_> {
                 self.on_line(&at, [from, to], line)?;
                 true
             }
-            Step::Arc(arc, _) => {
-                self.chord(&at, arc, end)?;
+            Step::Arc(arc, to) => {
+                self.chord(&at, arc, to, line)?;
                 true
             }
             Step::Home
@@ -504,10 +504,10 @@ impl Comparison<'_> {
     }
 
     /// A line that is a chord of an arc.
-    fn chord(&mut self, at: &dyn Fn(f64) -> Frame, wanted: &Arc, end: &Frame) -> Outcome {
+    fn chord(&mut self, at: &dyn Fn(f64) -> Frame, wanted: &Arc, to: &Pose, line: u32) -> Outcome {
         let allowed = self.tip(true);
         let before = self.done;
-        let tip = self.in_part(end).translation;
+        let tip = self.in_part(&at(1.0)).translation;
         let mut reached = Comparison::angle_on(wanted, before, tip) / wanted.sweep;
         if tip.distance(wanted.end) <= self.tip(false) && reached > 1.0 - 0.25 {
             reached = 1.0;
@@ -517,6 +517,14 @@ impl Comparison<'_> {
             || (reached - before) * wanted.sweep > TAU / 4.0
         {
             return refused(Rule::Path, "the line is no chord of the arc of the source");
+        }
+        // The tool leans nowhere on an arc.
+        let lean = self.off(&at(1.0), to).1;
+        if lean.is_nan() || lean > self.axis_allowed() {
+            return refused(
+                Rule::Path,
+                format!("the axis is {lean:.3}° off that of the source on the arc"),
+            );
         }
         for step in 1..=8 {
             let share = f64::from(step) / 8.0;
@@ -530,6 +538,9 @@ impl Comparison<'_> {
                     format!("the chord is {off:.4} mm off the arc of the source"),
                 );
             }
+        }
+        if reached == 1.0 {
+            self.note_end(&at(1.0), to, line)?;
         }
         self.done = reached;
         Ok(())

@@ -14,7 +14,7 @@ pub(crate) struct Wire {
     pub v: f64,
     /// Where that points it: it is set up upright.
     pub axis: Vec3,
-    /// By how much the control leans it, as [`Action::Taper`] says it.
+    /// By how much the control leans it, as [`crate::Action::Taper`] says it.
     pub taper: f64,
 }
 
