@@ -333,7 +333,7 @@ const READERS: &[(&str, &str, &str)] = &[
     (
         "../../crates/glass/machines/glass-polar-100hz.toml",
         "in.toml",
-        "glass reach -m in.toml --block 20x20x30",
+        "glass reach -m in.toml --block 20x20x30 -o out.svg",
     ),
     ("../../examples/plate.cls", "in.cls", "post in.cls -m generic-3axis-fanuc -o out.nc"),
     (
