@@ -136,20 +136,8 @@ impl Walk {
         if self.section.is_some() && !self.within(record)? {
             return Ok(());
         }
-        let leaves_it_unknown = matches!(
-            record.op,
-            Op::Tool(_)
-                | Op::Home
-                | Op::WorkOffset(_)
-                | Op::Probe(_)
-                | Op::Joints(_)
-                | Op::MachineMove(_)
-        );
-        match record.op.pose() {
-            Some(pose) => self.here = Some(*pose),
-            None if leaves_it_unknown => self.here = None,
-            None => {}
-        }
+        let before = self.here.filter(|_| !record.op.loses_position());
+        self.here = record.op.pose().copied().or(before);
         self.records.push(record.clone());
         Ok(())
     }

@@ -111,19 +111,11 @@ fn stretches(program: &Program) -> Vec<Stretch> {
             (Some(stretch), Some(here)) => stretch.record(record.line, &here, &record.op),
             _ => true,
         };
-        let leaves_it_unknown = matches!(
-            record.op,
-            Op::Tool(_)
-                | Op::Home
-                | Op::WorkOffset(_)
-                | Op::Probe(_)
-                | Op::Joints(_)
-                | Op::MachineMove(_)
-        );
-        if !goes_on || leaves_it_unknown {
+        let loses_position = record.op.loses_position();
+        if !goes_on || loses_position {
             done.extend(open.take());
         }
-        here = record.op.pose().copied().or(here.filter(|_| !leaves_it_unknown));
+        here = record.op.pose().copied().or(here.filter(|_| !loses_position));
     }
     done.extend(open);
     done

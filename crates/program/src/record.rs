@@ -208,6 +208,20 @@ kinds! {
 }
 
 impl Op {
+    /// Whether nobody knows behind this record where the tool stands in the work frame.
+    #[inline]
+    pub fn loses_position(&self) -> bool {
+        matches!(
+            self,
+            Op::Tool(_)
+                | Op::Home
+                | Op::WorkOffset(_)
+                | Op::Probe(_)
+                | Op::Joints(_)
+                | Op::MachineMove(_)
+        )
+    }
+
     /// The pose the tool has after this record, where the record moves it to one.
     #[inline]
     pub fn pose(&self) -> Option<&Pose> {

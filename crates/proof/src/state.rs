@@ -27,6 +27,8 @@ pub(crate) struct Running {
     pub tool: Option<Tool>,
     /// Whether the program has had another tool before.
     pub tool_is_further: bool,
+    /// Whether the control takes the length of a tool by a word alone.
+    length_by_word: bool,
     pub compensation: Compensation,
     /// Lean of the wire by the control, degrees.
     pub taper: f64,
@@ -59,6 +61,7 @@ impl Running {
             coolant_line: 0,
             tool: None,
             tool_is_further: false,
+            length_by_word: dialect.is_some_and(Dialect::takes_length_by_word),
             compensation: Compensation::Off,
             taper: 0.0,
             length_offset: None,
@@ -139,8 +142,7 @@ pub(crate) fn set_up(
     };
     // One tool alone may have been touched off.
     let named = wanted.tool.is_some_and(|tool| tool.offset.is_some());
-    let counts = Dialect::named(&machine.reader).is_some_and(Dialect::takes_length_by_word);
-    if counts && offset.is_none() && (named || running.tool_is_further) {
+    if running.length_by_word && offset.is_none() && (named || running.tool_is_further) {
         let message = format!(
             "no length offset is active for T{called}: this control takes the length by a word, not with the tool"
         );
