@@ -359,7 +359,7 @@ fn key_of(hole: &Hole) -> i64 {
 }
 
 /// How many holes of each width there are, in µm.
-fn widths(holes: &[Hole]) -> BTreeMap<i64, usize> {
+fn widths<'a>(holes: impl IntoIterator<Item = &'a Hole>) -> BTreeMap<i64, usize> {
     let mut widths = BTreeMap::new();
     for hole in holes {
         *widths.entry(key_of(hole)).or_default() += 1;

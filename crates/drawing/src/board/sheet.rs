@@ -87,8 +87,7 @@ pub fn board_sheet(title: &str, sheet: &BoardSheet) -> String {
         side(&mut out, &view, (*outline, *copper, holes), sheet);
         top += HEAD + room.y;
     }
-    let all: Vec<Hole> = sheet.sides[0].2.iter().map(|hole| (*hole).clone()).collect();
-    let rows = widths(&all);
+    let rows = widths(sheet.sides[0].2.iter().copied());
     let bottom = PAPER.y - MARGIN - FOOT + 8.0;
     // Five columns of six; of more the last says how many are left out.
     let most = 30;
@@ -156,8 +155,7 @@ fn side(
     if let Some(copper) = copper {
         area(out, &copper.region, NETS[0], "none");
     }
-    let of: Vec<Hole> = holes.iter().map(|hole| (*hole).clone()).collect();
-    let known = widths(&of);
+    let known = widths(holes.iter().copied());
     for hole in holes {
         let at = |point: Vec2| view.at(point.extend(0.0));
         let points: Vec<DVec2> = match &hole.shape {

@@ -226,29 +226,22 @@ impl Prover<'_> {
         let Some(height) = machine.retract_height() else { return false };
         let (from, at) = (self.here.position.point, to.point);
         let same = |a: f64, b: f64| (a - b).abs() <= SAME || a.is_nan() && b.is_nan();
-        // Moves of a hole may go as high.
-        let in_hole = |goal: &ExpectedMotion| {
-            let begins = goal.from.is_none() || goal.tool_change || goal.homed;
-            matches!(goal.kind, Kind::Hole(_)) && !begins
-        };
-        let is_sources = matches!(&self.cursor.step, Step::Move(goal)
-            if in_hole(goal) || self.gauge.at(&self.gauge.resolve(0, *to), &goal.to));
-        // Any other rapid that goes as high is one of the source, or on its way.
-        let is_due = matches!(&self.cursor.step, Step::Move(goal)
-            if goal.from.is_none() || goal.tool_change || goal.homed);
-        // Where the tool stands there already, it counts before a stop, a tool and the end alone.
+        // Where the tool stands there already, it counts before a stop, a tool and the end alone. Any other rapid that goes as high is
+        // one of the source, or on its way, or of a hole.
         let stands = *to == self.here.position;
-        let ends = || {
-            self.stops_next()
-                || self.cursor.at_tool_change()
-                || matches!(self.cursor.step, Step::End)
-        };
+        let ends = self.stops_next()
+            || self.cursor.at_tool_change()
+            || matches!(self.cursor.step, Step::End);
+        let goal = if let Step::Move(goal) = &self.cursor.step { Some(goal) } else { None };
+        let begins = goal.is_some_and(|goal| goal.from.is_none() || goal.tool_change || goal.homed);
+        let is_sources =
+            || goal.is_some_and(|goal| self.gauge.at(&self.gauge.resolve(0, *to), &goal.to));
         at.z >= height - machine.resolution() / 2.0
-            && (ends() || is_due && !stands)
+            && (ends || begins && !stands)
             && (if from.z.is_nan() { self.top } else { from.z }) <= at.z + SAME
             && same(from.x, at.x)
             && same(from.y, at.y)
-            && !is_sources
+            && !is_sources()
     }
 
     /// A retract to the `retract_height`, which is home on a machine without switches: above all that the source cuts.
