@@ -1876,8 +1876,8 @@ rules! {
         "switch tool centre control on with the tool called, on a machine with rotary axes"
         "klartext: `M128`";
     ToolChange "tool-change" []
-        "An operation is for another tool than the one that is in the spindle."
-        "add LOAD/TOOL at the start of the operation"
+        "An operation, or a cut behind the description of a tool, is for another tool than the one that is in the spindle."
+        "add LOAD/TOOL at the start of the operation, or behind the description"
         "`TOOL PATH/...,TOOL,DRILL` behind `LOAD/TOOL` of a mill";
     ToolChangeHeight "tool-change-height" []
         "The tool is changed where Z is not home."

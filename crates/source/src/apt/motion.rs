@@ -7,7 +7,7 @@ use super::report::{Fault, Outcome};
 use super::statement::{Field, Statement, is_blank};
 use super::{Dialect, Early, Reader, Ready};
 use geom::{ANGLE_EPSILON, Vec3};
-use program::{Feed, Op, Pose, Rule, Spindle};
+use program::{Feed, Op, Pose, Rule, Spindle, Tool};
 
 /// How the next `GOTO` goes.
 #[derive(Clone, Debug, Default)]
@@ -274,6 +274,36 @@ impl Reader {
             return Err(Fault::new(Rule::ToolChange, message)
                 .help("add LOAD/TOOL,n at the start of the operation"));
         }
+        if cut { self.cut_with_described_tool(statement) } else { Ok(()) }
+    }
+
+    /// A cut behind the description of a tool that no statement loads: the tool in the spindle has to be that one. Before a
+    /// rapid the description may still belong to a tool that is loaded behind it.
+    fn cut_with_described_tool(&mut self, statement: &Statement) -> Outcome {
+        let described = std::mem::take(&mut self.next_tool);
+        let differs = |described: Option<f64>, loaded: Option<f64>| {
+            described.zip(loaded).is_some_and(|(described, loaded)| described != loaded)
+        };
+        let (number, line) = (self.tool.number, self.next_line);
+        if differs(described.diameter, self.tool.diameter)
+            || differs(described.corner_radius, self.tool.corner_radius)
+        {
+            let message = format!(
+                "this cut is for {}, as line {line} describes it, but tool {number}, {}, is in the spindle",
+                size(&described),
+                size(&self.tool)
+            );
+            return Err(Fault::new(Rule::ToolChange, message)
+                .help("add LOAD/TOOL,n behind that line, or take the line out"));
+        }
+        if described.diameter.is_some() && self.tool.diameter.is_none() {
+            let message = format!(
+                "line {line} describes {} and no tool is loaded behind it: that tool {number} is this one is not known, and is not passed on",
+                size(&described)
+            );
+            let help = "move the line to directly behind LOAD/TOOL";
+            self.report.warn(statement, Rule::ToolChange, &message, help);
+        }
         Ok(())
     }
 
@@ -535,4 +565,12 @@ mod tests {
             behind("FEDRAT/50,MMPM\nGOTO/1.5,0.5,0\n")
         );
     }
+}
+
+/// A cutter by its diameter, and its corner radius where that is known.
+fn size(tool: &Tool) -> String {
+    let diameter =
+        tool.diameter.map_or_else(|| "a cutter".into(), |d| format!("a cutter of {d} mm"));
+    tool.corner_radius
+        .map_or_else(|| diameter.clone(), |r| format!("{diameter} with a corner radius of {r} mm"))
 }

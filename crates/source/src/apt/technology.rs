@@ -410,7 +410,7 @@ impl Reader {
         describe: impl FnOnce(&mut Tool),
     ) {
         let Some(index) = self.tool_record else {
-            self.next_line = statement.line;
+            (self.next_line, self.ready) = (statement.line, Ready::No);
             return describe(&mut self.next_tool);
         };
         describe(&mut self.tool);
@@ -470,7 +470,7 @@ impl Reader {
             _ => None,
         };
         // It belongs to the operation that has just begun, never to a tool loaded before it.
-        self.next_line = statement.line;
+        (self.next_line, self.ready) = (statement.line, Ready::No);
         self.next_tool.diameter = Some(diameter);
         self.next_tool.corner_radius = radius;
         self.next_tool.tapered =

@@ -373,3 +373,36 @@ fn what_a_cut_needs_is_asked_for_again_behind_what_changes_it() {
     });
     assert_eq!(tools.collect::<Vec<_>>(), [(1, None), (2, None)]);
 }
+
+#[test]
+fn a_cut_for_a_described_tool_that_is_not_loaded_is_refused() {
+    let cuts = "GOTO/0,0,0\nGOTO/1,0,0\n";
+    let loaded = format!("UNITS/MM\nCUTTER/10,1\nLOADTL/1\nSPINDL/900,CLW\nFEDRAT/9,MMPM\n{cuts}");
+    let refused = |text: &str| {
+        let found = read("a.apt", format!("{loaded}{text}FINI\n").as_bytes(), &Options::default());
+        let found = found.unwrap_err().remove(0);
+        (found.rule.name(), found.line, found.message)
+    };
+    for (text, line, words) in [
+        ("CUTTER/14,1\nGOTO/2,0,0\n", 9, "14 mm"),
+        ("CUTTER/14,1\nRAPID\nGOTO/0,0,9\nGOTO/2,0,0\n", 11, "line 8"),
+        ("CUTTER/10,0.5\nGOTO/2,0,0\n", 9, "0.5 mm"),
+        ("TLDATA/MILL,14,1,75,0,0\nGOTO/2,0,0\n", 9, "14 mm"),
+        ("$$-> CUTTER / 14.000000\nGOTO/2,0,0\n", 9, "14 mm"),
+    ] {
+        let (rule, at, message) = refused(text);
+        assert_eq!((rule, at), ("tool-change", line), "{text}");
+        assert!(message.contains(words), "{message}");
+    }
+    // The same cutter once more, and one that is loaded behind a rapid.
+    let fine = "CUTTER/10,1\nGOTO/2,0,0\nCUTTER/14\nRAPID\nGOTO/0,0,9\nLOADTL/2\nGOTO/3,0,0\nLOADTL/3\nGOTO/4,0,0\n";
+    let tools = reading(&format!("{loaded}{fine}FINI\n")).program.records.into_iter().filter_map(
+        |r| match r.op {
+            Op::Tool(tool) => Some((tool.number, tool.diameter)),
+            _ => None,
+        },
+    );
+    assert_eq!(tools.collect::<Vec<_>>(), [(1, Some(10.0)), (2, Some(14.0)), (3, None)]);
+    // What is described behind the first motion of a tool of unknown size is not passed on, and is said.
+    assert_eq!(warnings(&format!("{cuts}CUTTER/10\nGOTO/2,0,0")), ["tool-change"]);
+}
