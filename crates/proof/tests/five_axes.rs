@@ -160,7 +160,8 @@ fn the_length_of_the_tool_counts_where_a_head_swings_it() {
     };
     let call = Tool { number: 1, length: Some(100.0), ..Tool::default() };
     let to = Pose::new(Vec3::new(1.0, 2.0, 3.0), machine.axis_at([0.0, 30.0, 0.0])).unwrap();
-    let own = program(vec![Op::Tool(Box::new(call)), Op::Rapid(to)]);
+    let [_, switched @ ..] = &start()[..] else { unreachable!() };
+    let own = program([&[Op::Tool(Box::new(call))], switched, &[Op::Rapid(to)]].concat());
     let judged = |length| rules(&judge(&machine, &own, vec![Action::Rapid(posed(length))]));
     assert!(judged(100.0).is_empty());
     assert_eq!(judged(101.0), ["end-point"]);

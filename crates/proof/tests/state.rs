@@ -618,3 +618,26 @@ fn the_tool_goes_home_where_the_source_does() {
     assert!(judged(vec![Action::Home(Axes::Z)]).is_empty());
     assert_eq!(judged(vec![])[0], "home");
 }
+
+/// Above all that is cut a program may stop and start the spindle as it likes, but no other way round than the source has it somewhere,
+/// and it opens no valve that the source opens nowhere.
+#[test]
+fn what_the_source_switches_on_nowhere_is_refused_where_nothing_is_cut_too() {
+    let behind = |source_has: Vec<Op>, switched: Action| {
+        let own = source([cut(), source_has].concat());
+        let nc = [nc_start(), cut_nc(), vec![Action::Home(Axes::Z)], off(), vec![switched], end()];
+        rules(&run(&mill(), &own, nc.concat()))
+    };
+    let reversed = || Action::Spindle(Spindle::CounterClockwise(1000.0));
+    assert_eq!(behind(vec![], reversed()), ["spindle"]);
+    assert!(behind(vec![], Action::Spindle(Spindle::Clockwise(1000.0))).is_empty());
+    // A tap that is made by moves turns back.
+    let tap = Cycle { kind: CycleKind::Tap { pitch: 1.0, left: false }, ..drill() };
+    assert!(behind(vec![Op::Cycle(Box::new(tap)), Op::CycleOff], reversed()).is_empty());
+    for other in [Coolant::Mist, Coolant::FloodAndMist, Coolant::Through] {
+        assert_eq!(behind(vec![], Action::Coolant(other)), ["coolant"]);
+    }
+    assert!(behind(vec![], Action::Coolant(Coolant::Flood)).is_empty());
+    let both = vec![Op::Coolant(Coolant::FloodAndMist), Op::Coolant(Coolant::Off)];
+    assert!(behind(both, Action::Coolant(Coolant::Mist)).is_empty());
+}

@@ -1,7 +1,8 @@
-//! The spindle in motions that are no cuts: near the part a tool may touch it by rapid as well.
+//! The spindle in motions that are no cuts: near the part a tool may touch it by rapid as well. What the source switches on
+//! nowhere, the program does not switch on anywhere.
 
 use super::*;
-use program::{CycleKind, Rule};
+use program::{CycleKind, Op, Program, Rule};
 
 /// What the spindle has done in the last motion, and where the tool is free of the part.
 pub(super) struct Contact {
@@ -14,12 +15,86 @@ pub(super) struct Contact {
     /// The spindle has been switched where the tool stands near the part, as neither the source has it nor the last motion: on this line,
     /// and how.
     switched: Option<(u32, Spindle)>,
+    /// What the source switches on anywhere; counted where it is asked for.
+    used: Option<Used>,
+}
+
+/// What a source switches on anywhere.
+#[derive(Default)]
+struct Used {
+    clockwise: bool,
+    counter_clockwise: bool,
+    coolants: Coolants,
+}
+
+/// Each kind of coolant by itself.
+#[derive(Clone, Copy, Default)]
+struct Coolants {
+    flood: bool,
+    mist: bool,
+    through: bool,
+}
+
+impl Coolants {
+    fn of(coolant: Coolant) -> Coolants {
+        Coolants {
+            flood: matches!(coolant, Coolant::Flood | Coolant::FloodAndMist),
+            mist: matches!(coolant, Coolant::Mist | Coolant::FloodAndMist),
+            through: coolant == Coolant::Through,
+        }
+    }
+
+    fn with(self, other: Coolants) -> Coolants {
+        Coolants {
+            flood: self.flood || other.flood,
+            mist: self.mist || other.mist,
+            through: self.through || other.through,
+        }
+    }
+
+    /// The first kind that is on here and not in `others`, by name.
+    fn beyond(self, others: Coolants) -> Option<&'static str> {
+        [
+            (self.flood && !others.flood, "flood coolant"),
+            (self.mist && !others.mist, "mist"),
+            (self.through && !others.through, "coolant through the tool"),
+        ]
+        .into_iter()
+        .find_map(|(beyond, name)| beyond.then_some(name))
+    }
+}
+
+impl Used {
+    fn of(source: &Program) -> Used {
+        let mut used = Used::default();
+        for record in &source.records {
+            match &record.op {
+                Op::Spindle(Spindle::Clockwise(_)) => used.clockwise = true,
+                Op::Spindle(Spindle::CounterClockwise(_)) => used.counter_clockwise = true,
+                // A tap that is made by moves turns both ways.
+                Op::Cycle(cycle) if matches!(cycle.kind, CycleKind::Tap { .. }) => {
+                    (used.clockwise, used.counter_clockwise) = (true, true);
+                }
+                Op::Coolant(coolant) => {
+                    used.coolants = used.coolants.with(Coolants::of(*coolant));
+                }
+                _ => {}
+            }
+        }
+        used
+    }
 }
 
 impl Contact {
     /// Before the first motion.
     pub fn new() -> Contact {
-        Contact { fed: None, turned: Spindle::Off, left_standing: false, switched: None }
+        Contact {
+            fed: None,
+            turned: Spindle::Off,
+            left_standing: false,
+            switched: None,
+            used: None,
+        }
     }
 
     /// A motion has ended with the spindle so.
@@ -65,6 +140,48 @@ impl Prover<'_> {
             );
             self.differs(line, (Rule::SpindleRange, message));
         }
+    }
+
+    /// Refuses a spindle that is started the way in which it turns nowhere in the source, also where nothing is cut.
+    pub(super) fn check_direction(&mut self, line: u32, spindle: Spindle) {
+        let same_way =
+            |of: Spindle| std::mem::discriminant(&of) == std::mem::discriminant(&spindle);
+        if spindle == Spindle::Off
+            || same_way(self.cursor.wanted.spindle)
+            || self.gauge.machine.wire.is_some()
+        {
+            return;
+        }
+        let used = self.used();
+        let (is_used, way) = match spindle {
+            Spindle::Off => return,
+            Spindle::Clockwise(_) => (used.clockwise, "clockwise"),
+            Spindle::CounterClockwise(_) => (used.counter_clockwise, "counter-clockwise"),
+        };
+        if !is_used {
+            let message =
+                format!("the spindle is started {way}, as it turns nowhere in the source");
+            self.differs(line, (Rule::Spindle, message));
+        }
+    }
+
+    /// Refuses coolant of a kind that the source switches on nowhere, also where nothing is cut.
+    pub(super) fn check_coolant(&mut self, line: u32, coolant: Coolant) {
+        let is = Coolants::of(coolant);
+        if is.beyond(Coolants::of(self.cursor.wanted.coolant)).is_none()
+            || self.gauge.machine.wire.is_some()
+        {
+            return;
+        }
+        if let Some(name) = is.beyond(self.used().coolants) {
+            let message = format!("{name} is switched on, as it is nowhere in the source");
+            self.differs(line, (Rule::Coolant, message));
+        }
+    }
+
+    fn used(&mut self) -> &Used {
+        let source = self.source;
+        self.contact.used.get_or_insert_with(|| Used::of(source))
     }
 
     /// Compares the spindle where it has been switched between two motions. Where the tool stands near the part and it is switched once

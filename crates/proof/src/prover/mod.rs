@@ -351,11 +351,13 @@ impl<'a> Prover<'a> {
             Action::Spindle(spindle) => {
                 running.switch_spindle(line, *spindle, self.gauge.machine.spindle.dwell);
                 self.check_speed(line, *spindle);
+                self.check_direction(line, *spindle);
                 self.check_standing(line);
             }
             Action::SurfaceSpeed(speed) => running.surface_speed = *speed,
             Action::Coolant(coolant) => {
                 (running.coolant, running.coolant_line) = (*coolant, line);
+                self.check_coolant(line, *coolant);
             }
             Action::Compensation(side) => running.compensation = *side,
             Action::Taper(degrees) => running.taper = *degrees,
