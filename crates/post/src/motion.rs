@@ -192,7 +192,7 @@ impl Walk<'_> {
     fn half_way(&self, from: &Pose, to: &Pose, stop: &Stop) -> Option<RotaryPose> {
         let (Kind::ToolCenter, Some(step)) = (&self.place.kind, stop.step) else { return None };
         let (here, there) = (self.place.degrees()?, self.written(step.degrees));
-        let step = self.machine.rotary_resolution();
+        let step = self.rotary_resolution;
         let halves = self.machine.rotary.iter().any(|axis| {
             let i = axis.index();
             axis.modulo != Some(false) && ((there[i] - here[i]).abs() - 180.0).abs() < step

@@ -125,6 +125,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) followed: Cell<Option<Followed>>,
     /// Smallest step of a linear axis, mm.
     pub(crate) resolution: f64,
+    /// Smallest step of a rotary axis, degrees.
+    pub(crate) rotary_resolution: f64,
     /// Rapids say their feed, in whose place the next cut says its own.
     feeds_rapids: bool,
     ended: bool,
@@ -184,6 +186,7 @@ impl<'a> Walk<'a> {
             limits: Limits::new(machine),
             followed: Cell::new(None),
             resolution: machine.resolution(),
+            rotary_resolution: machine.rotary_resolution(),
             ended: false,
         })
     }
