@@ -1,5 +1,6 @@
 //! What every front end of Toolpost does: open a source, write its program, prove it, save both, and meanwhile be
-//! watched and cancelled. The command line, the Python package and whatever comes next are made of this.
+//! watched and cancelled. Each program comes with its verdict. The command line, the Python
+//! package and whatever comes next are made of this.
 //!
 //! A source ([`Source`]) is a file or bytes in memory; [`toolpath::read`] opens it, with what it does not say itself
 //! ([`Origin`]). [`toolpath::machine`] opens a machine; where its file and all that it extends may lie is the caller's to

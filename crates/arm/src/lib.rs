@@ -5,7 +5,7 @@
 //! ([`Coupling`]); [`Arm::shown`] and [`Arm::model`] go between the two. A flange is a [`Frame`] in the **world of the
 //! controller**, whose origin lies [`Arm::world_height`] above the foot of the arm.
 //!
-//! **Nouns.** A [`Posture`] is one of the eight solutions in which an arm reaches a frame: rear or front, elbow below or above, wrist
+//! **Terms.** A [`Posture`] is one of the eight solutions in which an arm reaches a frame: rear or front, elbow below or above, wrist
 //! flipped or not. A *turn* is a position of a joint that differs by 360 degrees and leaves the flange where it is.
 //!
 //! **Both solutions, written apart.** [`Arm::flange`] multiplies the links one after the other. [`Arm::inverse`] is a closed form

@@ -27,7 +27,7 @@
 //!
 //! [`Event`]s come out one by one as the program runs. Positions say what the block says: those of rotary axes
 //! as [`Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
-//! [`Orientation::Axis`]. Kinematics are not this crate's business.
+//! [`Orientation::Axis`]. It contains no kinematics.
 
 // Words and events are named one by one where they are executed, resolved or passed on: there `clippy::wildcard_enum_match_arm` is denied
 // (`iso::execution`, `iso::flow`, `klartext::execution` and its M functions, `sinumerik::execution`, `kernel::compensation`). Elsewhere `_` is

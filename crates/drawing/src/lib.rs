@@ -1,6 +1,6 @@
 //! Pictures, as SVG or PNG: of a tool path, of the arm that leads it, of the path of a wire, of a board, of points in glass.
 //!
-//! The crate promises the same bytes for the same input on every machine (letters are strokes of our own, there are no fonts in
+//! The crate promises the same bytes for the same input on every machine (letters are drawn as lines, there are no fonts in
 //! them), of bounded size, however long the program.
 //!
 //! Coordinates are mm of the work frame, in a stated view; sizes of pictures are pixels. All pictures are drawn from straight

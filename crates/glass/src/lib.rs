@@ -1,5 +1,8 @@
 //! Engraving inside glass: a laser fires at a constant rate, and three axes bring its focus from point to point.
 //!
+//! The crate promises that no two points are closer than the spacing, that no finished point shadows one below it, and that each
+//! pulse of a program lies within the spot of its point; a program that breaks one of these is refused.
+//!
 //! Lengths are mm and points whole µm, times s, angles radians, unless a name says otherwise. The block's frame has its origin in a lower
 //! corner of the block; Z points up, against the beam. The same input gives the same result on any number of threads.
 //!

@@ -1,7 +1,8 @@
 //! For tests: finds the judges, which are other people's programs, Python modules and real files.
 //!
 //! None of them is part of the project. Where one is missing, the test says on the error stream that
-//! nothing was judged, and passes. With `CI=true` in the environment, which `.ci/run` sets, it fails.
+//! nothing was judged, and passes. With `CI=true` in the environment, which `.ci/run` sets, it fails: no judge is
+//! missing there without notice.
 //!
 //! ```
 //! // The first program of every test of this project.

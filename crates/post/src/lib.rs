@@ -1,7 +1,7 @@
 //! The writer: a neutral program and a machine in, an NC program out.
 //!
 //! A control's blocks are templates; one that consists only of words is compiled once and runs without
-//! the template engine, so that readability costs no speed. What the control lacks is lowered within a
+//! the template engine. What the control lacks is lowered within a
 //! stated tolerance and reported in the warnings; what can be neither written nor lowered is refused.
 //! Nothing here reads NC text: whether the program is right is the proof's to say.
 //!
@@ -29,7 +29,7 @@
 //! goes through `walk`, which knows what has been output to the control; `coordinate_mode` brings the tool into its
 //! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire is inclined,
 //! `contour` finds out whether a tool can follow a contour that the control offsets, `center` offsets it for a machine that cannot,
-//! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
+//! `surface` writes Z relative to a surface that the control has probed, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
 //! its way.
 
 #![deny(clippy::wildcard_enum_match_arm)]

@@ -1,7 +1,8 @@
-//! What is drawn in a plane: lines and arcs, each with its line of the source; smooth curves as arcs; and drawings as such.
+//! Two-dimensional drawings as lines and arcs, each with its line of the source; smooth curves become arcs; readers of DXF and HP-GL.
 //!
 //! Lengths are mm, angles radians. Nothing here knows what a drawing is for: `wire` chains its pieces to contours, `glass` puts
-//! points along them. The same file gives the same pieces, bit for bit.
+//! points along them. The same file gives the same pieces, bit for bit; what is
+//! left out of a drawing is named, with its first line.
 //!
 //! ```
 //! use toolpost_sketch::dxf;
