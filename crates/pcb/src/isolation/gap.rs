@@ -63,6 +63,8 @@ impl NarrowGap {
 pub(super) struct Gaps {
     /// Paths down the middle where the cut just fits.
     pub fitting: Vec<Path>,
+    /// Those which are so short that cuts at their ends may do.
+    pub short: Vec<Path>,
     /// Where it does not; the narrowest first.
     pub narrow: Vec<NarrowGap>,
 }
@@ -73,16 +75,15 @@ pub(super) fn gaps(bite: &Bite, width: f64) -> Result<Gaps, TooMany> {
     let field = &bite.field;
     // Where a cut fits exactly, by rounding, the paths along the two conductors are one.
     let lines = lines(field, (width + FITS) / 2.0)?;
-    let mut gaps = Gaps { fitting: Vec::new(), narrow: Vec::new() };
+    let mut gaps = Gaps { fitting: Vec::new(), short: Vec::new(), narrow: Vec::new() };
     for line in &lines {
         for run in runs(line, (width - FITS) / 2.0, bite) {
             let path = path(&run.points);
             let length = path.as_ref().map_or(0.0, Path::length);
-            if run.fits == Fits::Well {
-                // A shorter one is cut from its ends.
-                gaps.fitting.extend(path.filter(|_| length > width / 2.0));
-            } else {
-                gaps.narrow.extend(narrow(field, line.pair, &run, length, path));
+            match run.fits {
+                Fits::Well if length > width / 2.0 => gaps.fitting.extend(path),
+                Fits::Well => gaps.short.extend(path),
+                _ => gaps.narrow.extend(narrow(field, line.pair, &run, length, path)),
             }
         }
     }
@@ -90,27 +91,34 @@ pub(super) fn gaps(bite: &Bite, width: f64) -> Result<Gaps, TooMany> {
     Ok(gaps)
 }
 
-/// Decides the fate of each gap: `others` are the paths of a cut of `width` mm that are made in any case.
-pub(crate) fn decide(gaps: &mut [NarrowGap], others: &[Path], width: f64) {
-    let is_covered = |gap: &NarrowGap, swept: &Swept| {
-        gap.middle.as_ref().is_some_and(|middle| swept.covers(middle))
-    };
-    if gaps.is_empty() {
-        return;
+/// Decides the fate of each gap: `others` are the paths of a cut of `width` mm that are made in any case. The answer is which
+/// of the `short` paths down the middle of gaps where it just fits are to be cut. What is left uncut of a middle is either a gap
+/// that is joined, or taken away by a cut that is made: so the next one is left out only where those that are certain take it.
+pub(crate) fn decide(
+    gaps: &mut [NarrowGap],
+    short: Vec<Path>,
+    others: &[Path],
+    width: f64,
+) -> Vec<Path> {
+    if gaps.is_empty() && short.is_empty() {
+        return short;
     }
-    let swept = Swept::new(others.iter(), width);
-    for gap in &mut *gaps {
-        if is_covered(gap, &swept) {
-            gap.fate = Fate::Parted;
-        }
-    }
+    part(&mut *gaps, &Swept::new(others.iter(), width));
     let cut: Vec<Path> = cuts(gaps).cloned().collect();
-    if cut.is_empty() {
-        return;
-    }
     let swept = Swept::new(others.iter().chain(&cut), width);
-    for gap in gaps.iter_mut().filter(|gap| gap.fate == Fate::Joined) {
-        if is_covered(gap, &swept) {
+    let needed: Vec<Path> = short.into_iter().filter(|path| !swept.covers(path)).collect();
+    let joined = gaps.iter_mut().filter(|gap| gap.fate == Fate::Joined);
+    match needed.is_empty() {
+        true => part(joined, &swept),
+        false => part(joined, &Swept::new(others.iter().chain(&cut).chain(&needed), width)),
+    }
+    needed
+}
+
+/// The gaps whose middle is taken away in any case are parted.
+fn part<'g>(gaps: impl IntoIterator<Item = &'g mut NarrowGap>, swept: &Swept) {
+    for gap in gaps {
+        if gap.middle.as_ref().is_some_and(|middle| swept.covers(middle)) {
             gap.fate = Fate::Parted;
         }
     }

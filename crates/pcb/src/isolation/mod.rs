@@ -114,9 +114,12 @@ impl Isolation {
         );
         let (around, mut paths) = passes.map_err(too_large)?;
         let mut gaps = gaps.map_err(|_| too_wide(width))?;
-        let is_around_all = around.rings().count() == 1 && gaps.fitting.is_empty();
+        let is_one_ring = around.rings().count() == 1;
         paths.append(&mut gaps.fitting.clone());
-        decide(&mut gaps.narrow, &paths, width);
+        let mut short = decide(&mut gaps.narrow, gaps.short, &paths, width);
+        gaps.fitting.extend(short.iter().cloned());
+        paths.append(&mut short);
+        let is_around_all = is_one_ring && gaps.fitting.is_empty();
         let mut middles: Vec<Path> = cuts(&gaps.narrow).cloned().collect();
         let is_around_all = is_around_all && middles.is_empty();
         gaps.fitting.extend(middles.iter().cloned());

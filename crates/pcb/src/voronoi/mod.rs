@@ -98,7 +98,7 @@ pub fn divided(copper: &Copper, area: &Region, width: f64, narrow: Narrow) -> Ou
         }
     }
     division.narrow.sort_by(|a, b| a.width.total_cmp(&b.width));
-    decide(&mut division.narrow, &division.paths, width);
+    decide(&mut division.narrow, Vec::new(), &division.paths, width);
     division.paths.extend(cuts(&division.narrow).cloned());
     Ok(division)
 }

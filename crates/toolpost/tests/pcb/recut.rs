@@ -32,14 +32,18 @@ struct Made {
 }
 
 impl Made {
-    /// Cuts the copper of a board, which stays where its files have it.
+    /// Cuts the copper of a board by an end mill.
     fn of(board: &Path, machine: &'static str, width: f64, more: &[&str]) -> Made {
+        Made::by(&["--tool", &width.to_string()], board, machine, width, more)
+    }
+
+    /// Cuts the copper of a board by a tool that cuts so wide; the board stays where its files have it.
+    fn by(tool: &[&str], board: &Path, machine: &'static str, width: f64, more: &[&str]) -> Made {
         let folder = tempfile::tempdir().unwrap();
-        let (tool, output) = (width.to_string(), folder.path().display().to_string());
+        let output = folder.path().display().to_string();
         let board = board.display().to_string();
-        let mut words = vec![
-            "toolpost", "--quiet", "pcb", &board, "-m", machine, "--tool", &tool, "-o", &output,
-        ];
+        let mut words = vec!["toolpost", "--quiet", "pcb", &board, "-m", machine, "-o", &output];
+        words.extend(tool);
         words.extend(["--as-drawn", "--picture", "none"]);
         words.extend(more);
         assert_eq!(toolpost::run(words.iter().map(Into::into)), 0, "{words:?}");
@@ -236,6 +240,20 @@ fn what_a_program_for_grbl_leaves_is_the_copper_net_by_net() {
     for (name, width) in BOARDS {
         let board = data.join("kicad").join(name);
         let made = Made::of(&board, "grbl-3018", *width, &[]);
+        for (side, file) in copper(&board) {
+            made.check(side, &file, None);
+        }
+    }
+}
+
+#[test]
+fn what_a_v_bit_leaves_is_the_copper_net_by_net() {
+    let Some(data) = judge::data("gerber") else { return };
+    // A tip of 0.1 mm, 0.1 mm deep: as wide as a usual gap between tracks, to 2 µm.
+    let width = 0.1 + 0.2 * 15_f64.to_radians().tan();
+    for name in ["StickHub", "pic_programmer"] {
+        let board = data.join("kicad").join(name);
+        let made = Made::by(&["--vee", "30"], &board, "grbl-3018", width, &[]);
         for (side, file) in copper(&board) {
             made.check(side, &file, None);
         }
