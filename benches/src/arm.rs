@@ -100,7 +100,14 @@ fn dome(i: usize, count: usize) -> Point {
     let part = i as f64 / count as f64;
     let (turn, lean) = (part * 200.0 * std::f64::consts::TAU, (2.0 + 38.0 * part).to_radians());
     let axis = Vec3::new(lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos());
-    Point { tip: (axis - Vec3::Z) * 120.0, axis, side: None, cut: i > 0, feed: 1800.0 }
+    Point {
+        tip: (axis - Vec3::Z) * 120.0,
+        axis,
+        side: None,
+        cut: i > 0,
+        feed: 1800.0,
+        inside: false,
+    }
 }
 
 fn peer() -> OPWKinematics {

@@ -84,7 +84,7 @@ pub(crate) fn follow(
             positions.push(Position { joints, side: job.side_in_part(sample, *turn) });
         }
     }
-    Taken::Passed(Section { first: job.samples[first].point, posture, positions, reentry: false })
+    Taken::Passed(Section { first: job.samples[first].point, posture, positions, reentry: None })
 }
 
 /// The joints of a sample, where the settings allow them.
@@ -151,13 +151,14 @@ fn note(arm: &Arm, joints: &Joints, point: usize, worst: &mut Worst) {
     }
 }
 
-/// What keeps the arm from a sample, in the turn and posture that come nearest: limits first, then singularities, then reach.
-pub(crate) fn nearest(job: &Job, sample: &Sample, steps: usize) -> Why {
+/// What keeps the arm from a sample, in the turn and the posture of these that come nearest: limits first, then singularities, then reach.
+pub(crate) fn nearest(job: &Job, sample: &Sample, steps: usize, of: &[Posture]) -> Why {
     let mut found: Option<Why> = None;
     for step in 0..steps {
         let flange = job.frame(sample, step as f64 * job.step_angle());
-        for (_, joints) in job.arm.inverse(&flange, 0.0).iter() {
-            if let Err(why) = cost_at(job.arm, joints, job.settings)
+        for (posture, joints) in job.arm.inverse(&flange, 0.0).iter() {
+            if of.contains(&posture)
+                && let Err(why) = cost_at(job.arm, joints, job.settings)
                 && found.is_none_or(|found| is_nearer(why, found))
             {
                 found = Some(why);
@@ -173,7 +174,7 @@ fn is_nearer(a: Why, b: Why) -> bool {
         Why::Speed(_, share) => (0, share),
         Why::Wrist(margin) | Why::Elbow(margin) | Why::Shoulder(margin) => (1, -margin),
         Why::Limit(_, by) => (2, by),
-        Why::Apart => (3, 0.0),
+        Why::Range(_) | Why::Apart => (3, 0.0),
         Why::Reach(mm) => (4, mm),
         Why::Numbers => (5, 0.0),
     };
@@ -211,13 +212,13 @@ fn out_of_reach(job: &Job, sample: &Sample, steps: usize) -> f64 {
     (0..steps).map(off).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or_default()
 }
 
-/// What ends every choice in an interval: the first sample that is not reached at all, or the least speed that is too much.
-pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize) -> (usize, Why) {
+/// What ends every choice of these postures in an interval: the first sample that is not reached at all, or the least speed that is too much.
+pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize, of: &[Posture]) -> (usize, Why) {
     for pair in samples.windows(2) {
         let (mut speed, mut reached): (Option<Why>, bool) = (None, false);
         for step in 0..steps {
             let turn = step as f64 * job.step_angle();
-            for posture in Posture::ALL {
+            for &posture in of {
                 let Some(to) = solve(job, &pair[1], turn, posture) else { continue };
                 reached = true;
                 let Some(from) = solve(job, &pair[0], turn, posture) else { continue };
@@ -232,7 +233,7 @@ pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize) -> (usize, Wh
             }
         }
         match speed {
-            _ if !reached => return (pair[1].point, nearest(job, &pair[1], steps)),
+            _ if !reached => return (pair[1].point, nearest(job, &pair[1], steps, of)),
             Some(Why::Speed(_, used)) if used <= job.settings.speed => {}
             Some(why) => return (pair[1].point, why),
             None => return (pair[1].point, Why::Apart),

@@ -11,7 +11,7 @@
 //! from each step to itself or to a neighbour (dynamic programming); then that sequence is followed exactly, with the turn changing
 //! evenly within an interval, and every figure is checked at each point and between points ([`SPACING`]). Between sections the arm
 //! is free to take another posture. Where no sequence passes a whole section it is divided: the arm draws back, turns and enters
-//! again ([`Section::reentry`]); `post` refuses a divided section, since it does not write re-entries yet. Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
+//! again ([`Section::reentry`]), at a point that allows it ([`Point::inside`]). Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
 //! number of threads.
 //!
 //! ```
@@ -24,7 +24,7 @@
 //!     tool: Frame::from_translation(Vec3::new(0.0, 0.0, 150.0)),
 //!     part: Frame::from_translation(Vec3::new(450.0, 0.0, 150.0)),
 //! };
-//! let point = |x: f64, cut: bool| Point { tip: Vec3::new(x, 0.0, 0.0), axis: Vec3::Z, side: None, cut, feed: 1200.0 };
+//! let point = |x: f64, cut: bool| Point { tip: Vec3::new(x, 0.0, 0.0), axis: Vec3::Z, side: None, cut, feed: 1200.0, inside: false };
 //! let path = [point(0.0, false), point(60.0, true), point(120.0, true)];
 //! let choice = choose(&arm, &cell, &path, &Settings::default()).unwrap();
 //! assert_eq!(choice.sections.len(), 1);
@@ -65,6 +65,8 @@ pub struct Point {
     pub cut: bool,
     /// Feed on the way to this point, mm/min.
     pub feed: f64,
+    /// Whether it is within a motion, an arc: no cut is divided there.
+    pub inside: bool,
 }
 
 /// Where the tool and the part are.
@@ -133,8 +135,9 @@ pub struct Section {
     pub posture: Posture,
     /// Its position at each point, from the first on.
     pub positions: Vec<Position>,
-    /// Whether it begins where the section before it ends, within a cut: the arm draws back there, turns and enters again.
-    pub reentry: bool,
+    /// Where it begins at the end of the section before it, within a cut: what ends that, so that the arm draws back there, turns and
+    /// enters again.
+    pub reentry: Option<Why>,
 }
 
 /// The least margins, and where they are.
@@ -186,6 +189,8 @@ pub enum Why {
     Elbow(f64),
     /// A joint would need this part of its speed (number from 1).
     Speed(usize, f64),
+    /// A joint (number from 1) would leave its range, through which it has turned on the way.
+    Range(usize),
     /// Single points are reached, but no turn and posture leads from one to the next.
     Apart,
     /// The point, the feed or the settings are no numbers that make sense.
@@ -214,6 +219,9 @@ impl fmt::Display for Blocked {
                     "joint {joint} would need {:.0} % of its speed at this feed",
                     100.0 * share
                 )
+            }
+            Why::Range(joint) => {
+                write!(f, "joint {joint} would have turned through all of its range")
             }
             Why::Apart => {
                 f.write_str("no turn about the tool and no posture leads on from the point before")

@@ -27,6 +27,8 @@ pub(crate) struct Sample {
     pub(crate) point: usize,
     /// Whether it is the point itself.
     pub(crate) is_point: bool,
+    /// Whether it is within a motion.
+    pub(crate) inside: bool,
 }
 
 /// A cut: samples that the arm passes without leaving the path, and the intervals between its knots.
@@ -96,6 +98,7 @@ impl<'a> Job<'a> {
             time: 0.0,
             point: number,
             is_point: true,
+            inside: point.inside,
         };
         let fixed = point.side.is_some();
         let last = self.samples.last().copied().filter(|_| {
@@ -142,6 +145,7 @@ impl<'a> Job<'a> {
                 time: time / count,
                 point: end.point,
                 is_point,
+                inside: end.inside || !is_point,
             });
         }
         if let Some(cut) = self.cuts.last_mut() {

@@ -7,7 +7,6 @@ use crate::{Blocked, Choice, Section, Why, Worst};
 use arm::{Joints, Posture};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 /// Intervals whose rows are in memory at the same time.
 const BLOCK: usize = 512;
@@ -46,25 +45,30 @@ pub(crate) fn search(job: &Job) -> Result<Choice, Blocked> {
     let mut choice = Choice { sections: Vec::new(), worst: follow::NO_WORST };
     let mut last = job.settings.start;
     for cut in &job.cuts {
-        let knots = knots(job, cut);
-        let mut from = 0;
+        let (mut from, mut reentry) = (cut.samples.start, None);
         loop {
-            let passed = section(job, cut, &knots[from..], last, &mut choice.worst)?;
+            let within = from > cut.samples.start;
+            // Where a cut is entered again the wrist turns over more easily above the cuts than the whole arm.
+            let passed = match section(job, cut, from, (last, within), &mut choice.worst) {
+                Err(_) if within => section(job, cut, from, (last, false), &mut choice.worst),
+                passed => passed,
+            }?;
             last = passed.section.positions.last().map(|position| position.joints);
-            choice.sections.push(Section { reentry: from > 0, ..passed.section });
-            from += passed.intervals;
-            if from + 1 >= knots.len() {
+            choice.sections.push(Section { reentry, ..passed.section });
+            from = passed.end;
+            if from + 1 >= cut.samples.end {
                 break;
             }
+            reentry = Some(passed.ended);
         }
     }
     Ok(choice)
 }
 
-/// Samples of a cut at which the turn may have changed by a step: all of them points.
-fn knots(job: &Job, cut: &Cut) -> Vec<usize> {
+/// Samples of a cut, from `start` on, at which the turn may have changed by a step: all of them points.
+fn knots(job: &Job, cut: &Cut, start: usize) -> Vec<usize> {
     let least = if cut.fixed { 0.0 } else { job.step_angle() / job.settings.turn_rate };
-    let Range { start, end } = cut.samples;
+    let end = cut.samples.end;
     let (mut knots, mut time) = (vec![start], 0.0);
     for at in start + 1..end {
         time += job.samples[at].time;
@@ -77,25 +81,52 @@ fn knots(job: &Job, cut: &Cut) -> Vec<usize> {
     knots
 }
 
-/// A section that is passed, and how many intervals it has.
+/// A section that is passed, and the sample at its end.
 struct Passed {
     section: Section,
-    intervals: usize,
+    end: usize,
+    /// What ends it, where it is not the end of the cut.
+    ended: Why,
 }
 
-/// The longest section from the first knot on.
+/// The longest section from a sample on.
 fn section(
     job: &Job,
     cut: &Cut,
-    knots: &[usize],
-    last: Option<Joints>,
+    start: usize,
+    before: Before,
     worst: &mut Worst,
 ) -> Result<Passed, Blocked> {
+    let knots = &knots(job, cut, start)[..];
     let mut forbidden = BTreeSet::new();
     for _ in 0..TRIES {
-        let (steps, posture) = cheapest(job, cut, knots, last, &forbidden)?;
-        match follow::follow(job, &knots[..steps.len()], &steps, posture, last, worst) {
-            Taken::Passed(section) => return Ok(Passed { section, intervals: steps.len() - 1 }),
+        let (steps, posture, used_up) = cheapest(job, cut, knots, before, &forbidden)?;
+        let (stopped, why) = match knots.get(steps.len() - 1..=steps.len()) {
+            Some(&[from, to]) => {
+                let of = same_arm(posture);
+                let why = follow::stopped(job, &job.samples[from..=to], job.steps(cut), &of);
+                match used_up {
+                    Some(joint) if why.1 == Why::Apart => (why.0, Why::Range(joint)),
+                    _ => why,
+                }
+            }
+            _ => (0, Why::Apart),
+        };
+        // A cut is divided at the end of a motion.
+        let last = knots[steps.len() - 1];
+        let is_end = |at: &usize| {
+            let sample = &job.samples[*at];
+            at + 1 == cut.samples.end || (sample.is_point && !sample.inside)
+        };
+        let end = (start..=last).rfind(is_end);
+        let Some(end) = end.filter(|end| *end > start || *end == last) else {
+            return Err(Blocked { point: stopped, why });
+        };
+        match follow::follow(job, &knots[..steps.len()], &steps, posture, before.0, worst) {
+            Taken::Passed(mut section) => {
+                section.positions.truncate(job.samples[end].point + 1 - section.first);
+                return Ok(Passed { section, end, ended: why });
+            }
             Taken::Stopped(interval) => {
                 let node = steps[interval] * POSTURES + posture.index();
                 let turn = turn(steps[interval - 1], steps[interval], job.steps(cut));
@@ -116,24 +147,28 @@ fn turn(from: usize, to: usize, steps: usize) -> i32 {
     }
 }
 
-/// The steps of the turn at each knot as far as they pass, and its posture.
+/// The steps of the turn at each knot as far as they pass, its posture, and the joint (number from 1) whose range ends them.
 fn cheapest(
     job: &Job,
     cut: &Cut,
     knots: &[usize],
-    last: Option<Joints>,
+    before: Before,
     forbidden: &BTreeSet<Edge>,
-) -> Result<(Vec<usize>, Posture), Blocked> {
+) -> Result<(Vec<usize>, Posture, Option<usize>), Blocked> {
     let steps = job.steps(cut);
     let first = grid::start(job, knots[0], steps);
-    let mut labels: Vec<Label> = first.iter().map(|node| begin(job, node, last)).collect();
+    let mut labels: Vec<Label> = first.iter().map(|node| begin(job, node, before)).collect();
     let mut nodes = first;
     if nodes.iter().all(Node::is_dead) {
         let sample = &job.samples[knots[0]];
-        return Err(Blocked { point: sample.point, why: follow::nearest(job, sample, steps) });
+        return Err(Blocked {
+            point: sample.point,
+            why: follow::nearest(job, sample, steps, &Posture::ALL),
+        });
     }
     // From which step the cheapest comes, at each knot behind the first.
     let mut back: Vec<Vec<i8>> = Vec::new();
+    let mut used_up = None;
     'all: for block in (0..knots.len() - 1).step_by(BLOCK) {
         let until = (block + BLOCK).min(knots.len() - 1);
         for (i, row) in grid::rows(job, &knots[block..=until], steps).into_iter().enumerate() {
@@ -142,6 +177,7 @@ fn cheapest(
                 job.samples[knots[block + i] + 1..=knot].iter().map(|sample| sample.time).sum();
             let (next, from) = layer(job, &labels, &nodes, &row, time, knot, forbidden);
             if next.iter().all(|label| label.cost.is_infinite()) {
+                used_up = used_up_by(job, &labels, &row);
                 break 'all;
             }
             (labels, nodes) = (next, row);
@@ -150,7 +186,7 @@ fn cheapest(
     }
     if back.is_empty() && knots.len() > 1 {
         let samples = &job.samples[knots[0]..=knots[1]];
-        let (point, why) = follow::stopped(job, samples, steps);
+        let (point, why) = follow::stopped(job, samples, steps, &Posture::ALL);
         return Err(Blocked { point, why });
     }
     let cheapest = (0..labels.len()).min_by(|a, b| labels[*a].cost.total_cmp(&labels[*b].cost));
@@ -163,7 +199,7 @@ fn cheapest(
         taken.push(step);
     }
     taken.reverse();
-    Ok((taken, posture))
+    Ok((taken, posture, used_up))
 }
 
 /// The step from which a turn comes.
@@ -171,8 +207,17 @@ fn neighbour(step: usize, turn: i32, steps: usize) -> usize {
     (step as i32 + turn).rem_euclid(steps as i32) as usize
 }
 
+/// The postures that differ from one by the wrist alone.
+fn same_arm(as_of: Posture) -> Vec<Posture> {
+    let is_same = |of: &Posture| (of.rear(), of.below()) == (as_of.rear(), as_of.below());
+    Posture::ALL.into_iter().filter(is_same).collect()
+}
+
+/// Where the arm stands before a section, and whether it may turn its wrist over alone.
+type Before = (Option<Joints>, bool);
+
 /// The label of a node at the start: what the arm needs to come here from where the section before ended.
-fn begin(job: &Job, node: &Node, last: Option<Joints>) -> Label {
+fn begin(job: &Job, node: &Node, (last, keeps_arm): Before) -> Label {
     let arm = job.arm;
     if node.is_dead() {
         return Label::DEAD;
@@ -183,7 +228,11 @@ fn begin(job: &Job, node: &Node, last: Option<Joints>) -> Label {
     };
     let time = last.map_or(0.0, |last| (0..6).map(|i| seconds(i, last[i])).fold(0.0, f64::max));
     let end = node.end.map(f64::from);
-    let changes = last.is_some_and(|last| arm.posture(&last) != arm.posture(&end));
+    let [earlier, posture] = [last.unwrap_or(end), end].map(|joints| arm.posture(&joints));
+    if keeps_arm && !same_arm(earlier).contains(&posture) {
+        return Label::DEAD;
+    }
+    let changes = earlier != posture;
     let keeping = if changes && job.settings.start.is_some() { POSTURE } else { 0.0 };
     Label {
         cost: node.cost + time as f32 + keeping,
@@ -225,6 +274,19 @@ fn layer(
         }
     }
     (next, from)
+}
+
+/// The joint, number from 1, that would leave its range on an interval in which the cheapest label that could go on stands still.
+fn used_up_by(job: &Job, labels: &[Label], row: &Row) -> Option<usize> {
+    let alive =
+        labels.iter().zip(row).filter(|(label, node)| label.cost.is_finite() && !node.is_dead());
+    let (label, node) = alive.min_by(|(a, _), (b, _)| a.cost.total_cmp(&b.cost))?;
+    let leaves = |i: &usize| {
+        let low = label.low[*i].min(label.joints[*i] + node.low[*i]);
+        let high = label.high[*i].max(label.joints[*i] + node.high[*i]);
+        follow::fitting(job, *i, f64::from(low), f64::from(high)).is_none()
+    };
+    (0..6).find(leaves).map(|joint| joint + 1)
 }
 
 /// The label behind an interval that begins with the step of `earlier` and ends with that of `node`.

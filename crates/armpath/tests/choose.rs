@@ -53,6 +53,7 @@ fn upright(count: usize, curve: impl Fn(f64) -> Vec3) -> Vec<Point> {
         side: None,
         cut: i > 0,
         feed: 1800.0,
+        inside: false,
     };
     (0..count).map(point).collect()
 }
@@ -63,7 +64,14 @@ fn dome(count: usize) -> Vec<Point> {
         let t = i as f64 / count as f64;
         let (turn, lean) = (t * 12.0 * TAU, (2.0 + 38.0 * t).to_radians());
         let axis = Vec3::new(lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos());
-        Point { tip: axis * 120.0 - Vec3::Z * 120.0, axis, side: None, cut: i > 0, feed: 1800.0 }
+        Point {
+            tip: axis * 120.0 - Vec3::Z * 120.0,
+            axis,
+            side: None,
+            cut: i > 0,
+            feed: 1800.0,
+            inside: false,
+        }
     };
     (0..count).map(point).collect()
 }
@@ -72,9 +80,11 @@ fn dome(count: usize) -> Vec<Point> {
 fn proven(arm: &Arm, cell: &Cell, points: &[Point], settings: &Settings, way: &Choice) {
     let mut next = 0;
     for section in &way.sections {
-        assert_eq!(section.first, if section.reentry { next - 1 } else { next });
+        assert_eq!(section.first, if section.reentry.is_some() { next - 1 } else { next });
         assert!(
-            section.reentry || !points[section.first].cut || points[section.first].side.is_some()
+            section.reentry.is_some()
+                || !points[section.first].cut
+                || points[section.first].side.is_some()
         );
         for (i, stand) in section.positions.iter().enumerate() {
             let point = &points[section.first + i];
@@ -150,6 +160,7 @@ fn a_spindle_along_axis_6_has_no_free_turn_and_a_singular_wrist_in_a_cut_is_refu
             side: None,
             cut: i > 0,
             feed: 1800.0,
+            inside: false,
         })
         .collect();
     let blocked = way(&cell(0.0), &points).unwrap_err();
@@ -217,8 +228,25 @@ fn a_ring_round_the_foot_is_divided_where_joint_1_ends() {
         Vec3::new(500.0 * angle.cos() - 500.0, 500.0 * angle.sin(), 0.0)
     });
     let way = way(&cell(LEANING), &ring).unwrap();
-    assert!(way.sections.len() >= 2 && way.sections[1].reentry, "{}", way.sections.len());
+    assert!(way.sections.len() >= 2 && way.sections[1].reentry.is_some(), "{}", way.sections.len());
     assert!(way.sections.len() <= 4, "{}", way.sections.len());
+}
+
+#[test]
+fn a_cut_is_not_divided_within_a_motion() {
+    let mut ring = upright(1200, |t| {
+        let angle = t * 3.0 * PI;
+        Vec3::new(500.0 * angle.cos() - 500.0, 500.0 * angle.sin(), 0.0)
+    });
+    for (i, point) in ring.iter_mut().enumerate() {
+        point.inside = i % 10 != 0;
+    }
+    let divided = way(&cell(LEANING), &ring).unwrap();
+    assert!(divided.sections.len() >= 2, "{}", divided.sections.len());
+    assert!(divided.sections.iter().all(|section| section.first % 10 == 0));
+    // The whole ring as one motion passes in no section.
+    ring.iter_mut().for_each(|point| point.inside = true);
+    assert!(way(&cell(LEANING), &ring).is_err());
 }
 
 #[test]
@@ -242,7 +270,7 @@ fn cuts_with_a_rapid_between_them_are_sections_of_their_own() {
     points[300].cut = false;
     let way = way(&cell(LEANING), &points).unwrap();
     assert_eq!(way.sections.iter().map(|section| section.first).collect::<Vec<_>>(), [0, 300]);
-    assert!(way.sections.iter().all(|section| !section.reentry));
+    assert!(way.sections.iter().all(|section| section.reentry.is_none()));
 }
 
 #[test]

@@ -91,6 +91,9 @@ pub struct Cell {
     pub joint_speed: f64,
     /// Speed of the tip where it goes straight and does not cut, mm/min.
     pub rapid: f64,
+    /// Feed at which the tool leaves a cut and comes back into it, where no turn about the tool and no posture carries the whole cut,
+    /// mm/min; `None` where no cut may be left.
+    pub reentry_feed: Option<f64>,
     /// Name of the operator's program that changes the tool; empty where there is none.
     pub tool_change: String,
     /// Number of the output that switches the spindle on.

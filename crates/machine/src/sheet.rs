@@ -250,6 +250,7 @@ sheet!(merged CellSheet "cell" {
     home: SixAngles, "degrees", "The joints at which programs begin and end, as the controller shows them.";
     joint_speed: Percent, "%", "Speed of moves of joints, of the fastest.";
     rapid: Rate, "mm/min", "Speed of the tip where it goes straight and does not cut.";
+    reentry_feed: Rate, "mm/min", "Feed straight out of a cut and back into it at the same place, where no turn about the tool and no posture carries the whole cut: the arm is retracted along the tool, takes another posture or turn above all cuts, and enters again. Without it such a cut is refused.";
     tool_change: String, "", "Name of the operator's program that changes the tool, called with its number. Without it the one tool of a program is in the spindle, and a program with several stops at home for each of them, to have it put in by hand.";
     spindle_output: u32, "", "Number of the digital output that switches the spindle on.";
     spindle_analog: u32, "", "Number of the analog output that sets its speed.";

@@ -3,6 +3,9 @@
 
 use program::{Diagnostic, Rule};
 
+/// The most lines that are listed of warnings like one before.
+const MOST_LINES: usize = 20;
+
 /// More errors than this nobody reads.
 const MOST_ERRORS: usize = 20;
 
@@ -46,6 +49,16 @@ impl Findings {
             Some(known) => known.count += 1,
             None => self.warnings.push(warning),
         }
+    }
+
+    /// The same of what somebody has to look at in each place: the lines of those that are like an earlier one, up to a fixed number.
+    pub(crate) fn warn_of_lines(&mut self, warning: Diagnostic) {
+        let same = |w: &&mut Diagnostic| w.rule == warning.rule && w.message == warning.message;
+        match self.warnings.iter_mut().find(same) {
+            Some(known) if known.lines.len() < MOST_LINES => known.lines.push(warning.line),
+            _ => {}
+        }
+        self.warn(warning);
     }
 
     /// Counts one thing (`what`, in the plural) that was written as so many lines.

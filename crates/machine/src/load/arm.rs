@@ -94,6 +94,7 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
         home: needed("home", sheet.home)?.0,
         joint_speed: needed("joint_speed", sheet.joint_speed)?.0,
         rapid: needed("rapid", sheet.rapid)?.0,
+        reentry_feed: sheet.reentry_feed.map(|rate| rate.0),
         tool_change,
         spindle_output: sheet.spindle_output,
         spindle_analog,

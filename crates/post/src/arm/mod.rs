@@ -18,7 +18,7 @@ use geom::{Euler, Frame, Mat3, Quat, Vec3, wrap};
 use machine::limits::Limits;
 use machine::{Cell, Machine, Word};
 use minijinja::value::Value;
-use plan::{Act, Kind, Motion, Position, Step, plan};
+use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
 use program::{
     Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Rule, Spindle, Tool,
 };
@@ -228,10 +228,11 @@ impl<'a> Walk<'a> {
         for (index, step) in steps.iter().enumerate() {
             let (line, done) = match step {
                 Step::Act(act, line) => (*line, self.act(*act, *line)),
+                Step::Reenter(reentry) => (reentry.line, self.reenter(reentry)),
                 Step::Move(motion) => {
                     let next = match steps.get(index + 1) {
                         Some(Step::Move(next)) => Some(next),
-                        Some(Step::Act(..)) | None => None,
+                        Some(Step::Act(..) | Step::Reenter(_)) | None => None,
                     };
                     (motion.line, self.motion(motion, next))
                 }
@@ -384,7 +385,12 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         let end = self.at_joints(&tool, &home);
-        let Some(route) = self.rapids.route(&tool, &self.here, &end, true) else {
+        let route = self.rapids.route(&tool, &self.here, &end, true);
+        // Home is where joints lead: not down to it from above.
+        let by_joints = |route: &Vec<RapidSegment>| {
+            route.last().is_some_and(|last| last.path == RapidPath::Joints)
+        };
+        let Some(route) = route.filter(by_joints) else {
             let message = "the way home by the joints comes too near to what is cut";
             let help =
                 "end with a rapid that lifts the tool off the part, or change `home` below [cell]";
@@ -469,6 +475,31 @@ impl<'a> Walk<'a> {
             return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
         };
         self.follow(&route)
+    }
+
+    /// Leaves a cut straight along the tool, turns by the joints above all cuts, and enters at the same place.
+    fn reenter(&mut self, reentry: &Reentry) -> Outcome {
+        let Some(tool) = self.tool else { return Ok(()) };
+        let Reentry { line, back, feed, why } = *reentry;
+        let home = self.at_joints(&tool, &self.home_joints());
+        let route = self.rapids.reentry(&tool, [&self.here, &back, &home], feed);
+        let blocked = armpath::Blocked { point: 0, why };
+        let Some((route, height)) = route else {
+            let message = format!(
+                "behind this point {blocked}, and the arm cannot retract here along the tool, turn above all cuts and enter the cut again"
+            );
+            let help = "another place of the part (`toolpost fit` looks for one), or cut it in two operations";
+            return Err(Diagnostic::error(Rule::ArmPath, message).help(help).into());
+        };
+        self.follow(&route)?;
+        let message = format!(
+            "the tool leaves the cut here, {height:.0} mm along its axis, turns and enters again at the same place at {feed:.0} mm/min: \
+             without that {blocked}"
+        );
+        let help = "look at the mark that it may leave; another place of the part (`toolpost fit`) may do without";
+        let found = Diagnostic::warning(Rule::Rewind, message).help(help);
+        self.findings.warn_of_lines(found.line(line));
+        Ok(())
     }
 
     fn cut(&mut self, motion: &Motion, next: Option<&Motion>) -> Outcome {

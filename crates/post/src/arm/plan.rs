@@ -1,7 +1,7 @@
 //! From records to the motions of an arm: where they end, and with which joints.
 
 use ::arm::{Arm, Joints};
-use armpath::{Cell as Frames, Choice, Point, Settings, Worst, choose};
+use armpath::{Blocked, Cell as Frames, Choice, Point, Settings, Why, Worst, choose};
 use geom::{Arc, Frame, Mat3, Vec3};
 use machine::{Cell, Machine};
 use program::lowering::{HoleMove, feed_per_minute, hole};
@@ -9,6 +9,7 @@ use program::{
     CompensatedPath, Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Outcome, Output, PathMode,
     Pose, Program, Record, Rule, Spindle, Tool,
 };
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// How far the radii at the ends of an arc of the source may differ, as a part of them.
@@ -26,8 +27,23 @@ const LEAST_CHORD: f64 = 0.12;
 pub(super) enum Step<'a> {
     /// A motion.
     Move(Motion),
+    /// The tool leaves the cut, and enters it again at the same place.
+    Reenter(Reentry),
     /// What happens between motions, and its line.
     Act(Act<'a>, u32),
+}
+
+/// A cut that is left and entered again.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reentry {
+    /// Line of the source.
+    pub(super) line: u32,
+    /// Where the arm stands when it is back.
+    pub(super) back: Position,
+    /// mm/min.
+    pub(super) feed: f64,
+    /// What ends the cut with the turn and the posture before.
+    pub(super) why: Why,
 }
 
 /// What happens between motions.
@@ -163,6 +179,7 @@ impl<'a> Stretch<'a> {
             side: None,
             cut: cut.is_some(),
             feed: cut.unwrap_or(0.0),
+            inside: false,
         });
         self.lines.push(line);
         self.points.len() - 1
@@ -174,22 +191,24 @@ impl<'a> Stretch<'a> {
         (arm, cell): (&Arm, &Cell),
         steps: &mut Vec<Step<'a>>,
     ) -> Outcome<Option<Worst>> {
-        let (positions, worst) = match self.points.is_empty() {
-            true => (Vec::new(), None),
+        let chosen = match self.points.is_empty() {
+            true => Chosen::default(),
             false => self.positions(arm, cell)?,
         };
         for step in self.steps {
-            steps.push(match step {
-                Planned::Act(act, line) => Step::Act(act, line),
+            match step {
+                Planned::Act(act, line) => steps.push(Step::Act(act, line)),
                 Planned::Move { line, kind, feed, corner, point } => {
-                    Step::Move(Motion { line, kind, feed, corner, end: positions[point] })
+                    let end = chosen.positions[point];
+                    steps.push(Step::Move(Motion { line, kind, feed, corner, end }));
+                    steps.extend(chosen.reentries.get(&point).copied().map(Step::Reenter));
                 }
-            });
+            }
         }
-        Ok(worst)
+        Ok(chosen.worst)
     }
 
-    fn positions(&self, arm: &Arm, cell: &Cell) -> Outcome<(Vec<Position>, Option<Worst>)> {
+    fn positions(&self, arm: &Arm, cell: &Cell) -> Outcome<Chosen> {
         let Some(tool) = cell.tool(self.length) else {
             let message =
                 "neither the source nor `tool_length` of the cell states the length of the tool";
@@ -209,29 +228,46 @@ impl<'a> Stretch<'a> {
             let line = self.lines[blocked.point.min(self.lines.len() - 1)];
             Diagnostic::error(Rule::ArmPath, message).help(help).line(line)
         })?;
-        let mut positions = Vec::with_capacity(self.points.len());
+        let mut chosen = Chosen { worst: Some(choice.worst), ..Chosen::default() };
         for section in &choice.sections {
-            if section.reentry {
-                let message = "no turn about the tool and no posture passes the whole cut: the arm would have to draw back here, turn and \
-                               enter again, which is not written yet";
-                let help = "move the part (`part` below [cell]), or cut it in two operations";
-                return Err(Box::new(
-                    Diagnostic::error(Rule::ArmPath, message)
-                        .help(help)
-                        .line(self.lines[section.first]),
-                ));
-            }
-            for (point, position) in self.points[section.first..].iter().zip(&section.positions) {
+            let positions = self.points[section.first..].iter().zip(&section.positions);
+            let mut positions = positions.map(|(point, position)| {
                 let z = -point.axis;
                 let axes = Mat3::from_cols(position.side, z.cross(position.side), z);
-                positions.push(Position {
-                    tool: Frame::from_mat3_translation(axes, point.tip),
-                    joints: position.joints,
-                });
+                let tool = Frame::from_mat3_translation(axes, point.tip);
+                Position { tool, joints: position.joints }
+            });
+            if let Some(why) = section.reentry {
+                let line = self.lines[section.first];
+                let Some(feed) = cell.reentry_feed else {
+                    let blocked = Blocked { point: section.first, why };
+                    let message = format!(
+                        "no turn about the tool and no posture passes the whole cut: behind this point {blocked}, and the arm would have \
+                         to retract, turn and enter the cut again"
+                    );
+                    let help = "`reentry_feed` below [cell] of the machine file allows that; or move the part (`part`), or cut it in two operations";
+                    return Err(Box::new(
+                        Diagnostic::error(Rule::ArmPath, message).help(help).line(line),
+                    ));
+                };
+                if let Some(back) = positions.next() {
+                    chosen.reentries.insert(section.first, Reentry { line, back, feed, why });
+                }
             }
+            chosen.positions.extend(positions);
         }
-        Ok((positions, Some(choice.worst)))
+        Ok(chosen)
     }
+}
+
+/// What is chosen for the points of a stretch.
+#[derive(Default)]
+struct Chosen {
+    /// Of each point, when the arm comes there.
+    positions: Vec<Position>,
+    /// By the number of the point at which the cut is left.
+    reentries: BTreeMap<usize, Reentry>,
+    worst: Option<Worst>,
 }
 
 struct Walk<'a, 'm> {
@@ -445,7 +481,8 @@ impl<'a> Walk<'a, '_> {
             let at = |step: usize| (i as f64 + step as f64 / steps as f64) / parts as f64;
             for step in 1..steps {
                 let pose = pose(at(step))?;
-                self.stretch().point(line, &pose, Some(feed));
+                let point = self.stretch().point(line, &pose, Some(feed));
+                self.stretch().points[point].inside = true;
             }
             let via = arc.at(at(steps / 2));
             self.go(line, &pose(at(steps))?, Kind::Arc(via), (feed, corner));

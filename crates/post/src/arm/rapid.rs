@@ -78,6 +78,41 @@ impl RapidPlanner<'_> {
         })
     }
 
+    /// Straight up out of a cut, by the joints above all cuts, and straight down to the same place with other joints, near the cut at
+    /// `feed`; and how far up, mm. The joints go by way of home where they cannot go at once.
+    pub(super) fn reentry(
+        &self,
+        tool: &Frame,
+        [from, to, home]: [&Position; 3],
+        feed: f64,
+    ) -> Option<(Vec<RapidSegment>, f64)> {
+        let near = |at: &Position| self.raised(tool, at, self.can.rapid_clearance);
+        let (out, slow_out) = near(from)?;
+        let (over, slow_in) = near(to)?;
+        let straight =
+            |end: Position, feed: f64| RapidSegment { path: RapidPath::Straight(feed), end };
+        let joints = |end: Position| RapidSegment { path: RapidPath::Joints, end };
+        RETRACTS.into_iter().find_map(|height| {
+            let (start, up) = self.retracted(tool, &out, height)?;
+            let (end, down) = self.retracted(tool, &over, height)?;
+            let is_clear = |from: &Position, to: &Position| {
+                self.is_clear(tool, [&from.joints, &to.joints], None)
+            };
+            // Where the joints go from one posture into the other in one motion the tool may tilt too far.
+            let through = match is_clear(&start, &end) {
+                true => None,
+                false if is_clear(&start, home) && is_clear(home, &end) => Some(*home),
+                false => return None,
+            };
+            let mut route = vec![straight(out, feed.min(slow_out))];
+            route.extend(up.map(|feed| straight(start, feed)));
+            route.extend(through.into_iter().chain([end]).map(joints));
+            route.extend(down.map(|feed| straight(over, feed)));
+            route.push(straight(*to, feed.min(slow_in)));
+            Some((route, start.tool.translation.distance(from.tool.translation)))
+        })
+    }
+
     /// How far the tool has to be beyond all cuts where joints lead it, mm.
     fn clearance(&self) -> f64 {
         self.can.rapid_clearance + self.arm.unmeasured()
@@ -96,14 +131,19 @@ impl RapidPlanner<'_> {
         if height <= 0.0 || height.is_nan() {
             return Some((*at, None));
         }
-        let tip = at.tool.translation + axis * height;
+        self.raised(tool, at, height).map(|(raised, feed)| (raised, Some(feed)))
+    }
+
+    /// The position so many mm up along the tool, and the feed to go between it and `at`.
+    fn raised(&self, tool: &Frame, at: &Position, height: f64) -> Option<(Position, f64)> {
+        let tip = at.tool.translation - at.tool.matrix3.z_axis * height;
         let raised = Frame::from_mat3_translation(at.tool.matrix3, tip);
         let flange = self.cell.part * raised * tool.inverse();
         let found = self.arm.inverse(&flange, at.joints[3]);
         let joints = found.get(self.arm.posture(&at.joints))?;
         let joints = std::array::from_fn(|i| at.joints[i] + wrap(joints[i] - at.joints[i]));
         let raised = Position { tool: raised, joints };
-        self.straight(tool, at, &raised).map(|feed| (raised, Some(feed)))
+        self.straight(tool, at, &raised).map(|feed| (raised, feed))
     }
 
     /// Whether the tool is beyond all cuts along its own axis while the joints go, or near the line.

@@ -1,6 +1,6 @@
 //! What an arm makes of a toolpath before anything is written: its joints along the way, its margins, and how it would be elsewhere.
 
-use super::plan::{Act, Kind, Motion, Position, Step, stretches};
+use super::plan::{Act, Kind, Motion, Position, Reentry, Step, stretches};
 use crate::arcs::arc_through;
 use crate::center;
 use ::arm::{Arm, Joints};
@@ -114,6 +114,7 @@ pub fn arm_samples(
             Step::Act(Act::Home, _) => along.here = None,
             Step::Act(..) => {}
             Step::Move(motion) => along.go(motion),
+            Step::Reenter(reentry) => along.reenter(reentry, cell.joint_speed),
         }
     }
     Ok((along.samples, margins))
@@ -180,6 +181,24 @@ impl Along<'_> {
         }
         let end = (motion.end.tool.translation, motion.end.joints);
         self.sample(motion, end, (motion.end.joints, whole));
+    }
+
+    /// The arm stands otherwise where it has left a cut: as long as its joints take for that the samples are apart.
+    fn reenter(&mut self, reentry: &Reentry, percent: f64) {
+        let Some(from) = self.here.replace(reentry.back) else { return };
+        let joints = self.arm.joints().iter().zip(from.joints.iter().zip(reentry.back.joints));
+        let times = joints.map(|(joint, (a, b))| (b - a).abs() * 100.0 / (joint.speed * percent));
+        self.time += times.fold(0.0, f64::max);
+        let joints = reentry.back.joints;
+        self.samples.push(ArmSample {
+            line: reentry.line,
+            cuts: false,
+            time: self.time,
+            tip: reentry.back.tool.translation,
+            joints: joints.map(f64::to_degrees),
+            speeds: [0.0; 6],
+            ease: ease_of(self.arm, &joints),
+        });
     }
 
     fn sample(

@@ -1580,8 +1580,8 @@ rules! {
         "give a higher RTRCTO"
         "`CYCLE/DRILL,RAPTO,5,RTRCTO,2,...`";
     Rewind "rewind" []
-        "A rotary axis has to be turned back, and the cut is interrupted."
-        "check the marks of the interrupted cut; a machine with more travel, or the part turned, avoids it"
+        "A rotary axis has to be turned back, or an arm has to take another turn about the tool or another posture, and the cut is interrupted."
+        "check the marks of the interrupted cut; a machine with more travel, or the part turned or elsewhere, avoids it"
         "A spiral of 10 turns on an axis with ±180°";
     RotaryAtZero "rotary-at-zero" []
         "Rotary axes stand at 0 throughout, and are read as those of a machine without them."

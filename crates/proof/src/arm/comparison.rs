@@ -5,6 +5,7 @@ mod contour;
 mod cut;
 mod joints;
 mod path;
+mod reentry;
 
 use super::expected::{Expected, Step};
 use crate::report::{ArmChecked, Report};
@@ -70,6 +71,8 @@ pub(super) struct Comparison<'a> {
     is_home: bool,
     /// The corner that the motion before has left open: the next one has to be a cut.
     open: Option<Rounding>,
+    /// Where the tool has left a cut, to which it has to come back.
+    away: Option<reentry::Away>,
     /// What a contour is compared with at its end.
     gathered: Option<contour::Gathered>,
     loaded: bool,
@@ -116,6 +119,7 @@ impl<'a> Comparison<'a> {
             standing: None,
             is_home: false,
             open: None,
+            away: None,
             gathered: None,
             loaded: false,
             changes: Changes {
@@ -177,6 +181,7 @@ impl<'a> Comparison<'a> {
     }
 
     fn take(&mut self, event: &Event) -> Outcome {
+        self.stays_away(&event.action)?;
         match &event.action {
             Action::Arm(action) => self.of_arm(event.line, action),
             Action::Feed(Feed::PerMinute(feed)) => {
@@ -392,7 +397,10 @@ impl<'a> Comparison<'a> {
                         "a corner is passed between a cut and a motion of joints",
                     );
                 }
-                self.joints(shown)
+                match self.away.is_some() {
+                    true => self.joints_away(shown),
+                    false => self.joints(shown),
+                }
             }
             ArmPath::Point(_) => {
                 let message = "the joints go to a pose: in which posture, letters say that depend on rounding";

@@ -10,31 +10,10 @@ use program::{Diagnostic, Outcome, Pose, Rule};
 impl Comparison<'_> {
     /// A motion of all joints.
     pub(super) fn joints(&mut self, shown: [f64; 6]) -> Outcome {
-        let home = shown.iter().zip(self.cell.home).all(|(at, home)| (at - home).abs() < 1e-3);
-        let Some(joints) = self.arm.model(&shown.map(f64::to_radians)) else {
-            return refused(Rule::ArmCoupling, "how the controller counts joint 3 is not known");
-        };
-        let margin =
-            limit(self.arm, &joints).or_else(|lost| refused(Rule::AxisLimit, lost.to_string()))?;
-        self.checked().note_limit(margin);
-        self.frames()?;
-        self.joint_speed()?;
-        let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
+        let Some((before, Standing { joints, tool: at, .. })) = self.turn_joints(shown)? else {
             return Ok(());
         };
-        let at = base.inverse() * self.arm.flange(&joints) * tool;
-        let exact = self.arm.unmeasured() == 0.0;
-        let before = self.standing.replace(Standing { joints, tool: at, exact, by_joints: true });
-        self.is_home = home;
-        let Some(before) = before else {
-            return match home {
-                true => Ok(()),
-                false => refused(
-                    Rule::Home,
-                    "the first motion, of the program or behind a tool change, does not bring the joints home",
-                ),
-            };
-        };
+        let home = self.is_home;
         let wanted = self.expected.get(self.next).map(|expected| expected.step.clone());
         let rapid = match &wanted {
             Some(Step::Rapid(from, to)) => Some((*from, *to)),
@@ -70,6 +49,38 @@ impl Comparison<'_> {
                 );
                 refused(Rule::EndPoint, message)
             }
+        }
+    }
+
+    /// Turns the joints to what the controller shows; where the arm stood, and where it stands. `None` where it was led from somewhere to home.
+    ///
+    /// # Errors
+    /// A joint beyond its limit, too fast, or frames that are not those of the cell; the first motion does not lead home.
+    pub(super) fn turn_joints(&mut self, shown: [f64; 6]) -> Outcome<Option<(Standing, Standing)>> {
+        let home = shown.iter().zip(self.cell.home).all(|(at, home)| (at - home).abs() < 1e-3);
+        let Some(joints) = self.arm.model(&shown.map(f64::to_radians)) else {
+            return refused(Rule::ArmCoupling, "how the controller counts joint 3 is not known");
+        };
+        let margin =
+            limit(self.arm, &joints).or_else(|lost| refused(Rule::AxisLimit, lost.to_string()))?;
+        self.checked().note_limit(margin);
+        self.frames()?;
+        self.joint_speed()?;
+        let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
+            return Ok(None);
+        };
+        let at = base.inverse() * self.arm.flange(&joints) * tool;
+        let exact = self.arm.unmeasured() == 0.0;
+        let now = Standing { joints, tool: at, exact, by_joints: true };
+        let before = self.standing.replace(now);
+        self.is_home = home;
+        match (before, home) {
+            (Some(before), _) => Ok(Some((before, now))),
+            (None, true) => Ok(None),
+            (None, false) => refused(
+                Rule::Home,
+                "the first motion, of the program or behind a tool change, does not bring the joints home",
+            ),
         }
     }
 
@@ -140,7 +151,7 @@ impl Comparison<'_> {
 
     /// # Errors
     /// On the way of the joints the tool is neither beyond all cuts along its axis nor near the line of the source.
-    fn clear(&self, from: &Joints, to: &Joints, line: Option<[Vec3; 2]>) -> Outcome {
+    pub(super) fn clear(&self, from: &Joints, to: &Joints, line: Option<[Vec3; 2]>) -> Outcome {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };

@@ -46,9 +46,15 @@ impl Comparison<'_> {
         if !start.exact {
             return self.correct(motion, start, path);
         }
+        if self.away.is_some() {
+            return self.line_away(line, motion, start, path);
+        }
         let Some(expected) = self.expected.get(self.next).cloned() else {
             return self.retract(motion, start, path, from_corner);
         };
+        if self.leaves_cut(&expected, &start, &path) {
+            return self.leave_cut(line, motion, (start, path), from_corner);
+        }
         let cuts = match &expected.step {
             Step::Rapid(from, to) => {
                 if !self.arrives(end, to, false) {
@@ -123,19 +129,24 @@ impl Comparison<'_> {
         path: Path,
         from_corner: Option<Rounding>,
     ) -> Outcome {
-        let (from, to) = (self.in_part(&start.tool), self.in_part(&(path.at)(1.0)));
-        let way = to.translation - from.translation;
-        let axis = -from.matrix3.z_axis;
-        let aside = way.reject_from_normalized(axis).length();
-        let is_lift = self.done == 0.0
-            && way.dot(axis) > 0.0
-            && aside <= self.tip(true) + 1e-4 * path.length
-            && path.turn < 1e-4;
+        let is_lift = self.done == 0.0 && self.rise(&start, &path) > 0.0;
         if !is_lift || from_corner.is_some() || motion.corner != Corner::Exact {
             return refused(Rule::ExtraMotion, "the tool moves where the source does not");
         }
         self.report.compared.excursions += 1;
         self.pass(start, path, (motion, false))
+    }
+
+    /// How far a line leads the tool up along its own axis, mm, below 0 where it leads down; 0 where it leads aside, or turns the tool.
+    pub(super) fn rise(&self, start: &Standing, path: &Path) -> f64 {
+        let (from, to) = (self.in_part(&start.tool), self.in_part(&(path.at)(1.0)));
+        let way = to.translation - from.translation;
+        let axis = -from.matrix3.z_axis;
+        let aside = way.reject_from_normalized(axis).length();
+        match aside <= self.tip(true) + 1e-4 * path.length && path.turn < 1e-4 {
+            true => way.dot(axis),
+            false => 0.0,
+        }
     }
 
     /// # Errors
@@ -224,7 +235,12 @@ impl Comparison<'_> {
     }
 
     /// The joints follow the path.
-    fn pass(&mut self, start: Standing, path: Path, (motion, cuts): (&ArmMove, bool)) -> Outcome {
+    pub(super) fn pass(
+        &mut self,
+        start: Standing,
+        path: Path,
+        (motion, cuts): (&ArmMove, bool),
+    ) -> Outcome {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };
