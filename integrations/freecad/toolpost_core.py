@@ -34,6 +34,17 @@ def core():
     return Command(command)
 
 
+def _whole(text, report):
+    """Answer a program and its report, where it is one file: FreeCAD saves no more."""
+    parts = report["program"].get("parts", [])
+    if parts:
+        raise PostError(
+            f"the program is larger than a file of the controller may be: it has {len(parts)} parts\n"
+            "    help: post fewer operations at a time, or post the job by the command `toolpost`"
+        )
+    return text, report
+
+
 class Package:
     """The Python package `toolpost`."""
 
@@ -48,7 +59,7 @@ class Package:
             result = self.package.post(program, machine, tolerance=options.tolerance)
         except self.package.Error as error:
             raise _refusal(error.findings) from None
-        return result.text, result.report.data()
+        return _whole(result.text, result.report.data())
 
     def prove(self, text, job, options):
         """Answer the report of a program that was edited."""
@@ -90,7 +101,7 @@ class Command:
             words = [file("json"), "--output", file("nc"), *changed, *_words(options)]
             report = self._run("post", words)
             with open(file("nc"), encoding="utf-8", newline="") as program:
-                return program.read(), report
+                return _whole(program.read(), report)
 
     def prove(self, text, job, options):
         """Answer the report of a program that was edited."""

@@ -8,9 +8,12 @@ use app::files;
 use app::post::{Posted, proven};
 use app::prove::compare;
 use app::{Account, Stop, Verdict};
+use control::Folders;
 use proof::Tolerances;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyTuple};
+use pyo3::pybacked::PyBackedBytes;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -63,7 +66,7 @@ pub fn post<'py>(
         format!("{name}.{}", machine.extension)
     });
     let tolerances = tolerances(py, tolerance)?;
-    let Posted { text, account } =
+    let Posted { text, parts, account } =
         released(py, || proven(toolpath, machine, &file, &tolerances, &()))?;
     let report = report(py, &account)?;
     if account.verdict != Verdict::Done {
@@ -71,7 +74,11 @@ pub fn post<'py>(
         error.value(py).setattr("report", report)?;
         return Err(error);
     }
-    class(py, "Result")?.call1((PyBytes::new(py, &text), report, inputs))
+    let called = PyDict::new(py);
+    for part in &parts {
+        called.set_item(&part.file, PyBytes::new(py, &part.text))?;
+    }
+    class(py, "Result")?.call1((PyBytes::new(py, &text), report, inputs, called))
 }
 
 /// Hold a program, also one edited by hand, against the toolpath that it should make.
@@ -89,6 +96,9 @@ pub fn post<'py>(
 /// tolerance : float, optional
 ///     Largest distance of the tool tip from the toolpath, mm; by default what the resolution of the
 ///     program's words explains.
+/// parts : dict of str to bytes, optional
+///     The files that the program calls, by their names: the :attr:`~toolpost.Result.parts` of a robot's
+///     program that is divided.
 ///
 /// Returns
 /// -------
@@ -96,7 +106,7 @@ pub fn post<'py>(
 ///     Its :attr:`~toolpost.Report.proven` says whether the program makes that motion, and its findings
 ///     where it does not.
 #[pyfunction]
-#[pyo3(signature = (text, machine, program, *, file="program", tolerance=None))]
+#[pyo3(signature = (text, machine, program, *, file="program", tolerance=None, parts=None))]
 pub fn prove<'py>(
     py: Python<'py>,
     text: Text,
@@ -104,11 +114,13 @@ pub fn prove<'py>(
     program: &Program,
     file: &str,
     tolerance: Option<f64>,
+    parts: Option<BTreeMap<String, Vec<u8>>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let tolerances = tolerances(py, tolerance)?;
     let (toolpath, machine) = (&program.toolpath, &machine.described);
-    let account =
-        released(py, || compare(toolpath, machine, file, text.bytes(), &tolerances, &()))?;
+    let folders = Folders::from(parts.unwrap_or_default());
+    let text = (file, text.bytes(), &folders);
+    let account = released(py, || compare(toolpath, machine, text, &tolerances, &()))?;
     report(py, &account)
 }
 
@@ -132,19 +144,22 @@ pub fn reported<'py>(
     class(py, "Report")?.call1((proven, rows, findings(py, &account.findings)?, saved))
 }
 
-/// Save a program and its report, both or neither, and over none of the files that it was made of: files
+/// Save a program, the files that it calls beside it, and its report, all or none, and over none of the files that it was made of: files
 /// as they were before stay where one cannot be saved.
 #[pyfunction]
 pub fn save(
     py: Python<'_>,
     path: PathBuf,
     text: &[u8],
+    parts: Vec<(String, PyBackedBytes)>,
     report: Option<&str>,
     inputs: Vec<PathBuf>,
 ) -> PyResult<()> {
     released(py, || {
+        let parts: Vec<(&str, &[u8])> =
+            parts.iter().map(|(file, text)| (file.as_str(), &text[..])).collect();
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-        files::save_program(&path, text, report, &inputs)
+        files::save_program(&path, text, &parts, report, &inputs)
     })
 }
 

@@ -150,13 +150,21 @@ class Result:
         The program, as it is saved.
     report : Report
         The findings about it.
+    parts : dict of str to bytes
+        The files that it calls, by their names: those of a robot's program that is larger than its
+        controller takes. Empty where the program is whole.
     """
 
     def __init__(
-        self, data: bytes, report: Report, inputs: Sequence[str | os.PathLike[str]] = ()
+        self,
+        data: bytes,
+        report: Report,
+        inputs: Sequence[str | os.PathLike[str]] = (),
+        parts: dict[str, bytes] | None = None,
     ) -> None:
         self.data = data
         self.report = report
+        self.parts = dict(parts or {})
         # The files that it was made of, which stay.
         self._inputs = tuple(inputs)
 
@@ -166,13 +174,13 @@ class Result:
         return self.data.decode()
 
     def save(self, path: str | os.PathLike[str], *, report: bool = True) -> None:
-        """Save the program, and its report next to it: both or neither.
+        """Save the program, the files that it calls and its report next to it: all or none.
 
         Parameters
         ----------
         path : str or os.PathLike
-            Where; the report is there under its name and ``.report.json``. Neither can be a file
-            that the program was made of.
+            Where; the report is there under its name and ``.report.json``. None of
+            them can be a file that the program was made of.
         report : bool
             Whether the report is saved too.
 
@@ -183,7 +191,8 @@ class Result:
         """
         from ._native import save  # noqa: PLC0415 - which imports this module
 
-        save(path, self.data, self.report.json if report else None, self._inputs)
+        saved = self.report.json if report else None
+        save(path, self.data, list(self.parts.items()), saved, self._inputs)
 
     def __repr__(self) -> str:
         return f"<Result: {len(self.data)} bytes, {self.report!r}>"

@@ -270,6 +270,7 @@ def prove(
     *,
     file: str = "program",
     tolerance: float | None = None,
+    parts: dict[str, bytes] | None = None,
 ) -> Report: ...
 def wire(
     path: _Path,
@@ -363,5 +364,11 @@ def pcb(
 def save_in(
     folder: _Path, contents: Sequence[tuple[str, bytes]], inputs: Sequence[_Path]
 ) -> None: ...
-def save(path: _Path, text: bytes, report: str | None, inputs: Sequence[_Path]) -> None: ...
+def save(
+    path: _Path,
+    text: bytes,
+    parts: Sequence[tuple[str, bytes]],
+    report: str | None,
+    inputs: Sequence[_Path],
+) -> None: ...
 def run_command(words: Sequence[str]) -> int: ...

@@ -345,20 +345,27 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
     Ok(())
 }
 
-/// Saves a program at `path`, and its report under [`report_of`] that name: both or neither, and over none of `inputs`.
+/// Saves a program at `path`, the files that it calls beside it, and its report under [`report_of`] that name: all or none, and over
+/// none of `inputs`.
 ///
 /// # Errors
 /// Why nothing was saved.
 pub fn save_program(
     path: &Path,
     text: &[u8],
+    parts: &[(&str, &[u8])],
     report: Option<&str>,
     inputs: &[&Path],
 ) -> Result<(), Box<Diagnostic>> {
     let target = Target::new(path, inputs)?;
-    let Some(report) = report else { return save(&[(&target, text)]) };
-    let report_target = Target::new(&report_of(path), inputs)?;
-    save(&[(&report_target, report.as_bytes()), (&target, text)])
+    let report = report.map(|report| (report_of(path), report.as_bytes()));
+    let others = parts.iter().map(|(file, text)| (path.with_file_name(file), *text)).chain(report);
+    let others = others.map(|(path, bytes)| Ok((Target::new(&path, inputs)?, bytes)));
+    let others = others.collect::<Result<Vec<_>, Box<Diagnostic>>>()?;
+    let mut files: Vec<(&Target, &[u8])> =
+        others.iter().map(|(target, bytes)| (target, *bytes)).collect();
+    files.push((&target, text));
+    save(&files)
 }
 
 /// Saves files in a folder, which is made where it is missing: all or none, and over none of `inputs`.

@@ -27,7 +27,7 @@
 //! let folder = tempfile::tempdir().unwrap();
 //! let path = folder.path().join("hole.ngc");
 //! let report = posted.account.report();
-//! files::save_program(&path, &posted.text, Some(&report), &toolpath.files()).unwrap();
+//! files::save_program(&path, &posted.text, &[], Some(&report), &toolpath.files()).unwrap();
 //! assert!(folder.path().join("hole.ngc.report.json").is_file());
 //! ```
 //!

@@ -7,12 +7,14 @@ use crate::report::{self, Digests};
 use crate::summary::{Shape, time};
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
-use ::post::Output;
+use ::post::{Output, Part};
+use control::Folders;
 use machine::Machine;
 use machine::time::Times;
 use program::{Diagnostic, Op, Program, Record, Rule};
 use proof::Tolerances;
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
@@ -47,8 +49,17 @@ const MACHINE_CANNOT: [Rule; 23] = [
 pub struct Posted {
     /// The program. Nobody should have it whose account does not say that it is proven.
     pub text: Vec<u8>,
+    /// The files that it calls, which lie beside it; none where it is whole.
+    pub parts: Vec<Part>,
     /// What is reported of it.
     pub account: Account,
+}
+
+impl Posted {
+    /// The files that it calls, by their names.
+    pub fn called(&self) -> Vec<(&str, &[u8])> {
+        self.parts.iter().map(|part| (&*part.file, &part.text[..])).collect()
+    }
 }
 
 /// Writes the program of `toolpath`, which is called `file`, and proves it.
@@ -79,22 +90,26 @@ pub fn proven(
     let output = output?;
     watch.begin("proving")?;
     let go_on = || !watch.is_cancelled();
-    let proof = proof::prove_while(program, machine, file, &output.text, tolerances, &go_on);
+    let parts: BTreeMap<String, Vec<u8>> =
+        output.parts.iter().map(|part| (part.file.clone(), part.text.clone())).collect();
+    let folders = Folders::from(parts);
+    let text = (file, &output.text[..], &folders);
+    let proof = proof::prove_files(program, machine, text, tolerances, &go_on);
     watch.go_on()?;
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);
         account.findings.extend(warnings);
-        return Ok(Posted { text: output.text, account });
+        return Ok(Posted { text: output.text, parts: output.parts, account });
     }
 
     warnings.extend(proof.warnings.iter().chain(&proof.accepted).cloned());
     let data = json!({
         "schema": report::SCHEMA,
         "toolpost": env!("CARGO_PKG_VERSION"),
-        "sha256": Digests::of(&output.text, toolpath, machine),
+        "sha256": Digests::of(&output.text, &texts(&output.parts), toolpath, machine),
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
-        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "program": about(file, &output),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
@@ -102,8 +117,45 @@ pub fn proven(
     rows.extend(shape.rows());
     rows.push(("time", time(&times)));
     rows.extend(prove::rows(&proof, machine));
+    rows.extend(files(&output).map(|text| ("files", text)));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
-    Ok(Posted { text: output.text, account })
+    Ok(Posted { text: output.text, parts: output.parts, account })
+}
+
+/// The texts of parts, in the order of the names of their files.
+fn texts(parts: &[Part]) -> Vec<&[u8]> {
+    let mut parts: Vec<&Part> = parts.iter().collect();
+    parts.sort_by_key(|part| &part.file);
+    parts.into_iter().map(|part| &part.text[..]).collect()
+}
+
+/// The size of a program, of all its files together, bytes.
+fn bytes(output: &Output) -> usize {
+    output.text.len() + output.parts.iter().map(|part| part.text.len()).sum::<usize>()
+}
+
+/// What a report says of a program and the files that it calls.
+fn about(file: &str, output: &Output) -> Value {
+    let mut about = json!({ "file": file, "blocks": output.blocks, "bytes": bytes(output) });
+    if !output.parts.is_empty() {
+        let part = |part: &Part| json!({ "file": part.file, "bytes": part.text.len() });
+        about["parts"] = output.parts.iter().map(part).collect();
+    }
+    about
+}
+
+/// What a summary says of the files of a program that is divided.
+fn files(output: &Output) -> Option<String> {
+    let [first, .., last] = &output.parts[..] else { return None };
+    let count = output.parts.len();
+    let largest = output.parts.iter().map(|part| part.text.len()).max().unwrap_or_default();
+    Some(format!(
+        "{} of {} bytes together: the main program calls {count} parts, {} to {}, of {largest} bytes at most",
+        count + 1,
+        bytes(output),
+        first.file,
+        last.file,
+    ))
 }
 
 /// The program with the rules that are let pass in its head, where there are some.

@@ -5,19 +5,19 @@ use crate::parallel::parallel;
 use crate::summary::{self, Shape, number};
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
+use control::Folders;
 use machine::Machine;
 use proof::{ArmChecked, Report, Tolerances};
 use serde_json::json;
 
-/// Proves the program `text`, which is called `file`, against `toolpath`.
+/// Proves the program `text`, which is called `file` and may call those of `folders`, against `toolpath`.
 ///
 /// # Errors
 /// The caller has ended it.
 pub fn compare(
     toolpath: &Toolpath,
     machine: &Machine,
-    file: &str,
-    text: &[u8],
+    (file, text, folders): (&str, &[u8], &Folders),
     tolerances: &Tolerances,
     watch: &dyn Watch,
 ) -> Result<Account, Stop> {
@@ -25,7 +25,8 @@ pub fn compare(
     let program = &toolpath.program;
     // What is reported of the toolpath is found meanwhile.
     let go_on = || !watch.is_cancelled();
-    let prove = || proof::prove_while(program, machine, file, text, tolerances, &go_on);
+    let text_and = (file, text, folders);
+    let prove = || proof::prove_files(program, machine, text_and, tolerances, &go_on);
     let (proof, shape) = parallel(prove, || Shape::of(program));
     watch.go_on()?;
     let mut warnings = toolpath.warnings.clone();

@@ -26,10 +26,10 @@ pub struct Digests {
 }
 
 impl Digests {
-    /// The digests of a program and what it was made of.
-    pub fn of(text: &[u8], toolpath: &Toolpath, machine: &Machine) -> Digests {
+    /// The digests of a program, with the files that it calls in the order of their names, and what it was made of.
+    pub fn of(text: &[u8], parts: &[&[u8]], toolpath: &Toolpath, machine: &Machine) -> Digests {
         Digests {
-            program: Digest::of([text]),
+            program: Digest::of([text].into_iter().chain(parts.iter().copied())),
             source: toolpath.digest().map(str::to_owned),
             machine: machine.loaded_from.digest.clone(),
         }

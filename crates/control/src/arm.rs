@@ -23,6 +23,8 @@ pub enum ArmAction {
     Acceleration,
     /// How fast the tool may turn in lines and arcs, degrees/s: its axis, and about its axis; `None` is as the control is set up.
     TurnSpeed([Option<f64>; 2]),
+    /// The program goes on in another file, or comes back from one: the arm stops there.
+    FileBorder,
     /// A motion.
     Move(Box<ArmMove>),
     /// What hangs on the flange: its mass, kg, and its centre of gravity in the frame of the flange, mm.

@@ -352,8 +352,12 @@ pub struct Capabilities {
     pub fits_corners: bool,
     /// By how much an arc through a point may turn, radians (robots).
     pub arc_sweep: f64,
-    /// Most numbered lines of a program (robots).
+    /// Most lines of a file of a program (robots): of those with a number, where the control numbers them.
     pub program_lines: usize,
+    /// Most bytes of a file of a program (robots).
+    pub program_bytes: usize,
+    /// Most positions in a file of a program (robots).
+    pub program_points: usize,
 }
 
 /// Where the move ends that switches cutter compensation on.

@@ -116,7 +116,9 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     rapid_clearance: Clearance, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid on any path; 1 where it is missing.";
     fits_corners: bool, "", "Whether a robot's corners that reach beyond half of a motion have to be written shorter, since its control does not shorten them.";
     arc_sweep: ArcSweep, "degrees", "By how much a robot's arc through a point may turn; 180 where it is missing.";
-    program_lines: usize, "", "Most numbered lines of a robot's program; any number where it is missing.";
+    program_lines: usize, "", "Most lines of a file of a robot's program (of those with a number, where the control numbers them): a longer program is divided at retracts; any number where it is missing.";
+    program_bytes: usize, "", "Most bytes of such a file; any number where it is missing.";
+    program_points: usize, "", "Most positions in such a file; any number where it is missing.";
 });
 
 sheet!(merged SettingsSheet "settings" {

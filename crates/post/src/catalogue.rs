@@ -69,6 +69,9 @@ names! {
     BlockName {
         ProgramStart Block "program_start", "", "Once, first. It has to bring the control to millimetres, absolute positions, plane XY, feed per minute, no cutter compensation and the work offset.";
         ProgramEnd Block "program_end", "", "Once, last: retract, spindle and coolant off, F in mm/min again ({{feed_mode}}), end of program.";
+        PartStart Block "part_start", "", "On a robot whose program is divided into files, first in each part; `program_start` where it is missing. `program.name` is the name of the part.";
+        PartCall Block "part_call", "", "In the main program of those files, for each part in turn: `program.part` is its name. Programs are not divided where it is missing.";
+        PartEnd Block "part_end", "", "Last in each part; `program_end` where it is missing.";
         OperationStart Block "operation_start", "", "At the start of each operation of the source.";
         OperationEnd Block "operation_end", "", "At the end of each operation of the source.";
         Comment Block "comment", "", "For each comment of the source; `text` is the comment.";
@@ -296,6 +299,7 @@ names! {
 /// What templates may read besides words. `options.` stands for the machine's own `[options]`.
 pub(crate) const VARIABLES: &[Parameter] = &[
     variable("program.name", "", "Name of the program: letters, digits, `_` and `-` only."),
+    variable("program.part", "", "In `part_call`, the name of the part that is called."),
     variable(
         "coolant.through",
         "",

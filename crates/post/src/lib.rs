@@ -88,6 +88,17 @@ pub struct Output {
     pub blocks: usize,
     /// What was lowered or is worth knowing, with source lines.
     pub warnings: Vec<Diagnostic>,
+    /// The files that the program calls, in this order; none where it is whole.
+    pub parts: Vec<Part>,
+}
+
+/// A file of a program that is divided.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The name of the file, as the call looks for it.
+    pub file: String,
+    /// Its text, ready to be saved.
+    pub text: Vec<u8>,
 }
 
 /// Writes `program` for `machine`.

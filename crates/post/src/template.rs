@@ -266,6 +266,7 @@ impl Scope {
                 &program.records,
                 first.then(|| "1".into()),
                 blank,
+                "SAMPLE_1",
             ),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first, first.then_some(&tool)),
@@ -407,6 +408,7 @@ pub(crate) fn program_value(
     records: &[Record],
     number: Option<String>,
     blank: [(&'static str, bool); 2],
+    part: &str,
 ) -> Value {
     let mut seen = Vec::new();
     let mut tools = Vec::new();
@@ -421,7 +423,8 @@ pub(crate) fn program_value(
     let number = number.map(|number| ("number", Value::from(number)));
     let members = [("name", Value::from(name)), ("tools", Value::from(tools))];
     let blank = blank.map(|(key, value)| (key, Value::from(value)));
-    map(members.into_iter().chain(blank).chain(number))
+    let part = [("part", Value::from(part))];
+    map(members.into_iter().chain(blank).chain(part).chain(number))
 }
 
 /// The name of a program as a file on the control has it: the last part of a path without its extension.

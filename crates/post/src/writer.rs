@@ -159,6 +159,11 @@ impl Writer {
         self.text.splice(at..at, text);
     }
 
+    /// Another file begins: its lines are counted from the first number on.
+    pub(crate) fn count_anew(&mut self) {
+        self.next_number = self.first.into();
+    }
+
     /// How many lines have carried a number.
     pub(crate) fn numbered(&self) -> u64 {
         (self.next_number - u64::from(self.first)) / u64::from(self.step.max(1))

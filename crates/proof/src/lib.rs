@@ -95,7 +95,7 @@ pub use report::{
 pub use tolerance::{Applied, Tolerances};
 
 use compensation::resolved;
-use control::Setup;
+use control::{Folders, Setup};
 use machine::Machine;
 use program::{Diagnostic, Program, Rule};
 use surfaces::MappedSurface;
@@ -123,9 +123,21 @@ pub fn prove_while(
     tolerances: &Tolerances,
     go_on: &dyn Fn() -> bool,
 ) -> Report {
+    let alone = Folders::default();
+    prove_files(source, machine, (file_name, text, &alone), tolerances, go_on)
+}
+
+/// The same of a program that may call those of `folders`.
+pub fn prove_files(
+    source: &Program,
+    machine: &Machine,
+    (file_name, text, folders): (&str, &[u8], &Folders),
+    tolerances: &Tolerances,
+    go_on: &dyn Fn() -> bool,
+) -> Report {
     if let (Some(arm), Some(cell)) = (&machine.arm, &machine.cell) {
         let robot = (machine, arm, cell);
-        return arm::prove(source, robot, (file_name, text), tolerances, go_on);
+        return arm::prove(source, robot, (file_name, text, folders), tolerances, go_on);
     }
     if let Some(found) = compensation::unsettled(source, machine) {
         return refused(source, machine, tolerances, found);
@@ -150,14 +162,15 @@ pub fn prove_while(
         }
         if without.proven { report } else { without }
     };
-    let Some(surface) = surfaces::found(source) else { return run(source, Setup::default()) };
+    let setup = Setup { folders: folders.clone(), ..Setup::default() };
+    let Some(surface) = surfaces::found(source) else { return run(source, setup) };
     let trials = match surfaces::trials(surface) {
         Ok(trials) => trials,
         Err(found) => return refused(source, machine, tolerances, *found),
     };
     let mut proven: Option<Report> = None;
     for MappedSurface { places, heights } in trials {
-        let setup = Setup { surface: places, ..Setup::default() };
+        let setup = Setup { surface: places, ..setup.clone() };
         let report = match heights.raise(source) {
             Ok(raised) => run(&raised, setup),
             Err(found) => return refused(source, machine, tolerances, *found),

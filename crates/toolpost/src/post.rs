@@ -22,7 +22,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(4, silent);
     progress.step("reading");
     let origin = args.source.origin.origin();
-    let toolpath = toolpath::read(
+    let mut toolpath = toolpath::read(
         &source.as_path().into(),
         args.source.strict,
         &origin,
@@ -30,15 +30,30 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
         Purpose::Program,
     )?;
     let file = files::name(&args.output);
+    if machine.cell.is_some() {
+        // Controllers of robots know a program by the name of its file.
+        toolpath.program.name.clone_from(&file);
+    }
     let tolerances = args.closeness.tolerances();
     let posted = proven(&toolpath, &machine, &file, &tolerances, &progress)?;
-    let Posted { text, mut account } = posted;
-    if account.verdict != Verdict::Done {
-        return Ok(not_saved(account));
+    if posted.account.verdict != Verdict::Done {
+        return Ok(not_saved(posted.account));
     }
-    spare(&[&target, &report_target], &toolpath, &machine)?;
+    let parts = posted
+        .parts
+        .iter()
+        .map(|part| Target::new(&args.output.with_file_name(&part.file), &inputs));
+    let parts = parts.collect::<Result<Vec<_>, _>>()?;
+    let targets: Vec<&Target> = parts.iter().chain([&target, &report_target]).collect();
+    spare(&targets, &toolpath, &machine)?;
     progress.step("saving");
-    files::save(&[(&report_target, account.report().as_bytes()), (&target, &text)])?;
+    let report = posted.account.report();
+    let called = parts.iter().zip(posted.called()).map(|(target, (_, text))| (target, text));
+    let mut saved: Vec<(&Target, &[u8])> = vec![(&report_target, report.as_bytes())];
+    saved.extend(called);
+    saved.push((&target, &posted.text));
+    files::save(&saved)?;
+    let Posted { mut account, .. } = posted;
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
     Ok(account.into())

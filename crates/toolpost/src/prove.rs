@@ -8,9 +8,11 @@ use app::prove::compare;
 use app::report::{self, Digests};
 use app::{Source, Stop, Watch, files, toolpath};
 use clap::Parser;
+use control::Folders;
 use machine::Machine;
 use program::{Diagnostic, Purpose, Rule, encoding};
 use serde_json::Value;
+use std::path::Path;
 
 /// Runs the program on the virtual control of the machine and compares.
 pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
@@ -30,12 +32,29 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     }
     let read = encoding::without_mark(&text);
     let tolerances = args.closeness.tolerances();
-    let mut account = compare(&toolpath, &machine, &file, read, &tolerances, &progress)?;
-    match report::pair(&args.program, || Digests::of(&text, &toolpath, &machine)) {
+    let folders = beside(&args.program, &machine);
+    let program = (&*file, read, &folders);
+    let mut account = compare(&toolpath, &machine, program, &tolerances, &progress)?;
+    let called = folders.files_read();
+    let called = called.iter().map(|path| files::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
+    match report::pair(&args.program, || Digests::of(&text, &called, &toolpath, &machine)) {
         Ok(pair) => account.rows.extend(pair.map(|text| ("report", text))),
         Err(found) => account.findings.push(*found),
     }
     Ok(account.into())
+}
+
+/// Where the programs are that a program calls: a robot has them in the folder of the program.
+fn beside(program: &Path, machine: &Machine) -> Folders {
+    let folder = match program.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    match machine.arm {
+        Some(_) => vec![folder.to_owned()].into(),
+        None => Folders::default(),
+    }
 }
 
 /// The report of a board's programs, which lies beside them.
@@ -91,5 +110,6 @@ fn board(
     let file = files::name(&args.program);
     let name = args.program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let read = encoding::without_mark(&text);
-    Ok(job.prove(&sources, (&name, &file), read, &progress)?.into())
+    let folders = beside(&args.program, machine);
+    Ok(job.prove(&sources, (&name, &file), (read, &folders), &progress)?.into())
 }

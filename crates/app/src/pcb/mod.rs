@@ -17,6 +17,7 @@ use ::pcb::board::{Axis, Face, Layer};
 use ::pcb::job::{self, Heights};
 use ::pcb::plan::{self, Part, Running, Settings, Setup, Work};
 use ::pcb::{Board, Operation};
+use control::Folders;
 use drawing::{BoardPicture, BoardSheet, BoardSide, Format};
 use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
@@ -144,7 +145,8 @@ impl<'a> Job<'a> {
         Ok(Made { programs, left_out, files, layers, front, axis, warnings, sheet })
     }
 
-    /// Proves the text of the program `name` (`front`, `drill`), which is called `file`, against what the same job makes of the board.
+    /// Proves the text of the program `name` (`front`, `drill`), which is called `file` and may call those of `folders`, against what
+    /// the same job makes of the board.
     ///
     /// # Errors
     /// What is wrong with the board; `no-such-part` where the job makes no program of this name.
@@ -152,7 +154,7 @@ impl<'a> Job<'a> {
         &self,
         board: &[input::Source],
         (name, file): (&str, &str),
-        text: &[u8],
+        (text, folders): (&[u8], &Folders),
         watch: &dyn Watch,
     ) -> Result<Account, Stop> {
         let running = &self.settings.running;
@@ -172,7 +174,7 @@ impl<'a> Job<'a> {
             }
         };
         let machine = self.shaped(numbered(self.machine, place));
-        prove::compare(&toolpath, &machine, file, text, self.tolerances, watch)
+        prove::compare(&toolpath, &machine, (file, text, folders), self.tolerances, watch)
     }
 
     /// Everything up to the programs: the board is read, and what is cut of it is planned.
@@ -294,8 +296,10 @@ impl Made {
         for Program { name, picture, .. } in &self.programs {
             contents.extend(picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
         }
-        let text = |made: &'a Program| (made.file.clone(), &made.posted.text[..]);
-        contents.extend(self.programs.iter().map(text));
+        for Program { file, posted, .. } in &self.programs {
+            contents.extend(posted.parts.iter().map(|part| (part.file.clone(), &part.text[..])));
+            contents.push((file.clone(), &posted.text));
+        }
         contents
     }
 }

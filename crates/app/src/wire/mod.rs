@@ -180,7 +180,7 @@ pub fn make(
         let mut account = prove::failed(&proof, &toolpath, file);
         account.findings.extend(warnings);
         let report = account.report();
-        let posted = Posted { text: output.text, account };
+        let posted = Posted { text: output.text, parts: Vec::new(), account };
         return Ok(Made { posted, report, toolpath, cut, select });
     }
 
@@ -188,7 +188,7 @@ pub fn make(
     let whole = Report {
         schema: SCHEMA,
         toolpost: env!("CARGO_PKG_VERSION"),
-        sha256: Digests::of(&output.text, &toolpath, &machine),
+        sha256: Digests::of(&output.text, &[], &toolpath, &machine),
         source: json!({ "file": toolpath.file, "dialect": toolpath.dialect }),
         machine: toolpath::describe(&machine),
         program: json!({ "file": file, "blocks": output.blocks, "bytes": output.text.len() }),
@@ -204,7 +204,8 @@ pub fn make(
     rows.extend(cut.rows(select));
     rows.extend(prove::rows(&proof, &machine));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
-    Ok(Made { posted: Posted { text: output.text, account }, report, toolpath, cut, select })
+    let posted = Posted { text: output.text, parts: Vec::new(), account };
+    Ok(Made { posted, report, toolpath, cut, select })
 }
 
 /// The machine with what the call says of it.

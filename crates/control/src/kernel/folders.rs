@@ -1,7 +1,7 @@
 //! Programs that a program calls, from the folders that the operator has given.
 
 use program::{Diagnostic, encoding};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
@@ -13,6 +13,8 @@ const LARGEST: u64 = 64 << 20;
 /// Folders in which called programs are looked for, in this order. Nothing outside them is opened.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
+    /// Programs that are in no folder yet, by the names of their files: they are found first.
+    texts: Arc<BTreeMap<String, Vec<u8>>>,
     paths: Vec<PathBuf>,
     /// The files that have been read; clones have it in common.
     read: Arc<Mutex<BTreeSet<PathBuf>>>,
@@ -20,13 +22,19 @@ pub struct Folders {
 
 impl PartialEq for Folders {
     fn eq(&self, other: &Folders) -> bool {
-        self.paths == other.paths
+        self.texts == other.texts && self.paths == other.paths
     }
 }
 
 impl From<Vec<PathBuf>> for Folders {
     fn from(paths: Vec<PathBuf>) -> Folders {
         Folders { paths, ..Folders::default() }
+    }
+}
+
+impl From<BTreeMap<String, Vec<u8>>> for Folders {
+    fn from(texts: BTreeMap<String, Vec<u8>>) -> Folders {
+        Folders { texts: Arc::new(texts), ..Folders::default() }
     }
 }
 
@@ -38,7 +46,7 @@ impl Folders {
 
     /// Whether one of them has a file of that name.
     pub(crate) fn have(&self, name: &str) -> bool {
-        self.paths.iter().any(|folder| folder.join(name).is_file())
+        self.texts.contains_key(name) || self.paths.iter().any(|folder| folder.join(name).is_file())
     }
 
     /// The program `name`, in a file with that ending: as it is written, or else in small letters; `None` where no folder has it.
@@ -60,6 +68,9 @@ impl Folders {
     /// # Errors
     /// What to say where there is none, or it cannot be read.
     pub(crate) fn open(&self, name: &str) -> Result<Vec<u8>, String> {
+        if let Some(text) = self.texts.get(name) {
+            return Ok(text.clone());
+        }
         let (path, text) = open(&self.paths, name)?;
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
         Ok(text)

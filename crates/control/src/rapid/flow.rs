@@ -2,10 +2,10 @@
 
 use super::execution::State;
 use super::language::{Name, REFUSED, RESERVED, Routine, Scan, Statement, declaration, read};
-use crate::Settings;
 use crate::event::{Action, Risk};
 use crate::kernel::Channel;
 use crate::kernel::flow::BlockLocation;
+use crate::{ArmAction, Settings};
 use program::{Diagnostic, Outcome, OutputValue, Rule};
 use std::collections::{HashMap, HashSet};
 
@@ -269,12 +269,15 @@ impl Run<'_, '_> {
         };
         let inside = |found: Box<Diagnostic>| called.inside(line, *found);
         let other = Module::of(&called.text, Some(line), &mut self.state).map_err(inside)?;
-        match other.routines.get(&name).copied() {
-            Some(place) => self.routine(&other, place, depth + 1).map_err(inside),
-            None => {
-                let message = format!("{} has no procedure {name}", called.name);
-                Err(refused(Rule::CalledProgram, message))
-            }
+        let Some(place) = other.routines.get(&name).copied() else {
+            let message = format!("{} has no procedure {name}", called.name);
+            return Err(refused(Rule::CalledProgram, message));
+        };
+        self.channel.arm(line, ArmAction::FileBorder)?;
+        let ended = self.routine(&other, place, depth + 1).map_err(inside)?;
+        if let Ended::Routine(_) = ended {
+            self.channel.arm(line, ArmAction::FileBorder)?;
         }
+        Ok(ended)
     }
 }

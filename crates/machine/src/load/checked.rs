@@ -446,6 +446,8 @@ impl CheckedSheet {
                 fits_corners: capabilities.fits_corners.unwrap_or(false),
                 arc_sweep: capabilities.arc_sweep.map_or(180.0, |degrees| degrees.0).to_radians(),
                 program_lines: capabilities.program_lines.unwrap_or(usize::MAX),
+                program_bytes: capabilities.program_bytes.unwrap_or(usize::MAX),
+                program_points: capabilities.program_points.unwrap_or(usize::MAX),
             },
             settings: ControlSettings {
                 floating_holder: self.settings.floating_holder.unwrap_or(false),

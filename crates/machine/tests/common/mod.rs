@@ -36,6 +36,8 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             fits_corners: false,
             arc_sweep: std::f64::consts::PI,
             program_lines: usize::MAX,
+            program_bytes: usize::MAX,
+            program_points: usize::MAX,
         },
         settings: ControlSettings::default(),
         format: Format {

@@ -3,6 +3,7 @@
 //! `plan` finds the motions of the source and, by `armpath`, the joints at the end of each; `rapid` says how a rapid goes; what stands here
 //! writes the blocks. The language is the control file's: no block of it is known here but by its name.
 
+mod parts;
 mod plan;
 mod rapid;
 pub(crate) mod reach;
@@ -12,12 +13,13 @@ use crate::findings::Findings;
 use crate::template::{Scope, Templates, file_name, map, program_value};
 use crate::text::printed;
 use crate::writer::Writer;
-use crate::{Output, promises};
+use crate::{Output, Part, promises};
 use ::arm::{Arm, Joints};
 use geom::{Euler, Frame, Mat3, Quat, Vec3, wrap};
 use machine::limits::Limits;
 use machine::{Cell, Machine, Word};
 use minijinja::value::Value;
+use parts::{Border, Size};
 use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
 use program::{
     Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Rule, Spindle, Tool,
@@ -84,8 +86,20 @@ pub(crate) fn write(
     robot: (&Arm, &Cell),
 ) -> Result<Output, Vec<Diagnostic>> {
     let mut walk = Walk::new(program, machine, robot)?;
-    if let Err(error) = plan(program, machine, robot).and_then(|steps| walk.all(&steps)) {
-        walk.findings.error(*error);
+    let planned = plan(program, machine, robot);
+    match planned.as_ref().map_err(Clone::clone).and_then(|steps| walk.all(steps)) {
+        Ok(size) if parts::bounds(machine).hold(&size) => {}
+        Ok(size) => {
+            let whole = walk;
+            walk = Walk::new(program, machine, robot)?;
+            let steps = planned.as_deref().unwrap_or_default();
+            if let Err(error) = walk.divided(steps, &whole.borders, size) {
+                walk.findings.error(*error);
+            }
+        }
+        Err(error) => {
+            walk.findings.error(*error);
+        }
     }
     if let Some(line) = program.compensates() {
         let message = "the source gives the path of the tool's centre with cutter compensation: it is written as it is, and offsets \
@@ -99,8 +113,9 @@ pub(crate) fn write(
         walk.findings.warn(found.line(record.line));
     }
     let warnings = walk.findings.finish(machine.capabilities.lowering_tolerance)?;
+    let parts = std::mem::take(&mut walk.parts);
     let (text, blocks) = walk.writer.finish();
-    Ok(Output { text, blocks, warnings })
+    Ok(Output { text, blocks, warnings, parts })
 }
 
 /// Compiles the templates of an arm's machine and compares them with what its control promises.
@@ -145,10 +160,20 @@ struct Walk<'a> {
     /// Positions that stand behind the instructions, and how many they are.
     table: Vec<u8>,
     points: u32,
+    /// Whether the last motion has cut.
+    is_cutting: bool,
     /// Whether the source calls tools of more than one number.
     changes: bool,
     /// Number of the tool that is in the spindle.
     held: Option<u32>,
+    /// The name of the program.
+    name: String,
+    /// Lines of the files before this one.
+    earlier_lines: usize,
+    /// Where the program may be divided.
+    borders: Vec<Border>,
+    /// The files that are written, where it is.
+    parts: Vec<Part>,
 }
 
 impl<'a> Walk<'a> {
@@ -171,8 +196,7 @@ impl<'a> Walk<'a> {
         }
         let mut scope = Scope::new(machine);
         let name = name_of(&program.name);
-        scope.program =
-            program_value(machine, name, &[], None, [("blank", false), ("stock", false)]);
+        scope.program = named(machine, &name, "");
         let mut writer = Writer::new(machine);
         if let Some(number) = cell.own_frame {
             writer.set_always(WordName::OwnFrame, f64::from(number));
@@ -213,55 +237,77 @@ impl<'a> Walk<'a> {
             vector: Vec3::ZERO,
             table: Vec::new(),
             points: 0,
+            is_cutting: false,
             changes: program.calls_several_tools(),
             held: None,
+            name,
+            earlier_lines: 0,
+            borders: Vec::new(),
+            parts: Vec::new(),
         })
     }
 
-    /// The whole program.
-    fn all(&mut self, steps: &[Step]) -> Outcome {
-        // Where its head counts its lines, it is written last.
-        let counts = self.templates.places(BlockName::ProgramStart, WordName::Lines);
-        if !counts {
-            self.block(BlockName::ProgramStart)?;
+    /// The whole program in one file; how large it is.
+    fn all(&mut self, steps: &[Step]) -> Outcome<Size> {
+        self.start(BlockName::ProgramStart)?;
+        let is_bounded = !parts::bounds(self.machine).hold(&Size::MOST);
+        for index in 0..steps.len() {
+            if is_bounded && self.is_border() {
+                self.borders.push(Border { step: index, size: self.size() });
+            }
+            self.step(steps, index)?;
         }
-        for (index, step) in steps.iter().enumerate() {
-            let (line, done) = match step {
-                Step::Act(act, line) => (*line, self.act(*act, *line)),
-                Step::Reenter(reentry) => (reentry.line, self.reenter(reentry)),
-                Step::Move(motion) => {
-                    let next = match steps.get(index + 1) {
-                        Some(Step::Move(next)) => Some(next),
-                        Some(Step::Act(..) | Step::Reenter(_)) | None => None,
-                    };
-                    (motion.line, self.motion(motion, next))
-                }
-            };
-            done.map_err(|found| {
-                Box::new(if found.line == 0 { found.line(line) } else { *found })
-            })?;
-        }
+        self.finish()?;
+        self.end(BlockName::ProgramStart, BlockName::ProgramEnd)
+    }
+
+    /// One step of it.
+    fn step(&mut self, steps: &[Step], index: usize) -> Outcome {
+        let (line, done) = match &steps[index] {
+            Step::Act(act, line) => (*line, self.act(*act, *line)),
+            Step::Reenter(reentry) => (reentry.line, self.reenter(reentry)),
+            Step::Move(motion) => {
+                let next = match steps.get(index + 1) {
+                    Some(Step::Move(next)) => Some(next),
+                    Some(Step::Act(..) | Step::Reenter(_)) | None => None,
+                };
+                (motion.line, self.motion(motion, next))
+            }
+        };
+        done.map_err(|found| Box::new(if found.line == 0 { found.line(line) } else { *found }))
+    }
+
+    /// The arm goes home, and everything is switched off.
+    fn finish(&mut self) -> Outcome {
         self.begin()?;
         self.home()?;
-        self.switch_off()?;
-        let (lines, most) = (self.writer.numbered(), self.machine.capabilities.program_lines);
-        if lines > most as u64 {
-            let message = format!("the program has {lines} lines, the control takes {most}");
-            let help = "fewer points: a larger tolerance of the toolpath, or one program for each operation";
-            return Err(Diagnostic::error(Rule::TooMuch, message).help(help).into());
-        }
+        self.switch_off()
+    }
+
+    /// Whether the head of a file counts its lines: it is written last then.
+    fn counts(&self, start: BlockName) -> bool {
+        self.templates.places(start, WordName::Lines)
+    }
+
+    /// The head of a file.
+    fn start(&mut self, start: BlockName) -> Outcome {
+        if self.counts(start) { Ok(()) } else { self.block(start) }
+    }
+
+    /// The end of a file, behind its positions, and its head where that counts its lines; how large it is.
+    fn end(&mut self, start: BlockName, end: BlockName) -> Outcome<Size> {
         self.block(BlockName::PositionsStart)?;
         let table = std::mem::take(&mut self.table);
         self.writer.paste(self.writer.end(), table);
-        self.block(BlockName::ProgramEnd)?;
-        if counts {
+        self.block(end)?;
+        if self.counts(start) {
             let at = self.writer.end();
-            self.writer.set(WordName::Lines, lines as f64);
-            self.block(BlockName::ProgramStart)?;
+            self.writer.set(WordName::Lines, self.writer.numbered() as f64);
+            self.block(start)?;
             let head = self.writer.cut(at);
             self.writer.paste(0, head);
         }
-        Ok(())
+        Ok(self.size())
     }
 
     fn act(&mut self, act: Act, line: u32) -> Outcome {
@@ -321,11 +367,17 @@ impl<'a> Walk<'a> {
             return Err(Diagnostic::error(Rule::ToolLength, message).help(help).into());
         };
         self.tool = Some(frame);
+        self.state_frames(&frame)?;
+        self.joints(&self.home_joints())
+    }
+
+    /// States the frames, the load and the speeds of all that follows.
+    fn state_frames(&mut self, tool: &Frame) -> Outcome {
         (self.sent.feed, self.sent.corner) = (None, None);
         self.vector = Vec3::ZERO;
         let part = self.cell.part;
         self.set(&POSE, &part);
-        self.set(&MIDDLE, &frame);
+        self.set(&MIDDLE, tool);
         if let Some(speed) = self.machine.turn_speed() {
             self.writer.set(WordName::TurnSpeed, speed);
         }
@@ -335,8 +387,7 @@ impl<'a> Walk<'a> {
             self.set_each(words, load.center.to_array());
         }
         self.say_joint_speed();
-        self.required(BlockName::Frames)?;
-        self.joints(&self.home_joints())
+        self.required(BlockName::Frames)
     }
 
     fn home_joints(&self) -> Joints {
@@ -396,6 +447,7 @@ impl<'a> Walk<'a> {
                 "end with a rapid that lifts the tool off the part, or change `home` below [cell]";
             return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
         };
+        self.is_cutting = false;
         self.follow(&route)
     }
 
@@ -474,6 +526,7 @@ impl<'a> Walk<'a> {
             let help = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";
             return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
         };
+        self.is_cutting = false;
         self.follow(&route)
     }
 
@@ -505,6 +558,7 @@ impl<'a> Walk<'a> {
     fn cut(&mut self, motion: &Motion, next: Option<&Motion>) -> Outcome {
         let Motion { line, kind, feed, .. } = *motion;
         self.limits.feed(program::Feed::PerMinute(feed), self.spindle, line)?;
+        self.is_cutting = true;
         self.start_spindle()?;
         self.start_coolant()?;
         self.correct()?;
@@ -826,6 +880,11 @@ fn nearest_writing(vector: Vec3, to: Vec3) -> Vec3 {
     }
     let other = vector * (1.0 - TAU / angle);
     if other.distance(to) < vector.distance(to) - 1e-6 { other } else { vector }
+}
+
+/// What templates read of a program of this name, which calls a part.
+fn named(machine: &Machine, name: &str, part: &str) -> Value {
+    program_value(machine, name.to_owned(), &[], None, [("blank", false), ("stock", false)], part)
 }
 
 /// The name of a program as controllers of robots take it: letters, digits and `_`, a letter first, at most 24.

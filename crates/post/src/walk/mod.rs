@@ -148,7 +148,7 @@ impl<'a> Walk<'a> {
         let blank = [("blank", reach.is_some()), ("stock", is_stock)];
         let name = file_name(&program.name);
         let number = program_number(machine, &name).map_err(|found| vec![*found])?;
-        scope.program = program_value(machine, name, tools, number, blank);
+        scope.program = program_value(machine, name, tools, number, blank, "");
         for (word, value) in EXTENTS.into_iter().zip(reach.into_iter().flatten()) {
             writer.set(word, value);
         }
@@ -205,7 +205,7 @@ impl<'a> Walk<'a> {
         let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
         let (text, blocks) = self.writer.finish();
         self.limits.memory(blocks).map_err(|found| vec![*found])?;
-        Ok(crate::Output { text, blocks, warnings })
+        Ok(crate::Output { text, blocks, warnings, parts: Vec::new() })
     }
 
     fn records(&mut self) -> Outcome {

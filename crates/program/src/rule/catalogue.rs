@@ -607,6 +607,10 @@ rules! {
         "A feed is written as 0 with the decimals of the word F."
         "give a feed above 0 that the decimals of the word F can hold"
         "0.2 mm/min on a control that writes whole numbers";
+    FileBorder "file-border" []
+        "A program of several files goes on in another one while the tool is in a cut: the arm stops there and leaves a mark."
+        "divide the program where a rapid has taken the tool off the part, as `toolpost post` does"
+        "ls: `CALL JOB_2` between two lines of a contour";
     FileOlder "file-older" []
         "Programs of an earlier call are still in the folder, and this call does not write them anew."
         "remove them, or write all programs in one call"
@@ -1020,8 +1024,8 @@ rules! {
         "start from `toolpost glass show materials`"
         "`index = one`";
     Memory "memory" []
-        "The program has more points than the control holds."
-        "take a larger `--step` or `--chord-error`, or `--fit`; or divide the contour into several programs"
+        "The program has more points than the control holds, or that of a robot more lines than a file may have, and no retract at which it could be divided."
+        "take a larger `--step` or `--chord-error`, or `--fit`; or divide the contour into several programs; of a robot, add rapids that take the tool beyond all cuts"
         "5000 points for a control that holds 4000";
     Mesh "mesh" []
         "A body has open edges or triangles without area."

@@ -300,7 +300,34 @@ impl<'a> Comparison<'a> {
             }
             ArmAction::Load(mass, center) => return self.load(*mass, *center),
             ArmAction::TurnSpeed(speed) => self.running.turn_speed = *speed,
+            ArmAction::FileBorder => return self.border(),
             ArmAction::Move(motion) => return self.motion(line, motion),
+        }
+        Ok(())
+    }
+
+    /// The program goes on in another file: the arm stops there, and the control reads that file meanwhile.
+    ///
+    /// # Errors
+    /// The tool is in a cut.
+    fn border(&mut self) -> Outcome {
+        self.exact()?;
+        self.leave_out();
+        let mut motions = self.expected[..self.next].iter().rev().filter_map(|expected| {
+            let step = &expected.step;
+            match step {
+                Step::Line(..) | Step::Arc(..) | Step::Contour(_) => Some(true),
+                Step::Rapid(..) | Step::Above(_) | Step::Home => Some(false),
+                Step::Tool(_) | Step::Dwell(_) | Step::Stop | Step::Output(_) | Step::Input(_) => {
+                    None
+                }
+            }
+        });
+        let is_cut = motions.next().unwrap_or(false) && !self.is_home;
+        if is_cut || self.done > 0.0 || self.gathered.is_some() {
+            let message = "the program goes on in another file while the tool is in a cut: the arm stops there";
+            let help = "divide the program where a rapid has taken the tool off the part";
+            return Err(Diagnostic::error(Rule::FileBorder, message).help(help).into());
         }
         Ok(())
     }

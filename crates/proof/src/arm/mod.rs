@@ -16,6 +16,9 @@
 //!    be on on the way home.
 //! 7. Joints and straight rapids no faster than the cell states; no half turns of the tool, and no turn that a cut's feed has no time for.
 //!
+//! 8. Other files only where the tool is in no cut, and all of them in the order of the source; a motion of the joints to where they
+//!    stand, with which each of them may begin.
+//!
 //! It knows nothing of the arm itself, the cell and the load: the summary says so.
 
 mod comparison;
@@ -26,7 +29,7 @@ use crate::report::Report;
 use crate::tolerance::{Applied, Tolerances};
 use ::arm::Arm;
 use comparison::Comparison;
-use control::Setup;
+use control::{Folders, Setup};
 use expected::Expected;
 use machine::{Cell, Machine};
 use program::{Diagnostic, Program, Rule};
@@ -35,7 +38,7 @@ use program::{Diagnostic, Program, Rule};
 pub(crate) fn prove(
     source: &Program,
     (machine, arm, cell): (&Machine, &Arm, &Cell),
-    (file_name, text): (&str, &[u8]),
+    (file_name, text, folders): (&str, &[u8], &Folders),
     tolerances: &Tolerances,
     go_on: &dyn Fn() -> bool,
 ) -> Report {
@@ -54,7 +57,8 @@ pub(crate) fn prove(
     };
     let mut comparison = Comparison::new(source, (machine, arm, cell), expected, report);
     let mut events = 0_u32;
-    let run = nc::settings(machine, Setup::default()).and_then(|settings| {
+    let setup = Setup { folders: folders.clone(), ..Setup::default() };
+    let run = nc::settings(machine, setup).and_then(|settings| {
         control::read(&settings, file_name, text, &mut |event| {
             events = events.wrapping_add(1);
             if events.is_multiple_of(crate::EVENTS_AT_ONCE) && !go_on() {

@@ -141,3 +141,62 @@ fn a_rapid_from_home_into_the_plane_of_the_cuts_is_proven() {
         assert_eq!(said.code, 0, "{robot}: {said:?}");
     }
 }
+
+/// Four rows with a retract behind each.
+fn rows() -> String {
+    let mut text =
+        String::from("PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nFEDRAT/MMPM,1200\n");
+    for y in [0, 10, 20, 30] {
+        text += &format!("RAPID\nGOTO/0,{y},30\nGOTO/0,{y},-1\n");
+        for x in 1..=10 {
+            text += &format!("GOTO/{},{y},{}\n", 6 * x, -1 - x % 2);
+        }
+        text += &format!("RAPID\nGOTO/60,{y},30\n");
+    }
+    text + "FINI\n"
+}
+
+#[test]
+fn a_program_in_several_files_is_saved_whole_or_not_at_all_and_proven_from_its_folder() {
+    let folder = Folder::new();
+    folder.write("rows.cls", rows());
+    let own = "extends = \"fanuc-lrmate-200id-mill\"\n[capabilities]\nprogram_lines = 42\n";
+    folder.write("own.toml", own);
+    let post = ["post", "rows.cls", "--machine", "own.toml", "-o", "rows-a.ls"];
+    // A file of that name that may not be written: nothing is saved.
+    std::fs::create_dir(folder.path().join("rows_a_3.ls")).unwrap();
+    let before = folder.names();
+    assert_eq!(folder.run(&post).code, 2);
+    assert_eq!(folder.names(), before);
+    std::fs::remove_dir(folder.path().join("rows_a_3.ls")).unwrap();
+    let said = folder.run(&post);
+    assert_eq!(said.code, 0, "{said:?}");
+    let parts = ["rows_a_1.ls", "rows_a_2.ls", "rows_a_3.ls", "rows_a_4.ls"];
+    let mut names = vec!["own.toml", "part.cls", "rows-a.ls", "rows-a.ls.report.json", "rows.cls"];
+    names.extend(parts);
+    names.sort_unstable();
+    let mut saved = folder.names();
+    saved.sort_unstable();
+    assert_eq!(saved, names);
+    let size: usize = parts.iter().map(|part| folder.read(part).len()).sum();
+    let size = size + folder.read("rows-a.ls").len();
+    let text =
+        format!("files           5 of {size} bytes together: the main program calls 4 parts");
+    assert!(said.out.contains(&text), "{text}\n{}", said.out);
+    assert!(folder.read("rows-a.ls").contains("/PROG ROWS_A\r\n"));
+    let prove = ["prove", "rows-a.ls", "--machine", "own.toml", "--against", "rows.cls"];
+    let said = folder.run(&prove);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.out.contains("belongs to this program"), "{}", said.out);
+    // A digit of a part: the proof refuses it; a remark: the report is of another program.
+    let third = folder.read("rows_a_3.ls");
+    folder.write("rows_a_3.ls", third.replacen("TOOLPOST", "TOOLPOSE", 1));
+    let said = folder.run(&prove);
+    assert!(said.code == 0 && said.err.contains("report-pair"), "{said:?}");
+    folder.write("rows_a_3.ls", third.replacen("Z = -2.000", "Z = -3.000", 1));
+    let said = folder.run(&prove);
+    assert!(said.code == 1 && said.err.contains("in rows_a_3.ls"), "{said:?}");
+    std::fs::remove_file(folder.path().join("rows_a_3.ls")).unwrap();
+    let said = folder.run(&prove);
+    assert!(said.code == 1 && said.err.contains("called-program"), "{said:?}");
+}

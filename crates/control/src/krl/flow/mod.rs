@@ -2,11 +2,11 @@
 
 use super::execution::State;
 use super::language::{Name, Scan, Statement, Target, read};
-use crate::Settings;
 use crate::event::Action;
 use crate::kernel::Channel;
 use crate::kernel::flow::{BlockLocation, line, lines};
 use crate::kernel::source::Source;
+use crate::{ArmAction, Settings};
 use program::{Diagnostic, Outcome, Rule};
 use std::collections::HashMap;
 
@@ -194,12 +194,13 @@ impl Run<'_, '_> {
         let inside = |found: Box<Diagnostic>| called.inside(scan.line, *found);
         let other = File::of(&called.text, Some(scan.line)).map_err(inside)?;
         self.data(name)?;
-        match other.programs.get(&name) {
-            Some(place) => self.routine(&other, *place, depth + 1).map(drop).map_err(inside),
-            None => {
-                Err(refused(Rule::CalledProgram, format!("{} has no program {name}", called.name)))
-            }
-        }
+        let Some(place) = other.programs.get(&name) else {
+            let message = format!("{} has no program {name}", called.name);
+            return Err(refused(Rule::CalledProgram, message));
+        };
+        self.channel.arm(scan.line, ArmAction::FileBorder)?;
+        self.routine(&other, *place, depth + 1).map_err(inside)?;
+        self.channel.arm(scan.line, ArmAction::FileBorder)
     }
 
     /// The data list of a program, where a folder has it.

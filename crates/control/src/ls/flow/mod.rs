@@ -2,11 +2,11 @@
 
 use super::execution::State;
 use super::language::{Position, Scan, Statement, positions, read};
-use crate::Settings;
 use crate::event::Action;
 use crate::kernel::Channel;
 use crate::kernel::flow::lines;
 use crate::kernel::source::Source;
+use crate::{ArmAction, Settings};
 use program::{Diagnostic, Outcome, Rule};
 use std::collections::HashMap;
 
@@ -196,6 +196,8 @@ impl Run<'_, '_> {
             let message = format!("{} has the program {}", called.name, file.name);
             return Err(refused(Rule::CalledProgram, message));
         }
-        self.routine(&file, Some(scan.line), depth + 1).map(drop).map_err(inside)
+        self.channel.arm(scan.line, ArmAction::FileBorder)?;
+        self.routine(&file, Some(scan.line), depth + 1).map_err(inside)?;
+        self.channel.arm(scan.line, ArmAction::FileBorder)
     }
 }

@@ -55,7 +55,14 @@ impl Comparison<'_> {
             (Some(ArmPath::Line(end)), _) => Some((None, end)),
             (Some(ArmPath::Arc { via, end }), _) => Some((Some(via), end)),
             (Some(ArmPath::Joints(_) | ArmPath::Point(_)), _)
-            | (None, Action::Stop | Action::End | Action::Tool(_) | Action::Dwell(_)) => {
+            | (
+                None,
+                Action::Stop
+                | Action::End
+                | Action::Tool(_)
+                | Action::Dwell(_)
+                | Action::Arm(ArmAction::FileBorder),
+            ) => {
                 return self.off_contour(&contour);
             }
             (None, _) => None,
