@@ -55,6 +55,9 @@ pub enum Action {
     Thread(Box<Thread>),
     /// Straight line at the active feed that ends where the probe answers.
     Probe(Box<Probe<Position>>),
+    /// The tool rests on what its probing move along Z has touched, and the work offset gets such a Z that its tip stands at
+    /// this Z, mm: `G10 L20` behind `G38.2`.
+    TouchOff(f64),
     /// One hole of the active [`Cycle`]; the position is the point of the cycle on the surface. The tool ends at
     /// the cycle's retract level.
     Hole(Position),
@@ -670,6 +673,7 @@ impl Action {
             Action::Arc(arc) => Some(&arc.end),
             Action::Thread(thread) => Some(&thread.end),
             Action::Probe(_)
+            | Action::TouchOff(_)
             | Action::Home(_)
             | Action::MachineMove(_)
             | Action::Swivel(_)

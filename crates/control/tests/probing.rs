@@ -76,3 +76,45 @@ fn what_only_the_machine_knows_stays_unknown() {
     // The tool has come to rest somewhat beyond.
     refused("G38.2 Z-1\nG91 G1 Z1", &SURFACE, "where Z stands is not known");
 }
+
+/// What a GRBL does of a touch-off: the actions behind the stop for the second tool.
+fn touch_off(text: &str) -> Result<Vec<Action>, String> {
+    let settings = Settings::new(Dialect::Grbl, [false; 3]);
+    let mut actions = Vec::new();
+    let read = read(&settings, "program.gcode", text.as_bytes(), &mut |record| {
+        actions.push(record.action.clone());
+        Ok(())
+    });
+    read.map(|()| actions).map_err(|found| found.to_string())
+}
+
+/// `gcode.c`, step 19: `G10 L20` is `WCS = MPos - G92 - TLO - WPos`, so the tool stands at the value that is written; step 20:
+/// behind a probing cycle the position is where the machine has come to rest.
+#[test]
+fn a_tool_that_rests_on_a_plate_is_touched_off() {
+    let head = "G21 G90 G94 G54\nT1\nM3 S1000\nG0 X0 Y0 Z20\nM5\nT2\nM0\n";
+    let read = |tail: &str| touch_off(&format!("{head}{tail}M2\n"));
+    let actions = read("G38.2 Z-10 F30\nG10 L20 P0 Z1.5\nG0 Z20\n").unwrap();
+    assert!(actions.contains(&Action::TouchOff(1.5)), "{actions:?}");
+    assert!(!actions.iter().any(|action| matches!(action, Action::Risk(_))), "{actions:?}");
+    let rapid = |action: &Action| matches!(action, Action::Rapid(to) if to.point == Vec3::new(0.0, 0.0, 20.0));
+    assert!(actions.last_chunk::<3>().unwrap().iter().any(rapid), "{actions:?}");
+    // P1 is G54, and in inches.
+    let inches = read("G38.2 Z-10 F30\nG20\nG10 L20 P1 Z.0625\nG0 Z1\n").unwrap();
+    assert!(inches.contains(&Action::TouchOff(1.5875)), "{inches:?}");
+    // Without a probing move, after it has gone on, along X, off the plate, where nothing has to be touched, in another offset.
+    for tail in [
+        "G10 L20 P0 Z1.5\nG0 Z20\n",
+        "G38.2 Z-10 F30\nT3\nM0\nG10 L20 P0 Z1.5\nG0 Z20\n",
+        "G38.2 Z-10 F30\nG0 Z20\nG10 L20 P0 Z1.5\n",
+        "G38.2 X-10 F30\nG10 L20 P0 X1.5\nG0 Z20\n",
+        "G38.4 Z-10 F30\nG10 L20 P0 Z1.5\nG0 Z20\n",
+        "G38.3 Z-10 F30\nG10 L20 P0 Z1.5\nG0 Z20\n",
+        "G38.2 Z-10 F30\nG10 L20 P0 X0 Z1.5\nG0 Z20\n",
+        "G38.2 Z-10 F30\nG10 L20 P2 Z1.5\nG0 Z20\n",
+    ] {
+        let is_touch_off = |action: &Action| matches!(action, Action::TouchOff(_));
+        let actions = read(tail).unwrap_or_default();
+        assert!(!actions.iter().any(is_touch_off), "{tail}");
+    }
+}

@@ -1,7 +1,7 @@
 //! What a machine is, after its files are merged.
 
 use crate::sheet::wrong_option;
-use geom::{Euler, Frame, Vec3};
+use geom::{Euler, Frame, Vec2, Vec3};
 use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove, Rule};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -601,6 +601,17 @@ pub enum OptionValue {
 pub const SAFE_HEIGHT_HELP: &str = "add `safe_height = 0` to the machine's file, with the Z that the control shows in \
      machine coordinates once the axis is homed and at its top (mm)";
 
+/// A plate or a tool setter that answers when a tool touches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchPlate {
+    /// Where it is, mm from the work zero.
+    pub at: Vec2,
+    /// How high its top is over the work zero, mm.
+    pub height: f64,
+    /// How far below its top a tool goes at most that has not touched it, mm.
+    pub travel: f64,
+}
+
 impl Machine {
     /// Whether programs are written for it: an arm of which the kinematics alone are known has no virtual control.
     pub fn has_control(&self) -> bool {
@@ -757,6 +768,18 @@ impl Machine {
     pub fn retract_height(&self) -> Option<f64> {
         let height = self.number_of("retract_height");
         Some(height).filter(|height| *height > 0.0 && self.rotary.is_empty())
+    }
+
+    /// What tools that are put in by hand are touched off on: the options `touch_...`, which the templates write. `None` where a
+    /// tool change has no touch-off.
+    pub fn touch_plate(&self) -> Option<TouchPlate> {
+        let number = |name: &str| self.number_of(name);
+        let plate = TouchPlate {
+            at: Vec2::new(number("touch_x"), number("touch_y")),
+            height: number("touch_height"),
+            travel: number("touch_travel"),
+        };
+        Some(plate).filter(|plate| plate.travel > 0.0)
     }
 
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,

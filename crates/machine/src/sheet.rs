@@ -370,10 +370,13 @@ value! {
 }
 
 /// What the options that are no mere texts of the templates may be: the name, the most, the unit.
-const MEASURED_OPTIONS: [(&str, f64, &str); 4] = [
+const MEASURED_OPTIONS: [(&str, f64, &str); 7] = [
     ("path_tolerance", 10.0, "mm"),
     ("retract_height", 1000.0, "mm"),
     ("roughing_tolerance", 10.0, "mm"),
+    ("touch_feed", 1000.0, "mm/min"),
+    ("touch_height", 1000.0, "mm"),
+    ("touch_travel", 1000.0, "mm"),
     ("orientation_tolerance", 45.0, "degrees"),
 ];
 

@@ -243,6 +243,11 @@ impl<'a> Conversion<'a> {
             Action::Risk(risk) => {
                 self.risk(line, *risk);
             }
+            Action::TouchOff(_) => {
+                let message = "sets Z 0 by what a probe has touched: how high that is, only the machine knows";
+                let help = "take the touch-off out of the program: the tool changes of the machine's file have their own";
+                return Err(refuse(Rule::Probe, message, help));
+            }
             Action::PathMode(mode) => self.push(line, Op::PathMode(mode)),
             Action::Dwell(seconds) => self.push(line, Op::Dwell(seconds)),
             Action::Stop => self.push(line, Op::Stop),

@@ -232,6 +232,7 @@ impl<'a> Comparison<'a> {
             | Action::Arc(_)
             | Action::Thread(_)
             | Action::Probe(_)
+            | Action::TouchOff(_)
             | Action::Hole(_)
             | Action::Home(_)
             | Action::MachineMove(_)

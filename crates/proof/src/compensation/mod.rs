@@ -95,6 +95,7 @@ impl Part<'_> {
             | Action::Hole(_)
             | Action::Thread(_)
             | Action::Probe(_)
+            | Action::TouchOff(_)
             | Action::Across(_) => Part::End,
             Action::Swivel(_)
             | Action::Cycle(_)

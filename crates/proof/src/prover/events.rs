@@ -38,6 +38,7 @@ impl Prover<'_> {
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);
         self.running.change_tool(line, tool.clone());
+        self.awaits_touch_off();
         Ok(())
     }
 

@@ -9,6 +9,7 @@ mod events;
 mod rapid;
 mod rapid_path;
 mod single;
+mod touch_off;
 mod travel;
 
 use crate::accepted::Accepted;
@@ -72,6 +73,8 @@ pub struct Prover<'a> {
     raised: bool,
     /// The height over the work zero to which a machine without switches has retracted, mm: from there it only comes down.
     top: f64,
+    /// How far the touch-off of the tool is that has been put in by hand.
+    touch: touch_off::Touch,
     /// Whether the control has turned the rotary axes to a tilted plane, and nothing has moved since.
     swivelled: bool,
     /// Whether the tool has stood at a place that is known.
@@ -152,6 +155,7 @@ impl<'a> Prover<'a> {
             accepted: tolerances.accepted,
             raised: false,
             top: f64::NEG_INFINITY,
+            touch: touch_off::Touch::default(),
             swivelled: false,
             has_stood: false,
             down: None,
@@ -268,6 +272,9 @@ impl<'a> Prover<'a> {
         if self.ended && !passive {
             return Err(self.lost_at(line, Rule::AfterEnd, "goes on after the end of the program"));
         }
+        if self.touches_off(event) {
+            return Ok(());
+        }
         if let Action::Rapid(position) = &event.action
             && self.retracts(position)
         {
@@ -328,6 +335,11 @@ impl<'a> Prover<'a> {
             Action::Output(output) => return self.happens(line, Step::Output(*output)),
             Action::WorkOffsetData(data) if self.gauge.machine.settings.sets_work_offsets => {
                 return self.happens(line, Step::WorkOffsetData(**data));
+            }
+            // Of no touch-off of the machine's own.
+            Action::TouchOff(_) => {
+                let message = "sets Z by what a probe has touched where no tool is touched off";
+                self.differs(line, (Rule::Probe, message.into()));
             }
             // The risk before it is refused, or accepted.
             Action::WorkOffsetData(_) => {}

@@ -368,3 +368,60 @@ fn programs_of_a_board_are_proven_again() {
     ]);
     assert!(said.code == 2 && said.err.contains("report.json"), "{said:?}");
 }
+
+/// Each further tool sets Z 0 on a touch plate; the proof refuses whatever would set another zero, break the tool or hit the plate.
+#[test]
+fn tools_are_touched_off_on_a_plate() {
+    let folder = small();
+    folder.write(
+        "router.toml",
+        "extends = \"grbl-3018\"\n[options]\ntouch_travel = 15\ntouch_height = 1.6\ntouch_x = -3\ntouch_y = 2\n",
+    );
+    let machine = ["-m", "router.toml"];
+    let call = ["pcb", "board", "--only", "drill", "--alignment", "3", "-o", "out"];
+    let said = folder.run(&[&call[..], &machine[..]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    let text = folder.read("out/drill.gcode");
+    // Home, the spindle off, over the plate, the tool, a stop, down to 15 mm below the plate, Z, home, a stop.
+    let change = "G0 Z20\nM5\nG0 X-3 Y2\nT2\n(drill 3 mm)\n(change the tool by hand, and put the touch plate below it)\nM0\n\
+        G38.2 Z-13.4 F30\nG10 L20 P0 Z1.6\nG0 Z20\n(take the touch plate away)\nM0\n";
+    assert!(text.contains(change), "{text}");
+    // The operator sets up the first one.
+    assert_eq!(text.matches("G38.2").count(), 1, "{text}");
+    let prove = |text: &str| {
+        folder.write("out/drill.gcode", text);
+        let words = ["prove", "out/drill.gcode", "--against", "board"];
+        folder.run(&[&words[..], &machine[..]].concat())
+    };
+    let said = prove(&text);
+    assert_eq!(said.code, 0, "{said:?}");
+    for (from, to, why) in [
+        ("P0 Z1.6\n", "P0 Z1.5\n", "stands at Z1.5"),
+        ("P0 Z1.6\nG0 Z20\n", "P0 Z1.6\n", "straight up"),
+        ("P0 Z1.6\nG0 Z20\n", "P0 Z1.6\nG0 Z3\n", "straight up"),
+        ("G38.2 Z-13.4", "G38.2 Z2", "down to Z2"),
+        ("G38.2 Z-13.4", "G38.2 Z-30", "down to Z-30"),
+        ("G38.2 Z-13.4", "G38.3 Z-13.4", "touches nothing"),
+        ("G38.2 Z-13.4", "M3 S1000\nG38.2 Z-13.4", "not been touched off"),
+        ("G0 X-3 Y2\n", "G0 X-3 Y3\n", "Y3"),
+        ("G0 X-3 Y2\n", "", "the plate is at X-3 Y2"),
+        ("(take the touch plate away)\nM0\n", "", "taken away"),
+        ("G38.2 Z-13.4 F30\nG10 L20 P0 Z1.6\n", "", "not been touched off"),
+        ("G10 L20 P0 Z1.6\n", "", "does not set Z"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let said = prove(&text.replacen(from, to, 1));
+        assert!(said.code == 1 && said.err.contains(why), "{from} {to} {said:?}");
+    }
+    // A machine without a plate takes none of it, and stops with a message.
+    folder.write("out/drill.gcode", &text);
+    let words = ["prove", "out/drill.gcode", "--against", "board", "-m", "grbl-3018"];
+    assert_eq!(folder.run(&words).code, 1);
+    let said = folder.run(&[&call[..], &["-m", "grbl-3018"]].concat());
+    let text = folder.read("out/drill.gcode");
+    assert!(
+        said.code == 0
+            && !text.contains("G38.2")
+            && text.contains("change the tool by hand; its tip")
+    );
+}

@@ -235,6 +235,14 @@ impl Step<'_, '_, '_> {
         } else {
             self.axis_values()?
         };
+        if sets_here && self.facts.tools.by_hand && number == active && self.is_touch_off(values) {
+            // How long the tool is the control does not know: as much longer, as much higher is the zero.
+            self.state.touching = false;
+            self.stand_at(values);
+            let at = self.state.place.point(self.state.position).z;
+            self.actions.push(Action::TouchOff(at));
+            return Ok(());
+        }
         // Values that are added, turned or counted from the tool are not the place of a zero.
         let add = offsets.adds && self.state.incremental;
         let places_zero = !sets_here && !external && !add && angle.is_none();
@@ -275,6 +283,12 @@ impl Step<'_, '_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether Z alone is written, where the tool rests on what its probing move has touched.
+    fn is_touch_off(&self, values: [Option<f64>; 6]) -> bool {
+        let names_z = values.iter().enumerate().all(|(axis, value)| value.is_some() == (axis == 2));
+        names_z && self.state.touching && self.state.position.z.is_nan()
     }
 
     /// Polar coordinates, mirror, scale, turn and tilt, as the block switches them on or off.

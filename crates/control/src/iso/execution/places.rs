@@ -197,6 +197,7 @@ impl Step<'_, '_, '_> {
                 self.state.position[axis] = f64::NAN;
             }
         }
+        self.state.touching = target.named == 4 && !away && must_answer;
         Ok(())
     }
 
@@ -328,7 +329,7 @@ impl Step<'_, '_, '_> {
             }
         }
         self.state.position = self.state.place.programmed(point);
-        self.state.moved = true;
+        (self.state.moved, self.state.touching) = (true, false);
         self.sends_home(named);
         self.actions.push(action);
     }

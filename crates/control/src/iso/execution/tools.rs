@@ -78,6 +78,7 @@ impl Step<'_, '_, '_> {
         let Some(number) = self.state.selected else { return };
         self.put_in(number);
         self.state.position.z = f64::NAN;
+        self.state.touching = false;
     }
 
     fn put_in(&mut self, number: u32) {

@@ -111,6 +111,8 @@ pub(crate) struct State {
     /// Where the last probing move has been answered, in programmed coordinates and in the unit
     /// of the program then; none where nobody knows.
     pub probed: Option<Vec3>,
+    /// The last probing move went down along Z alone, and stands where it has touched something.
+    pub touching: bool,
     /// The point on the way of the last `G28`, in the work frame.
     pub via: Option<Vec3>,
     /// `G99`: holes end at the R plane; `G98`: at the initial level. LinuxCNC's manual names no
@@ -264,6 +266,7 @@ impl State {
             homes: [UNKNOWN; 2],
             touches: settings.setup.surface.clone(),
             probed: None,
+            touching: false,
             via: None,
             return_to_r: facts.cycles.returns,
             cycle_dwell: None,
@@ -368,6 +371,7 @@ impl State {
             aside: _,
             touches: _,
             probed: _,
+            touching: _,
             return_to_r: _,
             cycle_dwell: _,
             // ... what the machine does besides, or what is asked of the program as a whole.
