@@ -358,11 +358,12 @@ fn key_of(hole: &Hole) -> i64 {
     (hole.diameter * 1e3).round() as i64
 }
 
-/// How many holes of each width there are, in µm.
-fn widths<'a>(holes: impl IntoIterator<Item = &'a Hole>) -> BTreeMap<i64, usize> {
-    let mut widths = BTreeMap::new();
+/// How many holes and slots of each width there are, in µm.
+fn widths<'a>(holes: impl IntoIterator<Item = &'a Hole>) -> BTreeMap<i64, [usize; 2]> {
+    let mut widths = BTreeMap::<_, [usize; 2]>::new();
     for hole in holes {
-        *widths.entry(key_of(hole)).or_default() += 1;
+        let is_slot = !matches!(hole.shape, HoleShape::Round(_));
+        widths.entry(key_of(hole)).or_default()[usize::from(is_slot)] += 1;
     }
     widths
 }
@@ -469,10 +470,14 @@ fn entries(drawn: &Drawn, picture: &BoardPicture) -> Vec<Entry> {
         let text = format!("COPPER, {} NETS", drawn.nets);
         entry(format!("stroke=\"{}\" stroke-width=\"8\"", NETS[0]), &text, "");
     }
-    for (i, (width, count)) in widths(picture.holes).into_iter().enumerate() {
-        let stroke = format!("stroke=\"{}\" stroke-width=\"6\"", hole_color(Some(i)));
-        let plural = if count == 1 { "HOLE" } else { "HOLES" };
-        entry(stroke, &format!("{count} {plural} OF {} MM", width as f64 / 1e3), "");
+    for (i, (width, counts)) in widths(picture.holes).into_iter().enumerate() {
+        for (count, what) in
+            counts.into_iter().zip(["HOLE", "SLOT"]).filter(|(count, _)| *count > 0)
+        {
+            let stroke = format!("stroke=\"{}\" stroke-width=\"6\"", hole_color(Some(i)));
+            let plural = if count == 1 { "" } else { "S" };
+            entry(stroke, &format!("{count} {what}{plural} OF {} MM", width as f64 / 1e3), "");
+        }
     }
     if picture.holes.len() > MAX_HOLES {
         let text = format!("{} HOLES ARE NOT DRAWN", picture.holes.len() - MAX_HOLES);

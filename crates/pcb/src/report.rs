@@ -39,9 +39,10 @@ impl<'a> Report<'a> {
         Report { file, text, errors: Vec::new(), warnings: Vec::new() }
     }
 
-    /// Whether reading on makes no sense.
+    /// Whether reading on makes no sense: without a unit all else is the echo of that.
     pub(crate) fn is_full(&self) -> bool {
-        self.errors.len() >= MAX_ERRORS
+        let has_no_unit = |error: &Diagnostic| error.rule == Rule::NoUnit;
+        self.errors.len() >= MAX_ERRORS || self.errors.last().is_some_and(has_no_unit)
     }
 
     /// Adds an error at `location`.

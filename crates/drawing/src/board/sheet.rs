@@ -87,21 +87,30 @@ pub fn board_sheet(title: &str, sheet: &BoardSheet) -> String {
         side(&mut out, &view, (*outline, *copper, holes), sheet);
         top += HEAD + room.y;
     }
-    let rows = widths(sheet.sides[0].2.iter().copied());
+    let holes = widths(sheet.sides[0].2.iter().copied());
+    let rows = holes.iter().enumerate().flat_map(|(i, (width, [round, slots]))| {
+        let width = *width as f64 / 1e3;
+        let plural = if *slots == 1 { "" } else { "S" };
+        let rows = [(*round, "".to_owned()), (*slots, format!("SLOT{plural} "))];
+        rows.into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(move |(count, what)| (i, format!("{count} {what}OF {width} MM")))
+    });
+    let rows: Vec<(usize, String)> = rows.collect();
     let bottom = PAPER.y - MARGIN - FOOT + 8.0;
     // Five columns of six; of more the last says how many are left out.
     let most = 30;
-    for (i, (width, count)) in rows.iter().enumerate().take(most) {
+    for (i, (width, text)) in rows.iter().enumerate().take(most) {
         let at = DVec2::new(MARGIN + (i / 6) as f64 * 37.0, bottom + (i % 6) as f64 * 4.5);
         let more = rows.len() > most && i + 1 == most;
         let text = match more {
             true => format!("{} WIDTHS MORE", rows.len() + 1 - most),
-            false => format!("{count} OF {} MM", *width as f64 / 1e3),
+            false => text.clone(),
         };
         let _ = writeln!(
             out,
             "<path stroke=\"{}\" stroke-width=\"2\" d=\"M{:.2} {:.2}h0\"/>",
-            hole_color(Some(i)),
+            hole_color(Some(*width)),
             at.x + 1.0,
             at.y - 1.0
         );

@@ -15,6 +15,9 @@ pub(super) struct Evidence {
     begins_with_zero: bool,
     /// Whether one ends with a zero.
     ends_with_zero: bool,
+    /// Whether `M71`, and whether `M72`, stands anywhere.
+    metric: bool,
+    inch: bool,
     /// Whether routes say `M15` where the tool goes down.
     pub(super) plunges: bool,
 }
@@ -34,6 +37,8 @@ impl Evidence {
                     b'C' if tool => evidence.diameter(word.number),
                     b'X' | b'Y' if !word.number.contains(&b'.') => evidence.coordinate(word.number),
                     b'M' if word.number == b"15" => evidence.plunges = true,
+                    b'M' if word.number == b"71" => evidence.metric = true,
+                    b'M' if word.number == b"72" => evidence.inch = true,
                     _ => {}
                 }
             }
@@ -90,6 +95,15 @@ impl Evidence {
         match (self.begins_with_zero, self.ends_with_zero) {
             (true, false) => Some(Zeros::Leading),
             (false, true) => Some(Zeros::Trailing),
+            _ => None,
+        }
+    }
+
+    /// The unit that the file says behind the first length, and what says it.
+    pub(super) fn late_unit(&self) -> Option<(Unit, &'static str)> {
+        match (self.metric, self.inch) {
+            (true, false) => Some((Unit::Metric, "M71")),
+            (false, true) => Some((Unit::Inch, "M72")),
             _ => None,
         }
     }

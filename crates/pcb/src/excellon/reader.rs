@@ -462,6 +462,16 @@ impl Reader<'_> {
 
     fn conclude_unit(&mut self) {
         if self.notation.unit.is_none()
+            && let Some((unit, word)) = self.evidence.late_unit()
+        {
+            self.notation.unit = Some(unit);
+            let message = format!(
+                "{word} stands behind the first length: it is taken to hold for all of them"
+            );
+            let help = format!("write {word} in the header, above the tools, if that is right");
+            self.report.warn(self.location, Rule::UnitConcluded, &message, &help);
+        }
+        if self.notation.unit.is_none()
             && let Some(unit) = self.evidence.unit()
         {
             self.notation.unit = Some(unit);

@@ -90,6 +90,17 @@ fn what_is_not_said_is_concluded_from_the_coordinates() {
     let (at, rules) = concluded("M48\nT01C0.3\nT02C1.2\n%\nT01\nX16.9Y10.8\nM30");
     assert_near(&[at], &[(16.9, 10.8)]);
     assert_eq!(rules, "unit-concluded");
+    // The unit behind the tools is that of the tools too, whatever their widths could be.
+    for text in
+        ["M48\nT01C0.0320\n%\nM72\nT01\nX1.0Y2.0\nM30", "T01C0.125\nM72\nT01\nX1.0Y2.0\nM30"]
+    {
+        let (at, rules) = concluded(text);
+        assert_near(&[at], &[(25.4, 50.8)]);
+        assert_eq!(rules, "unit-concluded");
+        assert!(
+            reading(text).warnings[0].message.starts_with("M72 stands behind the first length")
+        );
+    }
     let (at, rules) = concluded("T01C0.020\nT01\nX1.0Y2.0\nM30");
     assert_near(&[at], &[(25.4, 50.8)]);
     assert_eq!(rules, "unit-concluded");

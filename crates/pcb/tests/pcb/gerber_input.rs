@@ -92,6 +92,9 @@ fn each_fault_has_its_rule_and_its_place() {
 fn what_a_file_has_to_say_first() {
     assert_eq!(first("%MOMM*%\n%ADD10C,1*%\nD10*\nX0Y0D03*\nM02*").0, "no-format");
     assert_eq!(first("%FSLAX36Y36*%\n%ADD10C,1*%\nM02*"), ("no-unit", 2, 2));
+    // What follows from that is not said.
+    let late = "%FSLAX24Y24*%\n%ADD10C,0.01*%\nG70*\nD10*\nX0Y0D02*\nX10000D01*\nM02*";
+    assert_eq!(errors(late).len(), 1, "{:?}", errors(late));
     assert_eq!(first("%FSLAX36Y36*%%MOMM*%\nX0Y0D03*\nM02*"), ("missing-aperture", 2, 1));
     assert_eq!(first(&format!("{HEAD}X0Y0D03*\n")), ("no-end", 6, 1));
     assert_eq!(first("").0, "no-end");
