@@ -42,7 +42,8 @@ impl Path {
         }
         if !self.is_closed() {
             let fewest = Division::of(&elements, tolerance).fewest();
-            return fewest.map_or_else(|| Some(self.clone()), |(fewest, _)| Path::new(fewest));
+            return fewest
+                .map_or_else(|| self.without_short(tolerance), |(fewest, _)| Path::new(fewest));
         }
         // Where it turns most an element ends in any case.
         let corners = elements.iter().zip(elements.iter().cycle().skip(elements.len() - 1));
@@ -53,7 +54,9 @@ impl Path {
         if let Some(circle) = division.circle() {
             return Path::new(vec![circle]);
         }
-        let Some((mut fewest, middle)) = division.fewest() else { return Some(self.clone()) };
+        let Some((mut fewest, middle)) = division.fewest() else {
+            return self.without_short(tolerance);
+        };
         if !division.starts_sharp() {
             // What ends at the start may go on there.
             elements.rotate_left(middle);
@@ -64,6 +67,23 @@ impl Path {
             };
         }
         Path::new(fewest)
+    }
+
+    /// The same path without its short elements: the next one starts where the last one that is kept has ended.
+    fn without_short(&self, tolerance: f64) -> Option<Path> {
+        let short = SHORT * tolerance;
+        let (mut at, end) = (self.start(), self.end());
+        let mut kept: Vec<Element> = Vec::with_capacity(self.elements().len());
+        for element in self.elements() {
+            if element.length() >= short || at.distance(element.end) >= short {
+                kept.push(if at == element.start { *element } else { fit::started(element, at) });
+                at = element.end;
+            }
+        }
+        if let Some(last) = kept.last_mut().filter(|_| at != end) {
+            *last = fit::started(&last.reversed(), end).reversed();
+        }
+        Path::new(kept)
     }
 }
 
