@@ -41,6 +41,16 @@ pub fn measure(points: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
         println!("  greedy order: {}; {:.2} of 100 pulses used", measured[0].time, used(ticks[0]));
         println!("  order: {}; {:.2} of 100 pulses used", measured[1].time, used(ticks[1]));
         println!("    divided by the floor: {}", measured[1].time.times(measured[0].time));
+        let bound = order::bound(&cloud, &cloud, Some(shadow), &clock);
+        println!("  bound by assignment: {:.2} of 100", used(bound).min(100.0));
+        // Nothing is nearer to an axis than 0.
+        let none = Shadow { slope: 0.0, radius: 0.0 };
+        let free = order::fastest(&cloud, &cloud, none, &clock, Effort::default());
+        let free = used(order::ticks(&cloud, &free, &clock));
+        println!(
+            "  order without the shadow rule: {free:.2}; the rule costs {:.2}",
+            free - used(ticks[1])
+        );
     }
     Ok(())
 }

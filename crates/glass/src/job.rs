@@ -124,6 +124,9 @@ pub struct Report {
     pub unreachable: Option<f64>,
     /// Ticks as planned; of a program that was not made here none.
     pub planned_ticks: Option<u64>,
+    /// Ticks that any order takes at least, under the shadow rule; not found for more than a million points, for pulses in motion,
+    /// fields and several blocks on a table.
+    pub least_ticks: Option<u64>,
     /// Rules that were let pass, and broken.
     pub accepted: Vec<Rule>,
     /// What the proof found.
@@ -162,7 +165,7 @@ pub fn make(
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
     let mut job = Job::new(shapes, material, machine, settings)?;
-    let Ordered { axes, runs, fields } = job.order();
+    let Ordered { axes, runs, fields, least } = job.order();
     let clock = machine.clock();
     let mut planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], machine.late(), &clock);
     for pair in fields.windows(2) {
@@ -179,7 +182,7 @@ pub fn make(
     let text =
         post::write(&axes, &runs, &fields, machine, (settings.placing.block, settings.blocks));
     drop(axes);
-    job.judge(text, Some(planned))
+    job.judge(text, Some((planned, least)))
 }
 
 /// Proves the program `text`, also one edited by hand, against `shapes` in one block of `material`: the cloud is made anew.
@@ -201,6 +204,8 @@ struct Ordered {
     axes: Vec<Point>,
     runs: Vec<Run>,
     fields: Vec<(usize, [i32; 2])>,
+    /// Ticks of any order at least.
+    least: Option<u64>,
 }
 
 /// A cloud in its block, and what was found of it.
@@ -303,7 +308,7 @@ impl<'m> Job<'m> {
             let pulses = plan.axes.iter().zip(&plan.points);
             let at = |(&[a, b], &i): (&[i32; 2], &u32)| [a, b, down(&self.cloud[i as usize])];
             let axes = pulses.map(at).collect();
-            return Ordered { axes, runs: plan.runs, fields: Vec::new() };
+            return Ordered { axes, runs: plan.runs, fields: Vec::new(), least: None };
         }
         let axes: Vec<Point> = match &on_table {
             Some(blocks) => {
@@ -326,6 +331,11 @@ impl<'m> Job<'m> {
             radius: 0.5 * lens.crack[0] * 1e3 * WIDER,
         };
         let cloud = &self.cloud;
+        let is_one = on_table.as_ref().is_none_or(|blocks| blocks.count == 1);
+        let has_bound =
+            is_one && machine.stage.is_none() && !machine.program.runs && cloud.len() <= MOST_BOUND;
+        // The first point's pulse counts too.
+        let least = has_bound.then(|| 1 + order::bound(cloud, &axes, Some(shadow), &clock));
         let mut fields = Vec::new();
         let order = match settings.order {
             _ if machine.stage.is_some() => {
@@ -374,11 +384,16 @@ impl<'m> Job<'m> {
         } else {
             Vec::new()
         };
-        Ordered { axes, runs, fields }
+        Ordered { axes, runs, fields, least }
     }
 
-    /// Reads the program back and compares it with the cloud; `planned` are the ticks of the order that was written.
-    fn judge(mut self, text: Vec<u8>, planned: Option<u64>) -> Result<Made, Vec<Diagnostic>> {
+    /// Reads the program back and compares it with the cloud; `ticks` are those of the order that was written, and its bound.
+    fn judge(
+        mut self,
+        text: Vec<u8>,
+        ticks: Option<(u64, Option<u64>)>,
+    ) -> Result<Made, Vec<Diagnostic>> {
+        let planned = ticks.map(|(planned, _)| planned);
         let Job { spacing, beam, material, machine, settings, moved, .. } = self;
         let (cloud, mut findings) = (&self.cloud, std::mem::take(&mut self.findings));
         let placing = &settings.placing;
@@ -424,6 +439,7 @@ impl<'m> Job<'m> {
             moved,
             unreachable: machine.polar.map(|table| table.with(placing.block[0]).unreachable(200)),
             planned_ticks: planned,
+            least_ticks: ticks.and_then(|(_, least)| least),
             accepted: if accepts { vec![Rule::Shadowed] } else { vec![] },
             proof,
         };
@@ -912,6 +928,9 @@ fn all_within(points: &[Point], placing: &Placing) -> Result<(), Vec<Diagnostic>
 
 /// Points are rounded to whole µm: half of one beyond the margin is no matter, mm.
 const SLACK: f64 = 1e-3;
+
+/// The most points whose order's bound is looked for.
+const MOST_BOUND: usize = 1_000_000;
 
 /// Squares of the spacing on a surface beyond which no cloud is begun: 200 million points.
 const MOST_POINTS: f64 = 3e8;

@@ -5,7 +5,7 @@ mod bodies;
 use bodies::{sphere, torus};
 use toolpost_glass::clock::Clock;
 use toolpost_glass::cloud::Point;
-use toolpost_glass::order::{Effort, Shadow, fastest, kdz, layers, ticks};
+use toolpost_glass::order::{Effort, Shadow, bound, fastest, kdz, layers, ticks};
 use toolpost_glass::profile::{Limits, Profile};
 use toolpost_glass::sample::{Apart, Dice, surface};
 
@@ -94,6 +94,62 @@ fn a_wide_body_is_ordered_in_bands_as_high_as_a_step() {
     assert!(is_permutation(&order, points.len()));
     let used = points.len() as f64 / ticks(&points, &order, &clock()) as f64;
     assert!(used > 0.85, "{used}");
+}
+
+/// The fewest ticks of all orders of a few points, of those that keep the rule where there is one.
+fn fewest(points: &[Point], shadow: Option<Shadow>, begun: &mut Vec<u32>) -> u64 {
+    if begun.len() == points.len() {
+        let is_legal = shadow.is_none_or(|shadow| broken(points, begun, shadow) == 0);
+        return if is_legal { ticks(points, begun, &clock()) } else { u64::MAX };
+    }
+    let mut least = u64::MAX;
+    for next in 0..points.len() as u32 {
+        if !begun.contains(&next) {
+            begun.push(next);
+            least = least.min(fewest(points, shadow, begun));
+            begun.pop();
+        }
+    }
+    least
+}
+
+#[test]
+fn no_order_takes_fewer_ticks_than_the_bound() {
+    let mut dice = Dice(3);
+    let (mut met, mut met_with_rule) = (0, 0);
+    for _ in 0..40 {
+        let points: Vec<Point> =
+            (0..5).map(|_| [0; 3].map(|_| 100 * dice.below(4) as i32)).collect();
+        let shadow = LENSES[1].1;
+        let of = |rule| bound(&points, &points, rule, &clock());
+        let (least, least_with_rule) = (of(None), of(Some(shadow)));
+        let best = fewest(&points, None, &mut Vec::new());
+        let best_with_rule = fewest(&points, Some(shadow), &mut Vec::new());
+        assert!(least <= best, "{points:?}: {least} > {best}");
+        assert!(least_with_rule <= best_with_rule, "{points:?}");
+        assert!(least <= least_with_rule);
+        met += u32::from(least == best);
+        met_with_rule += u32::from(least_with_rule == best_with_rule);
+    }
+    // It is a bound that is met where steps of more than two ticks are not needed.
+    assert!(met >= 10 && met_with_rule >= 10, "{met}, {met_with_rule}");
+}
+
+#[test]
+fn the_bound_counts_what_the_shadow_rule_forbids() {
+    // A row of five columns of two points, 0.15 mm apart and 0.15 mm high: free, one goes from each to each; by the rule the lower
+    // one of each column comes first.
+    let row: Vec<Point> = (0..10).map(|i| [150 * (i / 2), 0, 150 * (i % 2)]).collect();
+    let shadow = LENSES[1].1;
+    assert_eq!(bound(&row, &row, None, &clock()), 9);
+    assert_eq!(bound(&row, &row, Some(shadow), &clock()), 9);
+    // Two points 0.2 mm apart take two ticks; a third one far away has a step of two at least.
+    let far = [[0, 0, 0], [200, 0, 0], [5000, 0, 0]];
+    assert_eq!(bound(&far, &far, None, &clock()), 4);
+    // Of two points above each other, and one far away, each of the two could follow the other; by the rule the upper one follows.
+    let column = [[0, 0, 0], [0, 0, 90], [5000, 0, 0]];
+    assert_eq!(bound(&column, &column, None, &clock()), 2);
+    assert_eq!(bound(&column, &column, Some(shadow), &clock()), 3);
 }
 
 #[test]

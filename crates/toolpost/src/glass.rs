@@ -565,6 +565,14 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
             100.0 * proof.used
         ),
     ));
+    if let Some(least) = report.least_ticks {
+        rows.push((
+            "bound",
+            format!(
+                "no order takes fewer than {least} ticks (by assignment, with the shadow rule)"
+            ),
+        ));
+    }
     rows.push(("travel", format!("{:.1} mm from pulse to pulse", proof.travel)));
     rows.push(("proof", match made.proven {
         true => format!(
