@@ -56,7 +56,7 @@ impl Board {
 
     /// Save the board as a JSON file.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        save(py, path, self.text.as_bytes(), None, Vec::new())
+        save(py, path, self.text.as_bytes(), Vec::new(), None, Vec::new())
     }
 
     fn __repr__(&self) -> String {
