@@ -176,6 +176,25 @@ impl Arm {
         }
     }
 
+    /// The same arm, with a joint (number from 1 to 6) that turns less far than its maker lets it: cables and hoses hang on it. Radians.
+    ///
+    /// # Errors
+    /// A range that holds nothing, or goes beyond that of the maker.
+    pub fn with_range(mut self, number: usize, [min, max]: [f64; 2]) -> Result<Arm, Misfit> {
+        let wrong = |what: &str| Err(Misfit(format!("joint {number}: {what}")));
+        let Some(joint) = number.checked_sub(1).and_then(|i| self.joints.get_mut(i)) else {
+            return wrong("an arm has six joints");
+        };
+        if !joint.holds(min) || !joint.holds(max) {
+            return wrong("its range with cables goes beyond the limits of the joint");
+        }
+        if min >= max {
+            return wrong("its range with cables holds nothing");
+        }
+        (joint.min, joint.max) = (min, max);
+        Ok(self)
+    }
+
     /// How its links are put together.
     pub fn structure(&self) -> &Structure {
         &self.structure

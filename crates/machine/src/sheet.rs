@@ -252,6 +252,8 @@ sheet!(merged CellSheet "cell" {
     home: SixAngles, "degrees", "The joints at which programs begin and end, as the controller shows them.";
     joint_speed: Percent, "%", "Speed of moves of joints, of the fastest.";
     rapid: Rate, "mm/min", "Speed of the tip where it goes straight and does not cut.";
+    cable_joint_4: Range, "degrees", "From where to where joint 4 may turn with the cables and hoses on the arm, in cuts and in the air: two numbers within the limits of the joint, as the controller shows it.";
+    cable_joint_6: Range, "degrees", "The same of joint 6.";
     reentry_feed: Rate, "mm/min", "Feed straight out of a cut and back into it at the same place, where no turn about the tool and no posture carries the whole cut: the arm is retracted along the tool, takes another posture or turn above all cuts, and enters again. Without it such a cut is refused.";
     tool_change: String, "", "Name of the operator's program that changes the tool, called with its number. Without it the one tool of a program is in the spindle, and a program with several stops at home for each of them, to have it put in by hand.";
     spindle_output: u32, "", "Number of the digital output that switches the spindle on.";
@@ -352,6 +354,7 @@ value! {
     Angle(f64, "f64") |degrees| degrees.abs() <= 1e6, "a number from -1000000 to 1000000 degrees";
     Lean(f64, "f64") |degrees| above_0(*degrees, 90.0), "a number above 0, at most 90 degrees,";
     SixAngles([f64; 6], "[f64; 6]") |six| six.iter().all(|degrees| degrees.abs() <= 360.0), "six numbers from -360 to 360 degrees";
+    Range([f64; 2], "[f64; 2]") |range| range[0] < range[1] && range.iter().all(|degrees| degrees.abs() <= 3600.0), "two numbers from -3600 to 3600 degrees, the lower one first,";
     SixNumbers([f64; 6], "[f64; 6]") |six| six.iter().all(|number| number.abs() <= 1e5), "six numbers from -100000 to 100000";
     ArcSweep(f64, "f64") |degrees| (10.0..=180.0).contains(degrees), "a number from 10 to 180 degrees";
     OwnFrame(u32, "u32") |number| (1..=9).contains(number), "a whole number from 1 to 9";

@@ -209,3 +209,51 @@ fn a_cut_that_no_posture_carries_is_left_and_entered_again_and_the_line_is_repor
         }
     }
 }
+
+#[test]
+fn the_range_that_cables_leave_to_a_joint_is_kept_in_cuts_and_in_the_air() {
+    let (source, machine) = (source(robot::JOB), machine::load("kuka-kr6-r900").unwrap());
+    let text = proven(&source, &machine);
+    let with = |range: &str| {
+        let cables = format!("rapid = 6000\ncable_joint_6 = {range}");
+        robot::changed("kuka-kr6-r900", &[("rapid = 6000", &cables)])
+    };
+    let axis_6 = |text: &str| -> Vec<f64> {
+        let of = |path| match path {
+            control::ArmPath::Joints(joints) => Some(joints[5]),
+            _ => None,
+        };
+        robot::paths(control::Dialect::Krl, text).into_iter().filter_map(of).collect()
+    };
+    // The choice of all turns takes one that cables do not allow, so the joint comes the other way round, and the proof knows which.
+    let most = axis_6(&text).into_iter().map(f64::abs).fold(0.0, f64::max);
+    assert!(most > 100.0, "{text}");
+    let narrow = with("[-20, 200]");
+    let other = proven(&source, &narrow);
+    assert!(axis_6(&other).iter().all(|at| (-20.0..=200.0).contains(at)), "{other}");
+    let report = proof_of(&source, &narrow, &text);
+    assert_eq!(report.mismatches[0].rule.name(), "axis-limit", "{:?}", report.mismatches);
+    // A whole turn in the air, to the same pose: the maker's limits allow it, cables do not.
+    let start = axis_6(&other).into_iter().find(|at| *at != 0.0).unwrap_or(0.0);
+    let (from, to) = (
+        format!("A6 {start:.4}"),
+        format!("A6 {:.4}", start + if start > 0.0 { -360.0 } else { 360.0 }),
+    );
+    assert!((start + if start > 0.0 { -360.0 } else { 360.0_f64 }).abs() < 350.0, "{start}");
+    let damaged = other.replace(&from, &to);
+    assert_ne!(damaged, other, "{other}");
+    let report = proof_of(&source, &narrow, &damaged);
+    assert_eq!(report.mismatches[0].rule.name(), "axis-limit", "{:?}", report.mismatches);
+    // Ranges that are none.
+    let path = files::root().join("machines/robots/kuka-kr6-r900.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    for (range, what) in [
+        ("[-400, 100]", "beyond the limits of the joint"),
+        ("[100, -100]", "the lower one first"),
+        ("[10]", "cable_joint_6"),
+    ] {
+        let text = text.replace("rapid = 6000", &format!("rapid = 6000\ncable_joint_6 = {range}"));
+        let found = machine::load_text("mine.toml", &text).unwrap_err();
+        assert!(found.to_string().contains(what), "{found}");
+    }
+}

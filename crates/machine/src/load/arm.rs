@@ -61,6 +61,20 @@ pub(super) fn under(farther: Option<PlacedArm>, nearer: Option<PlacedArm>) -> Op
     }
 }
 
+/// The arm with the ranges that its cables leave.
+///
+/// # Errors
+/// One is no range within the limits of its joint.
+pub(super) fn with_cables(arm: Arm, sheet: &CellSheet) -> Said<Arm> {
+    let ranges = [(4, sheet.cable_joint_4), (6, sheet.cable_joint_6)];
+    ranges.into_iter().try_fold(arm, |arm, (number, range)| match range {
+        Some(range) => arm
+            .with_range(number, range.0.map(f64::to_radians))
+            .map_err(|why| format!("`cable_joint_{number}`: {why}")),
+        None => Ok(arm),
+    })
+}
+
 /// The cell of a table, all of whose needed keys are there.
 ///
 /// # Errors

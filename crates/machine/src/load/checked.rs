@@ -365,10 +365,13 @@ impl CheckedSheet {
                 "a wire leans by U and V: a wire machine has no [[rotary]] axes",
             ));
         }
-        let arm = self.arm.map(PlacedArm::finish).transpose()?;
-        let cell = self
-            .cell
-            .map(|Placed { sheet, place }| arm::cell(sheet).map_err(|why| wrong(&place, &why)));
+        let mut arm = self.arm.map(PlacedArm::finish).transpose()?;
+        let cell = self.cell.map(|Placed { sheet, place }| {
+            if let Some(whole) = arm.take() {
+                arm = Some(arm::with_cables(whole, &sheet).map_err(|why| wrong(&place, &why))?);
+            }
+            arm::cell(sheet).map_err(|why| wrong(&place, &why))
+        });
         let cell = cell.transpose()?;
         if arm.is_some() != cell.is_some() && self.reader.is_some() {
             return Err(missing(
