@@ -54,7 +54,10 @@ pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
     let as_typed = |words| Ok(Expanded { words, found: Vec::new() });
     let Ok(matches) = command.try_get_matches_from(&words) else { return as_typed(words) };
     let Some(("pcb", typed)) = matches.subcommand() else { return as_typed(words) };
-    let Some(file) = file(typed) else { return as_typed(words) };
+    let Some(file) = file(typed) else {
+        let found = lies_beside(typed, SETTINGS[1]).map(|file| unused(&file));
+        return Ok(Expanded { words, found: found.into_iter().collect() });
+    };
     let text = Source::File(file.clone()).text()?;
     let text = String::from_utf8_lossy(&text);
     let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
@@ -114,12 +117,21 @@ fn file(typed: &ArgMatches) -> Option<PathBuf> {
     if let Ok(Some(named)) = typed.try_get_one::<PathBuf>("settings") {
         return Some(named.clone());
     }
-    let mut boards = typed.try_get_many::<PathBuf>("board").ok()??;
-    let beside = |board: &PathBuf| match board.is_dir() {
-        true => board.join(SETTINGS[0]),
-        false => board.parent().unwrap_or(Path::new("")).join(SETTINGS[0]),
-    };
-    boards.next().map(beside).filter(|file| file.is_file())
+    lies_beside(typed, SETTINGS[0])
+}
+
+/// The file of that name beside the board, where there is one.
+fn lies_beside(typed: &ArgMatches, name: &str) -> Option<PathBuf> {
+    let board = typed.try_get_many::<PathBuf>("board").ok()??.next()?;
+    let folder = if board.is_dir() { board } else { board.parent().unwrap_or(Path::new("")) };
+    Some(folder.join(name)).filter(|file| file.is_file())
+}
+
+/// A millproject is of another program and perhaps of another machine: nobody has asked for it.
+fn unused(file: &Path) -> Diagnostic {
+    let message = "the options of pcb2gcode beside the board are not used";
+    let help = format!("take them by `--settings {}`", file.display());
+    Diagnostic::warning(Rule::FileUnused, message).help(help).file(file.display().to_string())
 }
 
 /// The options that a TOML file states.

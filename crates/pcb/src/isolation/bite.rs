@@ -5,11 +5,15 @@ use super::field::Field;
 use crate::{Copper, SAME};
 use geom::{Element, Vec2};
 
-/// The most copper that a cut down the middle of a gap takes from either side, mm.
+/// The most copper that a cut down the middle of a gap takes from either side, mm: of the middle as it is calculated.
 pub const MOST_BITE: f64 = 0.03;
 
 /// The most that it takes of the copper behind the edge, as a part.
 const MOST_PART: f64 = 0.1;
+
+/// By how much more than both a bite is at most, mm: the tool follows a path of few lines, 1 µm beside the middle, and what is
+/// taken is looked at from place to place.
+pub const BITE_OFF: f64 = 0.002;
 
 /// So much of the copper behind an edge belongs to the edge itself, mm: twice what a region may be off.
 const EDGE: f64 = 0.002;

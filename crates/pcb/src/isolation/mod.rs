@@ -18,7 +18,7 @@ mod severed;
 mod slot;
 mod swept;
 
-pub use bite::MOST_BITE;
+pub use bite::{BITE_OFF, MOST_BITE};
 pub use gap::{FITS, Fate, NarrowGap};
 pub use severed::{Severed, severed};
 pub use slot::Slot;
@@ -63,7 +63,7 @@ pub enum Direction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Narrow {
     /// A cut down the middle where it takes no more than [`MOST_BITE`] mm, and a tenth of the copper behind the edge, from
-    /// either side; else nothing.
+    /// either side, both to [`BITE_OFF`] mm; else nothing.
     Bite,
     /// Nothing: the conductors stay joined there.
     LeaveOut,

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use toolpost_pcb::board::covered;
 use toolpost_pcb::isolation::{
-    Direction, Fate, Isolated, Isolation, MOST_BITE, Narrow, NarrowGap, severed,
+    BITE_OFF, Direction, Fate, Isolated, Isolation, MOST_BITE, Narrow, NarrowGap, severed,
 };
 use toolpost_pcb::{Copper, Cutter, Path, gerber};
 
@@ -325,7 +325,12 @@ fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
     let most: f64 = made.map(|gap| (gap.length + width) * 2.0 * gap.thinned(width)).sum();
     assert!(narrow != Narrow::LeaveOut || most == 0.0);
     if narrow == Narrow::Bite {
-        let deep = copper.region.offset(-MOST_BITE - 0.003).unwrap().intersection(&cut).unwrap();
+        let deep = copper
+            .region
+            .offset(-MOST_BITE - BITE_OFF - 0.001)
+            .unwrap()
+            .intersection(&cut)
+            .unwrap();
         assert!(deep.area() < 1e-6, "{name}: {} mm² too deep, {:?}", deep.area(), deep.extents());
     }
     let lost = copper.region.intersection(&cut).unwrap().area();

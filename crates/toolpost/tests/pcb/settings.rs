@@ -121,6 +121,14 @@ fn a_millproject_is_imported() {
     assert_eq!(report["programs"][0]["operations"][0], "isolation, end mill 0.4 mm");
     let drill = folder.read("out/drill.gcode");
     assert!(drill.contains("Z-1.8") && drill.contains("F50"), "{drill}");
+    // Beside the board it is not used unasked, and a warning says how it would be.
+    let beside =
+        ["pcb", "board", "--tool", "0.4", "-o", "other", "-m", "grbl-3018", "--picture", "none"];
+    let said = folder.run(&beside);
+    assert!(said.code == 0 && folder.read("other/front.gcode").contains("S10000"), "{said:?}");
+    for word in ["warning[file-unused]", "--settings board/millproject"] {
+        assert!(said.err.contains(word), "{word}: {}", said.err);
+    }
     for (line, word) in [
         ("zwork\n", "key=value"),
         ("zwork=deep\n", "`zwork=deep`"),
