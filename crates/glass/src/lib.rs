@@ -37,6 +37,7 @@ pub mod material;
 pub mod mesh;
 pub mod optics;
 pub mod order;
+mod pcx;
 pub mod picture;
 pub mod polar;
 pub mod post;

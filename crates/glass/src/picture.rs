@@ -7,9 +7,10 @@
 
 use crate::cloud::{self, Point};
 use crate::mesh::{Fault, Mesh};
+use crate::pcx;
 use crate::sample::{self, Apart, Dice, SHRINK};
 use glam::{DVec2, DVec3};
-use image::{ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use program::{Diagnostic, Rule};
 use std::io::Cursor;
 
@@ -81,7 +82,7 @@ pub struct Picture {
     pub setting: Setting,
 }
 
-/// Reads the bytes of the picture `file`: PNG, JPEG or BMP, upright as its camera says.
+/// Reads the bytes of the picture `file`: PNG, JPEG, BMP or PCX, upright as its camera says.
 ///
 /// # Errors
 /// It is none, is cut off, or has more pixels than are read.
@@ -89,7 +90,17 @@ pub fn read(bytes: &[u8], setting: Setting, file: &str) -> Result<Picture, Box<D
     decoded(bytes, setting).map_err(|fault| fault.diagnostic(file))
 }
 
-fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
+/// What is said of a picture beyond the limit.
+pub(crate) fn too_many(width: u64, height: u64) -> Fault {
+    let message = format!(
+        "{width} x {height} pixels are more than the {} million that are read",
+        MOST_PIXELS / 1_000_000
+    );
+    Fault::new(Rule::TooLarge, message)
+}
+
+/// The pixels of a picture of one of the forms that the crate `image` reads, upright.
+fn of_image(bytes: &[u8]) -> Result<DynamicImage, Fault> {
     let wrong = |error: image::ImageError| Fault::new(Rule::Image, error.to_string());
     let open = |error: std::io::Error| Fault::new(Rule::Image, error.to_string());
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(open)?;
@@ -99,15 +110,17 @@ fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
     let mut decoder = reader.into_decoder().map_err(wrong)?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        let message = format!(
-            "{width} x {height} pixels are more than the {} million that are read",
-            MOST_PIXELS / 1_000_000
-        );
-        return Err(Fault::new(Rule::TooLarge, message));
+        return Err(too_many(u64::from(width), u64::from(height)));
     }
     let orientation = decoder.orientation().map_err(wrong)?;
-    let mut picture = image::DynamicImage::from_decoder(decoder).map_err(wrong)?;
+    let mut picture = DynamicImage::from_decoder(decoder).map_err(wrong)?;
     picture.apply_orientation(orientation);
+    Ok(picture)
+}
+
+fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
+    let picture =
+        if pcx::is_pcx(bytes) { pcx::read(bytes, MOST_PIXELS)? } else { of_image(bytes)? };
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     if width == 0 || height == 0 {
         return Err(Fault::new(Rule::Empty, "has no pixel"));
@@ -122,7 +135,7 @@ fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
     Ok(Picture { width, height, values, setting })
 }
 
-/// Reads the bytes of a texture: PNG, JPEG or BMP.
+/// Reads the bytes of a texture: PNG, JPEG, BMP or PCX.
 pub(crate) fn texture(bytes: &[u8]) -> Result<Picture, Fault> {
     let (manner, sheets) = (Manner::Dither, (1, None));
     decoded(bytes, Setting { plane: Plane::Xz, width: None, manner, invert: false, sheets })

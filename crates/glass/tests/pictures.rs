@@ -171,6 +171,63 @@ fn photographs_are_read_as_png_jpeg_and_bmp_and_transparent_pixels_are_black() {
     assert_eq!(cloud(deep).len(), white.len());
 }
 
+/// A PCX picture of 3 x 2 pixels: version 5, so many bits a plane and planes, four bytes a row and plane, the first colours of the
+/// palette in the header, and packed rows.
+fn pcx(bits: u8, planes: u8, colors: &[u8], packed: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![0; 128];
+    bytes[..12].copy_from_slice(&[10, 5, 1, bits, 10, 0, 20, 0, 12, 0, 21, 0]);
+    bytes[16..16 + colors.len()].copy_from_slice(colors);
+    (bytes[65], bytes[66]) = (planes, 4);
+    bytes.extend(packed);
+    bytes
+}
+
+#[test]
+fn pcx_pictures_are_read_in_all_their_depths() {
+    // Above white, black, white; below black, black, white.
+    let bright = |bytes: &[u8]| {
+        let setting = Setting { width: Some(0.399_001), ..setting(Manner::Raster(0.5)) };
+        let mut points = cloud(shape(bytes, setting));
+        points.sort_unstable();
+        points
+    };
+    let want = bright(&grey(3, &[255, 0, 255, 0, 0, 255]));
+    assert_eq!(want.len(), 3);
+    // One bit: 101, 001; a run of two bytes 0 after each first one, and one alone.
+    assert_eq!(bright(&pcx(1, 1, &[], &[0xa0, 0xc3, 0, 0x20, 0xc3, 0])), want);
+    // Four planes of a bit: colour 9 (planes 1 and 4) is white, 0 is black.
+    let mut colors = [0; 48];
+    colors[27..30].fill(255);
+    let row = |bits: u8| [&[bits, 0xc3, 0][..], &[0xc8, 0], &[bits, 0xc3, 0]].concat();
+    assert_eq!(bright(&pcx(1, 4, &colors, &[row(0xa0), row(0x20)].concat())), want);
+    // Four bits: colours 9, 0 and 9, 0 in two bytes.
+    assert_eq!(bright(&pcx(4, 1, &colors, &[0x90, 0x90, 0xc2, 0, 0, 0x90, 0xc2, 0])), want);
+    // 256 colours at the end: number 200 is white. A run of three 0 goes on in the next row.
+    let mut bytes = pcx(8, 1, &[], &[0xc1, 200, 0, 0xc1, 200, 0xc3, 0, 0xc1, 200, 0]);
+    bytes.push(12);
+    bytes.extend((0..256).flat_map(|i| [if i == 200 { 255u8 } else { 0 }; 3]));
+    assert_eq!(bright(&bytes), want);
+    // Red, green and blue, one plane after the other in each row: 255 is a run of one.
+    let planes = |row: [u8; 3]| {
+        let one = row.iter().flat_map(|&value| [0xc1, value]).chain([0]).collect::<Vec<u8>>();
+        one.repeat(3)
+    };
+    let packed = [planes([255, 0, 255]), planes([0, 0, 255])].concat();
+    assert_eq!(bright(&pcx(8, 3, &[], &packed)), want);
+    let refused = |bytes: &[u8]| {
+        picture::read(bytes, setting(Manner::Dither), "a.pcx").unwrap_err().rule.name()
+    };
+    assert_eq!(refused(&pcx(8, 3, &[], &packed[..20])), "image");
+    assert_eq!(refused(&pcx(8, 1, &[], &[0xc8, 0])), "image");
+    assert_eq!(refused(&pcx(8, 4, &[], &packed)), "image");
+    assert_eq!(refused(&pcx(1, 1, &[], &[])[..100]), "image");
+    let mut large = pcx(8, 3, &[], &packed);
+    large[8..12].fill(255);
+    assert_eq!(refused(&large), "too-large");
+    large[8..12].fill(0);
+    assert_eq!(refused(&large), "empty");
+}
+
 #[test]
 fn pictures_that_cannot_be_are_refused() {
     let good = grey(40, &(0..1600).map(|i| (i * 37 % 251) as u8).collect::<Vec<u8>>());
