@@ -57,6 +57,9 @@ pub struct Placing {
 pub struct Settings {
     /// How they lie.
     pub placing: Placing,
+    /// Bodies that lie by themselves, without regard to the others: their numbers, from 0, and how. Block and margin are those of
+    /// `placing`.
+    pub alone: Vec<(usize, Placing)>,
     /// How many equal blocks are made.
     pub blocks: u32,
     /// Focal length of the lens, mm.
@@ -94,8 +97,10 @@ pub struct Report {
     pub from: [f64; 3],
     /// To where.
     pub to: [f64; 3],
-    /// By how much the body was scaled.
+    /// By how much the bodies were scaled that lie in one frame.
     pub scale: f64,
+    /// Bodies that lie by themselves.
+    pub alone: Vec<Alone>,
     /// Smallest distance asked for, mm.
     pub spacing: f64,
     /// What it is.
@@ -131,6 +136,19 @@ pub struct Report {
     pub accepted: Vec<Rule>,
     /// What the proof found.
     pub proof: Proof,
+}
+
+/// Where a body lies that is placed by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Alone {
+    /// Its number, from 1.
+    pub body: usize,
+    /// By how much it was scaled.
+    pub scale: f64,
+    /// Where it begins, mm.
+    pub from: [f64; 3],
+    /// Where it ends, mm.
+    pub to: [f64; 3],
 }
 
 /// A job that is done.
@@ -214,6 +232,7 @@ struct Job<'m> {
     welded: u64,
     left: Left,
     scale: f64,
+    alone: Vec<Alone>,
     spacing: f64,
     micrometres: u32,
     apart: Apart,
@@ -247,13 +266,9 @@ impl<'m> Job<'m> {
         enough_energy(material, machine, &lens, settings)?;
         let Placing { block, margin, .. } = settings.placing;
         let room = DVec3::from_array(block) - 2.0 * margin;
-        let mut parts = Parts::new(shapes, room, apart)?;
+        let (mut parts, scale, alone) = placed(shapes, room, apart, settings)?;
         let mut findings = std::mem::take(&mut parts.warnings);
         findings.extend(parts.health.iter().filter_map(unhealthy));
-        let scale = place(
-            [&mut parts.mesh.vertices, &mut parts.points, &mut parts.corners, &mut parts.curves],
-            &settings.placing,
-        )?;
         let (cloud, welded, left) = discretise(&parts, settings, apart)?;
         findings.extend(left_out(&left, &settings.filling));
         if let Some(chain) = &machine.chain {
@@ -278,6 +293,7 @@ impl<'m> Job<'m> {
             welded,
             left,
             scale,
+            alone,
             spacing,
             micrometres,
             apart,
@@ -425,6 +441,7 @@ impl<'m> Job<'m> {
             from: low.map(|value| f64::from(value) / 1e3),
             to: high.map(|value| f64::from(value) / 1e3),
             scale: self.scale,
+            alone: self.alone,
             spacing,
             distances,
             health: self.health,
@@ -708,6 +725,24 @@ impl Parts {
         Ok(parts)
     }
 
+    /// Takes over what `other` has.
+    fn join(&mut self, other: Parts) {
+        self.mesh.join(other.mesh);
+        self.health.extend(other.health);
+        self.points.extend(other.points);
+        self.pictures.extend(other.pictures);
+        self.corners.extend(other.corners);
+        self.curves.extend(other.curves);
+        self.lengths.extend(other.lengths);
+        self.warnings.extend(other.warnings);
+    }
+
+    /// Moves all to its place in the block; answers the scale, and from where to where it reaches.
+    fn place(&mut self, placing: &Placing) -> Result<(f64, [DVec3; 2]), Vec<Diagnostic>> {
+        let Parts { mesh, points, corners, curves, .. } = self;
+        place([&mut mesh.vertices, points, corners, curves], placing)
+    }
+
     /// The corners of each curve, as they are placed.
     fn curves(&self) -> impl Iterator<Item = &[DVec3]> + Clone {
         let start = |at: &mut usize, length: &usize| Some(std::mem::replace(at, *at + length));
@@ -721,6 +756,57 @@ impl Parts {
         let each = pictures.flat_map(|(picture, count)| std::iter::repeat_n(picture, *count));
         each.zip(self.corners.chunks_exact(4).map(Sheet::new))
     }
+}
+
+/// Puts `shapes` to their places in the block: those that lie by themselves one by one, and all others in one frame, whose scale is
+/// answered.
+fn placed(
+    shapes: Vec<Shape>,
+    room: DVec3,
+    apart: Apart,
+    settings: &Settings,
+) -> Result<(Parts, f64, Vec<Alone>), Vec<Diagnostic>> {
+    let count = shapes.len();
+    for (at, (number, _)) in settings.alone.iter().enumerate() {
+        let message = if *number >= count {
+            format!("there are {count} bodies, no body {}", number + 1)
+        } else if settings.alone[..at].iter().any(|(earlier, _)| earlier == number) {
+            format!("body {} is placed twice", number + 1)
+        } else {
+            continue;
+        };
+        return Err(error(
+            Rule::GlassBlock,
+            message,
+            "give each --place the number of another body, from 1",
+        ));
+    }
+    let (mut together, mut by_themselves) = (Vec::new(), Vec::new());
+    for (number, shape) in shapes.into_iter().enumerate() {
+        match settings.alone.iter().find(|(own, _)| *own == number) {
+            Some((_, placing)) => by_themselves.push((number, shape, placing)),
+            None => together.push(shape),
+        }
+    }
+    let has_frame = !together.is_empty() || by_themselves.is_empty();
+    let mut parts = Parts::new(together, room, apart)?;
+    let scale = if has_frame { parts.place(&settings.placing)?.0 } else { 1.0 };
+    let mut alone = Vec::new();
+    for (number, shape, placing) in by_themselves {
+        let Placing { block, margin, .. } = settings.placing;
+        let in_body = |found: Diagnostic| {
+            let message = format!("body {}: {}", number + 1, found.message);
+            Diagnostic { message, ..found }
+        };
+        let mut own = Parts::new(vec![shape], room, apart)?;
+        let (scale, ends) = own
+            .place(&Placing { block, margin, ..*placing })
+            .map_err(|found| found.into_iter().map(in_body).collect::<Vec<_>>())?;
+        let [from, to] = ends.map(|end| end.to_array());
+        alone.push(Alone { body: number + 1, scale, from, to });
+        parts.join(own);
+    }
+    Ok((parts, scale, alone))
 }
 
 /// What is said of parts of bodies that became no points.
@@ -779,8 +865,11 @@ fn cut_off(cut: Cut, margin: f64) -> Option<Diagnostic> {
     })
 }
 
-/// Moves bodies, points and pictures to their place in the block; answers their scale.
-fn place(mut groups: [&mut Vec<DVec3>; 4], placing: &Placing) -> Result<f64, Vec<Diagnostic>> {
+/// Moves bodies, points and pictures to their place in the block; answers their scale, and from where to where they reach.
+fn place(
+    mut groups: [&mut Vec<DVec3>; 4],
+    placing: &Placing,
+) -> Result<(f64, [DVec3; 2]), Vec<Diagnostic>> {
     let [x, y, z] = placing.turn.map(f64::to_radians);
     let mirror =
         DVec3::from_array(placing.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 }));
@@ -810,7 +899,7 @@ fn place(mut groups: [&mut Vec<DVec3>; 4], placing: &Placing) -> Result<f64, Vec
         0.5 * DVec3::from_array(placing.block) + DVec3::from_array(placing.shift),
     );
     let Some((low, high)) = each(&|place| (place - middle) * scale + target) else {
-        return Ok(scale);
+        return Ok((scale, [target; 2]));
     };
     let (least, most) = (
         DVec3::splat(placing.margin - SLACK),
@@ -844,7 +933,7 @@ fn place(mut groups: [&mut Vec<DVec3>; 4], placing: &Placing) -> Result<f64, Vec
         };
         return Err(error(Rule::DoesNotFit, message, &help));
     }
-    Ok(scale)
+    Ok((scale, [low, high]))
 }
 
 /// The cloud of bodies, pictures and points, and how many points of them were too close to others.

@@ -475,6 +475,56 @@ fn bodies_are_turned_mirrored_scaled_and_moved() {
 }
 
 #[test]
+fn bodies_are_placed_by_themselves() {
+    let corner = |x: f64, y: f64| glam::DVec3::new(x, y, 0.0);
+    let points = || Shape::Points(vec![corner(0.0, 0.0), corner(4.0, 0.0), corner(0.0, 2.0)]);
+    let with = |alone: Vec<(usize, Placing)>| {
+        make(
+            vec![points(), points()],
+            &k9(),
+            &machine("numbered"),
+            &Settings { alone, ..settings() },
+        )
+    };
+    let own = settings().placing;
+    let sorted = |mut cloud: Vec<Point>| {
+        cloud.sort_unstable();
+        cloud
+    };
+    // The first one stays centred in 20 x 20 x 30 mm. The second one is mirrored (its corner at the right), turned by 90 degrees about
+    // Z (X goes to Y, Y to -X: the corner at the back right), half as large (1 x 2 mm), and its middle 5 mm above that of the block.
+    let mut placing = Placing { scale: Some(0.5), shift: [0.0, 0.0, 5.0], ..own };
+    (placing.turn[2], placing.mirror[0]) = (90.0, true);
+    let made = with(vec![(1, placing)]).unwrap();
+    assert!(made.proven, "{:?}", made.findings);
+    assert_eq!(
+        sorted(made.cloud),
+        [
+            [8_000, 9_000, 15_000],
+            [8_000, 11_000, 15_000],
+            [9_500, 11_000, 20_000],
+            [10_500, 9_000, 20_000],
+            [10_500, 11_000, 20_000],
+            [12_000, 9_000, 15_000],
+        ]
+    );
+    let [alone] = made.report.alone[..] else { panic!("{:?}", made.report.alone) };
+    assert_eq!((alone.body, alone.scale, made.report.scale), (2, 0.5, 1.0));
+    assert_eq!((alone.from, alone.to), ([9.5, 9.0, 20.0], [10.5, 11.0, 20.0]));
+    // Both by themselves; in the same place they are the same points.
+    let made = with(vec![(1, own), (0, own)]).unwrap();
+    assert_eq!((made.report.points, made.report.welded), (3, 3));
+    let refused = |alone| {
+        let found = with(alone).unwrap_err();
+        (found[0].rule.name(), found[0].message.clone())
+    };
+    let (rule, message) = refused(vec![(1, Placing { shift: [9.0, 0.0, 0.0], ..own })]);
+    assert!(rule == "does-not-fit" && message.starts_with("body 2: "), "{message}");
+    assert!(refused(vec![(2, own)]).1.contains("no body 3"));
+    assert!(refused(vec![(1, own), (1, own)]).1.contains("placed twice"));
+}
+
+#[test]
 fn the_writer_and_the_judge_share_nothing_but_the_machine() {
     let source = |file: &str| {
         std::fs::read_to_string(format!("{}/src/{file}.rs", env!("CARGO_MANIFEST_DIR"))).unwrap()

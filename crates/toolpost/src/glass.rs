@@ -224,7 +224,7 @@ fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
         Ok(Shape::Curves(curve::read(&files::read(path)?, form, &files::name(path))?))
     };
     match ending.as_str() {
-        "png" | "jpg" | "jpeg" | "bmp" => {}
+        "png" | "jpg" | "jpeg" | "bmp" | "pcx" => {}
         "dxf" => return curves(curve::Form::Dxf),
         "plt" | "hpgl" | "hpg" => return curves(curve::Form::Hpgl),
         _ if job.filling.fill == Filled::Shaded => return painted(path, job.columns),
@@ -303,7 +303,12 @@ fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
         mirror: [0, 1, 2].map(|axis| args.placing.mirror.contains(&axis)),
         shift: args.placing.r#move,
     };
+    let alone = |own: &args::Alone| {
+        let args::Alone { body, scale, fit, turn, mirror, r#move } = *own;
+        (body, Placing { scale, fit, turn, mirror, shift: r#move, ..placing })
+    };
     Settings {
+        alone: args.placing.place.iter().map(alone).collect(),
         placing,
         blocks: args.blocks,
         focal: args.lens,
@@ -517,6 +522,13 @@ fn account(made: &Made, machine: &Machine, material: &material::Material) -> Acc
         "points",
         format!("{} from {} to {} mm", report.points, three(report.from), three(report.to)),
     ));
+    for body in &report.alone {
+        let (from, to) = (three(body.from), three(body.to));
+        rows.push((
+            "placed",
+            format!("body {} by itself, scale {}, from {from} to {to} mm", body.body, body.scale),
+        ));
+    }
     if report.welded > 0 {
         rows.push((
             "left out",

@@ -26,6 +26,7 @@ pub fn settings(block: [f64; 3], tries: u64) -> Settings {
             mirror: [false; 3],
             shift: [0.0; 3],
         },
+        alone: Vec::new(),
         blocks: 1,
         focal: 70.0,
         spacing: None,

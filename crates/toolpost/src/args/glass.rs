@@ -140,7 +140,7 @@ pub struct Engrave {
 /// What is engraved, and on what: the points of a job, the same whenever the same is given.
 #[derive(Debug, Args)]
 pub struct Job {
-    /// Bodies (.stl, .obj, .ply, .3mf), pictures (.png, .jpg, .bmp), curves (.dxf, .plt, .hpgl) and lists of points (.xyz, .txt,
+    /// Bodies (.stl, .obj, .ply, .3mf), pictures (.png, .jpg, .bmp, .pcx), curves (.dxf, .plt, .hpgl) and lists of points (.xyz, .txt,
     /// .csv, .cft), all in one block and in one frame; mm.
     #[arg(value_name = "BODY", required = true)]
     pub bodies: Vec<PathBuf>,
@@ -337,6 +337,27 @@ pub struct Placing {
     /// Move them from the middle of the block.
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, default_value = "0,0,0")]
     pub r#move: [f64; 3],
+    /// Place a body by itself, without regard to the others: its number in the order of the bodies, from 1, then what it has of
+    /// mirror=x,y turn=X,Y,Z scale=FACTOR (or fit) move=X,Y,Z, as above; such as "2 scale=0.5 move=10,0,-5". Once for each such body.
+    #[arg(long, value_name = "NUMBER ...", value_parser = alone)]
+    pub place: Vec<Alone>,
+}
+
+/// How a body lies by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Alone {
+    /// Its number, from 0.
+    pub body: usize,
+    /// Its scale.
+    pub scale: Option<f64>,
+    /// Whether it is scaled to fit.
+    pub fit: bool,
+    /// How it is turned, degrees.
+    pub turn: [f64; 3],
+    /// Along which axes it is mirrored.
+    pub mirror: [bool; 3],
+    /// How far its middle is from that of the block.
+    pub r#move: [f64; 3],
 }
 
 /// The order of the points.
@@ -404,6 +425,52 @@ fn block(text: &str) -> Result<[f64; 3], String> {
     let sides: Option<[f64; 3]> = lengths(&text.replace(['x', 'X'], ","));
     let sides = sides.filter(|sides| sides.iter().all(|side| *side > 0.0 && *side <= 1000.0));
     sides.ok_or_else(|| String::from("three sides in mm are needed, up to 1000, such as 50x50x80"))
+}
+
+/// The place of a body by itself.
+fn alone(text: &str) -> Result<Alone, String> {
+    let mut words = text.split_whitespace();
+    let number = words.next().and_then(|word| word.parse::<usize>().ok()?.checked_sub(1));
+    let body = number.ok_or_else(|| {
+        String::from("the number of a body comes first, from 1, such as \"2 scale=0.5\"")
+    })?;
+    let mut own = Alone { body, ..Alone::default() };
+    let mut known: Vec<&str> = Vec::new();
+    for word in words {
+        let (key, value) = word.split_once('=').unwrap_or((word, ""));
+        if known.contains(&key) {
+            return Err(format!("`{key}` stands twice"));
+        }
+        known.push(key);
+        let three = || {
+            lengths(value)
+                .ok_or_else(|| format!("`{word}`: three numbers are needed, such as {key}=10,0,-5"))
+        };
+        match key {
+            "fit" if word == "fit" => own.fit = true,
+            "turn" => own.turn = three()?,
+            "move" => own.r#move = three()?,
+            "scale" => {
+                let scale =
+                    value.parse().ok().filter(|scale: &f64| scale.is_finite() && *scale > 0.0);
+                let wrong = || format!("`{word}`: a number greater than 0 is needed");
+                own.scale = Some(scale.ok_or_else(wrong)?);
+            }
+            "mirror" => {
+                for axis in value.split(',') {
+                    let found = AXES.iter().find(|(name, ..)| *name == axis);
+                    let (.., axis) =
+                        found.ok_or_else(|| format!("`{word}`: there are the axes x, y and z"))?;
+                    own.mirror[*axis] = true;
+                }
+            }
+            _ => return Err(format!("`{word}` is none of mirror=, turn=, scale=, fit and move=")),
+        }
+    }
+    if own.fit && own.scale.is_some() {
+        return Err(String::from("`fit` and `scale` cannot both be"));
+    }
+    Ok(own)
 }
 
 /// A part of the whole.

@@ -75,6 +75,44 @@ fn a_body_becomes_a_proven_program_and_a_report() {
 }
 
 #[test]
+fn a_body_is_placed_by_itself_and_proven_there() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    folder.write("dots.xyz", "0 0 0\n1 0 0\n");
+    let placed = ["dots.xyz", "--place", "2 scale=2 turn=0,0,90 mirror=x,y move=5,0,-4"];
+    let said = engrave(&folder, &placed);
+    assert!(said.code == 0, "{said:?}");
+    // 1 mm, twice as large and along Y, around 10 + 5, 10, 15 - 4.
+    let row = "placed      body 2 by itself, scale 2, from 15.000 9.000 11.000 to 15.000 11.000 11.000 mm";
+    assert!(said.out.contains(row), "{said:?}");
+    let prove = |place: &str| {
+        let mut words =
+            vec!["glass", "prove", "roof.prg", "roof.stl", "dots.xyz", "--place", place];
+        words.extend(["--block", "20x20x30", "--material", "k9", "--lens", "70"]);
+        words.extend(["--machine", "glass-xyz-100hz"]);
+        folder.run(&words)
+    };
+    assert_eq!(prove(placed[2]).code, 0);
+    let said = prove("2 scale=2 turn=0,0,90 mirror=x,y move=4,0,-4");
+    assert!(said.code == 1 && said.err.contains("error[lost]"), "{said:?}");
+    for (place, what) in [
+        ("0", "the number of a body comes first"),
+        ("scale=2", "the number of a body comes first"),
+        ("2 scale=0", "greater than 0"),
+        ("2 scale=2 fit", "cannot both be"),
+        ("2 turn=1,2", "three numbers"),
+        ("2 turn=nan,2,3", "three numbers"),
+        ("2 mirror=w", "the axes x, y and z"),
+        ("2 move=1,1,1 move=2,2,2", "stands twice"),
+        ("2 spin=1", "is none of"),
+        ("3", "no body 3"),
+    ] {
+        let said = engrave(&folder, &["dots.xyz", "--place", place]);
+        assert!(said.code == 2 && said.err.contains(what), "{place}: {said:?}");
+    }
+}
+
+#[test]
 fn what_cannot_be_engraved_is_refused_and_saves_nothing() {
     let folder = Folder::empty();
     folder.write("roof.stl", body());
