@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use std::io::{Cursor, Write};
-use toolpost_glass::mesh::{Form, Mesh, Shape, read};
+use toolpost_glass::mesh::{Form, Mesh, Paint, Shape, read, read_painted};
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 /// An archive of these files.
@@ -133,4 +133,63 @@ fn archives_that_are_cut_off_grow_or_hold_other_shapes_are_refused() {
     let bomb = archive(&[("3D/3dmodel.model", &vec![b' '; 300 << 20])]);
     assert!(bomb.len() < 1 << 20);
     assert_eq!(shape(&bomb).unwrap_err().0, "too-large");
+}
+
+/// What is painted of an archive with this model and a texture.
+fn painted(text: &str) -> Result<Mesh, (&'static str, String)> {
+    let mut png = Cursor::new(Vec::new());
+    let grey = image::GrayImage::from_raw(2, 1, vec![0, 255]).unwrap();
+    grey.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let files = [("3D/3dmodel.model", text.as_bytes()), ("3D/grey.png", png.get_ref())];
+    match read_painted(&archive(&files), Form::ThreeMf, "roof.3mf", Some(&mut |_| unreachable!())) {
+        Ok(Shape::Mesh(mesh)) => Ok(mesh),
+        Ok(other) => panic!("{other:?}"),
+        Err(found) => Err((found.rule.name(), found.message.clone())),
+    }
+}
+
+#[test]
+fn colours_materials_and_textures_are_the_light_of_triangles() {
+    let properties = "<basematerials id=\"5\"><base name=\"a\" displaycolor=\"#000000\"/>\
+        <base name=\"b\" displaycolor=\"#FFFFFF80\"/></basematerials>\
+        <colorgroup id=\"6\"><color color=\"#FF0000\"/><color color=\"#00FF00\"/><color color=\"#0000FF\"/></colorgroup>\
+        <texture2d id=\"7\" path=\"/3D/grey.png\" contenttype=\"image/png\"/><texture2dgroup id=\"8\" texid=\"7\">\
+        <tex2coord u=\"0\" v=\"0\"/><tex2coord u=\"1\" v=\"0\"/><tex2coord u=\"0.5\" v=\"1\"/></texture2dgroup>";
+    // The object is of the second material; the first triangle has a colour at each corner, the second one the first material, the third a
+    // texture.
+    let body = roof(1, 3.0)
+        .replace("type=\"model\"", "pid=\"5\" pindex=\"1\"")
+        .replace("v3=\"1\"/>", "v3=\"1\" pid=\"6\" p1=\"0\" p2=\"1\" p3=\"2\"/>")
+        .replace("v2=\"1\" v3=\"3\"/>", "v2=\"1\" v3=\"3\" p1=\"0\"/>")
+        .replace("v3=\"2\"/>", "v3=\"2\" pid=\"8\" p1=\"0\" p2=\"1\" p3=\"2\"/>");
+    // As it is, and mirrored along X, which exchanges the last two corners.
+    let items =
+        "<item objectid=\"1\"/><item objectid=\"1\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"/>";
+    let text = model("millimeter", &format!("{properties}{body}"), items);
+    let mesh = painted(&text).unwrap();
+    assert_eq!((mesh.paint.len(), mesh.textures.len()), (8, 1));
+    // IEC 61966-2-1: red, green and blue have these parts of the light of white.
+    assert_eq!(mesh.paint[0], Paint::Corners([0.2126, 0.7152, 0.0722]));
+    assert_eq!(mesh.paint[1], Paint::Corners([0.0; 3]));
+    assert_eq!(mesh.paint[2], Paint::Texture(0, [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]));
+    assert_eq!(mesh.paint[3], Paint::Corners([1.0; 3]));
+    assert_eq!(mesh.paint[4], Paint::Corners([0.2126, 0.0722, 0.7152]));
+    assert_eq!(mesh.paint[6], Paint::Texture(0, [[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]));
+    let [first, second, _] = mesh.corners(2);
+    assert_eq!((mesh.light(2, first), mesh.light(2, second)), (0.0, 1.0));
+    // Nobody asked for it.
+    let files = [("3D/3dmodel.model", text.as_bytes())];
+    assert!(shape(&archive(&files)).unwrap().paint.is_empty());
+    for (old, new, what) in [
+        ("#FF0000", "red", "`red` is no colour"),
+        ("pid=\"6\"", "pid=\"9\"", "group 9"),
+        ("p3=\"2\"", "p3=\"3\"", "has no 3"),
+        ("u=\"0.5\"", "u=\"x\"", "the numbers u and v"),
+        ("texid=\"7\"", "texid=\"6\"", "no texture before it"),
+        ("/3D/grey.png", "/3D/other.png", "3D/other.png"),
+        ("contenttype", "tilestyleu=\"clamp\" contenttype", "not repeated"),
+    ] {
+        let found = painted(&text.replace(old, new)).unwrap_err();
+        assert!(found.1.contains(what), "{old}: {found:?}");
+    }
 }

@@ -3,6 +3,7 @@
 mod obj;
 mod paint;
 mod ply;
+mod properties;
 mod shell;
 mod stl;
 mod threemf;
@@ -95,7 +96,7 @@ pub fn read(bytes: &[u8], form: Form, file: &str) -> Result<Shape, Box<Diagnosti
     read_painted(bytes, form, file, None)
 }
 
-/// As [`read`]; with `beside`, colours and textures of OBJ and PLY are read too.
+/// As [`read`]; with `beside`, colours and textures of OBJ, PLY and 3MF are read too.
 ///
 /// # Errors
 /// As [`read`]; or where a file that this one names cannot be read.
@@ -113,11 +114,12 @@ pub fn read_painted(
     } else {
         encoding::without_mark(bytes)
     };
+    let painted = beside.is_some();
     let read = match form {
         Form::Stl => stl::read(bytes).map(Shape::Mesh),
         Form::Obj => obj::read(bytes, beside).map(Shape::Mesh),
-        Form::Ply => ply::read(bytes, beside.is_some()),
-        Form::ThreeMf => threemf::read(bytes).map(Shape::Mesh),
+        Form::Ply => ply::read(bytes, painted),
+        Form::ThreeMf => threemf::read(bytes, painted).map(Shape::Mesh),
         Form::List(columns) => list::read(bytes, columns).map(Shape::Points),
     };
     let shape = read.map_err(|fault| fault.diagnostic(file))?;

@@ -3,7 +3,10 @@
 //! The core specification, and parts in files of their own (production extension). What an archive unpacks to is bounded, and an
 //! object whose shape is described by another extension (beams, booleans) is refused: its triangles alone are another body.
 
+use super::paint::{Paint, WHITE};
+use super::properties::{MOST_TEXTURES, Properties};
 use super::{Fault, Mesh};
+use crate::picture;
 use glam::{DMat3, DVec3};
 use program::Rule;
 use roxmltree::{Document, Node, ParsingOptions};
@@ -23,16 +26,28 @@ const DEEPEST: u32 = 32;
 /// The most objects that are placed: components that name components multiply them.
 const MOST_PLACED: u32 = 100_000;
 
+/// The most pixels of all textures.
+const MOST_PIXELS: usize = 128_000_000;
+
 /// The part that holds the model where `_rels/.rels` names none.
 const USUAL: &str = "3D/3dmodel.model";
 
 type Archive<'b> = ZipArchive<Cursor<&'b [u8]>>;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
+/// Reads what is built; `painted`, its colours and textures too.
+pub(super) fn read(bytes: &[u8], painted: bool) -> Result<Mesh, Fault> {
     let mut archive = ZipArchive::new(Cursor::new(bytes))
         .map_err(|error| Fault::new(Rule::Truncated, format!("is no 3MF archive: {error}")))?;
     let root = root(&mut archive)?;
-    let mut parts = Parts { archive, known: HashMap::new(), unpacked: 0, placed: 0 };
+    let mut parts = Parts {
+        archive,
+        painted,
+        known: HashMap::new(),
+        textures: HashMap::new(),
+        pixels: 0,
+        unpacked: 0,
+        placed: 0,
+    };
     let items = parts.of(&root)?.items.clone();
     if items.is_empty() {
         return Err(Fault::new(Rule::Empty, "builds no object"));
@@ -50,7 +65,7 @@ fn root(archive: &mut Archive) -> Result<String, Fault> {
     if archive.index_for_name("_rels/.rels").is_none() {
         return Ok(USUAL.to_owned());
     }
-    let (text, _) = unpacked(archive, "_rels/.rels", LARGEST_PART)?;
+    let (text, _) = text(archive, "_rels/.rels", LARGEST_PART)?;
     let document = parsed(&text, "_rels/.rels")?;
     let model = document
         .descendants()
@@ -59,18 +74,28 @@ fn root(archive: &mut Archive) -> Result<String, Fault> {
     Ok(target.map_or(USUAL, |target| target.trim_start_matches('/')).to_owned())
 }
 
-/// The text of a part of at most `most` bytes, and how many it has.
-fn unpacked(archive: &mut Archive, name: &str, most: u64) -> Result<(String, u64), Fault> {
-    let broken = |error: String| Fault::new(Rule::Truncated, format!("`{name}`: {error}"));
-    let part = archive.by_name(name).map_err(|error| broken(error.to_string()))?;
-    let mut text = Vec::new();
-    part.take(most + 1).read_to_end(&mut text).map_err(|error| broken(error.to_string()))?;
-    let length = text.len() as u64;
-    if length > most {
+fn broken(name: &str, error: &str) -> Fault {
+    Fault::new(Rule::Truncated, format!("`{name}`: {error}"))
+}
+
+/// A part of at most `most` bytes.
+fn unpacked(archive: &mut Archive, name: &str, most: u64) -> Result<Vec<u8>, Fault> {
+    let part = archive.by_name(name).map_err(|error| broken(name, &error.to_string()))?;
+    let mut bytes = Vec::new();
+    let read = part.take(most + 1).read_to_end(&mut bytes);
+    read.map_err(|error| broken(name, &error.to_string()))?;
+    if bytes.len() as u64 > most {
         let message = format!("`{name}` unpacks to more than {} MiB", LARGEST_PART >> 20);
         return Err(Fault::new(Rule::TooLarge, message));
     }
-    let text = String::from_utf8(text).map_err(|_| broken(String::from("is not UTF-8")))?;
+    Ok(bytes)
+}
+
+/// The text of a part of at most `most` bytes, and how many it has.
+fn text(archive: &mut Archive, name: &str, most: u64) -> Result<(String, u64), Fault> {
+    let bytes = unpacked(archive, name, most)?;
+    let length = bytes.len() as u64;
+    let text = String::from_utf8(bytes).map_err(|_| broken(name, "is not UTF-8"))?;
     Ok((text, length))
 }
 
@@ -118,11 +143,11 @@ impl Placed {
     }
 }
 
-fn finite(word: &str) -> Option<f64> {
+pub(super) fn finite(word: &str) -> Option<f64> {
     word.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-fn line(node: Node) -> usize {
+pub(super) fn line(node: Node) -> usize {
     node.document().text_pos_at(node.range().start).row as usize
 }
 
@@ -144,7 +169,7 @@ impl Named {
     }
 }
 
-fn whole(node: Node, name: &str) -> Result<u32, Fault> {
+pub(super) fn whole(node: Node, name: &str) -> Result<u32, Fault> {
     let text = node.attribute(name).unwrap_or("");
     text.parse().map_err(|_| {
         let message =
@@ -167,20 +192,28 @@ enum Object {
 struct Part {
     objects: HashMap<u32, Object>,
     items: Vec<Named>,
+    /// The parts that the textures of its objects are.
+    textures: Vec<String>,
 }
 
 impl Part {
-    fn read(text: &str, name: &str) -> Result<Part, Fault> {
+    fn read(text: &str, name: &str, painted: bool) -> Result<Part, Fault> {
         let document = parsed(text, name)?;
         let model = document.root_element();
         if model.tag_name().name() != "model" {
             return Err(Fault::new(Rule::Syntax, format!("`{name}` holds no model")));
         }
         let unit = millimetres(model)?;
-        let mut part = Part { objects: HashMap::new(), items: Vec::new() };
+        let mut properties = painted.then(|| Properties::read(model)).transpose()?;
+        let textures = properties.as_mut().map(|own| std::mem::take(&mut own.textures));
+        let mut part = Part {
+            objects: HashMap::new(),
+            items: Vec::new(),
+            textures: textures.unwrap_or_default(),
+        };
         for object in children(model, "resources").flat_map(|all| children(all, "object")) {
             let id = whole(object, "id")?;
-            if part.objects.insert(id, self::object(object, unit)?).is_some() {
+            if part.objects.insert(id, self::object(object, unit, properties.as_ref())?).is_some() {
                 let message = format!("two objects have the number {id}");
                 return Err(Fault::new(Rule::Syntax, message).line(line(object)));
             }
@@ -193,7 +226,10 @@ impl Part {
 }
 
 /// The elements of this name in a node.
-fn children<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {
+pub(super) fn children<'a, 'i>(
+    node: Node<'a, 'i>,
+    name: &'static str,
+) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(move |child| child.tag_name().name() == name)
 }
 
@@ -216,13 +252,22 @@ fn millimetres(model: Node) -> Result<f64, Fault> {
     }
 }
 
-fn object(node: Node, unit: f64) -> Result<Object, Fault> {
+fn object(node: Node, unit: f64, properties: Option<&Properties>) -> Result<Object, Fault> {
     if node.attribute("type").is_some_and(|kind| ["support", "solidsupport"].contains(&kind)) {
         return Ok(Object::Other);
     }
     for child in node.children().filter(Node::is_element) {
         match child.tag_name().name() {
-            "mesh" => return mesh(child, unit).map(Object::Mesh),
+            "mesh" => {
+                let mut mesh = mesh(child, unit)?;
+                if let Some(properties) = properties {
+                    let triangles = children(child, "triangles");
+                    let triangles = triangles.flat_map(|all| children(all, "triangle"));
+                    let paint = triangles.map(|triangle| properties.paint(node, triangle));
+                    mesh.paint = paint.collect::<Result<_, _>>()?;
+                }
+                return Ok(Object::Mesh(mesh));
+            }
             "components" => {
                 let named = children(child, "component");
                 let named = named.map(|part| Ok(in_unit(Named::read(part)?, unit)));
@@ -279,7 +324,11 @@ fn mesh(node: Node, unit: f64) -> Result<Mesh, Fault> {
 /// The files of an archive, read where they are needed.
 struct Parts<'b> {
     archive: Archive<'b>,
+    painted: bool,
     known: HashMap<String, Part>,
+    /// The numbers of the textures that were read.
+    textures: HashMap<String, u32>,
+    pixels: usize,
     unpacked: u64,
     /// How many objects were placed.
     placed: u32,
@@ -293,11 +342,49 @@ impl Parts<'_> {
                 return Err(Fault::new(Rule::TooLarge, message));
             }
             let most = LARGEST_PART - self.unpacked;
-            let (text, length) = unpacked(&mut self.archive, name, most)?;
+            let (text, length) = text(&mut self.archive, name, most)?;
             self.unpacked += length;
-            self.known.insert(name.to_owned(), Part::read(&text, name)?);
+            self.known.insert(name.to_owned(), Part::read(&text, name, self.painted)?);
         }
         Ok(&self.known[name])
+    }
+
+    /// The paint of a placed triangle, whose textures are those of `mesh`; one that is mirrored has its corners exchanged.
+    fn placed(
+        &mut self,
+        paint: Paint,
+        is_mirrored: bool,
+        names: &[String],
+        mesh: &mut Mesh,
+    ) -> Result<Paint, Fault> {
+        fn turned<T>([a, b, c]: [T; 3], is_mirrored: bool) -> [T; 3] {
+            if is_mirrored { [a, c, b] } else { [a, b, c] }
+        }
+        Ok(match paint {
+            Paint::Corners(lights) => Paint::Corners(turned(lights, is_mirrored)),
+            Paint::Texture(number, places) => {
+                let number = self.texture(&names[number as usize], mesh)?;
+                Paint::Texture(number, turned(places, is_mirrored))
+            }
+        })
+    }
+
+    /// The number of a texture, which is read once.
+    fn texture(&mut self, name: &str, mesh: &mut Mesh) -> Result<u32, Fault> {
+        if let Some(number) = self.textures.get(name) {
+            return Ok(*number);
+        }
+        let bytes = unpacked(&mut self.archive, name, LARGEST_PART - self.unpacked)?;
+        self.unpacked += bytes.len() as u64;
+        let texture = picture::texture(&bytes)?;
+        self.pixels += texture.pixels();
+        if self.pixels > MOST_PIXELS || mesh.textures.len() >= MOST_TEXTURES {
+            return Err(Fault::new(Rule::TooLarge, "has more textures than are read"));
+        }
+        let number = mesh.textures.len() as u32;
+        mesh.textures.push(texture);
+        self.textures.insert(name.to_owned(), number);
+        Ok(number)
     }
 
     /// Adds the object that `named` is, in the part `path`, to `mesh`.
@@ -336,7 +423,17 @@ impl Parts<'_> {
                 if placed.turn.determinant() < 0.0 {
                     triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
                 }
+                let (before, paint) = (mesh.triangles.len(), body.paint.clone());
                 mesh.join(Mesh { vertices, triangles, ..Mesh::default() });
+                if self.painted {
+                    let names = self.of(path)?.textures.clone();
+                    let is_mirrored = placed.turn.determinant() < 0.0;
+                    mesh.paint.resize(before, WHITE);
+                    for own in paint {
+                        let own = self.placed(own, is_mirrored, &names, mesh)?;
+                        mesh.paint.push(own);
+                    }
+                }
                 return Ok(());
             }
         };
