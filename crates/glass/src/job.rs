@@ -447,7 +447,7 @@ impl<'m> Job<'m> {
             health: self.health,
             index: material.index,
             ray: settings.ray,
-            rays_apart: deepest * (beam.drive(Ray::Paraxial) / beam.drive(Ray::Marginal) - 1.0),
+            rays_apart: deepest * beam.aberration(),
             cut,
             blocks: settings.blocks,
             energy: energy(material, machine, settings),

@@ -38,10 +38,27 @@ impl Beam {
         }
     }
 
+    /// How far below the focus of its outermost ray that of its innermost rays lies, mm of each mm of depth: the spherical aberration
+    /// of a plane face.
+    pub fn aberration(&self) -> f64 {
+        self.drive(Ray::Paraxial) / self.drive(Ray::Marginal) - 1.0
+    }
+
     /// Tangent of the half angle of the cone in the glass.
     pub fn slope_in_glass(&self) -> f64 {
         self.slope * self.drive(Ray::Marginal)
     }
+}
+
+/// Diameter of the spot of a Gaussian beam (at 1/e² of its intensity) behind a perfect lens, mm: `4 λ f / (π D)`, of wavelength,
+/// focal length and diameter in mm. A beam of quality M² has M² times as much. Glass does not change it.
+pub fn spot(wavelength: f64, focal: f64, diameter: f64) -> f64 {
+    4.0 * wavelength * focal / (std::f64::consts::PI * diameter)
+}
+
+/// How far from its waist a Gaussian beam with a spot of this diameter is `√2` times as wide, mm, in glass of `index`: Rayleigh's length.
+pub fn rayleigh(spot: f64, wavelength: f64, index: f64) -> f64 {
+    std::f64::consts::PI * index * spot * spot / (4.0 * wavelength)
 }
 
 /// Where the side faces of a block cut the cone.

@@ -2,7 +2,7 @@
 
 use toolpost_glass::machine::{Lens, Machine, library};
 use toolpost_glass::material::{TABLE, find};
-use toolpost_glass::optics::{Beam, Cut, Ray, cut};
+use toolpost_glass::optics::{Beam, Cut, Ray, cut, rayleigh, spot};
 
 fn lens(focal: f64) -> Lens {
     Machine::read(library("glass-xyz-100hz").unwrap(), "").unwrap().lens(focal).unwrap()
@@ -60,4 +60,20 @@ fn the_index_of_k9_is_that_of_532_nm_and_other_lasers_are_refused() {
     assert_eq!(find(table, "mine.toml", "air", 532.0).unwrap_err().rule, "index");
     let found = find("[k9]\ntitle = \"x\"\nindex = one\n", "mine.toml", "k9", 532.0).unwrap_err();
     assert_eq!((found.rule.name(), found.line), ("materials", 3));
+}
+
+#[test]
+fn spot_and_aberration_are_those_of_a_hand_calculation() {
+    // 4 x 0.000532 x f / (5 pi); pi x 1.5195 x spot² / (4 x 0.000532).
+    for (focal, width, length, aberration) in
+        [(70.0, 0.009_483, 0.201_73, 0.018_073_5), (43.0, 0.005_825, 0.076_12, 0.047_882_1)]
+    {
+        let found = spot(532e-6, focal, 5.0);
+        assert!((found - width).abs() < 1e-6, "{found}");
+        let found = rayleigh(found, 532e-6, 1.5195);
+        assert!((found - length).abs() < 2e-5, "{found}");
+        // 50 mm deep, traced by Snell's law as above.
+        let found = 50.0 * Beam::new(&lens(focal), 5.0, 1.5195).aberration();
+        assert!((found - aberration).abs() < 1e-6, "{found}");
+    }
 }

@@ -33,6 +33,13 @@ fn the_tables_point_out_the_row_of_table_6_that_misses_its_point() {
         matches!(wrong[..], [line] if line.contains("(24, 30)") && line.contains("(26.000, 30.000)"))
     );
     assert!(!text.contains("<- differs"));
+    // Spot and Rayleigh's length of f = 70 mm; drive, aberration and cone 50 mm deep: as tests/optics.rs calculates them by hand.
+    let row: Vec<_> =
+        text.lines().filter(|line| line.contains("0.00948") && line.contains(" 50 ")).collect();
+    assert!(
+        matches!(row[..], [row] if row.contains("32.8937") && row.contains("0.0181")),
+        "{text}"
+    );
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::surrogate::FITTED;
 use super::{POINTS, surrogate::Surrogate};
 use crate::clock::{pump_limit, ticks};
 use crate::comparison::{Positioner, full_step, micro_step};
+use crate::optics::{Beam, Ray, rayleigh, spot};
 use crate::polar::{Branch, Polar, track_speed};
 use crate::profile::{Limits, Profile};
 use glam::DVec2 as Vec2;
@@ -352,6 +353,34 @@ const SLIPS: [&str; 11] = [
     "The index of K9 is taken for the laser's 532 nm (1.5195), not for the yellow line (1.5168): 0.06 mm at 50 mm depth.",
 ];
 
+/// Spot, aberration and cone of both lenses of the source, a beam of 5 mm and K9 at 532 nm.
+fn optics() -> String {
+    let (wavelength, diameter, index) = (532e-6, 5.0, 1.5195);
+    let mut text = String::from(
+        "\nOptics, mm: a beam of 5 mm of 532 nm (Gaussian, M² = 1: a beam of M² has a spot M² times as large), K9\n",
+    );
+    let _ = writeln!(
+        text,
+        "  {:>6} {:>9} {:>9} {:>7} {:>9} {:>10} {:>10}",
+        "f", "spot", "Rayleigh", "depth", "drive", "aberration", "cone"
+    );
+    for focal in [43.0, 70.0] {
+        let beam = Beam { index, slope: 0.5 * diameter / focal };
+        let spot = spot(wavelength, focal, diameter);
+        let length = rayleigh(spot, wavelength, index);
+        for depth in [10.0, 50.0, 80.0] {
+            let (drive, aberration) =
+                (depth * beam.drive(Ray::Marginal), depth * beam.aberration());
+            let cone = depth * beam.slope_in_glass();
+            let _ = writeln!(
+                text,
+                "  {focal:>6} {spot:>9.5} {length:>9.4} {depth:>7} {drive:>9.4} {aberration:>10.4} {cone:>10.4}"
+            );
+        }
+    }
+    text
+}
+
 /// The tables as text.
 pub fn report() -> String {
     let mut text = String::new();
@@ -439,6 +468,7 @@ pub fn report() -> String {
         let [a, b, c] = Profile::ALL.map(|profile| profile.reach(0.01, limits));
         let _ = writeln!(text, "  {acceleration:>6} {a:>9.4} {b:>9.4} {c:>9.4}");
     }
+    text.push_str(&optics());
     let checks = checks();
     let good = checks.iter().filter(|check| check.agrees()).count();
     let _ = writeln!(text, "\nTest vectors K, M, T, L, S, D: {good} of {} agree", checks.len());
