@@ -145,7 +145,12 @@ pub fn search(
             }
         }
     }
-    places.sort_by(|a, b| b.margins.ease.total_cmp(&a.margins.ease));
+    // A place at which no cut is left comes before one at which the arm stands more easily.
+    places.sort_by(|a, b| {
+        let [(cuts_a, ease_a), (cuts_b, ease_b)] =
+            [a, b].map(|place| (place.margins.reentries, place.margins.ease));
+        cuts_a.cmp(&cuts_b).then(ease_b.total_cmp(&ease_a))
+    });
     if !places.is_empty() {
         refused.clear();
     }

@@ -51,6 +51,8 @@ pub struct ArmPicture {
 pub struct ArmSample {
     /// Whether the tool cuts on the way here.
     pub cuts: bool,
+    /// Whether it has left the cut here, and enters it again.
+    pub enters_again: bool,
     /// Seconds from the first one.
     pub time: f64,
     /// The tool tip, mm.
@@ -120,6 +122,15 @@ fn path(out: &mut String, samples: &[ArmSample]) {
     for (class, trace) in cuts.into_iter().enumerate().rev() {
         lines(out, trace, color(class), 2.0, "");
     }
+    for sample in samples.iter().filter(|sample| sample.enters_again).take(MOST_MARKS) {
+        let at = view.at(sample.tip);
+        ring(out, at.x, at.y);
+    }
+    if samples.iter().any(|sample| sample.enters_again) {
+        let at = DVec2::new(192.0, 660.0 + 16.0 * (CLASSES.len() + 1) as f64);
+        ring(out, at.x, at.y - 3.5);
+        write_text(out, "THE CUT IS LEFT AND ENTERED AGAIN", at + DVec2::X * 22.0, 7.5, INK);
+    }
     triad(out, &view, DVec2::new(90.0, 690.0));
     scale_bar(out, &view, DVec2::new(560.0, 640.0));
     for class in 0..=CLASSES.len() {
@@ -137,6 +148,16 @@ fn path(out: &mut String, samples: &[ArmSample]) {
         };
         write_text(out, &text, DVec2::new(at.x + 34.0, at.y), 7.5, INK);
     }
+}
+
+/// The most places of one picture that have a ring.
+const MOST_MARKS: usize = 1000;
+
+fn ring(out: &mut String, x: f64, y: f64) {
+    let _ = writeln!(
+        out,
+        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"6\" stroke=\"{INK}\" stroke-width=\"1.6\" fill=\"none\"/>"
+    );
 }
 
 /// The least and the largest of one column of pixels.
@@ -212,7 +233,15 @@ mod tests {
 
     fn sample(time: f64, ease: f64, angle: f64, speed: f64) -> ArmSample {
         let tip = Vec3::new(10.0 * time, 0.0, 0.0);
-        ArmSample { cuts: true, time, tip, joints: [angle; 6], speeds: [speed; 6], ease }
+        ArmSample {
+            cuts: true,
+            enters_again: false,
+            time,
+            tip,
+            joints: [angle; 6],
+            speeds: [speed; 6],
+            ease,
+        }
     }
 
     /// The colour of the class in which a margin is, and a column as high as the part of the speed.
@@ -228,6 +257,11 @@ mod tests {
         assert!(near.contains(&line(CLASSES[0].1)) && !near.contains(&line(AMPLE)), "{near}");
         let ample = arm_path("job", &picture(1.2, 0.5));
         assert!(ample.contains(&line(AMPLE)) && !ample.contains(&line(CLASSES[0].1)));
+        assert!(!near.contains("<circle"));
+        let mut left = picture(0.1, 0.5);
+        left.samples[1].enters_again = true;
+        // The place and the legend.
+        assert_eq!(arm_path("job", &left).matches("<circle").count(), 2);
         // By hand: the floor of joint 1 is at 100 + 56 + 6 + 22 = 184; half of 22 pixels above it is 173.
         assert!(near.contains("M1150 184V173.0"), "{near}");
         // 45 of -90 to 90 degrees: a quarter of 56 pixels below the top.

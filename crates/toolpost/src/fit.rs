@@ -77,10 +77,15 @@ fn numbers(part: &[f64; 6]) -> String {
 
 /// Margins for a person.
 pub fn margins(margins: &ArmMargins) -> String {
-    let ArmMargins { limit, wrist, elbow, shoulder, speed, ease } = margins;
+    let ArmMargins { limit, wrist, elbow, shoulder, speed, ease, reentries } = margins;
+    let left = match reentries {
+        0 => String::new(),
+        1 => String::from("; a cut is left once and entered again"),
+        times => format!("; cuts are left and entered again {times} times"),
+    };
     format!(
         "margin {:.0} %: {limit:.1}° from a limit, joint 5 {wrist:.1}° and the elbow {elbow:.1}° from stretched, the wrist {shoulder:.0} mm from \
-         axis 1, {speed:.0} % of a joint's speed",
+         axis 1, {speed:.0} % of a joint's speed{left}",
         100.0 * ease
     )
 }
@@ -98,5 +103,6 @@ pub fn data(margins: &ArmMargins) -> Value {
         "shoulder_mm": margins.shoulder,
         "speed_percent": margins.speed,
         "margin_percent": 100.0 * margins.ease,
+        "reentries": margins.reentries,
     })
 }

@@ -80,6 +80,7 @@ fn led(toolpath: &mut Toolpath, name: &str) -> Result<Led, Stop> {
         .map(|arm| arm.joints().map(|joint| [joint.min, joint.max].map(f64::to_degrees)));
     let drawn = |at: ArmSample| drawing::ArmSample {
         cuts: at.cuts,
+        enters_again: at.enters_again,
         time: at.time,
         tip: at.tip,
         joints: at.joints,

@@ -35,6 +35,8 @@ pub struct ArmMargins {
     pub speed: f64,
     /// The least of them, as a part of what is ample: above 1 where all are.
     pub ease: f64,
+    /// How often the tool leaves a cut and enters it again.
+    pub reentries: usize,
 }
 
 /// Where an arm stands along a toolpath.
@@ -44,6 +46,8 @@ pub struct ArmSample {
     pub line: u32,
     /// Whether the tool cuts on the way here; else it comes by rapid.
     pub cuts: bool,
+    /// Whether the tool has left the cut here, and enters it again.
+    pub enters_again: bool,
     /// Seconds from the first sample, at the feeds of the source, slower where the tool turns by more than 60° a second, and the rapid of the cell; without acceleration.
     pub time: f64,
     /// The tool tip in the frame of the part, mm.
@@ -137,7 +141,8 @@ fn chosen<'a>(
         Ok(())
     });
     found.map_err(|found| vec![*found])?;
-    Ok((steps, margins))
+    let reentries = steps.iter().filter(|step| matches!(step, Step::Reenter(_))).count();
+    Ok((steps, margins.map(|margins| ArmMargins { reentries, ..margins })))
 }
 
 /// An arm on its way.
@@ -193,6 +198,7 @@ impl Along<'_> {
         self.samples.push(ArmSample {
             line: reentry.line,
             cuts: false,
+            enters_again: true,
             time: self.time,
             tip: reentry.back.tool.translation,
             joints: joints.map(f64::to_degrees),
@@ -215,6 +221,7 @@ impl Along<'_> {
         self.samples.push(ArmSample {
             line: motion.line,
             cuts: motion.kind != Kind::Rapid,
+            enters_again: false,
             time: self.time,
             tip,
             joints: joints.map(f64::to_degrees),
@@ -287,6 +294,7 @@ impl ArmMargins {
             shoulder: worst.shoulder.0,
             speed: 100.0 * worst.speed.0,
             ease: worst.ease(),
+            reentries: 0,
         }
     }
 
@@ -299,6 +307,7 @@ impl ArmMargins {
             shoulder: self.shoulder.min(other.shoulder),
             speed: self.speed.max(other.speed),
             ease: self.ease.min(other.ease),
+            reentries: 0,
         }
     }
 }
