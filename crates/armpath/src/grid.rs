@@ -1,7 +1,7 @@
 //! Every step of the turn and every posture, followed through each interval with the turn standing still.
 
 use crate::samples::{Job, Sample};
-use crate::{Settings, Why};
+use crate::{SPACING, Settings, Why};
 use arm::{Arm, Joints, Margins, Posture};
 use geom::wrap;
 use rayon::prelude::*;
@@ -83,10 +83,10 @@ fn follow(job: &Job, run: &[Range<usize>], steps: usize) -> Vec<Row> {
                 None => Node::DEAD,
             })
             .collect();
-        for sample in &job.samples[interval.start + 1..=interval.end] {
-            let next = candidates(job, sample, steps);
+        for (at, time) in looks(job, interval) {
+            let next = candidates(job, &job.samples[at], steps);
             for ((node, from), to) in row.iter_mut().zip(&here).zip(&next) {
-                advance(node, from, to, sample.time, job);
+                advance(node, from, to, time, job);
             }
             here = next;
         }
@@ -99,6 +99,33 @@ fn follow(job: &Job, run: &[Range<usize>], steps: usize) -> Vec<Row> {
         rows.push(row);
     }
     rows
+}
+
+/// The samples of an interval at which all turns and postures are looked at, with the time from one to the next: where points are
+/// dense not all of them. The choice is followed through each ([`crate::follow`]).
+fn looks(job: &Job, interval: &Range<usize>) -> Vec<(usize, f64)> {
+    let mut looks = Vec::new();
+    let (mut last, mut time) = (&job.samples[interval.start], 0.0);
+    for at in interval.start + 1..=interval.end {
+        let sample = &job.samples[at];
+        time += sample.time;
+        // The next one would be too far.
+        let next = job.samples[..=interval.end].get(at + 1);
+        if next.is_none_or(|next| !is_near(last, next)) {
+            looks.push((at, time));
+            (last, time) = (sample, 0.0);
+        }
+    }
+    looks
+}
+
+/// Whether all turns and postures need to be looked at only in one of two samples.
+pub(crate) fn is_near(a: &Sample, b: &Sample) -> bool {
+    // A degree.
+    const LEAN: f64 = std::f64::consts::PI / 180.0;
+    a.tip.distance_squared(b.tip) < SPACING * SPACING
+        && a.out.distance_squared(b.out) < LEAN * LEAN
+        && a.side.distance_squared(b.side) < LEAN * LEAN
 }
 
 /// One sample further, in `time`.

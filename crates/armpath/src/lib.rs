@@ -9,7 +9,8 @@
 //! at most [`Settings::turn_rate`]. The turns are divided into [`Settings::turns`] steps, and time into intervals long enough for one
 //! step. First every step and posture is followed through each interval; then the cheapest sequence of steps is found,
 //! from each step to itself or to a neighbour (dynamic programming); then that sequence is followed exactly, with the turn changing
-//! evenly within an interval, and every figure is checked at each point and between points ([`SPACING`]). Between sections the arm
+//! evenly within an interval, and every figure is checked at each point and between points ([`SPACING`]). Where points are nearer to each other
+//! than that, and the tool turns by less than a degree, an interval has several of them, and the first two steps look at its end alone. Between sections the arm
 //! is free to take another posture. Where no sequence passes a whole section it is divided: the arm draws back, turns and enters
 //! again ([`Section::reentry`]), at a point that allows it ([`Point::inside`]). Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
 //! number of threads.

@@ -73,7 +73,8 @@ fn knots(job: &Job, cut: &Cut, start: usize) -> Vec<usize> {
     for at in start + 1..end {
         time += job.samples[at].time;
         let is_last = at + 1 == end;
-        if job.samples[at].is_point && (time >= least || is_last) {
+        let is_far = || !grid::is_near(&job.samples[knots[knots.len() - 1]], &job.samples[at]);
+        if job.samples[at].is_point && (is_last || (time >= least && (cut.fixed || is_far()))) {
             knots.push(at);
             time = 0.0;
         }

@@ -249,6 +249,26 @@ fn a_cut_is_not_divided_within_a_motion() {
     assert!(way(&cell(LEANING), &ring).is_err());
 }
 
+/// A line outwards in steps of 0.02 mm, which is far less than the steps of the choice.
+#[test]
+fn where_points_are_dense_the_first_that_is_not_reached_is_found_all_the_same() {
+    let line = upright(40_001, |t| Vec3::new(800.0 * t, 0.0, 0.0));
+    let blocked = way(&cell(LEANING), &line).unwrap_err();
+    let by = match blocked.why {
+        Why::Elbow(angle) => 5_f64.to_radians() - angle,
+        Why::Wrist(angle) => 5_f64.to_radians() - angle,
+        Why::Reach(mm) => mm / 100.0,
+        Why::Limit(_, by) => by,
+        why => panic!("{why:?}"),
+    };
+    // A step on by 0.02 mm turns no joint there by more than 0.1 degrees.
+    assert!((0.0..2e-3).contains(&by), "{blocked:?}");
+    let arm = kuka();
+    let reached = &line[..blocked.point];
+    let choice = way(&cell(LEANING), reached).unwrap();
+    proven(&arm, &cell(LEANING), reached, &Settings::default(), &choice);
+}
+
 #[test]
 fn a_tool_that_is_turned_round_and_round_by_its_source_is_divided_where_joint_6_ends() {
     let mut points = upright(800, |t| Vec3::new(0.0, 100.0 * t, 0.0));
