@@ -124,14 +124,15 @@ fn a_cut_that_is_left_otherwise_is_refused() {
     }
 }
 
-/// Two and a half times round a ball of 20 mm, the tool 25° off a direction that leans by 45° towards the arm: about the direction of
+/// So many steps of 6 degrees round a ball of 20 mm, the tool 25° off a direction that leans by 45° towards the arm: about the direction of
 /// its forearm, so that joint 4 turns with the cut.
-fn rings() -> Program {
+fn rings(steps: u32) -> Program {
     let (tilt, half) = (45_f64.to_radians(), 25_f64.to_radians());
     let direction = Vec3::new(-tilt.sin(), 0.0, tilt.cos());
     let across = Vec3::new(tilt.cos(), 0.0, tilt.sin());
     let mut text =
         String::from("PARTNO/RINGS\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\n");
+    let last = f64::from(steps) * std::f64::consts::TAU / 60.0;
     let mut goto = |height: f64, turn: f64| {
         let about = across * turn.cos() + Vec3::Y * turn.sin();
         let axis = direction * half.cos() + about * half.sin();
@@ -143,15 +144,15 @@ fn rings() -> Program {
             text += "FEDRAT/MMPM,300\n";
         } else if turn == 0.0 {
             text += "FEDRAT/MMPM,600\n";
-        } else if turn > 15.7 && height == 0.0 {
+        } else if turn == last && height == 0.0 {
             text += "RAPID\n";
         }
     };
     goto(60.0, 0.0);
-    for step in 0..=150 {
+    for step in 0..=steps {
         goto(0.0, f64::from(step) * std::f64::consts::TAU / 60.0);
     }
-    goto(60.0, 150.0 * std::f64::consts::TAU / 60.0);
+    goto(60.0, last);
     source(&format!("{text}FINI\n"))
 }
 
@@ -173,7 +174,7 @@ const TURNING: [(&str, &str, &str, &str); 2] = [
 
 #[test]
 fn a_cut_that_no_posture_carries_is_left_and_entered_again_and_the_line_is_reported() {
-    let source = rings();
+    let source = rings(150);
     for (name, from, to, why) in TURNING {
         let part = robot::changed(name, &[(from, to)]);
         let found = &post::write(&source, &part).unwrap_err()[0];
@@ -256,4 +257,35 @@ fn the_range_that_cables_leave_to_a_joint_is_kept_in_cuts_and_in_the_air() {
         let found = machine::load_text("mine.toml", &text).unwrap_err();
         assert!(found.to_string().contains(what), "{found}");
     }
+}
+
+/// The joints of the KR 6 with a joint 4 that turns three times either way.
+const ROUND: &str = "model = \"kuka-kr6-r900-sixx\"\njoints = [{ min = -170, max = 170, speed = 360 }, { min = -190, max = 45, speed = 300 }, \
+{ min = -120, max = 156, speed = 360 }, { min = -1080, max = 1080, speed = 381 }, { min = -120, max = 120, speed = 388 }, \
+{ min = -350, max = 350, speed = 615 }]";
+
+#[test]
+fn a_joint_that_goes_round_carries_the_whole_cut_until_cables_end_it() {
+    let source = rings(120);
+    let (_, from, to, _) = TURNING[0];
+    let round = |more: &str| {
+        let part = format!("{to}{more}");
+        let model = "model = \"kuka-kr6-r900-sixx\"";
+        let home = ("home = [0, -90, 90, 0, 45, 0]", "home = [0, -90, 120, 0, 30, 0]");
+        robot::changed("kuka-kr6-r900", &[(from, &part), (model, ROUND), home])
+    };
+    let machine = round("");
+    let text = proven(&source, &machine);
+    assert!(proof_of(&source, &machine, &text).excursions.is_empty());
+    // Along the lines of the program no joint is printed: the proof counts the revolutions of joint 4 all the same.
+    let cables = round("\ncable_joint_4 = [-185, 185]");
+    let report = proof_of(&source, &cables, &text);
+    let found = &report.mismatches[0];
+    assert_eq!(found.rule.name(), "axis-limit", "{found}");
+    assert!(found.message.contains("joint 4 would be"), "{found}");
+    let found = &post::write(&source, &cables).unwrap_err()[0];
+    assert!(found.message.contains("joint 4 would have turned"), "{found}");
+    let leaving = round("\ncable_joint_4 = [-185, 185]\nreentry_feed = 600");
+    let text = proven(&source, &leaving);
+    assert!(!proof_of(&source, &leaving, &text).excursions.is_empty());
 }
