@@ -157,7 +157,7 @@ fn rings(steps: u32) -> Program {
 }
 
 /// Robots that have to turn their wrist over on [`rings`], with a place of the part at which they reach it, and why.
-const TURNING: [(&str, &str, &str, &str); 2] = [
+const TURNING: [(&str, &str, &str, &str); 3] = [
     (
         "kuka-kr6-r900",
         "part = [450, 0, 150, 0, 0, 0]",
@@ -169,6 +169,12 @@ const TURNING: [(&str, &str, &str, &str); 2] = [
         "part = [350, 0, 150, 0, 0, 0]",
         "part = [620, 0, 0, 0, 0, 0]",
         "no turn about the tool",
+    ),
+    (
+        "fanuc-lrmate-200id-mill",
+        "part = [450, 0, -180, 0, 0, 0]",
+        "part = [680, 25, -330, 0, 0, 0]",
+        "joint 4 would have turned through all of its range",
     ),
 ];
 
