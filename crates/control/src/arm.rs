@@ -19,6 +19,10 @@ pub enum ArmAction {
     JointSpeed(Option<f64>),
     /// Speed of the joint that turns farthest in the moves of joints that follow, degrees/s.
     JointRate(f64),
+    /// The acceleration of the lines and arcs that follow, mm/s², where each of them states it.
+    TipAcceleration(f64),
+    /// That of the joint that turns farthest in the moves of joints that follow, degrees/s².
+    JointAcceleration(f64),
     /// Another acceleration, of joints or of lines, than that with which the control is set up.
     Acceleration,
     /// How fast the tool may turn in lines and arcs, degrees/s: its axis, and about its axis; `None` is as the control is set up.
@@ -29,6 +33,8 @@ pub enum ArmAction {
     Move(Box<ArmMove>),
     /// What hangs on the flange: its mass, kg, and its centre of gravity in the frame of the flange, mm.
     Load(f64, Vec3),
+    /// The load that the operator has entered under this number hangs on the flange.
+    LoadNumber(u32),
 }
 
 /// A motion of an arm.

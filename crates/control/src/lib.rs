@@ -97,6 +97,11 @@ pub enum Dialect {
 }
 
 impl Dialect {
+    /// Whether a program has to state what hangs on the flange of the robot: elsewhere it is data of the operator.
+    pub fn asks_for_load(self) -> bool {
+        matches!(self, Dialect::UrScript | Dialect::Rapid)
+    }
+
     /// Every dialect of a control with the name that its file gives as its `reader`.
     pub const NAMES: [(&'static str, Dialect); 17] = [
         ("fanuc", Dialect::Fanuc),

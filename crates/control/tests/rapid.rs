@@ -159,7 +159,9 @@ fn zones_bound_corners_of_lines_and_not_those_of_joints() {
     assert_eq!(corner("z5"), within(8.0));
     assert_eq!(corner("[FALSE,0.4,0.5,0.5,0.1,0.5,0.1]"), within(0.5));
     assert_eq!(corner("[TRUE,0.4,0.5,0.5,0.1,0.5,0.1]"), Corner::Exact);
-    assert_eq!(corner("z5\\Z:=2"), within(2.0));
+    // `\\Z` is the zone of the tip alone (RM, MoveL): the tool turns within that of `z5`, 8 mm.
+    assert_eq!(corner("z5\\Z:=2"), within(8.0));
+    assert_eq!(corner("z5\\Z:=12"), within(12.0));
     let joints = "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,z1,tool0;";
     assert_eq!(moves(&body(joints).unwrap())[0].1.corner, Corner::Unbounded);
     refused(&line("1,2,3").replace("fine", "[FALSE,-1,0,0,0,0,0]"), 4, "not below 0");

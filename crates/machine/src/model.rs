@@ -104,6 +104,8 @@ pub struct Cell {
     pub coolant_output: Option<u32>,
     /// The number of the user frame, the tool and the position register that its programs set for themselves.
     pub own_frame: Option<u32>,
+    /// The number under which the operator has entered what hangs on the flange.
+    pub load_number: Option<u32>,
     /// What hangs on the flange with a tool in the spindle, where it is stated.
     pub load: Option<Load>,
 }

@@ -261,6 +261,7 @@ sheet!(merged CellSheet "cell" {
     spindle_full: Speed, "1/min", "Speed of the spindle at the full value of that output.";
     coolant_output: u32, "", "Number of the digital output that switches the coolant on.";
     own_frame: OwnFrame, "", "The number of the user frame, the tool and the position register that programs set for themselves (FANUC): no other program and no operator uses them.";
+    load_number: LoadNumber, "", "The number under which the operator has entered what hangs on the flange (FANUC, `PAYLOAD[1]`): programs choose it.";
     load_mass: Mass, "kg", "What hangs on the flange: the spindle with a tool in it.";
     load_center: LoadCenter, "mm", "Its centre of gravity in the frame of the flange.";
 });
@@ -358,6 +359,7 @@ value! {
     SixNumbers([f64; 6], "[f64; 6]") |six| six.iter().all(|number| number.abs() <= 1e5), "six numbers from -100000 to 100000";
     ArcSweep(f64, "f64") |degrees| (10.0..=180.0).contains(degrees), "a number from 10 to 180 degrees";
     OwnFrame(u32, "u32") |number| (1..=9).contains(number), "a whole number from 1 to 9";
+    LoadNumber(u32, "u32") |number| (1..=10).contains(number), "a whole number from 1 to 10";
     Mass(f64, "f64") |kg| above_0(*kg, 5000.0), "a number above 0, at most 5000 kg,";
     LoadCenter([f64; 3], "[f64; 3]") |point| point.iter().all(|mm| mm.abs() <= 1e4), "three numbers from -10000 to 10000 mm";
     Percent(f64, "f64") |percent| above_0(*percent, 100.0), "a number above 0, at most 100 %,";

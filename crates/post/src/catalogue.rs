@@ -69,6 +69,7 @@ names! {
     BlockName {
         ProgramStart Block "program_start", "", "Once, first. It has to bring the control to millimetres, absolute positions, plane XY, feed per minute, no cutter compensation and the work offset.";
         ProgramEnd Block "program_end", "", "Once, last: retract, spindle and coolant off, F in mm/min again ({{feed_mode}}), end of program.";
+        Load Block "load", "", "On a robot, behind `frames`, where the cell states what hangs on the flange as the block places it: {{LOAD_MASS}} and its centre, or {{LOAD_NUMBER}}.";
         PartStart Block "part_start", "", "On a robot whose program is divided into files, first in each part; `program_start` where it is missing. `program.name` is the name of the part.";
         PartCall Block "part_call", "", "In the main program of those files, for each part in turn: `program.part` is its name. Programs are not divided where it is missing.";
         PartEnd Block "part_end", "", "Last in each part; `program_end` where it is missing.";
@@ -211,7 +212,8 @@ names! {
         JointRate Word "JOINT_RATE", "degrees/s", "The same part of the speed of the slowest joint: no joint turns faster.";
         TurnSpeed Word "TURN_SPEED", "degrees/s", "`turn_speed` of the options, in `frames`: how fast the tool may turn, its axis and about it each.";
         Corner Word "CORNER", "mm", "How far before its end a cut may leave its path: twice what the corner may be off; 0 where it stops.";
-        LoadMass Word "LOAD_MASS", "kg", "Mass of what hangs on a robot's flange, in `frames`.";
+        LoadNumber Word "LOAD_NUMBER", "", "`load_number` of the cell, in `load`.";
+        LoadMass Word "LOAD_MASS", "kg", "Mass of what hangs on a robot's flange, in `frames` or `load`.";
         LoadX Word "LOAD_X", "mm", "Its centre of gravity in the frame of the flange: X.";
         LoadY Word "LOAD_Y", "mm", "Its centre of gravity: Y.";
         LoadZ Word "LOAD_Z", "mm", "Its centre of gravity: Z.";
@@ -224,6 +226,7 @@ names! {
         Rise Word "RISE", "mm", "Travel of a helix along the normal of the plane.";
         Turn Word "TURN", "turns", "Full turns of an arc before the one that ends it. An arc whose block lacks the word is cut into single turns.";
         F Word "F", "mm/min", "Feed of the move.";
+        FeedFine Word "F_fine", "mm/min", "How a robot's {{F}} is written where its own word would round the feed by more than a two-hundredth, and this one by less: another unit, which {{feed_unit}} names.";
         FeedPerTurn Word "F_per_turn", "mm", "How {{F}} is written while the feed is per turn of the spindle.";
         FeedInverse Word "F_inverse_time", "1/min", "How {{F}} is written while the feed is inverse time.";
         Tolerance Word "TOLERANCE", "mm", "How far the control may leave the path: as the source says for its cuts, at the most `path_tolerance`, or `roughing_tolerance` where that is more. `look_ahead_on` may place it; without `look_ahead_off` that is written only where it changes.";
@@ -292,6 +295,7 @@ names! {
         Length Code "length", "on", "Tool length offset, with each straight move that says Z.";
         WorkOffset Code "work_offset", "54, 55, 56, 57, 58, 59, 60, 61, 62", "The active work offset, in every block: 54 is the first that the control can set. Those that it lacks are left out.";
         Sequence Code "sequence", "positive, negative", "The sign of the main rotary axis (the first from the tool, or the last from the table), in the block of a tilted plane that has two solutions within the travel.";
+        FeedUnit Code "feed_unit", "coarse, fine", "In which unit a robot's {{F}} is: its own, or that of `F_fine`.";
         FeedMode Code "feed_mode", "per_minute, per_turn, inverse_time", "What {{F}} means.";
     }
 }

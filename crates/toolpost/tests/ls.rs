@@ -143,9 +143,9 @@ fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
     let machine = lrmate();
     refused("GOTO/60,0,-2", "GOTO/2000,0,-2", &machine, 10, "the elbow would be");
     refused("GOTO/60,0,-2", "GOTO/-800,0,-2", &machine, 10, "the arm");
-    // Whole cm/min: 4 mm/min would be none, and 12 mm/min 10.
+    // Tenths of inch/min: 4 mm/min would be 0.2 of them, 5.08 mm/min, and 12 mm/min 0.5.
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,4", &machine, 10, "no more digits");
-    refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,12", &machine, 10, "10.000 mm/min");
+    refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,12", &machine, 10, "12.700 mm/min");
     refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "spindle_ccw");
     let without = lrmate_with(&[("own_frame = 9\n", "")]);
     refused("LOADTL/1", "LOADTL/1", &without, 0, "own_frame");
@@ -186,6 +186,47 @@ fn corners_are_passed_by_whole_millimetres_alone() {
     let wider = text.replacen("CR1 ;", "CR2 ;", 1);
     let report = proof_of(&source(JOB), &machine, &wider);
     assert_eq!(report.mismatches[0].rule.name(), "path-tolerance");
+}
+
+/// R-30iB operator's manual, "Feed rate": whole mm/sec and cm/min, tenths of inch/min. 85.547 mm/min are 3.37 of these and 8.6 cm/min.
+#[test]
+fn a_feed_between_two_whole_centimetres_is_written_in_tenths_of_an_inch() {
+    let feed =
+        |feed: &str| proven(&source(&LINE.replace("MMPM,300", &format!("MMPM,{feed}"))), &lrmate());
+    assert!(feed("85.547").contains("L P[3] 3.4inch/min FINE ;"));
+    // What cm/min say within half a percent stays as it is.
+    assert!(feed("300").contains("L P[3] 30cm/min FINE ;"));
+    assert!(feed("301.4").contains("L P[3] 30cm/min FINE ;"));
+    let text = feed("85.547");
+    for (wrong, rule) in [
+        ("3.5inch/min", "feed"),
+        ("9cm/min", "feed"),
+        ("8.6cm/min", "number"),
+        ("3.37inch/min", "number"),
+    ] {
+        let source = source(&LINE.replace("MMPM,300", "MMPM,85.547"));
+        let report = proof_of(&source, &lrmate(), &text.replace("3.4inch/min", wrong));
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(found, [rule], "{wrong}");
+    }
+}
+
+#[test]
+fn the_load_of_the_cell_is_chosen_by_its_number() {
+    let machine = lrmate_with(&[("joint_speed = 20", "joint_speed = 20\nload_number = 3")]);
+    let text = proven(&source(JOB), &machine);
+    assert!(text.contains("16:UTOOL_NUM=9 ;\r\n17:PAYLOAD[3] ;\r\n18:J P[1]"), "{text}");
+    let rules = |text: &str, machine: &Machine| -> Vec<&str> {
+        proof_of(&source(JOB), machine, text)
+            .mismatches
+            .iter()
+            .map(|found| found.rule.name())
+            .collect()
+    };
+    assert_eq!(rules(&text.replace("PAYLOAD[3]", "PAYLOAD[2]"), &machine), ["payload"]);
+    assert_eq!(rules(&text.replace("17:PAYLOAD[3] ;\r\n", ""), &machine), ["payload"]);
+    assert_eq!(rules(&text, &lrmate()), ["payload"]);
+    assert_eq!(rules(&text.replace("PAYLOAD[3]", "PAYLOAD[11]"), &machine).len(), 1);
 }
 
 #[test]

@@ -129,3 +129,16 @@ fn the_mass_on_the_flange_is_asked_for() {
     let refused = written(&source(JOB), &machine).unwrap_err();
     assert!(refused.contains("load"), "{refused}");
 }
+
+/// The zone of the orientation stays that of `z200`, 300 mm, whatever `\\Z` says of the tip.
+#[test]
+fn a_zone_whose_orientation_is_passed_in_a_wider_one_is_refused() {
+    let (source, machine) = (source(JOB), machine::load("abb-irb120-mill").unwrap());
+    let text = proven(&source, &machine);
+    let from = text.find("[FALSE,0").unwrap();
+    let to = from + text[from..].find(']').unwrap() + 1;
+    let damaged = format!("{}z200\\Z:=0.1{}", &text[..from], &text[to..]);
+    let report = proof_of(&source, &machine, &damaged);
+    let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+    assert_eq!(found, ["path-tolerance"], "{damaged}");
+}

@@ -549,3 +549,18 @@ fn no_file_of_cutter_location_data_fails_its_own_proof_on_the_robot() {
     let least = if judge::data("cldata/solidworks").is_some() { 7 } else { 1 };
     assert!(made[0] >= least, "{made:?}");
 }
+
+#[test]
+fn the_load_of_the_cell_is_stated() {
+    let load = "joint_speed = 20\nload_mass = 1.5\nload_center = [0, 0, 60]";
+    let machine = kuka_with(&[("joint_speed = 20", load)]);
+    let text = proven(&source(JOB), &machine);
+    let line =
+        "$LOAD={M 1.500,CM {X 0.00,Y 0.00,Z 60.00,A 0.0,B 0.0,C 0.0},J {X 0.0,Y 0.0,Z 0.0}}\r\n";
+    assert!(text.contains(line), "{text}");
+    for (from, to) in [(line, ""), ("M 1.500", "M 15.00"), ("Z 60.00,A", "Z 80.00,A")] {
+        let report = proof_of(&source(JOB), &machine, &text.replace(from, to));
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(found, ["payload"], "{to}");
+    }
+}

@@ -317,3 +317,20 @@ fn no_file_of_cutter_location_data_fails_its_own_proof_on_the_robots() {
     }
     assert!(made > 0);
 }
+
+/// The options of the control file state 1.2 m/s2 and 1.4 rad/s2.
+#[test]
+fn an_arm_that_accelerates_faster_than_its_options_state_is_refused() {
+    let (source, machine) = (source(JOB), ur5e());
+    let text = proven(&source, &machine);
+    for (from, to, is_proven) in [
+        ("\nacc=1.2", "\nacc=1000", false),
+        ("\njoint_acc=1.4", "\njoint_acc=14", false),
+        ("\nacc=1.2", "\nacc=0.6", true),
+    ] {
+        let report = proof_of(&source, &machine, &text.replacen(from, to, 1));
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(report.proven, is_proven, "{to}: {found:?}");
+        assert!(is_proven || found == ["acceleration"], "{to}: {found:?}");
+    }
+}

@@ -114,6 +114,7 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
         spindle_analog,
         coolant_output: sheet.coolant_output,
         own_frame: sheet.own_frame.map(|number| number.0),
+        load_number: sheet.load_number.map(|number| number.0),
         load,
     })
 }

@@ -17,7 +17,7 @@ use crate::{Output, Part, promises};
 use ::arm::{Arm, Joints};
 use geom::{Euler, Frame, Mat3, Quat, Vec3, wrap};
 use machine::limits::Limits;
-use machine::{Cell, Machine, Word};
+use machine::{Cell, Load, Machine, Word};
 use minijinja::value::Value;
 use parts::{Border, Size};
 use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
@@ -35,6 +35,9 @@ mod corner {
 
 /// By how much the word of a feed may round it, as a part of it.
 const ROUGH: f64 = 0.05;
+
+/// By how much a word may round a feed before a finer one is taken, as a part of it.
+const FAIR: f64 = 0.005;
 
 /// Joints that differ by less are the same, radians.
 const SAME_JOINTS: f64 = 1e-5;
@@ -151,6 +154,8 @@ struct Walk<'a> {
     coolant: Coolant,
     /// The tool's tip in the frame of the flange.
     tool: Option<Frame>,
+    /// The entry of the code word `feed_unit` that the last feed has.
+    feed_unit: usize,
     /// Where the arm is; home without a pose that the source has named.
     here: Position,
     /// Whether it is there, or as far off as joints leave it.
@@ -234,6 +239,7 @@ impl<'a> Walk<'a> {
             tool: None,
             here: Position { tool: Frame::IDENTITY, joints: home },
             is_exact: false,
+            feed_unit: 0,
             vector: Vec3::ZERO,
             table: Vec::new(),
             points: 0,
@@ -382,12 +388,26 @@ impl<'a> Walk<'a> {
             self.writer.set(WordName::TurnSpeed, speed);
         }
         if let Some(load) = self.cell.load {
-            let words = [WordName::LoadX, WordName::LoadY, WordName::LoadZ];
-            self.writer.set(WordName::LoadMass, load.mass);
-            self.set_each(words, load.center.to_array());
+            self.say_load(load);
         }
         self.say_joint_speed();
-        self.required(BlockName::Frames)
+        self.required(BlockName::Frames)?;
+        let states = |word: WordName| self.templates.places(BlockName::Load, word);
+        let (by_mass, by_number) = (states(WordName::LoadMass), states(WordName::LoadNumber));
+        match (self.cell.load, self.cell.load_number) {
+            (Some(load), _) if by_mass => self.say_load(load),
+            (_, Some(number)) if by_number => {
+                self.writer.set(WordName::LoadNumber, f64::from(number));
+            }
+            (_, _) => return Ok(()),
+        }
+        self.block(BlockName::Load)
+    }
+
+    fn say_load(&mut self, load: Load) {
+        self.writer.set(WordName::LoadMass, load.mass);
+        let words = [WordName::LoadX, WordName::LoadY, WordName::LoadZ];
+        self.set_each(words, load.center.to_array());
     }
 
     fn home_joints(&self) -> Joints {
@@ -633,6 +653,7 @@ impl<'a> Walk<'a> {
         }
         if let Some(feed) = self.sent.feed {
             self.writer.set(WordName::F, feed);
+            self.writer.code(WordName::FeedUnit, self.feed_unit);
         }
     }
 
@@ -728,16 +749,24 @@ impl<'a> Walk<'a> {
         if self.sent.feed == Some(feed) {
             return Ok(());
         }
-        let written = self.writer.rounded(WordName::F, feed);
+        self.writer.feed_form(WordName::F);
+        let off = |written: f64| (written - feed).abs();
+        let [own, fine] = [WordName::F, WordName::FeedFine];
+        let [coarse, finer] = [own, fine].map(|word| self.writer.rounded(word, feed));
+        let is_fine =
+            self.writer.has(&[fine]) && off(coarse) > FAIR * feed && off(finer) < off(coarse);
+        let (word, written) = if is_fine { (fine, finer) } else { (own, coarse) };
+        self.writer.feed_form(word);
+        self.feed_unit = usize::from(is_fine);
         if (written - feed).abs() > ROUGH * feed {
             let message = format!(
                 "the control would take the feed of {feed:.3} mm/min for {written:.3} mm/min: its word has no more digits"
             );
-            let step = self.machine.words.get(WordName::F.name()).map_or(1.0, Word::resolution);
+            let step = self.machine.words.get(word.name()).map_or(1.0, Word::resolution);
             let below = step * (feed / step).floor();
             let help = match below > 0.0 {
-                true => format!("{below} or {} mm/min in the source", below + step),
-                false => format!("{} mm/min in the source", below + step),
+                true => format!("{below:.2} or {:.2} mm/min in the source", below + step),
+                false => format!("{:.2} mm/min in the source", below + step),
             };
             return Err(Diagnostic::error(Rule::Feed, message).help(help).into());
         }

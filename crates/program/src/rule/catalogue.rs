@@ -3,6 +3,10 @@
 use super::{Entry, rules};
 
 rules! {
+    Acceleration "acceleration" []
+        "A robot is to accelerate faster than the options of its machine file state."
+        "write `a` as the options `acceleration` and `joint_acceleration` state it, or less"
+        "`acc=1000` in a program of a UR5e whose options state 1.2 m/s2";
     AdaptiveFeed "adaptive-feed" []
         "An input of the machine multiplies the feed, so that F is not the speed of the cut."
         "write M52 P0, or leave it out"

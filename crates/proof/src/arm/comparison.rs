@@ -12,7 +12,7 @@ use crate::report::{ArmChecked, Report};
 use ::arm::{Arm, Joints};
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Event, Rounding};
 use geom::{Frame, Vec3, angle_between};
-use machine::{Cell, Machine};
+use machine::{Cell, Machine, OptionValue};
 use program::{CutBox, Diagnostic, Feed, Outcome, Pose, Program, Rule};
 
 /// Points of a motion of joints are so near that the tip moves by no more than this between them, mm.
@@ -80,8 +80,9 @@ pub(super) struct Comparison<'a> {
     ended: bool,
     failed: bool,
     report: Report,
-    /// Half a step of F, mm/min, and of a joint, radians.
+    /// Half a step of F, mm/min, and the part of a feed by which it may be off besides; half a step of a joint, radians.
     feed_step: f64,
+    feed_part: f64,
     joint_step: f64,
 }
 
@@ -130,7 +131,9 @@ impl<'a> Comparison<'a> {
             ended: false,
             failed: false,
             report: Report { arm: Some(ArmChecked::default()), ..report },
-            feed_step: half("F", 0.5) * (1.0 + 1e-6),
+            // Where a finer word says feeds too, the coarse one is for those that it nearly meets.
+            feed_step: half("F_fine", half("F", 0.5)) * (1.0 + 1e-6),
+            feed_part: if machine.words.contains_key("F_fine") { 0.005 } else { 1e-9 },
             joint_step: half("J1", 5e-4).to_radians(),
         }
     }
@@ -299,12 +302,36 @@ impl<'a> Comparison<'a> {
                     .help("leave it as the control is set up")
                     .into());
             }
+            ArmAction::TipAcceleration(rate) => {
+                return self.acceleration("acceleration", 1e-3 * rate, "m/s2");
+            }
+            ArmAction::JointAcceleration(rate) => {
+                return self.acceleration("joint_acceleration", rate.to_radians(), "rad/s2");
+            }
+            ArmAction::LoadNumber(number) => return self.load_number(*number),
             ArmAction::Load(mass, center) => return self.load(*mass, *center),
             ArmAction::TurnSpeed(speed) => self.running.turn_speed = *speed,
             ArmAction::FileBorder => return self.border(),
             ArmAction::Move(motion) => return self.motion(line, motion),
         }
         Ok(())
+    }
+
+    /// # Errors
+    /// The arm is to accelerate faster than the options of the machine's files state.
+    fn acceleration(&self, option: &str, rate: f64, unit: &str) -> Outcome {
+        let most = match self.machine.options.get(option) {
+            Some(OptionValue::Number(most)) => *most,
+            Some(OptionValue::Flag(_) | OptionValue::Text(_)) | None => f64::NAN,
+        };
+        if rate <= most * 1.001 {
+            return Ok(());
+        }
+        let message = format!(
+            "the arm accelerates by {rate:.2} {unit}, `{option}` of the machine's options is {most}"
+        );
+        let help = "as much as the option states, or less";
+        Err(Diagnostic::error(Rule::Acceleration, message).help(help).into())
     }
 
     /// The program goes on in another file: the arm stops there, and the control reads that file meanwhile.

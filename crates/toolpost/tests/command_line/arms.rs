@@ -109,11 +109,11 @@ fn what_a_robot_cannot_do_is_no_wrong_input() {
              GOTO/60,0,50\nFINI\n"
         )
     };
-    // A feed between two whole cm/min.
+    // A feed between two tenths of inch/min.
     folder.write("slow.cls", job("6.6"));
     folder.write("good.cls", job("300"));
     for (file, robot, code, what) in [
-        ("slow.cls", "fanuc-lrmate-200id-mill", 1, "10 mm/min in the source"),
+        ("slow.cls", "fanuc-lrmate-200id-mill", 1, "5.08 or 7.62 mm/min in the source"),
         ("good.cls", "fanuc-lrmate-200id-mill", 0, ""),
     ] {
         let said = folder.run(&["post", file, "--machine", robot, "-o", "out.txt"]);

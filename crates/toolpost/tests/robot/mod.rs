@@ -116,7 +116,11 @@ fn kept(dialect: Dialect, text: &str) -> Vec<(Action, f64)> {
             Action::Feed(Feed::PerMinute(new)) => feed = new,
             Action::Comment(_)
             | Action::Arm(
-                ArmAction::JointSpeed(_) | ArmAction::JointRate(_) | ArmAction::TurnSpeed(_),
+                ArmAction::JointSpeed(_)
+                | ArmAction::JointRate(_)
+                | ArmAction::TurnSpeed(_)
+                | ArmAction::TipAcceleration(_)
+                | ArmAction::JointAcceleration(_),
             ) => {}
             Action::Arm(ArmAction::Move(motion)) => {
                 let by_joints = matches!(motion.path, ArmPath::Joints(_));

@@ -92,6 +92,7 @@ impl State {
             Statement::Input(number, on) => channel.input(line, *number, *on),
             Statement::Message(text) => channel.report(line, Action::Message(text.clone())),
             Statement::Pause => channel.report(line, Action::Stop),
+            Statement::Payload(number) => channel.arm(line, ArmAction::LoadNumber(*number)),
             Statement::Nothing | Statement::Motion(_) | Statement::Call(..) | Statement::End => {
                 Ok(())
             }

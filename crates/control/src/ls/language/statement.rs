@@ -9,6 +9,7 @@ const POSITIONS: u32 = 32_767;
 const REGISTERS: u32 = 9_999;
 const FRAMES: u32 = 10;
 const SIGNALS: u32 = 99_999;
+const PAYLOADS: u32 = 10;
 
 /// Most operators of an assignment (R-30iB operator's manual, "Mixed logic": 5 in an arithmetic instruction).
 const MOST_OPERATORS: usize = 5;
@@ -86,6 +87,8 @@ pub(crate) enum Statement<'t> {
     Input(u32, bool),
     Message(Box<str>),
     Pause,
+    /// `PAYLOAD[1]`
+    Payload(u32),
     End,
     Call(&'t str, Vec<Value>),
 }
@@ -147,8 +150,10 @@ pub(crate) fn read<'t>(scan: &mut Scan<'t>) -> Outcome<Statement<'t>> {
         "MESSAGE" => Statement::Message(text(scan)?),
         "PAUSE" => Statement::Pause,
         "END" => Statement::End,
-        // Which load: the operator's schedule of that number. A label is only jumped to.
-        "PAYLOAD" | "LBL" => {
+        // Which load: the operator's schedule of that number.
+        "PAYLOAD" => Statement::Payload(closed(scan, PAYLOADS)?),
+        // A label is only jumped to.
+        "LBL" => {
             closed(scan, REGISTERS)?;
             Statement::Nothing
         }
@@ -311,6 +316,17 @@ fn speed(scan: &mut Scan, of_joints: bool) -> Outcome<Speed> {
     let value = value(scan)?;
     let units = [("mm/sec", 60.0), ("cm/min", 10.0), ("inch/min", 25.4)];
     let unit = units.into_iter().find(|(unit, _)| scan.take_text(unit));
+    if let (Value::Number(number), Some((name, _))) = (value, unit) {
+        // The pendant takes whole mm/sec and cm/min, and tenths of inch/min.
+        let parts = if name == "inch/min" { 10.0 } else { 1.0 };
+        if (number * parts - (number * parts).round()).abs() > 1e-6 {
+            let message = format!("{number} {name} has more digits than the control keeps");
+            let found = scan.since(from, Rule::Number, message);
+            return Err(Box::new(
+                found.help("write whole mm/sec or cm/min, or tenths of inch/min"),
+            ));
+        }
+    }
     match (scan.take(b'%'), unit, of_joints) {
         (true, None, true) => Ok(Speed::Percent(value)),
         (false, Some((_, factor)), false) => Ok(Speed::Tip(value, factor)),

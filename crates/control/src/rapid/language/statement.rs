@@ -310,7 +310,7 @@ fn motion(scan: &mut Scan, variables: &dyn Readable, kind: MotionKind) -> Outcom
     replaced(scan, variables, "V", (&mut speed, &[0]))?;
     scan.expect(",")?;
     let mut zone = read_as(scan, variables, "ZONEDATA")?;
-    replaced(scan, variables, "Z", (&mut zone, &[1, 2]))?;
+    replaced(scan, variables, "Z", (&mut zone, &[1]))?;
     scan.expect(",")?;
     let tool = persistent(scan, variables, "TOOLDATA")?;
     // Both `tool,\WObj:=` and `tool\WObj:=` occur.

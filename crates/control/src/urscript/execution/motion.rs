@@ -33,7 +33,11 @@ impl State {
                 }
             },
         };
-        given.positive(scan, "a", 1.4)?;
+        let acceleration = given.positive(scan, "a", 1.4)?;
+        if self.joint_acceleration.replace(acceleration) != Some(acceleration) {
+            let action = ArmAction::JointAcceleration(acceleration.to_degrees());
+            channel.arm(scan.line, action)?;
+        }
         let rate = given.positive(scan, "v", 1.05)?;
         no_time(scan, given)?;
         if self.joint_rate != Some(rate) {
@@ -52,7 +56,7 @@ impl State {
     /// `movel(pose,a=1.2,v=0.25,t=0,r=0)`.
     pub(super) fn movel(&mut self, scan: &Scan, given: &Given, channel: &mut Channel) -> Outcome {
         let end = pose_of(scan, given, "pose")?;
-        given.positive(scan, "a", 1.2)?;
+        self.acceleration(scan, given, channel)?;
         no_time(scan, given)?;
         self.feed(scan, given.positive(scan, "v", 0.25)?, channel)?;
         let corner = corner(scan, given)?;
@@ -63,7 +67,7 @@ impl State {
     /// to the tangent.
     pub(super) fn movec(&mut self, scan: &Scan, given: &Given, channel: &mut Channel) -> Outcome {
         let (via, end) = (pose_of(scan, given, "pose_via")?, pose_of(scan, given, "pose_to")?);
-        given.positive(scan, "a", 1.2)?;
+        self.acceleration(scan, given, channel)?;
         let turning = match given.number(scan, "mode", 0.0)? {
             0.0 => Turning::Even,
             1.0 => Turning::AlongPath,
@@ -76,6 +80,15 @@ impl State {
         let corner = corner(scan, given)?;
         let path = ArmPath::Arc { via, end };
         report(scan, (path, turning), corner, channel)
+    }
+
+    /// The acceleration of a line or an arc, where it changes.
+    fn acceleration(&mut self, scan: &Scan, given: &Given, channel: &mut Channel) -> Outcome {
+        let acceleration = given.positive(scan, "a", 1.2)?;
+        if self.tip_acceleration.replace(acceleration) != Some(acceleration) {
+            channel.arm(scan.line, ArmAction::TipAcceleration(acceleration * METRE))?;
+        }
+        Ok(())
     }
 
     /// The speed of lines and arcs, m/s, where it changes.

@@ -18,6 +18,9 @@ pub(in crate::urscript) struct State {
     pub(super) speed: Option<f64>,
     /// The `v` of the last motion of joints, rad/s.
     pub(super) joint_rate: Option<f64>,
+    /// The `a` of the last line or arc, m/s2, and of the last motion of joints, rad/s2.
+    pub(super) tip_acceleration: Option<f64>,
+    pub(super) joint_acceleration: Option<f64>,
     /// The name of the operator's function that changes tools.
     pub(super) tool_change: String,
 }
@@ -37,6 +40,8 @@ impl State {
             count: 0,
             speed: None,
             joint_rate: None,
+            tip_acceleration: None,
+            joint_acceleration: None,
             tool_change: tool_change.into(),
         }
     }

@@ -33,6 +33,26 @@ impl Comparison<'_> {
         }
     }
 
+    /// # Errors
+    /// It is not the load that the cell states.
+    pub(super) fn load_number(&mut self, number: u32) -> Outcome {
+        self.loaded = true;
+        match self.cell.load_number {
+            Some(own) if own == number => Ok(()),
+            Some(own) => {
+                let message =
+                    format!("the program chooses load {number}, the machine's file states {own}");
+                refused(Rule::Payload, message)
+            }
+            None => {
+                let message = format!(
+                    "the program chooses load {number}, and the machine's file states none"
+                );
+                refused(Rule::Payload, message)
+            }
+        }
+    }
+
     /// An output: the spindle's, the coolant's, or one of the source's own.
     pub(super) fn output(&mut self, output: &Output) -> Outcome {
         self.exact()?;

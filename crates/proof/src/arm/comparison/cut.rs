@@ -3,6 +3,7 @@
 use super::super::expected::Expected;
 use super::super::follow::angle;
 use super::{Comparison, refused};
+use control::Dialect;
 use control::{ArmMove, Corner, Rounding};
 use geom::Frame;
 use program::{Coolant, Outcome, Rule, Spindle};
@@ -21,7 +22,9 @@ impl Comparison<'_> {
         // Poses in the world itself are compared there.
         let in_world = self.running.base == Some(Frame::IDENTITY);
         let base = if in_world { Frame::IDENTITY } else { self.cell.part };
-        if !self.loaded && self.machine.words.contains_key("LOAD_MASS") {
+        let asks = Dialect::named(&self.machine.reader).is_some_and(Dialect::asks_for_load);
+        let states = self.cell.load_number.is_some() || self.cell.load.is_some();
+        if !self.loaded && (asks || states) {
             let message = "the program moves and has not stated the load on the flange";
             return refused(Rule::Payload, message);
         }
@@ -59,7 +62,7 @@ impl Comparison<'_> {
         let Some(feed) = self.running.feed else {
             return refused(Rule::NoFeed, "the program cuts and has not stated its feed");
         };
-        if (feed - state.feed).abs() > self.feed_step + 1e-9 * state.feed.abs() {
+        if (feed - state.feed).abs() > self.feed_step.max(self.feed_part * state.feed.abs()) {
             let message = format!("the feed is {feed:.3} mm/min, the source has {:.3}", state.feed);
             return refused(Rule::Feed, message);
         }
