@@ -188,7 +188,7 @@ fn corners_are_passed_by_whole_millimetres_alone() {
     assert_eq!(report.mismatches[0].rule.name(), "path-tolerance");
 }
 
-/// R-30iB operator's manual, "Feed rate": whole mm/sec and cm/min, tenths of inch/min. 85.547 mm/min are 3.37 of these and 8.6 cm/min.
+/// `docs/controls/ls.md`: whole mm/sec and cm/min, tenths of inch/min. 85.547 mm/min are 3.37 of these and 8.6 cm/min.
 #[test]
 fn a_feed_between_two_whole_centimetres_is_written_in_tenths_of_an_inch() {
     let feed =
