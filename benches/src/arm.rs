@@ -1,5 +1,6 @@
 //! All joints that put the flange of an arm into a frame, next to rs-opw-kinematics in the same run; and the choice of turn and posture
-//! along a path, next to the joints of all its turns alone.
+//! along a path, next to the joints of all its turns alone; and a whole program for a KUKA, from cutter-location data to its proof, next
+//! to the joints of its points alone.
 
 use crate::fastest;
 use ::arm::{Arm, Coupling, Frame, Joint, Joints, Mat3, Spherical, Structure, Vec3};
@@ -8,6 +9,7 @@ use program::{Diagnostic, Rule};
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose};
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
 use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
+use std::fmt::Write as _;
 use std::hint::black_box;
 
 /// KUKA KR 6 R900 sixx, mm.
@@ -58,7 +60,74 @@ pub fn measure(poses: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
     println!("  inverse: {}; {} solutions", ours.time, found[1]);
     println!("    the peer divided by it: {}", by_peer.time.times(ours.time));
     println!("  forward: {}", forward.time);
-    path(poses / 2, rounds, &arm)
+    path(poses / 2, rounds, &arm)?;
+    whole(5 * poses, &arm)
+}
+
+/// Prints what a proven KRL program of so many points takes.
+fn whole(count: usize, arm: &Arm) -> Result<(), Vec<Diagnostic>> {
+    let text = rings(count);
+    let machine = machine::load("kuka-kr6-r900")?;
+    let cell = machine.cell.as_ref().and_then(|cell| Some((cell.part, cell.tool(None)?)));
+    let Some((part, tool)) = cell else { return Ok(()) };
+    let floor = fastest(1, &mut || {
+        for i in 0..count {
+            let (tip, _) = ring(i, count);
+            let down = Frame::from_rotation_x(std::f64::consts::PI);
+            let at = part * Frame::from_translation(tip) * down * tool.inverse();
+            black_box(arm.inverse(&at, 0.0));
+        }
+        Ok(())
+    })?;
+    let mut bytes = 0;
+    let ours = fastest(1, &mut || {
+        let source = source::apt::read("rings.cls", text.as_bytes(), &Default::default())?.program;
+        let written = post::write(&source, &machine)?;
+        bytes = written.text.len();
+        let proof =
+            proof::prove(&source, &machine, "rings.src", &written.text, &Default::default());
+        match proof.proven {
+            true => Ok(()),
+            false => Err(proof.mismatches),
+        }
+    })?;
+    println!(
+        "a KRL program of {count} points, {} MB, from cutter-location data to its proof",
+        bytes / 1_000_000
+    );
+    println!("  floor: the joints of each point once, on one thread: {}", floor.time);
+    println!("  program and proof: {}; peak {} MB", ours.time, ours.peak / 1_000_000);
+    println!("    divided by the floor: {}", ours.time.times(floor.time));
+    Ok(())
+}
+
+/// Rings on a shallow dome within reach of the KR 6, the tool up to 5 degrees off the vertical, as cutter-location data.
+fn rings(count: usize) -> String {
+    let mut text =
+        String::from("PARTNO/RINGS\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\n");
+    let goto = |text: &mut String, tip: Vec3, axis: Vec3| {
+        let ([x, y, z], [i, j, k]) = (tip.to_array(), axis.to_array());
+        // A text takes every write.
+        let _ = writeln!(text, "GOTO/{x:.4},{y:.4},{z:.4},{i:.7},{j:.7},{k:.7}");
+    };
+    let (tip, axis) = ring(0, count);
+    goto(&mut text, tip + axis * 50.0, axis);
+    text += "FEDRAT/MMPM,600\n";
+    for i in 0..count {
+        let (tip, axis) = ring(i, count);
+        goto(&mut text, tip, axis);
+    }
+    let (tip, axis) = ring(count.saturating_sub(1), count);
+    text += "RAPID\n";
+    goto(&mut text, tip + axis * 50.0, axis);
+    text + "FINI\n"
+}
+
+fn ring(i: usize, count: usize) -> (Vec3, Vec3) {
+    let part = i as f64 / count as f64;
+    let (turn, lean) = (i as f64 * 0.3 / 60.0, (1.0 + 4.0 * part).to_radians());
+    let axis = Vec3::new(lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos());
+    ((axis - Vec3::Z) * 400.0, axis)
 }
 
 /// Prints what the choice along a path of so many points takes.
