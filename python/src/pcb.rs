@@ -6,6 +6,7 @@ use crate::error::{class, raised, released};
 use crate::machine::Machine;
 use crate::posting::{reported, tolerances};
 use ::pcb::board::Face;
+use ::pcb::excellon::Unit;
 use ::pcb::isolation::{Direction, Narrow};
 use ::pcb::plan::{
     Clearing, Drilling, Isolate, Isolation, Outline, Part, Placing, Running, Settings, Turn,
@@ -39,6 +40,13 @@ impl Given<'_> {
     }
 }
 
+/// One width, or several.
+#[derive(FromPyObject)]
+pub enum Widths {
+    One(f64),
+    Many(Vec<f64>),
+}
+
 /// Write the programs that isolate, drill and cut out a circuit board, and prove them: where one is not proven, none is
 /// given out.
 ///
@@ -55,22 +63,28 @@ impl Given<'_> {
 /// only : sequence of str
 ///     What to make: ``front``, ``back``, ``drill``, ``outline``, ``front-mask``, ``back-mask``, ``front-legend``,
 ///     ``back-legend``; by default all that the board has and that tools are given for.
-/// tool, vee : float, optional
-///     Width of the end mill that cuts around copper, or the angle of a V-bit in degrees.
-/// tip, depth, step, passes, overlap, direction, narrow, isolate
+/// unit : {"mm", "inch"}, optional
+///     The unit of drill files that do not say it.
+/// tool : float or sequence of float, optional
+///     Width of the end mill that cuts around copper; of several the widest first, each as far as it goes in.
+/// vee : float, optional
+///     Angle of a V-bit that does it, degrees.
+/// tip, depth, step, passes, isolation_width, overlap, direction, narrow, isolate, invert
 ///     How copper is isolated; ``direction`` is ``climb`` or ``conventional``, ``narrow`` is ``bite``,
-///     ``leave-out`` or ``middle``, ``isolate`` is ``contours`` or ``middle``.
+///     ``leave-out`` or ``middle``, ``isolate`` is ``contours``, ``middle`` or ``lines``.
 /// clear, margin, mask_tool, legend_tool, engrave
 ///     What else is cut of copper, mask and legend.
-/// drills, drill_tolerance, hole_mill, peck, from_side
+/// drills, drill_tolerance, hole_mill, mill_holes_over, peck, from_side
 ///     How holes are made, from ``front`` or ``back``.
-/// outline_tool, outline_step, tabs, tab_width, tab_height, close_gaps, board_margin
-///     How the board is cut out; gaps of its edge up to ``close_gaps`` are closed, and with ``board_margin`` a board without an
-///     edge is a rectangle.
-/// thickness, through, corner, as_drawn, turn, alignment, panel, spacing
+/// outline_tool, outline_step, tabs, tab_at, tab_width, tab_height, close_gaps, board_margin, rectangular
+///     How the board is cut out; ``tab_at`` are places of tabs, gaps of its edge up to ``close_gaps`` are closed, and with
+///     ``board_margin`` a board without an edge is a rectangle.
+/// thickness, through, rotate, corner, as_drawn, turn, alignment, panel, spacing
 ///     Where the board lies; it is turned over about a line along ``y`` or ``x``; ``panel`` is columns and rows.
-/// feed, plunge, drill_feed, outline_feed, speed, travel, approach
+/// feed, plunge, drill_feed, outline_feed, speed, travel, approach, spin_up
 ///     How the machine runs.
+/// text_before, text_after : sequence of str
+///     Blocks of the control behind the machine's own beginning and before its end.
 /// probe : tuple of 2 ints, optional
 ///     Columns and rows of the places at which the height of the board is measured.
 /// on_control : bool
@@ -96,14 +110,16 @@ impl Given<'_> {
 /// toolpost.Error
 ///     Where there are no programs; or one is not proven, with its :attr:`~toolpost.Error.report`.
 #[pyfunction]
-#[pyo3(signature = (board, machine, *, only=Vec::new(), tool=None, vee=None, tip=0.1, depth=0.1, step=None, passes=1,
-                    overlap=0.25, direction="climb", narrow="bite", isolate="contours", clear=Vec::new(), margin=0.0,
+#[pyo3(signature = (board, machine, *, only=Vec::new(), unit=None, tool=None, vee=None, tip=0.1, depth=0.1, step=None, passes=1,
+                    isolation_width=None, overlap=0.25, direction="climb", narrow="bite", isolate="contours", invert=false, clear=Vec::new(), margin=0.0,
                     mask_tool=None, legend_tool=None, engrave=0.05, drills=Vec::new(), drill_tolerance=0.05,
-                    hole_mill=None, peck=None, from_side="front", outline_tool=2.0, outline_step=0.5, tabs=4,
-                    tab_width=2.0, tab_height=0.6, close_gaps=0.3, board_margin=None, thickness=1.6, through=0.2, corner=None,
+                    hole_mill=None, mill_holes_over=None, peck=None, from_side="front", outline_tool=2.0, outline_step=0.5, tabs=4,
+                    tab_at=Vec::new(), tab_width=2.0, tab_height=0.6, close_gaps=0.3, board_margin=None, rectangular=false,
+                    thickness=1.6, through=0.2, rotate=0.0, corner=None,
                     as_drawn=false, turn="y",
                     alignment=None, panel=None, spacing=4.0, feed=200.0, plunge=60.0, drill_feed=100.0,
-                    outline_feed=150.0, speed=None, travel=2.0, approach=0.5, probe=None, on_control=false, split_tools=false,
+                    outline_feed=150.0, speed=None, travel=2.0, approach=0.5, spin_up=None, text_before=Vec::new(),
+                    text_after=Vec::new(), probe=None, on_control=false, split_tools=false,
                     heights=None,
                     picture=None, tolerance=None, strict=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -112,16 +128,19 @@ pub fn pcb<'py>(
     board: Given<'py>,
     machine: &Machine,
     only: Vec<String>,
-    tool: Option<f64>,
+    unit: Option<&str>,
+    tool: Option<Widths>,
     vee: Option<f64>,
     tip: f64,
     depth: f64,
     step: Option<f64>,
     passes: u32,
+    isolation_width: Option<f64>,
     overlap: f64,
     direction: &str,
     narrow: &str,
     isolate: &str,
+    invert: bool,
     clear: Vec<f64>,
     margin: f64,
     mask_tool: Option<f64>,
@@ -130,17 +149,21 @@ pub fn pcb<'py>(
     drills: Vec<f64>,
     drill_tolerance: f64,
     hole_mill: Option<f64>,
+    mill_holes_over: Option<f64>,
     peck: Option<f64>,
     from_side: &str,
     outline_tool: f64,
     outline_step: f64,
     tabs: u32,
+    tab_at: Vec<[f64; 2]>,
     tab_width: f64,
     tab_height: f64,
     close_gaps: f64,
     board_margin: Option<f64>,
+    rectangular: bool,
     thickness: f64,
     through: f64,
+    rotate: f64,
     corner: Option<[f64; 2]>,
     as_drawn: bool,
     turn: &str,
@@ -154,6 +177,9 @@ pub fn pcb<'py>(
     speed: Option<f64>,
     travel: f64,
     approach: f64,
+    spin_up: Option<f64>,
+    text_before: Vec<String>,
+    text_after: Vec<String>,
     probe: Option<[u32; 2]>,
     on_control: bool,
     split_tools: bool,
@@ -167,28 +193,39 @@ pub fn pcb<'py>(
     let directions = [("climb", Direction::Climb), ("conventional", Direction::Conventional)];
     let gaps =
         [("bite", Narrow::Bite), ("leave-out", Narrow::LeaveOut), ("middle", Narrow::Middle)];
-    let cuts = [("contours", Isolate::Contours), ("middle", Isolate::Middle)];
+    let cuts =
+        [("contours", Isolate::Contours), ("middle", Isolate::Middle), ("lines", Isolate::Lines)];
+    let units = [("mm", Unit::Metric), ("inch", Unit::Inch)];
+    let mut wider = match tool {
+        None => Vec::new(),
+        Some(Widths::One(width)) => vec![width],
+        Some(Widths::Many(widths)) => widths,
+    };
+    let tool = wider.pop();
     let settings = Settings {
         only,
-        unit: None,
+        unit: unit.map(|given| word(py, "unit", given, &units)).transpose()?,
         isolation: Isolation {
+            wider,
             tool,
             vee,
             tip,
             depth,
             step,
             passes,
+            isolation_width,
             overlap,
             direction: word(py, "direction", direction, &directions)?,
             narrow: word(py, "narrow", narrow, &gaps)?,
             isolate: word(py, "isolate", isolate, &cuts)?,
-            ..Isolation::default()
+            invert,
         },
         clearing: Clearing { clear, margin, mask_tool, legend_tool, engrave },
         drilling: Drilling {
             drills,
             drill_tolerance,
             hole_mill,
+            mill_holes_over,
             peck,
             from: word(
                 py,
@@ -196,28 +233,28 @@ pub fn pcb<'py>(
                 from_side,
                 &[("front", Face::Front), ("back", Face::Back)],
             )?,
-            ..Drilling::default()
         },
         outline: Outline {
             outline_tool,
             outline_step,
             tabs,
+            tab_at: tab_at.into_iter().map(Vec2::from_array).collect(),
             tab_width,
             tab_height,
             close_gaps,
             board_margin,
-            ..Outline::default()
+            rectangular,
         },
         placing: Placing {
             thickness,
             through,
+            rotate,
             corner: corner.map(Vec2::from_array),
             as_drawn,
             turn: word(py, "turn", turn, &[("y", Turn::Y), ("x", Turn::X)])?,
             alignment,
             panel,
             spacing,
-            ..Placing::default()
         },
         running: Running {
             feed,
@@ -227,10 +264,11 @@ pub fn pcb<'py>(
             speed,
             travel,
             approach,
+            spin_up,
+            text: [text_before, text_after].map(|blocks| blocks.join("\n")),
             probe,
             on_control,
             split_tools,
-            ..Running::default()
         },
     };
     let formats = [("svg", Format::Svg), ("png", Format::Png)];

@@ -91,6 +91,31 @@ def test_the_programs_of_a_board_are_those_of_the_command(native, tmp_path, run)
     assert json.loads(made.files["report.json"]) == made.report.data()
 
 
+def test_the_options_of_the_command_are_keywords(native, tmp_path, run):
+    words = "--tool 0.8,0.3 --isolation-width 0.5 --hole-mill 1 --mill-holes-over 1.2 --tab-at 0,5 --rectangular"
+    words += " --board-margin 1 --rotate 90 --spin-up 3 --text-before (clamp)@M0 --unit mm"
+    run(native, "pcb", EXAMPLES / "lamp.toml", "-m", "grbl-3018", *words.split(), "-o", tmp_path)
+    made = lamp(
+        tool=[0.8, 0.3],
+        isolation_width=0.5,
+        hole_mill=1,
+        mill_holes_over=1.2,
+        tab_at=[(0, 5)],
+        rectangular=True,
+        board_margin=1,
+        rotate=90,
+        spin_up=3,
+        text_before=["(clamp)", "M0"],
+        unit="mm",
+    )
+    for name, program in made.programs.items():
+        assert program == (tmp_path / f"{name}.gcode").read_bytes(), name
+    with pytest.raises(toolpost.Error) as caught:
+        lamp(isolate="lines")
+    assert caught.value.help
+    assert b"G3" in lamp(invert=True, only=["front"]).programs["front"]
+
+
 def test_a_board_that_was_built_needs_no_file():
     built = toolpost.Board.builder("pads")
     for node, x in ("a", 5), ("b", 15):
