@@ -612,6 +612,8 @@ pub struct TouchPlate {
     pub height: f64,
     /// How far below its top a tool goes at most that has not touched it, mm.
     pub travel: f64,
+    /// How fast a tool comes to it at most, mm/min: the zero counts from where it has come to rest.
+    pub feed: f64,
 }
 
 impl Machine {
@@ -780,6 +782,7 @@ impl Machine {
             at: Vec2::new(number("touch_x"), number("touch_y")),
             height: number("touch_height"),
             travel: number("touch_travel"),
+            feed: number("touch_feed"),
         };
         Some(plate).filter(|plate| plate.travel > 0.0)
     }

@@ -564,3 +564,42 @@ fn the_load_of_the_cell_is_stated() {
         assert_eq!(found, ["payload"], "{to}");
     }
 }
+
+/// The spindle stays as it is in the cut until the tool is out of it: stopped, or slowed, in the material it breaks the tool, also where
+/// it is started again before the next cut.
+#[test]
+fn a_tool_leaves_a_cut_with_the_spindle_as_in_the_cut() {
+    let text = std::fs::read_to_string(root().join("machines/samples/robot.cls")).unwrap();
+    let (source, machine) = (source(&text), kuka());
+    let text = proven(&source, &machine);
+    let at = "A 0.0000,B 0.0000,C 180.0000}\r\n";
+    let (bottom, above) = (
+        format!("LIN {{X 0.000,Y 0.000,Z -2.000,{at}"),
+        format!("LIN {{X 0.000,Y 0.000,Z 30.000,{at}"),
+    );
+    let hole = format!("LIN {{X 30.000,Y 20.000,Z -2.500,{at}");
+    let on = "$OUT[1]=TRUE\r\nWAIT SEC 3.00\r\n";
+    assert_eq!([&bottom, &above, &hole].map(|line| text.matches(line.as_str()).count()), [1; 3]);
+    let behind =
+        |text: &str, line: &str, more: &str| text.replacen(line, &format!("{line}{more}"), 1);
+    let started = behind(&text, &above, on);
+    let in_hole = text.split_once(&hole).unwrap();
+    let lifted = in_hole.1.split_once("\r\n").unwrap();
+    let in_hole = format!("{}{hole}$OUT[1]=FALSE\r\n{}\r\n{on}{}", in_hole.0, lifted.0, lifted.1);
+    for damaged in [
+        behind(&started, &bottom, "$OUT[1]=FALSE\r\n"),
+        behind(
+            &behind(&text, &bottom, "$ANOUT[1]=0.10000\r\n"),
+            &above,
+            "$ANOUT[1]=0.50000\r\nWAIT SEC 3.00\r\n",
+        ),
+        in_hole,
+    ] {
+        let report = proof_of(&source, &machine, &damaged);
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(found, ["spindle"], "{:#?}", report.mismatches);
+    }
+    // Above the cuts it is stopped and started as the program likes.
+    let free = behind(&text, &above, &format!("$OUT[1]=FALSE\r\n{on}"));
+    assert!(proof_of(&source, &machine, &free).proven);
+}

@@ -2,7 +2,7 @@
 //!
 //! [`fastest`] first goes from point to point greedily (`greedy`), then improves stretches of the order by exchanging and
 //! turning pieces of it (`window`). [`kdz`] and [`layers`] are those of the source, which keep no shadow rule.
-//! [`bound`] says how few ticks any order can take. What is legal is found here for the planning; the proof finds it once more by itself.
+//! [`bound()`] says how few ticks any order can take. What is legal is found here for the planning; the proof finds it once more by itself.
 
 mod bound;
 mod greedy;

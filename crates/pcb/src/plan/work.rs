@@ -144,6 +144,17 @@ impl Work {
         }
         Ok(work)
     }
+
+    /// Has one of several tools cut what is left for it; a tool for which nothing is left is not called, and that is said.
+    fn go_on(&mut self, what: &str, tool: Tool, cuts: Vec<Cut>) {
+        if cuts.is_empty() {
+            let message = format!("{what}: nothing is left that {} reaches", tool.name);
+            let help = "take a narrower tool, or leave it out";
+            self.warnings.push(Diagnostic::warning(Rule::NotReached, message).help(help));
+        } else {
+            self.operations.push(Operation { name: format!("{what}, {}", tool.name), tool, cuts });
+        }
+    }
 }
 
 struct Worker<'a> {
@@ -187,11 +198,15 @@ impl Worker<'_> {
             }
             Isolate::Lines => merged(&linking::trails(&along_lines(work, board)?, detour)),
         };
-        work.operations.push(Operation {
-            name: format!("isolation, {}", bit.name),
-            tool: bit,
-            cuts: cuts(&lines, &dots, width, &depths),
-        });
+        let cuts = cuts(&lines, &dots, width, &depths);
+        match settings.wider.is_empty() {
+            true => work.operations.push(Operation {
+                name: format!("isolation, {}", bit.name),
+                tool: bit,
+                cuts,
+            }),
+            false => work.go_on("isolation", bit, cuts),
+        }
         if self.asked.clearing.clear.is_empty() {
             return Ok(());
         }
@@ -229,11 +244,7 @@ impl Worker<'_> {
             let isolated = isolation.isolate(copper, left.as_ref().or(area))?;
             let (lines, dots) = merged(&linking::trails(&isolated.paths, detour));
             let lines = linking::linked(&lines, &isolated.around, detour);
-            work.operations.push(Operation {
-                name: format!("isolation, {}", mill.name),
-                tool: mill,
-                cuts: cuts(&lines, &dots, *tool, depths),
-            });
+            work.go_on("isolation", mill, cuts(&lines, &dots, *tool, depths));
             let farther = tool * (isolation.passes - 1) as f64 * (1.0 - isolation.overlap);
             let swept = swept(&isolated.around, *tool, farther);
             let rest = swept.and_then(|swept| {
@@ -628,18 +639,7 @@ impl Worker<'_> {
         depths: &[f64],
     ) {
         for (width, paths) in clearing.widths.iter().zip(passes) {
-            let tool = self.end_mill(*width);
-            if paths.is_empty() {
-                let message = format!("{what}: nothing is left that {} reaches", tool.name);
-                let help = "take a narrower tool, or leave it out";
-                work.warnings.push(Diagnostic::warning(Rule::NotReached, message).help(help));
-                continue;
-            }
-            work.operations.push(Operation {
-                name: format!("{what}, {}", tool.name),
-                tool,
-                cuts: along(paths, *width, depths),
-            });
+            work.go_on(what, self.end_mill(*width), along(paths, *width, depths));
         }
     }
 

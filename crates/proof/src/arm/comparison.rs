@@ -71,6 +71,8 @@ pub(super) struct Comparison<'a> {
     is_home: bool,
     /// The corner that the motion before has left open: the next one has to be a cut.
     open: Option<Rounding>,
+    /// How the spindle has turned in the last cut: whether, and how fast.
+    turned: Option<(bool, Option<f64>)>,
     /// Where the tool has left a cut, to which it has to come back.
     away: Option<reentry::Away>,
     /// What a contour is compared with at its end.
@@ -120,6 +122,7 @@ impl<'a> Comparison<'a> {
             standing: None,
             is_home: false,
             open: None,
+            turned: None,
             away: None,
             gathered: None,
             loaded: false,

@@ -87,6 +87,16 @@ impl Prover<'_> {
             return false;
         }
         self.hold_travel(&self.gauge.resolve(line, *to), None);
+        let room = self.gauge.machine.capabilities.rapid_clearance;
+        if self.gauge.machine.retract_height().is_some() && self.top < plate.height + room {
+            let what = format!(
+                "goes over the touch plate at Z{}, whose top is at Z{}: {} mm of room are needed",
+                Number(self.top),
+                Number(plate.height),
+                Number(room)
+            );
+            self.differs(line, (Rule::Probe, what));
+        }
         let over = Position { point: to.point.with_z(f64::NAN), ..here };
         self.here = self.gauge.resolve(line, over);
         self.progress.start = Some(self.here);
@@ -116,6 +126,11 @@ impl Prover<'_> {
                 Number(plate.at.x),
                 Number(plate.at.y)
             )
+        } else if !self.is_slow(plate) {
+            format!(
+                "touches off faster than {} mm/min, or at a feed that is not known",
+                Number(plate.feed)
+            )
         } else if !here.z.is_nan() {
             "touches off from a height to which Z has not been home".into()
         } else if end.z >= plate.height || end.z < lowest - slack {
@@ -129,6 +144,11 @@ impl Prover<'_> {
             return;
         };
         self.differs(line, (Rule::Probe, what));
+    }
+
+    /// Whether the feed that is on is no more than the plate's.
+    fn is_slow(&self, plate: &TouchPlate) -> bool {
+        matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed <= plate.feed * (1.0 + 1e-9))
     }
 
     fn sets_height(&mut self, line: u32, plate: &TouchPlate, height: f64) {

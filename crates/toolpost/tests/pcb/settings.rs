@@ -224,6 +224,16 @@ fn a_narrow_tool_cuts_what_a_wide_one_leaves() {
         (cut.from.x - 5.15).abs() < 0.06 && (cut.from.y - 5.0).abs() < 0.3
     };
     assert!(cuts.iter().filter(|cut| cut.tool == 2).any(|cut| gap(&cut)));
+    // Pads 10 mm apart leave nothing for the narrow one: it is not called, and that is said.
+    front(&folder, "D10*\nX4000Y5000D03*\nX14000Y5000D03*\n");
+    let made =
+        Made::of(&folder, "board", "linuxcnc-mill", &["--tool", "0.8,0.2", "--only", "front"]);
+    assert_eq!(made.operations("front"), ["isolation, end mill 0.8 mm"]);
+    assert!(
+        made.said.err.contains("nothing is left that end mill 0.2 mm reaches"),
+        "{}",
+        made.said.err
+    );
     let call = [&CALL[..6], &["--tool", "0.2,0.8"]].concat();
     refused(&folder, &call, 2, &["error[tool-width]", "widest first"]);
 }
@@ -411,6 +421,9 @@ fn tools_are_touched_off_on_a_plate() {
         ("G38.2 Z-13.4", "G38.2 Z-30", "down to Z-30"),
         ("G38.2 Z-13.4", "G38.3 Z-13.4", "touches nothing"),
         ("G38.2 Z-13.4", "M3 S1000\nG38.2 Z-13.4", "not been touched off"),
+        ("G38.2 Z-13.4 F30", "G38.2 Z-13.4 F1000", "faster than 30"),
+        ("G38.2 Z-13.4 F30", "G93\nG38.2 Z-13.4 F30\nG94", "faster than 30"),
+        ("G38.2 Z-13.4 F30", "G38.2 Z-13.4", "faster than 30"),
         ("G0 X-3 Y2\n", "G0 X-3 Y3\n", "Y3"),
         ("G0 X-3 Y2\n", "", "the plate is at X-3 Y2"),
         ("(take the touch plate away)\nM0\n", "", "taken away"),
@@ -421,6 +434,16 @@ fn tools_are_touched_off_on_a_plate() {
         let said = prove(&text.replacen(from, to, 1));
         assert!(said.code == 1 && said.err.contains(why), "{from} {to} {said:?}");
     }
+    // A plate as high as the tool goes up, and a depth that is no binary fraction.
+    let at = |height: &str| {
+        folder.run(
+            &[&call[..], &machine[..], &["--option", &format!("touch_height={height}")]].concat(),
+        )
+    };
+    let said = at("19.9");
+    assert!(said.code == 1 && said.err.contains("mm of room are needed"), "{said:?}");
+    assert_eq!(at("18.6").code, 0);
+    assert!(folder.read("out/drill.gcode").contains("G38.2 Z3.6 F30\n"));
     // A machine without a plate takes none of it, and stops with a message.
     folder.write("out/drill.gcode", &text);
     let words = ["prove", "out/drill.gcode", "--against", "board", "-m", "grbl-3018"];

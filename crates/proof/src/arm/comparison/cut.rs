@@ -2,7 +2,7 @@
 
 use super::super::expected::Expected;
 use super::super::follow::angle;
-use super::{Comparison, refused};
+use super::{Comparison, Standing, refused};
 use control::Dialect;
 use control::{ArmMove, Corner, Rounding};
 use geom::Frame;
@@ -66,17 +66,7 @@ impl Comparison<'_> {
             let message = format!("the feed is {feed:.3} mm/min, the source has {:.3}", state.feed);
             return refused(Rule::Feed, message);
         }
-        let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
-        let step = self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution);
-        let is_right = match state.spindle {
-            Spindle::Off => !self.running.is_on,
-            Spindle::Clockwise(speed) => {
-                self.running.is_on
-                    && self.running.speed.is_some_and(|own| (own - speed).abs() <= full * step)
-            }
-            Spindle::CounterClockwise(_) => false,
-        };
-        if !is_right {
+        if !self.turns_as(state.spindle) {
             let message = format!(
                 "the spindle is {} at {:.0} 1/min, the source has {:?}",
                 if self.running.is_on { "on" } else { "off" },
@@ -102,6 +92,44 @@ impl Comparison<'_> {
                 format!("the coolant is not as the source wants it ({:?})", state.coolant),
             ),
         }
+    }
+
+    /// Whether the spindle is as the source has it.
+    fn turns_as(&self, wanted: Spindle) -> bool {
+        let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
+        let step = self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution);
+        match wanted {
+            Spindle::Off => !self.running.is_on,
+            Spindle::Clockwise(speed) => {
+                self.running.is_on
+                    && self.running.speed.is_some_and(|own| (own - speed).abs() <= full * step)
+            }
+            Spindle::CounterClockwise(_) => false,
+        }
+    }
+
+    /// # Errors
+    /// A motion that is no cut begins among the cuts, and the spindle is neither as in the cut before nor as the source has it here.
+    pub(super) fn leaves_turning(&self, start: &Standing) -> Outcome {
+        let at = self.in_part(&start.tool);
+        let (tip, axis) = (at.translation, -at.matrix3.z_axis);
+        let is_free = tip.dot(axis) > self.cuts.reach(axis) + self.tip(true);
+        let as_in_cut = self.turned.is_none_or(|turned| turned == self.turns());
+        let wanted = self.expected.get(self.next).map(|expected| expected.state.spindle);
+        if is_free || as_in_cut || wanted.is_some_and(|wanted| self.turns_as(wanted)) {
+            return Ok(());
+        }
+        let message = format!(
+            "the tool leaves a cut with the spindle {} at {:.0} 1/min, which is not as in the cut",
+            if self.running.is_on { "on" } else { "off" },
+            self.running.speed.unwrap_or(0.0)
+        );
+        refused(Rule::Spindle, message)
+    }
+
+    /// How the spindle turns: whether, and how fast.
+    pub(super) fn turns(&self) -> (bool, Option<f64>) {
+        (self.running.is_on, self.running.speed)
     }
 
     /// # Errors

@@ -83,7 +83,10 @@ impl Comparison<'_> {
         let before = self.standing.replace(now);
         self.is_home = home;
         match (before, home) {
-            (Some(before), _) => Ok(Some((before, now))),
+            (Some(before), _) => {
+                self.leaves_turning(&before)?;
+                Ok(Some((before, now)))
+            }
             (None, true) => Ok(None),
             (None, false) => refused(
                 Rule::Home,

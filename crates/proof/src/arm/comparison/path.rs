@@ -259,6 +259,10 @@ impl Comparison<'_> {
             }
             false => {}
         }
+        match cuts {
+            true => self.turned = Some(self.turns()),
+            false => self.leaves_turning(&start)?,
+        }
         let time = feed_time.max(match self.running.turn_speed {
             // A turn is part swing and part turn about the tool; the slower of both decides.
             [Some(swing), Some(roll)] => path.turn.to_degrees() / (swing + roll),
