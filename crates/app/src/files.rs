@@ -345,6 +345,35 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
     Ok(())
 }
 
+/// Checks that the files which the program at `path` calls are saved over nothing but such files of its own: its report, where it
+/// has been saved before, names them.
+///
+/// # Errors
+/// The first that is there already and belongs to another program, or to nobody knows which.
+pub fn are_own(path: &Path, parts: &[&str]) -> Result<(), Box<Diagnostic>> {
+    let others: Vec<PathBuf> =
+        parts.iter().map(|part| path.with_file_name(part)).filter(|part| part.exists()).collect();
+    if others.is_empty() {
+        return Ok(());
+    }
+    let report = read(&report_of(path)).unwrap_or_default();
+    let report: serde_json::Value = serde_json::from_slice(&report).unwrap_or_default();
+    let own: Vec<&str> = report["program"]["parts"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|part| part["file"].as_str())
+        .collect();
+    match others.iter().find(|other| !own.contains(&&*name(other))) {
+        Some(other) => {
+            let message = "it is there already, and the report beside the program does not name it as one of its parts";
+            let help = "move it away, or give the program another name";
+            Err(about(other, Rule::OutputFile, message.into()).help(help).into())
+        }
+        None => Ok(()),
+    }
+}
+
 /// Saves a program at `path`, the files that it calls beside it, and its report under [`report_of`] that name: all or none, and over
 /// none of `inputs`.
 ///
@@ -358,6 +387,7 @@ pub fn save_program(
     inputs: &[&Path],
 ) -> Result<(), Box<Diagnostic>> {
     let target = Target::new(path, inputs)?;
+    are_own(path, &parts.iter().map(|(file, _)| *file).collect::<Vec<_>>())?;
     let report = report.map(|report| (report_of(path), report.as_bytes()));
     let others = parts.iter().map(|(file, text)| (path.with_file_name(file), *text)).chain(report);
     let others = others.map(|(path, bytes)| Ok((Target::new(&path, inputs)?, bytes)));

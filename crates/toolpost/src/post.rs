@@ -44,6 +44,8 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
         .iter()
         .map(|part| Target::new(&args.output.with_file_name(&part.file), &inputs));
     let parts = parts.collect::<Result<Vec<_>, _>>()?;
+    let files: Vec<&str> = posted.parts.iter().map(|part| &*part.file).collect();
+    files::are_own(&args.output, &files)?;
     let targets: Vec<&Target> = parts.iter().chain([&target, &report_target]).collect();
     spare(&targets, &toolpath, &machine)?;
     progress.step("saving");

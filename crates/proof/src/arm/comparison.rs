@@ -71,7 +71,7 @@ pub(super) struct Comparison<'a> {
     is_home: bool,
     /// The corner that the motion before has left open: the next one has to be a cut.
     open: Option<Rounding>,
-    /// How the spindle has turned in the last cut: whether, and how fast.
+    /// How the spindle has turned in the cut that was the motion before: whether, and how fast.
     turned: Option<(bool, Option<f64>)>,
     /// Where the tool has left a cut, to which it has to come back.
     away: Option<reentry::Away>,

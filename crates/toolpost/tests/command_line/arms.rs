@@ -188,6 +188,12 @@ fn a_program_in_several_files_is_saved_whole_or_not_at_all_and_proven_from_its_f
     let said = folder.run(&prove);
     assert_eq!(said.code, 0, "{said:?}");
     assert!(said.out.contains("belongs to this program"), "{}", said.out);
+    // Another program whose parts would have the same names takes none of them.
+    let other = ["post", "rows.cls", "--machine", "own.toml", "-o", "rows_a.ls"];
+    let said = folder.run(&other);
+    assert!(said.code == 2 && said.err.contains("rows_a_1.ls: error[output-file]"), "{said:?}");
+    assert_eq!(folder.names().len(), names.len());
+    assert_eq!(folder.run(&post).code, 0);
     // A digit of a part: the proof refuses it; a remark: the report is of another program.
     let third = folder.read("rows_a_3.ls");
     folder.write("rows_a_3.ls", third.replacen("TOOLPOST", "TOOLPOSE", 1));

@@ -109,12 +109,12 @@ impl Comparison<'_> {
     }
 
     /// # Errors
-    /// A motion that is no cut begins among the cuts, and the spindle is neither as in the cut before nor as the source has it here.
-    pub(super) fn leaves_turning(&self, start: &Standing) -> Outcome {
+    /// The first motion behind a cut begins in it, and the spindle is neither as in that cut nor as the source has it here.
+    pub(super) fn leaves_turning(&mut self, start: &Standing) -> Outcome {
         let at = self.in_part(&start.tool);
         let (tip, axis) = (at.translation, -at.matrix3.z_axis);
         let is_free = tip.dot(axis) > self.cuts.reach(axis) + self.tip(true);
-        let as_in_cut = self.turned.is_none_or(|turned| turned == self.turns());
+        let as_in_cut = self.turned.take().is_none_or(|turned| turned == self.turns());
         let wanted = self.expected.get(self.next).map(|expected| expected.state.spindle);
         if is_free || as_in_cut || wanted.is_some_and(|wanted| self.turns_as(wanted)) {
             return Ok(());
