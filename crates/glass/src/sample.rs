@@ -14,7 +14,7 @@
 use crate::cloud::Point;
 use crate::mesh::Mesh;
 use crate::weld::Kept;
-use glam::DVec3;
+use glam::{DVec3, IVec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
 /// Longest edge of a cell that darts are thrown into first, spacings.
@@ -38,6 +38,9 @@ const BORDER: f64 = PATCH + 1.0;
 
 /// Cells of the look-up grid of a tile along each axis: as large as a spacing.
 const CELLS: usize = (TILE + 2.0 * BORDER) as usize + 2;
+
+/// How far from the origin the body may be, µm.
+const FARTHEST: i32 = 1 << 22;
 
 type Triangle = [DVec3; 3];
 
@@ -86,7 +89,7 @@ pub(crate) fn on_triangles(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Vec<(Poi
             room.enter(*tile, apart);
             for near in around(*tile) {
                 if let Ok(near) = tiles.binary_search_by_key(&near, |(tile, _)| *tile) {
-                    done[near].iter().for_each(|(point, _)| room.see(*point));
+                    done[near].iter().for_each(|(point, _)| room.see(room.place(*point)));
                 }
             }
             (at, room.fill(mesh, triangles, seed))
@@ -157,13 +160,17 @@ fn halves(triangle: &Triangle, at: usize) -> [Triangle; 2] {
 }
 
 /// A tile being filled: the points that its darts must see, in cubes as large as darts see.
+///
+/// Places in it are µm from its origin, in 24 bits: exact where they are whole.
 struct Room {
     apart: Apart,
     spacing: f64,
-    /// Side of a cube, µm: as far as a dart sees.
-    side: f64,
-    /// Corner of the look-up grid, µm.
-    low: DVec3,
+    /// Cubes per µm: one is as large as a dart sees.
+    per_micrometre: f32,
+    /// Corner of the look-up grid.
+    low: Vec3A,
+    /// A whole µm near the tile.
+    origin: IVec3,
     /// The tile's own box, µm.
     tile: (DVec3, DVec3),
     number: [i32; 3],
@@ -181,8 +188,7 @@ struct Room {
 /// A point that darts see.
 #[derive(Clone, Copy)]
 struct Seen {
-    /// µm.
-    place: DVec3,
+    place: Vec3A,
     /// The one before it in its cube, as in [`Room::last`].
     before: u16,
 }
@@ -192,8 +198,9 @@ impl Default for Room {
         Room {
             apart: Apart { spacing: 1, lost: 0.0 },
             spacing: 1.0,
-            side: 1.0,
-            low: DVec3::ZERO,
+            per_micrometre: 1.0,
+            low: Vec3A::ZERO,
+            origin: IVec3::ZERO,
             tile: (DVec3::ZERO, DVec3::ZERO),
             number: [0; 3],
             last: vec![0; CELLS * CELLS * CELLS],
@@ -218,20 +225,26 @@ impl Room {
         let corner = DVec3::from_array(number.map(f64::from)) * (TILE * spacing);
         self.tile = (corner, corner + TILE * spacing);
         (self.apart, self.spacing, self.number) = (apart, spacing, number);
-        self.side = spacing + apart.lost;
+        let side = spacing + apart.lost;
+        self.per_micrometre = (1.0 / side) as f32;
+        let farthest = DVec3::splat(f64::from(FARTHEST));
+        let origin = corner.clamp(-farthest, farthest);
+        self.origin = origin.as_ivec3();
         // One cube more below, so that the cubes around a dart are all there.
-        self.low = corner - (BORDER + 1.0) * self.side;
+        self.low = (corner - (BORDER + 1.0) * side - origin).as_vec3a();
     }
 
     /// The cube of a place that darts can see.
-    fn cube(&self, place: DVec3) -> Option<usize> {
-        let cell = (place - self.low) / self.side;
-        let inside = cell.min_element() >= 0.0 && cell.max_element() < CELLS as f64;
-        inside.then(|| (cell.z as usize * CELLS + cell.y as usize) * CELLS + cell.x as usize)
+    fn cube(&self, place: Vec3A) -> Option<usize> {
+        let cell = (place - self.low) * self.per_micrometre;
+        let inside = cell.cmpge(Vec3A::ZERO) & cell.cmplt(Vec3A::splat(CELLS as f32));
+        inside.all().then(|| {
+            let [x, y, z] = cell.to_array().map(|number| number as i32 as usize);
+            (z * CELLS + y) * CELLS + x
+        })
     }
 
-    fn see(&mut self, point: Point) {
-        let place = DVec3::from_array(point.map(f64::from));
+    fn see(&mut self, place: Vec3A) {
         if let Some(cube) = self.cube(place) {
             self.points.push(Seen { place, before: self.last[cube] });
             self.last[cube] = self.points.len() as u16;
@@ -239,85 +252,100 @@ impl Room {
         }
     }
 
-    /// Throws darts into the cells of `triangles` that belong to this tile; answers the points that they left.
+    /// Where a point is.
+    fn place(&self, point: Point) -> Vec3A {
+        (IVec3::from_array(point) - self.origin).as_vec3a()
+    }
+
+    /// Throws darts into the patches of `triangles` that belong to this tile; answers the points that they left.
     fn fill(&mut self, mesh: &Mesh, triangles: &[u32], seed: u64) -> Vec<(Point, u32)> {
         let seed = self.number.iter().fold(seed, |seed, number| mixed(seed ^ *number as u64));
         let mut dice = Dice(seed);
-        let mut cells = Vec::new();
+        let mut patches = Vec::new();
         for &triangle in triangles {
             let corners = mesh.corners(triangle).map(|corner| corner * 1e3);
-            self.divide(corners, |cell| cells.push((cell, triangle)));
+            self.divide(corners, |patch| patches.push((patch, triangle)));
         }
-        dice.shuffle(&mut cells);
+        dice.shuffle(&mut patches);
         let mut points = Vec::new();
-        for (cell, triangle) in cells {
-            self.throw(cell, &mut dice, |point| points.push((point, triangle)));
+        for (patch, triangle) in patches {
+            self.throw(&patch, &mut dice, |point| points.push((point, triangle)));
         }
         points
     }
 
-    /// Throws darts into a cell and its halves until all of it is covered or given up.
-    fn throw(&mut self, corners: Triangle, dice: &mut Dice, mut found: impl FnMut(Point)) {
-        let [square, coarsest, finest] =
-            [1.0, COARSEST, FINEST].map(|part| (part * self.spacing).powi(2));
+    /// Throws darts into a patch, cell by cell, until all of it is covered or given up.
+    fn throw(&mut self, patch: &Triangle, dice: &mut Dice, mut found: impl FnMut(Point)) {
+        let [coarsest, finest] =
+            [COARSEST, FINEST].map(|part| (part * self.spacing).powi(2) as f32);
+        let square = self.spacing.powi(2) as f32;
+        let origin = self.origin.as_dvec3();
+        let corners = patch.map(|corner| (corner - origin).as_vec3a());
         let mut near = self.near(&corners);
         let mut open = std::mem::take(&mut self.open);
-        open.push(Cell { corners, near: corners.map(|corner| near.around(corner, square)) });
+        let [a, b, c] = corners;
+        open.push(Cell {
+            corners,
+            edges: [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)],
+            near: corners.map(|corner| near.around(corner, square)),
+        });
         while let Some(cell) = open.pop() {
-            // Places that are near a point are a convex set, which holds a cell where it holds its corners.
-            if cell.near[0] & cell.near[1] & cell.near[2] != 0 {
+            if cell.is_covered() {
                 continue;
             }
-            let (edge, at) = longest(&cell.corners);
+            let chance = dice.roll();
+            let at = cell.longest();
+            let edge = cell.edges[at];
             if edge <= coarsest {
-                let dart = dice.within(&cell.corners).to_array().map(whole);
-                let place = DVec3::from_array(dart.map(f64::from));
-                if !near.hits(place, square) {
+                let dart = cell.dart(chance);
+                // More than rounding adds to a square.
+                if !near.hits(dart, square * (1.0 + 1e-6)) {
                     self.see(dart);
-                    let bit = near.push(place);
+                    let bit = near.push(dart);
                     for cell in &mut open {
                         for (corner, own) in cell.corners.iter().zip(&mut cell.near) {
-                            let is_near = self.apart.squared(*corner - place) < square;
-                            *own |= if is_near { bit } else { 0 };
+                            *own |= if near.squared(*corner - dart) < square { bit } else { 0 };
                         }
                     }
-                    found(dart);
+                    found((dart.as_ivec3() + self.origin).to_array());
                     continue;
                 }
                 if edge <= finest {
                     continue;
                 }
             }
-            let [a, b, c] = [0, 1, 2].map(|i| (at + i) % 3);
-            let middle = (cell.corners[b] + cell.corners[c]) * 0.5;
-            let around = near.around(middle, square);
-            let half = |corner: usize| Cell {
-                corners: [cell.corners[a], cell.corners[corner], middle],
-                near: [cell.near[a], cell.near[corner], around],
-            };
             // Neither half comes first every time.
-            open.extend(if dice.below(2) == 0 { [half(b), half(c)] } else { [half(c), half(b)] });
+            let halves = cell.halves(at, chance & 1 == 0, |middle| near.around(middle, square));
+            for half in halves {
+                if !half.is_covered() {
+                    open.push(half);
+                }
+            }
         }
         (self.near, self.open) = (near, open);
     }
 
-    /// The points that a dart in `cell` may hit.
-    fn near(&mut self, cell: &Triangle) -> Near {
+    /// The points that a dart in `patch` may hit.
+    fn near(&mut self, patch: &[Vec3A; 3]) -> Near {
         let mut near = std::mem::take(&mut self.near);
         near.clear(self.apart.lost);
-        let middle = (cell[0] + cell[1] + cell[2]) / 3.0;
-        let far = cell.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-        // As far from the middle as a dart sees from a corner, and half a µm for its rounding.
-        let reach = far + self.side + 1.0;
-        let [low, high] = [-reach, reach].map(|reach| (middle + reach - self.low) / self.side);
-        let most = (CELLS - 1) as f64;
-        let from = low.clamp(DVec3::ZERO, DVec3::splat(most));
-        let to = high.clamp(DVec3::ZERO, DVec3::splat(most));
-        let columns = (u32::MAX << from.x as u32) & (u32::MAX >> (31 - to.x as u32));
-        for z in from.z as usize..=to.z as usize {
-            for y in from.y as usize..=to.y as usize {
-                let row = z * CELLS + y;
-                let mut taken = self.rows[row] & columns;
+        let middle = (patch[0] + patch[1] + patch[2]) / 3.0;
+        let far = patch.iter().map(|corner| corner.distance(middle)).fold(0.0, f32::max);
+        // As far from the middle as a dart sees from a corner, half a µm for its rounding, and more than rounding takes.
+        let reach = (far + 1.0 / self.per_micrometre) * (1.0 + 1e-4) + 1.0;
+        let [low, high] =
+            [-reach, reach].map(|reach| (middle + reach - self.low) * self.per_micrometre);
+        let most = (CELLS - 1) as f32;
+        let [from, to] = [low, high].map(|cell| {
+            cell.clamp(Vec3A::ZERO, Vec3A::splat(most))
+                .to_array()
+                .map(|number| number as i32 as usize)
+        });
+        let columns = (u32::MAX << from[0]) & (u32::MAX >> (31 - to[0]));
+        for z in from[2]..to[2] + 1 {
+            let (first, last) = (z * CELLS + from[1], z * CELLS + to[1]);
+            for (row, columns_taken) in (first..).zip(&self.rows[first..=last]) {
+                let mut taken = columns_taken & columns;
                 while taken > 0 {
                     let mut at = self.last[row * CELLS + taken.trailing_zeros() as usize];
                     taken &= taken - 1;
@@ -334,7 +362,7 @@ impl Room {
         near
     }
 
-    /// The cells of `triangle` whose centroids are in this tile.
+    /// The patches of `triangle` whose centroids are in this tile.
     fn divide(&self, triangle: Triangle, mut found: impl FnMut(Triangle)) {
         let coarsest = (PATCH * self.spacing).powi(2);
         let mut open = vec![triangle];
@@ -356,63 +384,127 @@ impl Room {
     }
 }
 
-/// Points that darts in a cell may hit, µm.
+/// Points that darts in a patch may hit.
 #[derive(Debug, Default)]
 struct Near {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    z: Vec<f64>,
+    /// Their X, Y and Z, four points by four.
+    fours: Vec<[Vec4; 3]>,
+    count: usize,
     /// As of [`Apart`].
-    lost: f64,
+    lost: f32,
 }
 
 impl Near {
     fn clear(&mut self, lost: f64) {
-        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(Vec::clear);
-        self.lost = lost;
+        self.fours.clear();
+        (self.count, self.lost) = (0, lost as f32);
     }
 
     /// Takes a point in; answers its bit, none of those beyond the last bit.
-    fn push(&mut self, point: DVec3) -> u64 {
-        let bit = 1u64.checked_shl(self.x.len() as u32).unwrap_or(0);
-        self.x.push(point.x);
-        self.y.push(point.y);
-        self.z.push(point.z);
+    fn push(&mut self, point: Vec3A) -> u64 {
+        // No dart comes near those that are not taken yet.
+        const NOWHERE: Vec4 = Vec4::splat(1e12);
+        let (four, lane) = (self.count / 4, self.count % 4);
+        if lane == 0 {
+            self.fours.push([NOWHERE; 3]);
+        }
+        for (axis, value) in point.to_array().into_iter().enumerate() {
+            self.fours[four][axis][lane] = value;
+        }
+        let bit = 1u64.checked_shl(self.count as u32).unwrap_or(0);
+        self.count += 1;
         bit
     }
 
-    /// What [`Apart::squared`] says of each point and `place`.
-    fn squares(&self, place: DVec3) -> impl Iterator<Item = f64> {
-        let square = move |((x, y), z): ((&f64, &f64), &f64)| {
-            let height = ((place.z - z).abs() - self.lost).max(0.0);
-            (place.x - x) * (place.x - x) + (place.y - y) * (place.y - y) + height * height
-        };
-        self.x.iter().zip(&self.y).zip(&self.z).map(square)
+    /// What [`Apart::squared`] says of the way between two places.
+    fn squared(&self, way: Vec3A) -> f32 {
+        (way.abs() - Vec3A::Z * self.lost).max(Vec3A::ZERO).length_squared()
     }
 
-    /// Whether a dart hits a point within the distance whose square is given. Darts and points are whole µm: the comparison is exact.
-    fn hits(&self, dart: DVec3, square: f64) -> bool {
-        self.squares(dart).any(|own| own < square)
+    /// The points within the distance of `place` whose square is given: four bits of each four points.
+    fn within(&self, place: Vec3A, square: f32) -> impl Iterator<Item = u32> {
+        let [x, y, z] = place.to_array().map(Vec4::splat);
+        let (lost, square) = (Vec4::splat(self.lost), Vec4::splat(square));
+        self.fours.iter().map(move |four| {
+            let [x, y] = [four[0] - x, four[1] - y];
+            let height = ((four[2] - z).abs() - lost).max(Vec4::ZERO);
+            (x * x + y * y + height * height).cmplt(square).bitmask()
+        })
+    }
+
+    /// Whether a dart hits a point within the distance whose square is given.
+    fn hits(&self, dart: Vec3A, square: f32) -> bool {
+        self.within(dart, square).any(|four| four != 0)
     }
 
     /// The bits of the points around `place` within the distance whose square is given.
-    fn around(&self, place: DVec3, square: f64) -> u64 {
-        let bits = self.squares(place).take(64).enumerate();
-        bits.fold(0, |near, (i, own)| near | u64::from(own < square) << i)
+    fn around(&self, place: Vec3A, square: f32) -> u64 {
+        let fours = self.within(place, square).take(16).enumerate();
+        fours.fold(0, |near, (i, four)| near | u64::from(four) << (4 * i))
     }
 }
 
-/// A cell, and of each of its corners the bits of the points within a spacing.
+/// A cell of a patch.
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    corners: Triangle,
+    corners: [Vec3A; 3],
+    /// The square of the edge opposite to each corner, µm².
+    edges: [f32; 3],
+    /// Of each corner the bits of the points within a spacing.
     near: [u64; 3],
 }
 
-/// The nearest whole number, of those within 4 m in µm.
-fn whole(value: f64) -> i32 {
-    const OFF: i32 = 1 << 22;
-    (value + (f64::from(OFF) + 0.5)) as i32 - OFF
+impl Cell {
+    /// Whether one point covers all of it: places that are near a point are a convex set, which holds a cell where it holds its
+    /// corners.
+    fn is_covered(&self) -> bool {
+        self.near[0] & self.near[1] & self.near[2] != 0
+    }
+
+    /// The number of the corner opposite to the longest edge.
+    fn longest(&self) -> usize {
+        let [a, b, c] = self.edges;
+        if a >= b && a >= c {
+            0
+        } else if b >= c {
+            1
+        } else {
+            2
+        }
+    }
+
+    /// The whole µm nearest to a place in it, every one as likely as every other.
+    fn dart(&self, chance: u64) -> Vec3A {
+        let part = |bits: u64| (bits & 0xff_ffff) as f32 / 16_777_216.0;
+        let (u, v) = (part(chance >> 40), part(chance >> 16));
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        let [a, b, c] = self.corners;
+        (a + (b - a) * u + (c - a) * v).round()
+    }
+
+    /// Both halves, cut from corner `at` to the middle of its edge, in the order of the corners or turned; `around` says which
+    /// points are near the middle.
+    fn halves(&self, at: usize, turned: bool, around: impl FnOnce(Vec3A) -> u64) -> [Cell; 2] {
+        let [a, b, c] = match (at, turned) {
+            (0, false) => [0, 1, 2],
+            (0, true) => [0, 2, 1],
+            (1, false) => [1, 2, 0],
+            (1, true) => [1, 0, 2],
+            (_, false) => [2, 0, 1],
+            (_, true) => [2, 1, 0],
+        };
+        let middle = (self.corners[b] + self.corners[c]) * 0.5;
+        let near = around(middle);
+        let quarter = 0.25 * self.edges[a];
+        // Apollonius: the square of the median.
+        let cut = 0.5 * (self.edges[b] + self.edges[c]) - quarter;
+        let half = |corner: usize, other: usize| Cell {
+            corners: [self.corners[a], self.corners[corner], middle],
+            edges: [quarter, cut, self.edges[other]],
+            near: [self.near[a], self.near[corner], near],
+        };
+        [half(b, c), half(c, b)]
+    }
 }
 
 /// The numbers of `points`, which are at least `spacing` µm apart, in an order in which the first ones always lie as far apart as that
@@ -480,12 +572,5 @@ impl Dice {
         for i in (1..all.len()).rev() {
             all.swap(i, self.below(i + 1));
         }
-    }
-
-    /// A place in a triangle, every one as likely as every other.
-    fn within(&mut self, &[a, b, c]: &Triangle) -> DVec3 {
-        let (u, v) = (self.part(), self.part());
-        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-        a + (b - a) * u + (c - a) * v
     }
 }

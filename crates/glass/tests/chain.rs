@@ -132,14 +132,17 @@ fn a_machine_by_declared_axes_makes_proven_programs_in_every_form() {
                 line.starts_with("G0 A-") && line.contains(" C") && line.contains(" Z-"),
                 "{line}"
             );
-            // A turn of the table of 0.1 degrees is 0.17 mm: farther than a crack.
+            // A turn of the table of 0.1 degrees is 0.17 mm: farther than a crack, perhaps where another point is. One of 3 degrees is
+            // 5 mm, beyond the body.
             let table: f64 =
                 line.split(" C").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
-            let moved =
-                text.replacen(&format!(" C{table:.4}"), &format!(" C{:.4}", table + 0.1), 1);
-            let wrong = prove(moved.into_bytes(), body(), &k9(), &machine, &settings).unwrap();
-            let rules: Vec<&str> = wrong.findings.iter().map(|found| found.rule.name()).collect();
-            assert!(!wrong.proven && rules.contains(&"stray"), "{rules:?}");
+            for (turn, rule) in [(0.1, "lost"), (3.0, "lost"), (3.0, "stray")] {
+                let turned = format!(" C{:.4}", table + turn);
+                let moved = text.replacen(&format!(" C{table:.4}"), &turned, 1);
+                let wrong = prove(moved.into_bytes(), body(), &k9(), &machine, &settings).unwrap();
+                let rules: Vec<_> = wrong.findings.iter().map(|found| found.rule.name()).collect();
+                assert!(!wrong.proven && rules.contains(&rule), "{turn}: {rules:?}");
+            }
         }
     }
 }

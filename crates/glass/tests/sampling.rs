@@ -30,8 +30,12 @@ fn heights_may_come_nearer_by_what_rounding_takes_and_no_two_points_do() {
 
 #[test]
 fn no_two_points_of_a_sampled_surface_are_nearer_than_the_spacing() {
-    for (mesh, spacing) in [(sphere(3.0, 60), 90), (torus(3.0, 1.0, 40), 130), (sphere(1.0, 4), 90)]
-    {
+    // At the end of the space that points have, and so far apart that their squares have no place in 24 bits.
+    let mut far = sphere(300.0, 60);
+    far.vertices.iter_mut().for_each(|vertex| *vertex += DVec3::new(1699.0, -1699.0, 1699.0));
+    let bodies =
+        [(sphere(3.0, 60), 90), (torus(3.0, 1.0, 40), 130), (sphere(1.0, 4), 90), (far, 9001)];
+    for (mesh, spacing) in bodies {
         let points = surface(&mesh, apart(spacing), 1);
         let found = distances(&points, i64::from(spacing));
         assert_eq!((found.too_close, found.crowded), (0, 0));
