@@ -396,6 +396,14 @@ impl Reader {
     }
 }
 
+/// A cutter by its diameter, and its corner radius where that is known.
+fn size(tool: &Tool) -> String {
+    let diameter =
+        tool.diameter.map_or_else(|| "a cutter".into(), |d| format!("a cutter of {d} mm"));
+    tool.corner_radius
+        .map_or_else(|| diameter.clone(), |r| format!("{diameter} with a corner radius of {r} mm"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::table::WORDS;
@@ -565,12 +573,4 @@ mod tests {
             behind("FEDRAT/50,MMPM\nGOTO/1.5,0.5,0\n")
         );
     }
-}
-
-/// A cutter by its diameter, and its corner radius where that is known.
-fn size(tool: &Tool) -> String {
-    let diameter =
-        tool.diameter.map_or_else(|| "a cutter".into(), |d| format!("a cutter of {d} mm"));
-    tool.corner_radius
-        .map_or_else(|| diameter.clone(), |r| format!("{diameter} with a corner radius of {r} mm"))
 }
