@@ -111,8 +111,8 @@ def test_the_options_of_the_command_are_keywords(native, tmp_path, run):
     for name, program in made.programs.items():
         assert program == (tmp_path / f"{name}.gcode").read_bytes(), name
     with pytest.raises(toolpost.Error) as caught:
-        lamp(isolate="lines")
-    assert caught.value.help
+        lamp(isolation_width=1, passes=2)
+    assert "passes" in str(caught.value)
     assert b"G3" in lamp(invert=True, only=["front"]).programs["front"]
 
 
