@@ -39,7 +39,8 @@ def _whole(text, report):
     parts = report["program"].get("parts", [])
     if parts:
         raise PostError(
-            f"the program is larger than a file of the controller may be: it has {len(parts)} parts\n"
+            "the program is larger than a file of the controller may be: "
+            f"it has {len(parts)} parts\n"
             "    help: post fewer operations at a time, or post the job by the command `toolpost`"
         )
     return text, report

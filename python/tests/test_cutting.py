@@ -92,8 +92,9 @@ def test_the_programs_of_a_board_are_those_of_the_command(native, tmp_path, run)
 
 
 def test_the_options_of_the_command_are_keywords(native, tmp_path, run):
-    words = "--tool 0.8,0.3 --isolation-width 0.5 --hole-mill 1 --mill-holes-over 1.2 --tab-at 0,5 --rectangular"
-    words += " --board-margin 1 --rotate 90 --spin-up 3 --text-before (clamp)@M0 --unit mm"
+    words = "--tool 0.8,0.3 --isolation-width 0.5 --hole-mill 1 --mill-holes-over 1.2"
+    words += " --tab-at 0,5 --rectangular --board-margin 1 --rotate 90 --spin-up 3"
+    words += " --text-before (clamp)@M0 --unit mm"
     run(native, "pcb", EXAMPLES / "lamp.toml", "-m", "grbl-3018", *words.split(), "-o", tmp_path)
     made = lamp(
         tool=[0.8, 0.3],
