@@ -37,20 +37,12 @@ impl Comparison<'_> {
     /// It is not the load that the cell states.
     pub(super) fn load_number(&mut self, number: u32) -> Outcome {
         self.loaded = true;
-        match self.cell.load_number {
-            Some(own) if own == number => Ok(()),
-            Some(own) => {
-                let message =
-                    format!("the program chooses load {number}, the machine's file states {own}");
-                refused(Rule::Payload, message)
-            }
-            None => {
-                let message = format!(
-                    "the program chooses load {number}, and the machine's file states none"
-                );
-                refused(Rule::Payload, message)
-            }
-        }
+        let states = match self.cell.load_number {
+            Some(own) if own == number => return Ok(()),
+            Some(own) => format!("the machine's file states {own}"),
+            None => "and the machine's file states none".into(),
+        };
+        refused(Rule::Payload, format!("the program chooses load {number}, {states}"))
     }
 
     /// An output: the spindle's, the coolant's, or one of the source's own.

@@ -67,12 +67,8 @@ impl Comparison<'_> {
             return refused(Rule::Feed, message);
         }
         if !self.turns_as(state.spindle) {
-            let message = format!(
-                "the spindle is {} at {:.0} 1/min, the source has {:?}",
-                if self.running.is_on { "on" } else { "off" },
-                self.running.speed.unwrap_or(0.0),
-                state.spindle
-            );
+            let message =
+                format!("the spindle is {}, the source has {:?}", self.spindle(), state.spindle);
             return refused(Rule::Spindle, message);
         }
         if self.running.is_on && self.running.runs_up > 0.0 {
@@ -120,11 +116,16 @@ impl Comparison<'_> {
             return Ok(());
         }
         let message = format!(
-            "the tool leaves a cut with the spindle {} at {:.0} 1/min, which is not as in the cut",
-            if self.running.is_on { "on" } else { "off" },
-            self.running.speed.unwrap_or(0.0)
+            "the tool leaves a cut with the spindle {}, which is not as in the cut",
+            self.spindle()
         );
         refused(Rule::Spindle, message)
+    }
+
+    /// How the spindle turns, for a message.
+    fn spindle(&self) -> String {
+        let state = if self.running.is_on { "on" } else { "off" };
+        format!("{state} at {:.0} 1/min", self.running.speed.unwrap_or(0.0))
     }
 
     /// How the spindle turns: whether, and how fast.
