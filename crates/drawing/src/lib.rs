@@ -41,7 +41,7 @@ mod wire_path;
 
 pub use arm_path::{ArmPicture, ArmSample, arm_path};
 pub use board::{BoardPicture, BoardSheet, BoardSide, board, board_sheet};
-pub use glass::{GlassPicture, glass};
+pub use glass::{GlassPicture, GlassView, glass};
 pub use reach::{ReachPicture, reach};
 pub use tool_path::tool_path;
 pub use walk::{Segment, walk};

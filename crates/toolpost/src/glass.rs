@@ -452,6 +452,7 @@ struct Drawing {
     target: Target,
     format: Format,
     title: String,
+    view: drawing::GlassView,
 }
 
 impl Drawing {
@@ -459,7 +460,11 @@ impl Drawing {
     fn new(job: &Job, inputs: &[&Path]) -> Result<Option<Drawing>, Stop> {
         let Some(file) = &job.picture else { return Ok(None) };
         let title = job.bodies.iter().map(|path| files::name(path)).collect::<Vec<_>>().join(", ");
-        Ok(Some(Drawing { target: Target::new(file, inputs)?, format: Format::of(file)?, title }))
+        let args::View { camera, distance, zoom, grid } = job.view;
+        let view = drawing::GlassView { angles: camera, distance, zoom, grid };
+        view.check(job.block)?;
+        let (target, format) = (Target::new(file, inputs)?, Format::of(file)?);
+        Ok(Some(Drawing { target, format, title, view }))
     }
 
     fn drawn(
@@ -470,7 +475,8 @@ impl Drawing {
         settings: &Settings,
     ) -> Result<Vec<u8>, Stop> {
         let points = job::places(made, material, machine, settings)?;
-        let picture = drawing::GlassPicture { block: settings.placing.block, points: &points };
+        let (block, view) = (settings.placing.block, self.view);
+        let picture = drawing::GlassPicture { block, points: &points, view };
         Ok(self.format.bytes(drawing::glass(&self.title, &picture))?)
     }
 }

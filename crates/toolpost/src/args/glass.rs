@@ -183,6 +183,26 @@ pub struct Job {
     /// Draw the pulses in the block, as the eye sees them and in their order, as .svg or .png.
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub view: View,
+}
+
+/// How the eye looks at the points of a picture.
+#[derive(Clone, Copy, Debug, Args)]
+#[command(next_help_heading = "View of the picture")]
+pub struct View {
+    /// Where the eye is, degrees: from X in the plane XY, above that plane, and how far it is rolled to its left.
+    #[arg(long, value_name = "ALPHA,BETA,GAMMA", value_parser = camera, allow_hyphen_values = true, default_value = "-63,19,0", requires = "picture")]
+    pub camera: [f64; 3],
+    /// Distance of the eye from the middle of the points, mm [default: 2.4 diagonals of the block].
+    #[arg(long, value_name = "MM", value_parser = length, requires = "picture")]
+    pub distance: Option<f64>,
+    /// How many times larger than where the whole block fits.
+    #[arg(long, value_name = "FACTOR", value_parser = zoom, default_value = "1", requires = "picture")]
+    pub zoom: f64,
+    /// Lines of a grid so far apart, from the corner of the block, in all views.
+    #[arg(long, value_name = "MM", value_parser = length, requires = "picture")]
+    pub grid: Option<f64>,
 }
 
 /// How bodies become points.
@@ -471,6 +491,23 @@ fn alone(text: &str) -> Result<Alone, String> {
         return Err(String::from("`fit` and `scale` cannot both be"));
     }
     Ok(own)
+}
+
+/// The angles of an eye.
+fn camera(text: &str) -> Result<[f64; 3], String> {
+    let angles: Option<[f64; 3]> = lengths(text);
+    let angles = angles.filter(|[alpha, beta, gamma]| {
+        alpha.abs() <= 360.0 && beta.abs() <= 90.0 && gamma.abs() <= 360.0
+    });
+    angles.ok_or_else(|| {
+        String::from("three angles are needed, the second from -90 to 90, such as -63,19,0")
+    })
+}
+
+/// How many times larger.
+fn zoom(text: &str) -> Result<f64, String> {
+    let zoom = text.parse::<f64>().ok().filter(|zoom| (0.1..=1000.0).contains(zoom));
+    zoom.ok_or_else(|| String::from("a number from 0.1 to 1000 is needed, such as 2"))
 }
 
 /// A part of the whole.

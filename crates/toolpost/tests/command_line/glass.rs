@@ -264,6 +264,42 @@ fn the_pulses_are_drawn_where_a_picture_is_asked_for() {
 }
 
 #[test]
+fn a_picture_is_seen_as_the_camera_says() {
+    let folder = Folder::empty();
+    folder.write("roof.stl", body());
+    let view = |more: &[&str]| {
+        let said = engrave(&folder, &[&["--picture", "roof.svg"], more].concat());
+        assert_eq!(said.code, 0, "{more:?}: {said:?}");
+        folder.read("roof.svg")
+    };
+    let plain = view(&[]);
+    for more in [
+        ["--camera", "30,-10,0"],
+        ["--camera", "-63,19,-45"],
+        ["--distance", "50"],
+        ["--zoom", "3"],
+        ["--grid", "5"],
+    ] {
+        assert_ne!(view(&more), plain, "{more:?}");
+    }
+    assert_eq!(view(&["--camera=-63,19,0", "--zoom", "1"]), plain);
+    let grid = view(&["--grid", "5"]);
+    assert!(grid.contains("BLOCK 20 X 20 X 30 MM, POINTS ") && grid.contains(", GRID 5 MM"));
+    for (more, what) in [
+        (["--camera", "0,91,0"], "the second from -90 to 90"),
+        (["--camera", "0,nan,0"], "three angles are needed"),
+        (["--zoom", "0"], "from 0.1 to 1000"),
+        (["--distance", "41"], "within the block"),
+        (["--grid", "0.1"], "--grid of 0.300 mm or more"),
+    ] {
+        let said = engrave(&folder, &[&["--picture", "roof.svg"][..], &more].concat());
+        assert!(said.code == 2 && said.err.contains(what), "{more:?}: {said:?}");
+    }
+    let said = engrave(&folder, &["--zoom", "2"]);
+    assert!(said.code == 2 && said.err.contains("--picture"), "{said:?}");
+}
+
+#[test]
 fn a_list_of_points_is_checked_for_its_smallest_distance() {
     let folder = Folder::empty();
     folder.write("cloud.csv", "x;y;z;n\n0;0;0;7\n0;0;0.129;8\n1;1;1;9\n");
