@@ -55,8 +55,8 @@ pub enum Action {
     Thread(Box<Thread>),
     /// Straight line at the active feed that ends where the probe answers.
     Probe(Box<Probe<Position>>),
-    /// The tool rests on what its probing move along Z has touched, and the work offset gets such a Z that its tip stands at
-    /// this Z, mm: `G10 L20` behind `G38.2`.
+    /// The tool rests on what its probing move along Z has touched, and the work offset, or its length in the tool table, becomes
+    /// such that its tip stands at this Z, mm: `G10 L20`, or `G10 L10`, behind `G38.2`.
     TouchOff(f64),
     /// One hole of the active [`Cycle`]; the position is the point of the cycle on the surface. The tool ends at
     /// the cycle's retract level.

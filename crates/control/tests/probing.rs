@@ -118,3 +118,47 @@ fn a_tool_that_rests_on_a_plate_is_touched_off() {
         assert!(!actions.iter().any(is_touch_off), "{tail}");
     }
 }
+
+/// LinuxCNC, "G10 L10": the entry of tool P becomes such that, once the length is taken again, the tool stands at the value that is
+/// written; `rs274` gives the tool the length by which it stands higher than that (`tools_get_their_lengths_on_a_plate`).
+#[test]
+fn a_tool_that_rests_on_a_plate_gets_its_length() {
+    let head = "G21 G90 G94 G54\nT1 M6\nM3 S1000\nG0 X0 Y0\nG43 Z20 H1\nG53 G0 Z0\nM5\nT2 M6\nG0 X-3 Y2\nM0\n";
+    let read = |tail: &str| {
+        let settings = Settings::new(Dialect::LinuxCnc, [false; 3]);
+        let mut actions = Vec::new();
+        let text = format!("{head}{tail}M2\n");
+        let read = read(&settings, "program.ngc", text.as_bytes(), &mut |record| {
+            actions.push(record.action.clone());
+            Ok(())
+        });
+        read.map(|()| actions).map_err(|found| found.to_string())
+    };
+    let actions = read("G38.2 Z-10 F30\nG10 L10 P2 Z1.5\nG53 G0 Z0\nG43 Z20 H2\n").unwrap();
+    assert!(actions.contains(&Action::TouchOff(1.5)), "{actions:?}");
+    assert!(!actions.iter().any(|action| matches!(action, Action::Risk(_))), "{actions:?}");
+    // Where it stands is known by its own length alone.
+    assert!(actions.contains(&Action::LengthOffset(Some(2))), "{actions:?}");
+    assert!(read("G38.2 Z-10 F30\nG10 L10 P2 Z1.5\nG91 G0 Z1\n").is_err());
+    // Without a probing move, after it has gone on, along X, off the plate, where nothing has to be touched, of another tool, of the
+    // work offset, added to, and with a radius.
+    for tail in [
+        "G10 L10 P2 Z1.5\n",
+        "G38.2 Z-10 F30\nT3 M6\nG10 L10 P3 Z1.5\n",
+        "G38.2 Z-10 F30\nG53 G0 Z0\nG10 L10 P2 Z1.5\n",
+        "G38.2 X-10 F30\nG10 L10 P2 Z1.5\n",
+        "G38.4 Z-10 F30\nG10 L10 P2 Z1.5\n",
+        "G38.3 Z-10 F30\nG10 L10 P2 Z1.5\n",
+        "G38.2 Z-10 F30\nG10 L10 P1 Z1.5\n",
+        "G38.2 Z-10 F30\nG10 L10 P3 Z1.5\n",
+        "G38.2 Z-10 F30\nG10 L11 P2 Z1.5\n",
+        "G38.2 Z-10 F30\nG10 L1 P2 Z1.5\n",
+        "G38.2 Z-10 F30\nG10 L20 P0 Z1.5\n",
+        "G38.2 Z-10 F30\nG10 L10 P2 Z1.5 R1\n",
+        "G38.2 Z-10 F30\nG10 L10 P2 Z1.5 X1\n",
+    ] {
+        let Ok(actions) = read(tail) else { continue };
+        assert!(!actions.iter().any(|action| matches!(action, Action::TouchOff(_))), "{tail}");
+        assert!(actions.iter().any(|action| matches!(action, Action::Risk(_))), "{tail}");
+    }
+}

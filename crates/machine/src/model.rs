@@ -774,8 +774,8 @@ impl Machine {
         Some(height).filter(|height| *height > 0.0 && self.rotary.is_empty())
     }
 
-    /// What tools that are put in by hand are touched off on: the options `touch_...`, which the templates write. `None` where a
-    /// tool change has no touch-off.
+    /// What further tools are touched off on: the options `touch_...`, which the templates write. `None` where a tool change has no
+    /// touch-off. Only on a machine without rotary axes.
     pub fn touch_plate(&self) -> Option<TouchPlate> {
         let number = |name: &str| self.number_of(name);
         let plate = TouchPlate {
@@ -784,7 +784,7 @@ impl Machine {
             travel: number("touch_travel"),
             feed: number("touch_feed"),
         };
-        Some(plate).filter(|plate| plate.travel > 0.0)
+        Some(plate).filter(|plate| plate.travel > 0.0 && self.rotary.is_empty())
     }
 
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,

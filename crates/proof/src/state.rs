@@ -28,7 +28,7 @@ pub(crate) struct Running {
     /// Whether the program has had another tool before.
     pub tool_is_further: bool,
     /// Whether the control takes the length of a tool by a word alone.
-    length_by_word: bool,
+    pub length_by_word: bool,
     pub compensation: Compensation,
     /// Lean of the wire by the control, degrees.
     pub taper: f64,

@@ -244,7 +244,8 @@ impl<'a> Conversion<'a> {
                 self.risk(line, *risk);
             }
             Action::TouchOff(_) => {
-                let message = "sets Z 0 by what a probe has touched: how high that is, only the machine knows";
+                let message =
+                    "sets Z by what a probe has touched: how high that is, only the machine knows";
                 let help = "take the touch-off out of the program: the tool changes of the machine's file have their own";
                 return Err(refuse(Rule::Probe, message, help));
             }

@@ -1,9 +1,10 @@
-//! The touch-off of a tool that has been put in by hand, on a machine whose file describes a plate for it:
+//! The touch-off of a tool, on a machine whose file describes a plate for it:
 //!
 //! ```text
 //!   Z home ─▶ over the plate ─▶ tool, stop ─▶ G38.2 down ─▶ G10 L20 Z ─▶ Z home ─▶ stop: the plate is taken away
 //! ```
 //!
+//! Where the stop is no tool change (LinuxCNC) the tool comes first, and then over the plate; its length in the tool table is set by `G10 L10`.
 //! The first tool is not touched off: the operator sets Z 0 with it.
 
 use super::*;
@@ -16,8 +17,10 @@ pub(super) enum Touch {
     /// No tool waits for it.
     #[default]
     Done,
-    /// The tool is in, and nobody knows how long it is.
+    /// The tool is in, nobody knows how long it is, and the plate is not below it yet.
     Due,
+    /// The program has stopped for the plate to be put below it.
+    Ready,
     /// It rests on the plate.
     Touching,
     /// Z has been set, the tool still rests on the plate.
@@ -31,7 +34,8 @@ impl Prover<'_> {
     pub(super) fn awaits_touch_off(&mut self) {
         let is_first = self.report.compared.tool_changes <= 1;
         if self.gauge.machine.touch_plate().is_some() && !is_first {
-            self.touch = Touch::Due;
+            // A tool that is put in by hand is so at a stop.
+            self.touch = if self.running.length_by_word { Touch::Due } else { Touch::Ready };
         }
     }
 
@@ -39,8 +43,16 @@ impl Prover<'_> {
     pub(super) fn touches_off(&mut self, event: &Event) -> bool {
         let Some(plate) = self.gauge.machine.touch_plate() else { return false };
         match (self.touch, &event.action) {
-            (Touch::Done, Action::Rapid(to)) => self.goes_over_plate(event.line, &plate, to),
-            (Touch::Due, Action::Probe(probe)) => {
+            (Touch::Done | Touch::Due, Action::Rapid(to))
+                if self.goes_over_plate(event.line, &plate, to) =>
+            {
+                true
+            }
+            (Touch::Due, Action::Stop) => {
+                self.touch = Touch::Ready;
+                false
+            }
+            (Touch::Ready, Action::Probe(probe)) => {
                 self.probes_plate(event.line, &plate, probe);
                 self.touch = Touch::Touching;
                 true
@@ -61,7 +73,10 @@ impl Prover<'_> {
             (touch, action) => {
                 if touch != Touch::Done && needs_tool(action) {
                     let what = match touch {
-                        Touch::Due | Touch::Done => {
+                        Touch::Due if matches!(action, Action::Probe(_)) => {
+                            "does not stop for the touch plate to be put below the tool"
+                        }
+                        Touch::Due | Touch::Ready | Touch::Done => {
                             "goes on with a tool that has not been touched off"
                         }
                         Touch::Touching => {

@@ -456,3 +456,106 @@ fn tools_are_touched_off_on_a_plate() {
             && text.contains("change the tool by hand; its tip")
     );
 }
+
+/// On LinuxCNC a further tool gets its length in the tool table; the proof refuses whatever would give it another one, break it or
+/// hit the plate.
+#[test]
+fn tools_get_their_lengths_on_a_plate() {
+    let folder = small();
+    folder.write(
+        "mill.toml",
+        "extends = \"linuxcnc-mill\"\n[options]\ntouch_travel = 15\ntouch_height = 1.6\ntouch_x = -3\ntouch_y = 2\n",
+    );
+    let machine = ["-m", "mill.toml"];
+    let call = ["pcb", "board", "--only", "drill", "--alignment", "3", "-o", "out"];
+    let said = folder.run(&[&call[..], &machine[..]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    let text = folder.read("out/drill.ngc");
+    // Home, the spindle off, the tool, over the plate, a stop, down to 15 mm below the plate, the length, home, a stop.
+    let change = "G53 G0 Z0\nM5\n(drill 3 mm)\nT2 M6\nG0 X-3 Y2\n(MSG, put the touch plate below the tool)\nM0\n\
+        G38.2 Z-13.4 F30\nG10 L10 P2 Z1.6\nG53 G0 Z0\n(MSG, take the touch plate away)\nM0\n";
+    assert!(text.contains(change), "{text}");
+    // The operator sets up the first one.
+    assert_eq!(text.matches("G38.2").count(), 1, "{text}");
+    let prove = |text: &str| {
+        folder.write("out/drill.ngc", text);
+        let words = ["prove", "out/drill.ngc", "--against", "board"];
+        folder.run(&[&words[..], &machine[..]].concat())
+    };
+    let said = prove(&text);
+    assert_eq!(said.code, 0, "{said:?}");
+    for (from, to, why) in [
+        ("P2 Z1.6\n", "P2 Z1.5\n", "stands at Z1.5"),
+        ("G10 L10 P2 Z1.6\nG53 G0 Z0\n", "G10 L10 P2 Z1.6\n", "straight up"),
+        ("G10 L10 P2 Z1.6\nG53 G0 Z0\n", "G10 L10 P2 Z1.6\nG43 H2 G0 Z3\n", "straight up"),
+        ("G10 L10 P2", "G10 L10 P1", "while it is in use"),
+        ("G10 L10 P2", "G10 L10 P3", "operator-data"),
+        ("G10 L10 P2", "G10 L1 P2", "operator-data"),
+        ("G10 L10 P2", "G10 L11 P2", "operator-data"),
+        ("G10 L10 P2", "G10 L20 P0", "unknown-shift"),
+        ("G10 L10 P2 Z1.6", "G10 L10 P2 Z1.6\nG10 L1 P2 Z50", "operator-data"),
+        ("G10 L10 P2 Z1.6", "G92 Z1.6", "unknown-shift"),
+        ("G10 L10 P2 Z1.6", "G43.1 Z1.6", "operator-data"),
+        ("G38.2 Z-13.4", "G38.2 Z2", "down to Z2"),
+        ("G38.2 Z-13.4", "G38.2 Z-30", "down to Z-30"),
+        ("G38.2 Z-13.4", "G38.3 Z-13.4", "touches nothing"),
+        ("G38.2 Z-13.4", "M3 S1000\nG38.2 Z-13.4", "not been touched off"),
+        ("G38.2 Z-13.4 F30", "G38.2 Z-13.4 F1000", "faster than 30"),
+        ("G38.2 Z-13.4 F30", "G38.2 Z-13.4", "faster than 30"),
+        ("G38.2 Z-13.4 F30", "G1 Z-13.4 F30", "not been touched off"),
+        ("G0 X-3 Y2\n", "G0 X-3 Y3\n", "Y3"),
+        ("G0 X-3 Y2\n", "", "the plate is at X-3 Y2"),
+        ("(MSG, put the touch plate below the tool)\nM0\n", "", "put below the tool"),
+        ("(MSG, put the touch plate below the tool)\nM0\n", "M1\n", "put below the tool"),
+        ("(MSG, take the touch plate away)\nM0\n", "", "taken away"),
+        ("G38.2 Z-13.4 F30\nG10 L10 P2 Z1.6\n", "", "not been touched off"),
+        ("G10 L10 P2 Z1.6\n", "", "does not set Z"),
+        ("H2\n", "H1\n", "length"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let said = prove(&text.replacen(from, to, 1));
+        assert!(said.code == 1 && said.err.contains(why), "{from} {to} {said:?}");
+    }
+    judged_by_linuxcnc(&folder, &text);
+    // A machine without a plate takes none of it, nor does one whose table could be turned below it.
+    for other in ["linuxcnc-mill", "xyzac.toml"] {
+        folder.write("out/drill.ngc", &text);
+        let file = folder.read("mill.toml").replace("linuxcnc-mill", "linuxcnc-xyzac");
+        folder.write("xyzac.toml", file);
+        let said = folder.run(&["prove", "out/drill.ngc", "--against", "board", "-m", other]);
+        assert_eq!(said.code, 1, "{other} {said:?}");
+    }
+    let said = folder.run(&[&call[..], &["-m", "linuxcnc-mill"]].concat());
+    assert!(said.code == 0 && !folder.read("out/drill.ngc").contains("G38.2"), "{said:?}");
+}
+
+/// LinuxCNC's own interpreter gives tool 2 the length by which its spindle stands over the work zero, less the height of the plate.
+/// It says that the tool has touched at the end of the probing move, and leaves it 0.01 inch before that.
+fn judged_by_linuxcnc(folder: &Folder, text: &str) {
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
+    }
+    std::fs::create_dir(folder.path().join("judge")).unwrap();
+    // Tool 1 is 30 mm long, and the work zero 250 mm below machine zero.
+    folder.write("judge/tools.tbl", "T1 P1 D0 Z30\nT2 P2 D0 Z0\n");
+    let table = "G10 L1 P1 Z30\nG10 L2 P1 Z-250\n";
+    folder.write("judge/drill.ngc", text.replacen("G53 G0", &format!("{table}G53 G0"), 1));
+    let run = std::process::Command::new("rs274")
+        .args(["-t", "tools.tbl", "-g", "drill.ngc"])
+        .current_dir(folder.path().join("judge"))
+        .env("HOME", folder.path().join("judge"))
+        .stdin(std::process::Stdio::null())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success(), "{said}");
+    let lengths: Vec<f64> = said
+        .lines()
+        .filter_map(|line| line.split_once("USE_TOOL_LENGTH_OFFSET(")?.1.split_whitespace().nth(2))
+        .map(|length| length.trim_end_matches(',').parse().unwrap())
+        .collect();
+    // G49, tool 1, tool 2: -13.4 + 30 - 1.6, 0.254 mm higher, since there the tool has stopped.
+    let [none, first, second] = lengths[..] else { panic!("{said}") };
+    assert_eq!([none, first], [0.0, 30.0], "{said}");
+    assert!((second - (30.0 - 13.4 - 1.6)).abs() < 0.26, "{second}");
+}

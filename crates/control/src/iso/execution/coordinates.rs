@@ -199,10 +199,7 @@ impl Step<'_, '_, '_> {
         };
         match kind {
             2 | 20 => self.write_offset(kind),
-            1 | 10..=13 => {
-                self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
-                self.write_tool(kind)
-            }
+            1 | 10..=13 => self.write_tool(kind),
             _ => {
                 let message = format!("G10 L{kind} is not known to this control");
                 Err(self.block.at_word(b'L', Rule::Data, message))
@@ -288,7 +285,12 @@ impl Step<'_, '_, '_> {
     /// Whether Z alone is written, where the tool rests on what its probing move has touched.
     fn is_touch_off(&self, values: [Option<f64>; 6]) -> bool {
         let names_z = values.iter().enumerate().all(|(axis, value)| value.is_some() == (axis == 2));
-        names_z && self.state.touching && self.state.position.z.is_nan()
+        names_z && self.is_touching()
+    }
+
+    /// Whether the tool rests on what its probing move has touched.
+    pub(super) fn is_touching(&self) -> bool {
+        self.state.touching && self.state.position.z.is_nan()
     }
 
     /// Polar coordinates, mirror, scale, turn and tilt, as the block switches them on or off.

@@ -78,11 +78,11 @@ impl Step<'_, '_, '_> {
         let Some(number) = self.state.selected else { return };
         self.put_in(number);
         self.state.position.z = f64::NAN;
-        self.state.touching = false;
     }
 
     fn put_in(&mut self, number: u32) {
         self.state.tool = Some(number);
+        self.state.touching = false;
         // The place of the last G28 and the H of another tool are not meant.
         (self.state.via, self.state.registers.h) = (None, None);
         self.actions.push(Action::Tool(Box::new(Tool { number, ..Tool::default() })));
@@ -265,15 +265,23 @@ impl Step<'_, '_, '_> {
             let message = "P names the tool whose data is written";
             return Err(self.block.at_group(Group::OneShot, Rule::Data, message));
         };
+        let touches_off = kind == 10 && self.touches_off(register);
+        if !touches_off {
+            self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
+        }
         let in_use = match self.state.length {
             Length::Register(active) | Length::Center(active) => active == register,
             Length::None | Length::Value(_) => false,
         };
         let ngc = self.facts.tools.rs274_data;
+        let mut written = None;
         let (length, radius) = match kind {
             1 if ngc => (self.take_length(b'Z')?, self.take_length(b'R')?),
             // Measured at the machine: the length follows from where the tool stands.
-            10 | 11 if ngc => (self.take_length(b'Z')?.map(|_| f64::NAN), self.take_length(b'R')?),
+            10 | 11 if ngc => {
+                written = self.take_length(b'Z')?;
+                (written.map(|_| f64::NAN), self.take_length(b'R')?)
+            }
             10 if !ngc => (self.take_length(b'R')?, None),
             // Wear adds to what is in the register.
             11 if !ngc => (self.take_length(b'R')?.map(|_| f64::NAN), None),
@@ -295,11 +303,24 @@ impl Step<'_, '_, '_> {
             }
             self.state.registers.write_length(register, length);
         }
+        if let (true, Some(z)) = (touches_off, written) {
+            self.state.touching = false;
+            let at = self.state.place.point(self.state.position.with_z(z)).z;
+            self.actions.push(Action::TouchOff(at));
+        }
         if radius.is_some() && !self.state.registers.radii.contains(&register) {
             self.not_compensated("a radius that is written")?;
             self.state.registers.radii.push(register);
         }
         Ok(())
+    }
+
+    /// Whether `G10 L10` writes the length of the tool in the spindle, and that alone, where it rests on what its probing move has
+    /// touched.
+    fn touches_off(&self, register: u32) -> bool {
+        let names_z_alone = self.block.has(b'Z') && !self.block.has(b'R');
+        let tools = &self.facts.tools;
+        tools.rs274_data && names_z_alone && self.is_touching() && self.state.tool == Some(register)
     }
 
     /// # Errors
