@@ -165,8 +165,8 @@ fn halves(triangle: &Triangle, at: usize) -> [Triangle; 2] {
 struct Room {
     apart: Apart,
     spacing: f64,
-    /// Cubes per µm: one is as large as a dart sees.
-    per_micrometre: f32,
+    /// How far a dart sees, µm: a spacing, and in height what is lost as well.
+    sees: Vec3A,
     /// Corner of the look-up grid.
     low: Vec3A,
     /// A whole µm near the tile.
@@ -174,8 +174,11 @@ struct Room {
     /// The tile's own box, µm.
     tile: (DVec3, DVec3),
     number: [i32; 3],
-    /// The last point of each cube; 0 is none, 1 the first point. At their distance no more than 25,000 points are in a room
-    /// of 25 spacings.
+    /// The last point of each cube; 0 is none, 1 the first point.
+    ///
+    /// Numbers have 16 bits. Around each point a ball of half a spacing, drawn out upright by what is lost, is free of the others': of a
+    /// spacing s and a loss l it takes π s² (s / 6 + l / 4). The room with half of one beyond each face has 26³ s² (s + l), so that it
+    /// holds no more than 26³ × 6 / π = 33,567 points.
     last: Vec<u16>,
     /// Of each row of cubes along X those that hold points, bit by bit.
     rows: Vec<u32>,
@@ -198,7 +201,7 @@ impl Default for Room {
         Room {
             apart: Apart { spacing: 1, lost: 0.0 },
             spacing: 1.0,
-            per_micrometre: 1.0,
+            sees: Vec3A::ONE,
             low: Vec3A::ZERO,
             origin: IVec3::ZERO,
             tile: (DVec3::ZERO, DVec3::ZERO),
@@ -225,8 +228,8 @@ impl Room {
         let corner = DVec3::from_array(number.map(f64::from)) * (TILE * spacing);
         self.tile = (corner, corner + TILE * spacing);
         (self.apart, self.spacing, self.number) = (apart, spacing, number);
-        let side = spacing + apart.lost;
-        self.per_micrometre = (1.0 / side) as f32;
+        let side = DVec3::new(spacing, spacing, spacing + apart.lost);
+        self.sees = side.as_vec3a();
         let farthest = DVec3::splat(f64::from(FARTHEST));
         let origin = corner.clamp(-farthest, farthest);
         self.origin = origin.as_ivec3();
@@ -236,7 +239,7 @@ impl Room {
 
     /// The cube of a place that darts can see.
     fn cube(&self, place: Vec3A) -> Option<usize> {
-        let cell = (place - self.low) * self.per_micrometre;
+        let cell = (place - self.low) / self.sees;
         let inside = cell.cmpge(Vec3A::ZERO) & cell.cmplt(Vec3A::splat(CELLS as f32));
         inside.all().then(|| {
             let [x, y, z] = cell.to_array().map(|number| number as i32 as usize);
@@ -332,9 +335,8 @@ impl Room {
         let middle = (patch[0] + patch[1] + patch[2]) / 3.0;
         let far = patch.iter().map(|corner| corner.distance(middle)).fold(0.0, f32::max);
         // As far from the middle as a dart sees from a corner, half a µm for its rounding, and more than rounding takes.
-        let reach = (far + 1.0 / self.per_micrometre) * (1.0 + 1e-4) + 1.0;
-        let [low, high] =
-            [-reach, reach].map(|reach| (middle + reach - self.low) * self.per_micrometre);
+        let reach = (far + self.sees.z) * (1.0 + 1e-4) + 1.0;
+        let [low, high] = [-reach, reach].map(|reach| (middle + reach - self.low) / self.sees);
         let most = (CELLS - 1) as f32;
         let [from, to] = [low, high].map(|cell| {
             cell.clamp(Vec3A::ZERO, Vec3A::splat(most))

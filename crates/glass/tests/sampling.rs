@@ -113,3 +113,23 @@ fn a_mesh_without_area_or_without_triangles_gives_no_endless_work() {
     let points = surface(&line, apart(90), 1);
     assert_eq!(distances(&points, 90).too_close, 0);
 }
+
+#[test]
+fn heights_that_lose_four_times_the_spacing_keep_what_is_left() {
+    // Sheets of 125 x 125 µm, 1 µm apart, at a spacing of 1 µm and in glass of index 4: points above each other are 5 µm apart.
+    let side = 0.125;
+    let corners = |z: f64| {
+        [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(|(x, y)| DVec3::new(x, y, z))
+    };
+    let vertices = (0..125).flat_map(|sheet| corners(f64::from(sheet) * 1e-3)).collect();
+    let faces = |sheet: u32| [[0, 1, 2], [0, 2, 3]].map(|face| face.map(|i| 4 * sheet + i));
+    let mesh = Mesh { vertices, triangles: (0..125).flat_map(faces).collect(), ..Mesh::default() };
+    let mut points = surface(&mesh, Apart { spacing: 1, lost: 4.0 }, 1);
+    assert!(points.len() > 50_000, "{}", points.len());
+    points.sort_unstable();
+    let close = |pair: &&[[i32; 3]]| {
+        let [[x, y, low], [a, b, high]] = [pair[0], pair[1]];
+        (x, y) == (a, b) && high - low < 5
+    };
+    assert_eq!(points.windows(2).filter(close).count(), 0);
+}
