@@ -7,7 +7,7 @@ use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
 use control::Folders;
 use machine::Machine;
-use proof::{ArmChecked, Report, Tolerances};
+use proof::{ArmChecked, Report, Tolerances, Worst};
 use serde_json::json;
 
 /// Proves the program `text`, which is called `file` and may call those of `folders`, against `toolpath`.
@@ -82,22 +82,25 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
         let text = format!("{}, each with the tool on the right side of it", compared.contours);
         rows.push(("contours", text));
     }
-    let deviation = |value: f64, allowed: f64, unit: &str, line: u32| {
-        let place = if line > 0 { format!(" (line {line})") } else { String::new() };
-        format!("{} {unit} at most{place}; {} allowed", number(value, 5), number(allowed, 5))
+    let deviation = |worst: &Worst, allowed: f64, unit: &str| {
+        let place = match (worst.program_line, &worst.program_file) {
+            (0, _) => String::new(),
+            (line, None) => format!(" (line {line})"),
+            (line, Some(file)) => format!(" ({file}, line {line})"),
+        };
+        format!("{} {unit} at most{place}; {} allowed", number(worst.value, 5), number(allowed, 5))
     };
-    let (tip, axis) = (worst.tip_mm, worst.axis_degrees);
-    rows.push(("tip deviation", deviation(tip.value, allowed.tip_mm, "mm", tip.program_line)));
+    let axis = &worst.axis_degrees;
+    rows.push(("tip deviation", deviation(&worst.tip_mm, allowed.tip_mm, "mm")));
     if axis.value > 0.0 {
-        let text = deviation(axis.value, allowed.axis_degrees, "degrees", axis.program_line);
-        rows.push(("axis deviation", text));
+        rows.push(("axis deviation", deviation(axis, allowed.axis_degrees, "degrees")));
     }
-    let rapid = worst.rapid_mm;
+    let rapid = &worst.rapid_mm;
     if rapid.value > allowed.tip_mm {
         let corridor = machine.capabilities.rapid_corridor;
-        rows.push(("rapid deviation", deviation(rapid.value, corridor, "mm", rapid.program_line)));
+        rows.push(("rapid deviation", deviation(rapid, corridor, "mm")));
     }
-    let speed = worst.tip_speed_percent;
+    let speed = &worst.tip_speed_percent;
     if speed.value > 0.0 {
         let slowed = match compared.slowed {
             0 => String::new(),
@@ -158,7 +161,8 @@ pub(crate) fn failed(proof: &Report, source: &Toolpath, program: &str) -> Accoun
         let (place, text) = source.location(first.source_line);
         rows.push(("source says", format!("{place}  {}", text.trim())));
         let block = first.block.trim();
-        rows.push(("program says", format!("{program}:{}  {block}", first.program_line)));
+        let file = first.program_file.as_deref().unwrap_or(program);
+        rows.push(("program says", format!("{file}:{}  {block}", first.program_line)));
     }
     let (data, findings) = (json!({ "proof": proof }), proof.mismatches.clone());
     Account { verdict: Verdict::Failed, rows, data, findings }

@@ -27,8 +27,9 @@ pub enum ArmAction {
     Acceleration,
     /// How fast the tool may turn in lines and arcs, degrees/s: its axis, and about its axis; `None` is as the control is set up.
     TurnSpeed([Option<f64>; 2]),
-    /// The program goes on in another file, or comes back from one: the arm stops there.
-    FileBorder,
+    /// The program goes on in the file of this name, or in the one that is run where it has none: the arm stops there. The line of this event is
+    /// still of the file before.
+    File(Option<Box<str>>),
     /// A motion.
     Move(Box<ArmMove>),
     /// What hangs on the flange: its mass, kg, and its centre of gravity in the frame of the flange, mm.

@@ -108,9 +108,13 @@ fn the_program_of_robodk_is_read_with_its_messages_and_its_call() {
     let events = run_with(&settings, &text).unwrap();
     assert_eq!(moves(&events).len(), 6);
     let count = |action: &Action| events.iter().filter(|event| event.action == *action).count();
-    // HALT of its own, and the one of the program that it calls, by the line of the call.
+    // HALT of its own, and the one of the program that it calls, by the line there.
     assert_eq!(count(&Action::Stop), 2);
-    assert!(events.contains(&Event { line: 64, action: Action::Stop }));
+    let file = |name: Option<&str>| Action::Arm(ArmAction::File(name.map(Box::from)));
+    let called = Event { line: 64, action: file(Some("subprog.src")) };
+    let at = events.iter().position(|event| *event == called).unwrap();
+    assert_eq!(events[at + 1], Event { line: 2, action: Action::Stop });
+    assert_eq!(events[at + 2], Event { line: 3, action: file(None) });
     let waits = events.iter().any(|event| match &event.action {
         Action::Input(input) => input.number == 5 && input.until == Until::High,
         _ => false,

@@ -121,7 +121,14 @@ fn the_program_of_robodk_is_read_with_its_messages_and_its_call() {
     settings.setup.folders = vec![called.path().to_path_buf()].into();
     let events = run_with(&settings, &text).unwrap();
     assert_eq!(moves(&events).len(), 6);
-    assert!(events.contains(&Event { line: 30, action: Action::Stop }));
+    // The lines of what the called file does are its own.
+    let in_file = |line: u32, file: Option<&str>| Event {
+        line,
+        action: Action::Arm(ArmAction::File(file.map(Box::from))),
+    };
+    let at = events.iter().position(|event| *event == in_file(30, Some("subprog.mod"))).unwrap();
+    assert_eq!(events[at + 1], Event { line: 3, action: Action::Stop });
+    assert_eq!(events[at + 2], in_file(4, None));
     let on = Output { number: 5, value: OutputValue::Digital(true), with_motion: false };
     assert!(events.iter().any(|event| event.action == Action::Output(on)));
     let waits = |event: &Event| match &event.action {

@@ -7,6 +7,7 @@ use machine::Unsaid;
 use machine::limits::Travel;
 use program::{Diagnostic, Severity};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The most mismatches and the most warnings that a report names; more of a rule raise its count.
 pub(crate) const MOST: usize = 20;
@@ -82,6 +83,9 @@ pub struct TravelChecked {
 pub struct SideBySide {
     /// Line of the source, from 1; 0 where the source has none.
     pub source_line: u32,
+    /// The called file of the NC program; none for the one that is run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program_file: Option<String>,
     /// Line of the NC program, from 1; 0 for its end.
     pub program_line: u32,
     /// The block on that line.
@@ -114,7 +118,7 @@ pub struct Compared {
 }
 
 /// The largest deviations of the program from the source.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Deviations {
     /// Of the tool tip at the end of a move, mm.
     pub tip_mm: Worst,
@@ -132,12 +136,15 @@ pub struct Deviations {
 }
 
 /// A largest value and where it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Worst {
     /// The value.
     pub value: f64,
     /// Line of the source.
     pub source_line: u32,
+    /// The called file of the NC program; none for the one that is run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program_file: Option<String>,
     /// Line of the NC program.
     pub program_line: u32,
 }
@@ -153,31 +160,57 @@ impl Deviations {
             &mut self.tip_speed_percent,
         ];
         let others = [
-            other.tip_mm,
-            other.axis_degrees,
-            other.path_mm,
-            other.rapid_mm,
-            other.tip_speed_percent,
+            &other.tip_mm,
+            &other.axis_degrees,
+            &other.path_mm,
+            &other.rapid_mm,
+            &other.tip_speed_percent,
         ];
-        for (mine, Worst { value, source_line, program_line }) in mine.into_iter().zip(others) {
-            mine.note(value, source_line, program_line);
+        for (mine, other) in mine.into_iter().zip(others) {
+            if other.value > mine.value {
+                *mine = other.clone();
+            }
         }
     }
 }
 
 impl Worst {
-    pub(crate) fn note(&mut self, value: f64, source_line: u32, program_line: u32) {
+    /// Notes a value at a line of the source and at a place of the program: a line of the program that is run, or of a file that it calls.
+    pub(crate) fn note<'a>(&mut self, value: f64, source_line: u32, place: impl Into<Place<'a>>) {
         if value > self.value {
-            *self = Worst { value, source_line, program_line };
+            let Place { file, line } = place.into();
+            let program_file = file.map(str::to_owned);
+            *self = Worst { value, source_line, program_file, program_line: line };
         }
     }
 }
 
+/// A line of the program that is run, or of a file that it calls.
+pub(crate) struct Place<'a> {
+    file: Option<&'a str>,
+    line: u32,
+}
+
+impl From<u32> for Place<'_> {
+    fn from(line: u32) -> Self {
+        Place { file: None, line }
+    }
+}
+
+impl<'a> From<(Option<&'a str>, u32)> for Place<'a> {
+    fn from((file, line): (Option<&'a str>, u32)) -> Self {
+        Place { file, line }
+    }
+}
+
 /// A way away from the source's path and back to it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Excursion {
     /// Line of the source move from which it leaves.
     pub source_line: u32,
+    /// The called file of the NC program; none for the one that is run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program_file: Option<String>,
     /// Line of the NC program on which it leaves.
     pub first_program_line: u32,
     /// Line of the NC program on which it is back.
@@ -189,7 +222,7 @@ pub struct Excursion {
 /// What the program does, as the control runs it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
-    /// Lines with something on them.
+    /// Lines with something on them, of all its files.
     pub blocks: usize,
     /// Tools in the order of their first call: numbers, or names where they are called so.
     pub tools: Vec<String>,
@@ -288,7 +321,9 @@ impl Report {
     pub(crate) fn mismatch(&mut self, source_line: u32, found: Diagnostic) {
         if self.first_mismatch.is_none() {
             let block = String::new();
-            self.first_mismatch = Some(SideBySide { source_line, program_line: found.line, block });
+            let program_file = Some(&found.file).filter(|file| !file.is_empty()).cloned();
+            self.first_mismatch =
+                Some(SideBySide { source_line, program_file, program_line: found.line, block });
         }
         note(&mut self.mismatches, found);
     }
@@ -311,12 +346,26 @@ impl Report {
 
     /// Adds the file name and the blocks of the NC text to what was found, and counts the blocks.
     pub(crate) fn quote(&mut self, file_name: &str, text: &[u8]) {
-        let lines = || lines(text);
-        self.program.blocks = lines().filter(|line| !line.trim_ascii().is_empty()).count();
+        self.quote_files((file_name, text), &BTreeMap::new());
+    }
+
+    /// The same of a program that calls others: of these, findings name the file already.
+    pub(crate) fn quote_files(
+        &mut self,
+        (file_name, text): (&str, &[u8]),
+        called: &BTreeMap<String, Vec<u8>>,
+    ) {
+        let blocks = |text| lines(text).filter(|line| !line.trim_ascii().is_empty()).count();
+        self.program.blocks =
+            blocks(text) + called.values().map(|text| blocks(text)).sum::<usize>();
         for found in self.mismatches.iter_mut().chain(&mut self.warnings).chain(&mut self.accepted)
         {
-            found.file = file_name.into();
-            let block = found.line.checked_sub(1).and_then(|index| lines().nth(index as usize));
+            let own = called.get(&found.file);
+            if own.is_none() {
+                found.file = file_name.into();
+            }
+            let text = own.map_or(text, |text| &text[..]);
+            let block = found.line.checked_sub(1).and_then(|index| lines(text).nth(index as usize));
             if let (Some(block), true) = (block, found.excerpt.is_empty()) {
                 *found = found.clone().at(found.line, block, 0, 0);
                 // The finding is about the whole block.

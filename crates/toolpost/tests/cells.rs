@@ -197,9 +197,7 @@ fn a_cut_that_no_posture_carries_is_left_and_entered_again_and_the_line_is_repor
         let report = proof_of(&source, &machine, &text);
         assert!(report.proven, "{name} {:#?}", report.mismatches);
         assert_eq!(report.compared.lines, 151);
-        // The cut goes on behind the point at which it is left.
-        let places: Vec<u32> =
-            report.excursions.iter().map(|place| place.source_line - 1).collect();
+        let places: Vec<u32> = report.excursions.iter().map(|place| place.source_line).collect();
         assert_eq!(places, left, "{name}");
         // A program whose way is left out, but for the first line, is refused.
         let (first, last) =

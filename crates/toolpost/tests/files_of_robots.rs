@@ -169,6 +169,37 @@ fn a_part_that_is_missing_or_in_the_wrong_order_or_called_twice_or_begins_in_a_c
     }
 }
 
+/// A difference, and what is not understood, in a part: the finding has its file and the line in it.
+#[test]
+fn a_finding_in_a_part_names_its_file_and_its_line() {
+    for (name, bound) in ROBOTS {
+        let (source, machine, written) = four(name, bound);
+        let (file, from, to, unknown) = match name.starts_with("fanuc") {
+            true => ("job_2.ls", ":L P[5]", ":L P[6]", "syntax"),
+            false => {
+                ("job_2.src", "LIN {X 12.000,Y 10.000", "LIN {X 12.000,Y 11.000", "unknown-word")
+            }
+        };
+        let text = String::from_utf8(written.parts[file].clone()).unwrap();
+        let line = 1 + text.lines().position(|line| line.contains(from)).unwrap();
+        for (to, rule) in [(to, "path"), ("nonsense", unknown)] {
+            let mut damaged = written.clone();
+            damaged.parts.insert(file.into(), text.replacen(from, to, 1).into_bytes());
+            let report = proof_of(&source, &machine, &damaged);
+            let found = &report.mismatches[0];
+            assert_eq!(
+                (found.rule.name(), &*found.file, found.line),
+                (rule, file, line as u32),
+                "{found}"
+            );
+            assert!(found.excerpt.contains(to), "{found}");
+            let first = report.first_mismatch.unwrap();
+            assert_eq!(first.program_file.as_deref(), Some(file));
+            assert!(first.block.contains(to), "{first:?}");
+        }
+    }
+}
+
 /// Where the first cut of a file begins: the instructions before stay in the file before.
 #[test]
 fn a_file_that_begins_within_a_cut_is_refused() {

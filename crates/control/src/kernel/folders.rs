@@ -67,7 +67,7 @@ impl Folders {
     ///
     /// # Errors
     /// What to say where there is none, or it cannot be read.
-    pub(crate) fn open(&self, name: &str) -> Result<Vec<u8>, String> {
+    pub fn open(&self, name: &str) -> Result<Vec<u8>, String> {
         if let Some(text) = self.texts.get(name) {
             return Ok(text.clone());
         }
@@ -85,10 +85,9 @@ pub(crate) struct CalledFile {
 }
 
 impl CalledFile {
-    /// A finding in it, at the line of the call.
-    pub(crate) fn inside(&self, line: u32, found: Diagnostic) -> Box<Diagnostic> {
-        let message = format!("in {}, line {}: {}", self.name, found.line, found.message);
-        Box::new(Diagnostic { message, ..found }.line(line))
+    /// A finding in it, or in a file that it calls.
+    pub(crate) fn inside(&self, found: Box<Diagnostic>) -> Box<Diagnostic> {
+        if found.file.is_empty() { Box::new(found.file(self.name.clone())) } else { found }
     }
 }
 

@@ -15,8 +15,8 @@ const DEEPEST: usize = 20;
 /// A module.
 struct Module<'t> {
     text: &'t [u8],
-    /// The line that is reported for all of it; none of its own for the file that is run.
-    shown: Option<u32>,
+    /// The name of its file; none of the one that is run.
+    file: Option<Box<str>>,
     /// Where its procedures begin: behind their heads.
     routines: HashMap<Name, BlockLocation>,
 }
@@ -61,7 +61,7 @@ impl<'t> Module<'t> {
     ///
     /// # Errors
     /// What is not understood, but for what stands in procedures.
-    fn of(text: &'t [u8], shown: Option<u32>, state: &mut State) -> Outcome<Module<'t>> {
+    fn of(text: &'t [u8], file: Option<Box<str>>, state: &mut State) -> Outcome<Module<'t>> {
         let mut scan = Scan::within(text, BlockLocation { at: 0, line: 1 });
         head(&mut scan)?;
         if !scan.take_word("MODULE") {
@@ -111,7 +111,7 @@ impl<'t> Module<'t> {
             state.outlive(name, assigned.contains(&name));
         }
         match scan.peek() {
-            None => Ok(Module { text, shown, routines }),
+            None => Ok(Module { text, file, routines }),
             Some(_) => Err(scan.wrong("something stands behind ENDMODULE")),
         }
     }
@@ -170,7 +170,7 @@ impl Run<'_, '_> {
         let mut declared = Vec::new();
         let ended = loop {
             scan.blanks();
-            let line = module.shown.unwrap_or(scan.location().line);
+            let line = scan.location().line;
             if let Some(comment) = scan.comment() {
                 if !comment.is_empty() {
                     let text = String::from_utf8_lossy(comment);
@@ -267,16 +267,17 @@ impl Run<'_, '_> {
             );
             return Err(refused(Rule::CalledProgram, message));
         };
-        let inside = |found: Box<Diagnostic>| called.inside(line, *found);
-        let other = Module::of(&called.text, Some(line), &mut self.state).map_err(inside)?;
+        let inside = |found: Box<Diagnostic>| called.inside(found);
+        let other = Module::of(&called.text, Some(called.name.as_str().into()), &mut self.state)
+            .map_err(inside)?;
         let Some(place) = other.routines.get(&name).copied() else {
             let message = format!("{} has no procedure {name}", called.name);
             return Err(refused(Rule::CalledProgram, message));
         };
-        self.channel.arm(line, ArmAction::FileBorder)?;
+        self.channel.arm(line, ArmAction::File(other.file.clone()))?;
         let ended = self.routine(&other, place, depth + 1).map_err(inside)?;
-        if let Ended::Routine(_) = ended {
-            self.channel.arm(line, ArmAction::FileBorder)?;
+        if let Ended::Routine(end) = ended {
+            self.channel.arm(end, ArmAction::File(module.file.clone())).map_err(inside)?;
         }
         Ok(ended)
     }

@@ -79,6 +79,10 @@ pub(super) struct Comparison<'a> {
     gathered: Option<contour::Gathered>,
     loaded: bool,
     changes: Changes,
+    /// The called file in which the program is; none where it is in the one that is run.
+    file: Option<Box<str>>,
+    /// The called files in which it has been.
+    files: Vec<Box<str>>,
     ended: bool,
     failed: bool,
     report: Report,
@@ -131,6 +135,8 @@ impl<'a> Comparison<'a> {
                 held: None,
                 asked: None,
             },
+            file: None,
+            files: Vec::new(),
             ended: false,
             failed: false,
             report: Report { arm: Some(ArmChecked::default()), ..report },
@@ -141,8 +147,8 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// The report. `run` is what the control has answered.
-    pub(super) fn finish(mut self, run: Outcome) -> Report {
+    /// The report, and the called files in which the program has been. `run` is what the control has answered.
+    pub(super) fn finish(mut self, run: Outcome) -> (Report, Vec<Box<str>>) {
         if let Err(found) = run.and_then(|()| self.ends_on_contour()) {
             self.differs(*found);
         }
@@ -156,7 +162,7 @@ impl<'a> Comparison<'a> {
             }
         }
         self.report.proven = self.report.mismatches.is_empty();
-        self.report
+        (self.report, self.files)
     }
 
     fn differs(&mut self, found: Diagnostic) {
@@ -182,7 +188,8 @@ impl<'a> Comparison<'a> {
                 line => format!("source line {line}: {}", found.message),
             };
             let line = if found.line == 0 { event.line } else { found.line };
-            Box::new(Diagnostic { message, ..*found }.line(line))
+            let file = self.file.as_deref().unwrap_or_default().to_owned();
+            Box::new(Diagnostic { message, ..*found }.line(line).file(file))
         })
     }
 
@@ -314,7 +321,13 @@ impl<'a> Comparison<'a> {
             ArmAction::LoadNumber(number) => return self.load_number(*number),
             ArmAction::Load(mass, center) => return self.load(*mass, *center),
             ArmAction::TurnSpeed(speed) => self.running.turn_speed = *speed,
-            ArmAction::FileBorder => return self.border(),
+            ArmAction::File(name) => {
+                self.border()?;
+                if let Some(name) = name.as_ref().filter(|name| !self.files.contains(*name)) {
+                    self.files.push(name.clone());
+                }
+                self.file = name.clone();
+            }
             ArmAction::Move(motion) => return self.motion(line, motion),
         }
         Ok(())
@@ -469,6 +482,12 @@ impl<'a> Comparison<'a> {
         }
     }
 
+    /// Line of the source of the step before the next one; 0 where there is none.
+    fn line_before(&self) -> u32 {
+        let before = self.next.checked_sub(1).and_then(|before| self.expected.get(before));
+        before.map_or(0, |before| before.line)
+    }
+
     fn arrives(&self, at: &Frame, to: &Pose, by_joints: bool) -> bool {
         let (tip, axis) = self.off(at, to);
         tip <= self.tip(by_joints) && axis <= self.axis_allowed()
@@ -490,8 +509,9 @@ impl<'a> Comparison<'a> {
         }
         let (tip, axis) = self.off(end, to);
         let source = self.expected.get(self.next).map_or(0, |expected| expected.line);
-        self.report.deviations.tip_mm.note(tip, source, line);
-        self.report.deviations.axis_degrees.note(axis, source, line);
+        let place = (self.file.as_deref(), line);
+        self.report.deviations.tip_mm.note(tip, source, place);
+        self.report.deviations.axis_degrees.note(axis, source, place);
         Ok(())
     }
 }

@@ -33,6 +33,7 @@ use control::{Folders, Setup};
 use expected::Expected;
 use machine::{Cell, Machine};
 use program::{Diagnostic, Program, Rule};
+use std::collections::BTreeMap;
 
 /// Runs `text` on the virtual control of the robot and compares it with `source`, while `go_on` says so.
 pub(crate) fn prove(
@@ -70,7 +71,14 @@ pub(crate) fn prove(
             comparison.event(&event)
         })
     });
-    let mut report = comparison.finish(run);
-    report.quote(file_name, text);
+    let (mut report, called) = comparison.finish(run);
+    // A file that is not understood has not been gone through.
+    let refused = report.mismatches.iter().map(|found| found.file.clone());
+    let called = called.into_iter().map(String::from).chain(refused);
+    let called: BTreeMap<String, Vec<u8>> = called
+        .filter(|name| !name.is_empty() && name != file_name)
+        .filter_map(|name| folders.open(&name).ok().map(|text| (name, text)))
+        .collect();
+    report.quote_files((file_name, text), &called);
     report
 }

@@ -203,6 +203,7 @@ impl Prover<'_> {
         let first = self.progress.stops.first().map_or(to.line, |stop| stop.line);
         self.report.excursion(Excursion {
             source_line: self.cursor.line,
+            program_file: None,
             first_program_line: first,
             last_program_line: to.line,
             lift_mm,

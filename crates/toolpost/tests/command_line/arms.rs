@@ -188,6 +188,11 @@ fn a_program_in_several_files_is_saved_whole_or_not_at_all_and_proven_from_its_f
     let said = folder.run(&prove);
     assert_eq!(said.code, 0, "{said:?}");
     assert!(said.out.contains("belongs to this program"), "{}", said.out);
+    // The summary counts the lines of all files, and names the file of a line.
+    let lines: usize =
+        parts.iter().chain(&["rows-a.ls"]).map(|name| folder.read(name).lines().count()).sum();
+    assert!(said.out.contains(&format!("program         {lines} blocks")), "{lines} {}", said.out);
+    assert!(said.out.contains("at most (rows_a_"), "{}", said.out);
     // Another program whose parts would have the same names takes none of them.
     let other = ["post", "rows.cls", "--machine", "own.toml", "-o", "rows_a.ls"];
     let said = folder.run(&other);
@@ -201,7 +206,12 @@ fn a_program_in_several_files_is_saved_whole_or_not_at_all_and_proven_from_its_f
     assert!(said.code == 0 && said.err.contains("report-pair"), "{said:?}");
     folder.write("rows_a_3.ls", third.replacen("Z = -2.000", "Z = -3.000", 1));
     let said = folder.run(&prove);
-    assert!(said.code == 1 && said.err.contains("in rows_a_3.ls"), "{said:?}");
+    // The part, and the line and the text in it, that leads to the position.
+    let line =
+        1 + third.lines().position(|line| line.ends_with(":L P[3] 120cm/min FINE ;")).unwrap();
+    let place = format!("rows_a_3.ls:{line}: error[path]");
+    assert!(said.code == 1 && said.err.contains(&place), "{place}: {said:?}");
+    assert!(said.err.contains(":L P[3] 120cm/min FINE ;"), "{said:?}");
     std::fs::remove_file(folder.path().join("rows_a_3.ls")).unwrap();
     let said = folder.run(&prove);
     assert!(said.code == 1 && said.err.contains("called-program"), "{said:?}");

@@ -16,8 +16,8 @@ const DEEPEST: usize = 20;
 /// A file.
 struct File<'t> {
     text: &'t [u8],
-    /// The line that is reported for all of it; none of its own for the file that is run.
-    shown: Option<u32>,
+    /// Its name; none of the file that is run.
+    name: Option<Box<str>>,
     /// Where its programs begin: behind their `DEF`.
     programs: HashMap<Name, BlockLocation>,
     first: Option<(Name, BlockLocation)>,
@@ -39,7 +39,7 @@ pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Ou
 impl<'t> File<'t> {
     /// # Errors
     /// Two programs have one name; a line with `DEF` is not understood.
-    fn of(text: &'t [u8], shown: Option<u32>) -> Outcome<File<'t>> {
+    fn of(text: &'t [u8], name: Option<Box<str>>) -> Outcome<File<'t>> {
         let (mut programs, mut first) = (HashMap::new(), None);
         let mut is_inside = false;
         for (place, after, block) in lines(text) {
@@ -57,7 +57,7 @@ impl<'t> File<'t> {
                 first = first.or(Some((name, after)));
             }
         }
-        Ok(File { text, shown, programs, first })
+        Ok(File { text, name, programs, first })
     }
 }
 
@@ -114,8 +114,7 @@ impl Run<'_, '_> {
         while let Some((text, after)) = line(file.text, place) {
             let mut scan = Scan::new(Source { line: place.line, text });
             let statement = read(&mut scan, &self.state)?;
-            let number = file.shown.unwrap_or(place.line);
-            scan.line = number;
+            let number = place.line;
             if matches!(statement, Statement::Declare(_, _, None)) && has_begun {
                 let message = "declarations stand before the first statement of a program";
                 return Err(scan.since(0, Rule::Definition, message));
@@ -191,16 +190,16 @@ impl Run<'_, '_> {
             let message = format!("the called program {name} is in no folder for called programs");
             return Err(refused(Rule::CalledProgram, message));
         };
-        let inside = |found: Box<Diagnostic>| called.inside(scan.line, *found);
-        let other = File::of(&called.text, Some(scan.line)).map_err(inside)?;
+        let inside = |found: Box<Diagnostic>| called.inside(found);
+        let other = File::of(&called.text, Some(called.name.as_str().into())).map_err(inside)?;
         self.data(name)?;
         let Some(place) = other.programs.get(&name) else {
             let message = format!("{} has no program {name}", called.name);
             return Err(refused(Rule::CalledProgram, message));
         };
-        self.channel.arm(scan.line, ArmAction::FileBorder)?;
-        self.routine(&other, *place, depth + 1).map_err(inside)?;
-        self.channel.arm(scan.line, ArmAction::FileBorder)
+        self.channel.arm(scan.line, ArmAction::File(other.name.clone()))?;
+        let end = self.routine(&other, *place, depth + 1).map_err(inside)?;
+        self.channel.arm(end, ArmAction::File(file.name.clone())).map_err(inside)
     }
 
     /// The data list of a program, where a folder has it.

@@ -150,14 +150,13 @@ struct Run<'r, 'c> {
 }
 
 impl Run<'_, '_> {
-    /// Runs a program to its end; the line of that. `shown` is the line that is reported for all of a called one.
-    fn routine(&mut self, file: &File, shown: Option<u32>, depth: usize) -> Outcome<u32> {
+    /// Runs a program to its end; the line of that. `own` is the name of the file of a called one.
+    fn routine(&mut self, file: &File, own: Option<&str>, depth: usize) -> Outcome<u32> {
         let (mut at, mut last) = (0, 1);
         while let Some((line, text, next)) = file.instruction(at)? {
-            last = shown.unwrap_or(line);
+            last = line;
             let mut scan = Scan::new(Source { line, text: &text });
             let statement = read(&mut scan)?;
-            scan.line = last;
             match &statement {
                 Statement::End => return Ok(last),
                 Statement::Motion(motion) => {
@@ -165,7 +164,7 @@ impl Run<'_, '_> {
                 }
                 Statement::Call(name, arguments) => {
                     if !self.state.called(&scan, name, arguments, self.channel)? {
-                        self.call(&scan, (name, arguments.is_empty()), depth)?;
+                        self.call(own, &scan, (name, arguments.is_empty()), depth)?;
                     }
                 }
                 other => self.state.instruction(&scan, other, self.channel)?,
@@ -176,7 +175,13 @@ impl Run<'_, '_> {
     }
 
     /// A call of the program of another file; whether it is called without arguments.
-    fn call(&mut self, scan: &Scan, (name, plain): (&str, bool), depth: usize) -> Outcome {
+    fn call(
+        &mut self,
+        from: Option<&str>,
+        scan: &Scan,
+        (name, plain): (&str, bool),
+        depth: usize,
+    ) -> Outcome {
         let refused = |rule: Rule, message: String| scan.since(0, rule, message);
         if !plain {
             let message = format!("{name} is called with arguments, which is not followed");
@@ -190,14 +195,15 @@ impl Run<'_, '_> {
             let message = format!("the called program {name} is in no folder for called programs");
             return Err(refused(Rule::CalledProgram, message));
         };
-        let inside = |found: Box<Diagnostic>| called.inside(scan.line, *found);
+        let inside = |found: Box<Diagnostic>| called.inside(found);
         let file = File::of(&called.text).map_err(inside)?;
         if !file.name.eq_ignore_ascii_case(name) {
             let message = format!("{} has the program {}", called.name, file.name);
             return Err(refused(Rule::CalledProgram, message));
         }
-        self.channel.arm(scan.line, ArmAction::FileBorder)?;
-        self.routine(&file, Some(scan.line), depth + 1).map_err(inside)?;
-        self.channel.arm(scan.line, ArmAction::FileBorder)
+        let own = Some(called.name.as_str());
+        self.channel.arm(scan.line, ArmAction::File(own.map(Box::from)))?;
+        let end = self.routine(&file, own, depth + 1).map_err(inside)?;
+        self.channel.arm(end, ArmAction::File(from.map(Box::from))).map_err(inside)
     }
 }

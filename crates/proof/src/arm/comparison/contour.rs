@@ -61,7 +61,7 @@ impl Comparison<'_> {
                 | Action::End
                 | Action::Tool(_)
                 | Action::Dwell(_)
-                | Action::Arm(ArmAction::FileBorder),
+                | Action::Arm(ArmAction::File(_)),
             ) => {
                 return self.off_contour(&contour);
             }

@@ -3,6 +3,7 @@
 use super::super::expected::{Expected, REENTRY, Step};
 use super::super::follow::{Followed, Path, angle, follow, turned};
 use super::{Comparison, STRIDE, Standing, refused};
+use crate::report::Excursion;
 use ::arm::Joints;
 use control::kernel::arc::through;
 use control::{ArmMove, ArmPosture, Corner, Rounding, Turning};
@@ -50,7 +51,7 @@ impl Comparison<'_> {
             return self.line_away(line, motion, start, path);
         }
         let Some(expected) = self.expected.get(self.next).cloned() else {
-            return self.retract(motion, start, path, from_corner);
+            return self.retract(line, motion, (start, path), from_corner);
         };
         if self.leaves_cut(&expected, &start, &path) {
             return self.leave_cut(line, motion, (start, path), from_corner);
@@ -58,7 +59,7 @@ impl Comparison<'_> {
         let cuts = match &expected.step {
             Step::Rapid(from, to) => {
                 if !self.arrives(end, to, false) {
-                    return self.retract(motion, start, path, from_corner);
+                    return self.retract(line, motion, (start, path), from_corner);
                 }
                 self.is_rapid_path(&start, &at, (from.as_ref(), to), length)?;
                 self.report.compared.rapids += 1;
@@ -87,7 +88,7 @@ impl Comparison<'_> {
             | Step::Dwell(_)
             | Step::Stop
             | Step::Output(_)
-            | Step::Input(_) => return self.retract(motion, start, path, from_corner),
+            | Step::Input(_) => return self.retract(line, motion, (start, path), from_corner),
         };
         if cuts {
             self.in_cut(&expected)?;
@@ -124,16 +125,23 @@ impl Comparison<'_> {
     /// It is none.
     fn retract(
         &mut self,
+        line: u32,
         motion: &ArmMove,
-        start: Standing,
-        path: Path,
+        (start, path): (Standing, Path),
         from_corner: Option<Rounding>,
     ) -> Outcome {
-        let is_lift = self.done == 0.0 && self.rise(&start, &path) > 0.0;
+        let lift_mm = self.rise(&start, &path);
+        let is_lift = self.done == 0.0 && lift_mm > 0.0;
         if !is_lift || from_corner.is_some() || motion.corner != Corner::Exact {
             return refused(Rule::ExtraMotion, "the tool moves where the source does not");
         }
-        self.report.compared.excursions += 1;
+        self.report.excursion(Excursion {
+            source_line: self.line_before(),
+            program_file: self.file.as_deref().map(str::to_owned),
+            first_program_line: line,
+            last_program_line: line,
+            lift_mm,
+        });
         self.pass(start, path, (motion, false))
     }
 
@@ -413,7 +421,8 @@ impl Comparison<'_> {
                     format!("the axis is {lean:.3}° off that of the source on the way"),
                 );
             }
-            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, line);
+            let place = (self.file.as_deref(), line);
+            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
@@ -471,7 +480,8 @@ impl Comparison<'_> {
                     format!("the axis is {lean:.3}° off that of the source on the arc"),
                 );
             }
-            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, line);
+            let place = (self.file.as_deref(), line);
+            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
@@ -519,7 +529,7 @@ impl Comparison<'_> {
             worst = f64::max(worst, aside);
         }
         let source = self.expected.get(self.next).map_or(0, |expected| expected.line);
-        self.report.deviations.tip_mm.note(worst, source, line);
+        self.report.deviations.tip_mm.note(worst, source, (self.file.as_deref(), line));
         Ok(())
     }
 

@@ -14,6 +14,8 @@ use program::{Outcome, Pose, Rule};
 pub(super) struct Away {
     /// The place, in the frame of the source.
     place: Pose,
+    /// Line of the source at whose motion it has left.
+    source_line: u32,
     /// Line of the program on which it has left.
     line: u32,
     /// The highest that the tool has been above the place, mm.
@@ -62,7 +64,12 @@ impl Comparison<'_> {
         }
         let tool = self.in_part(&start.tool);
         let place = Pose::new(tool.translation, -tool.matrix3.z_axis)?;
-        self.away = Some(Away { place, line, height: 0.0 });
+        // At the end of a motion it is not yet that of the next one.
+        let source_line = match self.done > 0.0 {
+            true => self.expected.get(self.next).map_or(0, |expected| expected.line),
+            false => self.line_before(),
+        };
+        self.away = Some(Away { place, source_line, line, height: 0.0 });
         self.axially(motion, (start, path))
     }
 
@@ -84,9 +91,9 @@ impl Comparison<'_> {
             return Ok(());
         }
         self.away = None;
-        let source_line = self.expected.get(self.next).map_or(0, |expected| expected.line);
         self.report.excursion(Excursion {
-            source_line,
+            source_line: away.source_line,
+            program_file: self.file.as_deref().map(str::to_owned),
             first_program_line: away.line,
             last_program_line: line,
             lift_mm: away.height,
