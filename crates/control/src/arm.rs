@@ -49,6 +49,9 @@ pub struct ArmMove {
     pub turning: Option<Turning>,
     /// What the program says of the posture at the end; of a motion to joints nothing.
     pub posture: ArmPosture,
+    /// Where the rail on which the arm stands is at the end, mm: outer axis 1, which goes evenly with the motion; `None` where no block
+    /// has said it.
+    pub rail: Option<f64>,
 }
 
 /// Where a motion goes.

@@ -172,7 +172,23 @@ fn status_and_turn_are_read_and_checked() {
     refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 32,T 0}", 2, "S is a whole number from 0 to 31");
     refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 2,T 64}", 2, "T is a whole number from 0 to 63");
     refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 2.5}", 2, "S is a whole number");
-    refused("PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 2,T 2,E1 10}", 2, "E1 is an axis beyond the arm");
+}
+
+#[test]
+fn e1_is_the_rail_and_stays_where_a_position_leaves_it_out() {
+    let events = body(
+        "PTP {A1 0,A2 -90,A3 90,A4 0,A5 45,A6 0}\nPTP {A1 10,E1 250.5}\n\
+         LIN {X 1,Y 2,Z 3,A 0,B 90,C 0}\nLIN {X 2,E1 -3}\n\
+         CIRC {X 3,Y 3,Z 3},{X 4,Y 2,Z 3,A 0,B 90,C 0}",
+    );
+    let rails: Vec<_> = moves(&events.unwrap()).iter().map(|(_, motion)| motion.rail).collect();
+    assert_eq!(rails, [None, Some(250.5), Some(250.5), Some(-3.0), Some(-3.0)]);
+    let arc =
+        "LIN {X 1,Y 2,Z 3,A 0,B 90,C 0}\nCIRC {X 3,Y 3,Z 3,E1 1},{X 4,Y 2,Z 3,A 0,B 90,C 0,E1 2}";
+    refused(&format!("{START}{arc}"), 4, "state different E1");
+    refused("PTP {A1 0,A2 0,A3 0,A4 0,A5 0,A6 0,E1 1E9}", 2, "E1 1000000000 is beyond any rail");
+    let outer = "PTP {X 1,Y 2,Z 3,A 0,B 90,C 0,S 2,T 2,E2 10}";
+    refused(outer, 2, "E2 is an axis beyond the arm and its rail");
 }
 
 #[test]

@@ -108,6 +108,35 @@ pub struct Cell {
     pub load_number: Option<u32>,
     /// What hangs on the flange with a tool in the spindle, where it is stated.
     pub load: Option<Load>,
+    /// The rail on which the arm stands, where there is one.
+    pub rail: Option<Rail>,
+}
+
+/// A straight rail that carries the foot of an arm: its position is the outer axis 1 of the controller (`E1`, `eax_a`), mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rail {
+    /// Unit vector in which the arm moves while the position grows, in the world of the controller.
+    pub direction: Vec3,
+    /// The world of the arm itself, which [`arm::Arm::world_height`] places, in that of the controller, with the rail at 0.
+    pub origin: Frame,
+    /// Lowest position, mm.
+    pub min: f64,
+    /// Highest position, mm.
+    pub max: f64,
+    /// Fastest, mm/min.
+    pub speed: f64,
+    /// Acceleration, m/s², where it is stated.
+    pub acceleration: Option<f64>,
+    /// Where it stands when programs begin and end, mm.
+    pub home: f64,
+}
+
+impl Rail {
+    /// Whether a position, mm, is within its travel.
+    pub fn holds(&self, position: f64) -> bool {
+        // Rounding of a position that stands at its end.
+        (self.min - 1e-6..=self.max + 1e-6).contains(&position)
+    }
 }
 
 /// What hangs on the flange of an arm.
@@ -125,6 +154,24 @@ impl Cell {
     pub fn tool(&self, length: Option<f64>) -> Option<Frame> {
         let length = length.or(self.tool_length)?;
         Some(self.spindle * Frame::from_translation(Vec3::new(0.0, 0.0, length)))
+    }
+
+    /// The world of the arm itself in that of the controller, with the rail at this position, mm: without a rail they are one.
+    pub fn foot(&self, rail: f64) -> Frame {
+        match &self.rail {
+            Some(own) => Frame::from_translation(own.direction * rail) * own.origin,
+            None => Frame::IDENTITY,
+        }
+    }
+
+    /// The frame of the source in the world of the arm itself, with the rail at this position, mm.
+    pub fn part_from(&self, rail: f64) -> Frame {
+        self.foot(rail).inverse() * self.part
+    }
+
+    /// Where the rail stands when programs begin and end, mm; 0 without one.
+    pub fn rail_home(&self) -> f64 {
+        self.rail.map_or(0.0, |rail| rail.home)
     }
 
     /// The frame of six numbers: X, Y, Z in mm, and A, B, C in degrees, which turn about Z, the new Y and the new X.

@@ -36,6 +36,7 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         CoolantSheet::KEYS,
         ArmSheet::KEYS,
         CellSheet::KEYS,
+        RailSheet::KEYS,
         LengthsSheet::KEYS,
         DhSheet::KEYS,
         JointSheet::KEYS,
@@ -264,6 +265,17 @@ sheet!(merged CellSheet "cell" {
     load_number: LoadNumber, "", "The number under which the operator has entered what hangs on the flange (FANUC, `PAYLOAD[1]`): programs choose it.";
     load_mass: Mass, "kg", "What hangs on the flange: the spindle with a tool in it.";
     load_center: LoadCenter, "mm", "Its centre of gravity in the frame of the flange.";
+    rail: Spanned<RailSheet>, "", "Table: the straight rail on which the arm stands, outer axis 1 of the controller (KUKA E1, ABB eax_a, FANUC E1); `part` then is in the world that stays.";
+});
+
+sheet!(RailSheet "cell.rail" {
+    direction: Direction, "", "Where the arm moves while the position of the rail grows, in the world of the controller: a vector of any length.";
+    origin: SixNumbers, "mm, degrees", "Where the arm's own world stands in that of the controller with the rail at 0, as six numbers like those of `spindle` (KUKA: $ROBROOT; FANUC: zeros).";
+    min: Position, "mm", "Lowest position.";
+    max: Position, "mm", "Highest position.";
+    speed: Rate, "mm/min", "Fastest.";
+    acceleration: Acceleration, "m/s²", "Acceleration, where it is stated.";
+    home: Position, "mm", "Where the rail stands when programs begin and end.";
 });
 
 sheet!(LengthsSheet "arm.lengths" {

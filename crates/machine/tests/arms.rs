@@ -182,3 +182,31 @@ fn an_arm_of_ones_own_extends_another_and_changes_single_figures() {
     let arm = load_text("mine.toml", limits).unwrap().arm.unwrap();
     assert!(arm.allows(&[0.0; 6]) && !arm.allows(&[0.0, 1.5, 0.0, 0.0, 0.0, 0.0]));
 }
+
+#[test]
+fn a_rail_carries_the_foot_of_an_arm_and_its_figures_have_to_make_one() {
+    let robot = |rail: &str| format!("extends = \"kuka-kr6-r900\"\n[cell]\nrail = {{ {rail} }}\n");
+    let good = "direction = [0, -3, 0], origin = [100, 0, 600, 90, 0, 0], min = -500, max = 3000, speed = 90000, home = 250";
+    let cell = load_text("mine.toml", &robot(good)).unwrap().cell.unwrap();
+    let rail = cell.rail.unwrap();
+    assert_eq!((rail.min, rail.max, rail.home, rail.speed), (-500.0, 3000.0, 250.0, 90_000.0));
+    // By hand: 2 m along -Y, and what lies 1 m before the foot, which is turned by 90 degrees about Z, lies 1 m along Y.
+    let foot = cell.foot(2000.0);
+    let before = foot.transform_point3([1000.0, 0.0, 0.0].into());
+    assert!(before.distance([100.0, -1000.0, 600.0].into()) < 1e-9, "{before}");
+    // Without a rail the arm's world is that of the controller.
+    let floor = load("kuka-kr6-r900").unwrap().cell.unwrap();
+    assert_eq!(floor.foot(0.0).translation, [0.0; 3].into());
+    for (from, to, what) in [
+        ("[0, -3, 0]", "[0, 0, 0]", "`direction` has no length"),
+        ("min = -500", "min = 3500", "`min` is below `max`"),
+        ("home = 250", "home = 3001", "`home` between them"),
+        ("speed = 90000", "speed = 0", "above 0"),
+        (", home = 250", "", "`rail.home` is missing"),
+        ("origin = [100, 0, 600, 90, 0, 0], ", "", "`rail.origin` is missing"),
+        ("max = 3000", "most = 3000", "unknown field `most`"),
+    ] {
+        let shown = refusal(&robot(&good.replace(from, to)));
+        assert!(shown.contains(what), "{to}: {shown}");
+    }
+}

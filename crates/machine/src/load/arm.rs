@@ -3,11 +3,13 @@
 use super::Outcome;
 use super::file::SheetFile;
 use crate::library;
-use crate::model::{Cell, Load};
+use crate::model::{Cell, Load, Rail};
 use crate::sheet::{
     Angle, ArmSheet, CellSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet, Position,
+    RailSheet,
 };
 use arm::{Arm, Calibration, Coupling, CouplingLimit, Dh, Joint, Spherical, Structure};
+use geom::direction;
 use program::Diagnostic;
 use toml::Spanned;
 
@@ -116,7 +118,33 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
         own_frame: sheet.own_frame.map(|number| number.0),
         load_number: sheet.load_number.map(|number| number.0),
         load,
+        rail: sheet.rail.as_ref().map(|sheet| rail(sheet.get_ref())).transpose()?,
     })
+}
+
+/// # Errors
+/// A key is missing, or its numbers make no rail.
+fn rail(sheet: &RailSheet) -> Said<Rail> {
+    fn of<T>(key: &str, value: Option<T>) -> Said<T> {
+        needed(&format!("rail.{key}"), value)
+    }
+    let wrong = |what: &str| Err(format!("`rail`: {what}"));
+    let Some(direction) = direction(of("direction", sheet.direction)?.0.into()) else {
+        return wrong("`direction` has no length");
+    };
+    let rail = Rail {
+        direction,
+        origin: Cell::frame(of("origin", sheet.origin)?.0),
+        min: of("min", sheet.min)?.0,
+        max: of("max", sheet.max)?.0,
+        speed: of("speed", sheet.speed)?.0,
+        acceleration: sheet.acceleration.map(|rate| rate.0),
+        home: of("home", sheet.home)?.0,
+    };
+    match rail.min < rail.max && rail.holds(rail.home) {
+        true => Ok(rail),
+        false => wrong("`min` is below `max`, and `home` between them"),
+    }
 }
 
 type Said<T> = std::result::Result<T, String>;

@@ -1527,6 +1527,10 @@ rules! {
         "An R parameter is out of range, or set and read in one block."
         "use R0 to R999, and set a parameter before the block that reads it"
         "sinumerik: `R2000=1`";
+    Rail "rail" []
+        "The program does not say where the rail of an arm stands, or moves it while the tool goes straight, or the arm has none."
+        "state the position of the rail in the motion to home, and change it in motions of the joints beyond all cuts alone"
+        "`LIN {X 10,E1 500}` behind a motion that left `E1` at 400 (KRL)";
     RapidFeed "rapid-feed" []
         "How fast rapids are is not known, or faster than the machine file states, or a rapid is written as a cut."
         "write the `rapid` of the machine, in mm/min, below [axes]; a rapid of the toolpath is a rapid (G0) in the program"

@@ -39,6 +39,8 @@ struct Running {
 #[derive(Clone, Copy)]
 struct Standing {
     joints: Joints,
+    /// Of the rail, mm; 0 without one.
+    rail: f64,
     /// The tool in the base of the program.
     tool: Frame,
     /// Whether it is there, or as far off as joints leave an arm that is not measured.
@@ -460,6 +462,7 @@ impl<'a> Comparison<'a> {
     fn motion(&mut self, line: u32, motion: &ArmMove) -> Outcome {
         let from_corner = self.open.take();
         self.leave_out();
+        let rail = self.rail(motion)?;
         match motion.path {
             ArmPath::Joints(shown) => {
                 if from_corner.is_some() || motion.corner != Corner::Exact {
@@ -469,8 +472,8 @@ impl<'a> Comparison<'a> {
                     );
                 }
                 match self.away.is_some() {
-                    true => self.joints_away(shown),
-                    false => self.joints(shown),
+                    true => self.joints_away(shown, rail),
+                    false => self.joints(shown, rail),
                 }
             }
             ArmPath::Point(_) => {
@@ -486,6 +489,38 @@ impl<'a> Comparison<'a> {
     fn line_before(&self) -> u32 {
         let before = self.next.checked_sub(1).and_then(|before| self.expected.get(before));
         before.map_or(0, |before| before.line)
+    }
+
+    /// Where the rail is behind a motion, mm.
+    ///
+    /// # Errors
+    /// The program does not say it, or it is beyond the travel of the rail; there is none.
+    fn rail(&self, motion: &ArmMove) -> Outcome<f64> {
+        let refused = |rule, message: String, help: &str| {
+            Err(Diagnostic::error(rule, message).help(help).into())
+        };
+        match (&self.cell.rail, motion.rail) {
+            (None, None | Some(0.0)) => Ok(0.0),
+            (None, Some(at)) => refused(
+                Rule::Rail,
+                format!("the program moves a rail to {at:.3} mm, and the arm stands on none"),
+                "`rail` below [cell] of the machine file, or the position 0",
+            ),
+            (Some(_), None) => refused(
+                Rule::Rail,
+                String::from("the program moves the arm and has not stated where its rail stands"),
+                "write the position of the rail (E1 in KRL) into the first motion, and behind each tool change",
+            ),
+            (Some(rail), Some(at)) if rail.holds(at) => Ok(at),
+            (Some(rail), Some(at)) => refused(
+                Rule::AxisLimit,
+                format!(
+                    "the rail would be at {at:.3} mm, its travel is {} to {} mm",
+                    rail.min, rail.max
+                ),
+                "a position within `min` and `max` of `rail` below [cell]",
+            ),
+        }
     }
 
     fn arrives(&self, at: &Frame, to: &Pose, by_joints: bool) -> bool {

@@ -10,6 +10,9 @@ use program::{Outcome, Rule};
 /// Fields of a position that say the posture.
 const POSTURE: [&str; 2] = ["S", "T"];
 
+/// The axis beyond the arm that is followed: a rail on which it stands.
+const RAIL: &str = OUTER[0];
+
 impl State {
     /// A motion.
     pub(in crate::krl) fn go(
@@ -49,9 +52,37 @@ impl State {
             }
         };
         self.standing = standing;
+        self.rail = self.rail_behind(scan, motion)?;
         let corner = self.corner(scan, approximation, &path)?;
-        let motion = ArmMove { turning: self.turning_of(&path), path, corner, posture };
+        let turning = self.turning_of(&path);
+        let motion = ArmMove { turning, path, corner, posture, rail: self.rail };
         channel.motion(scan.line, motion)
+    }
+
+    /// Where the rail is at the end of a motion.
+    ///
+    /// # Errors
+    /// No rail is that long; the points of an arc state different positions.
+    fn rail_behind(&self, scan: &Scan, motion: &Motion) -> Outcome<Option<f64>> {
+        let stated = |to: &Value| match to.field(RAIL) {
+            Some(at) if at.is_nan() || at.abs() > FARTHEST => {
+                Err(scan.since(0, Rule::Number, format!("{RAIL} {at} is beyond any rail")))
+            }
+            at => Ok(at),
+        };
+        let to = match motion {
+            Motion::Here => None,
+            Motion::Ptp(to, _) | Motion::Lin(to, _) | Motion::LinRel(to, _) => stated(to)?,
+            Motion::Circ(via, end, _) => {
+                let end = stated(end)?;
+                if stated(via)?.is_some_and(|on_way| Some(on_way) != end) {
+                    let message = format!("the two points of an arc state different {RAIL}");
+                    return Err(scan.since(0, Rule::Unsupported, message));
+                }
+                end
+            }
+        };
+        Ok(to.or(self.rail))
     }
 
     /// How the tool turns on the way.
@@ -156,7 +187,7 @@ fn whole_arc(scan: &Scan, [via, end]: [&Value; 2]) -> Outcome {
 /// The numbers of six fields, or what they were before.
 ///
 /// # Errors
-/// A field is missing and was not known before; an axis beyond the arm moves; a number is no arm's.
+/// A field is missing and was not known before; an axis beyond arm and rail moves; a number is no arm's.
 fn numbers(
     scan: &Scan,
     to: &Value,
@@ -164,8 +195,9 @@ fn numbers(
     before: [Option<f64>; 6],
     help: &str,
 ) -> Outcome<[f64; 6]> {
-    if let Some(name) = OUTER.iter().find(|name| to.field(name).is_some_and(|at| at != 0.0)) {
-        let message = format!("{name} is an axis beyond the arm, which is not followed");
+    if let Some(name) = OUTER[1..].iter().find(|name| to.field(name).is_some_and(|at| at != 0.0)) {
+        let message =
+            format!("{name} is an axis beyond the arm and its rail, which is not followed");
         return Err(scan.since(0, Rule::Unsupported, message));
     }
     let mut all = [0.0; 6];

@@ -32,6 +32,8 @@ pub(in crate::krl) struct State {
     /// The types of declared variables.
     types: HashMap<Name, Name>,
     pub(super) standing: Standing,
+    /// `E1`, mm: it stays where a position leaves it out.
+    pub(super) rail: Option<f64>,
     /// `$APO.CDIS`, mm.
     pub(super) distance: Option<f64>,
     /// `$ORI_TYPE`.
@@ -64,6 +66,7 @@ impl State {
             variables: HashMap::new(),
             types: HashMap::new(),
             standing: Standing::NotStarted,
+            rail: None,
             distance: None,
             turning: None,
             along_path: None,

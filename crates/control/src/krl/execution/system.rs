@@ -54,7 +54,7 @@ impl State {
         channel.report(scan.line, tool)?;
         // What the operator's program leaves behind, this one does not say.
         self.forget(scan.line, channel)?;
-        self.standing = Standing::Unknown;
+        (self.standing, self.rail) = (Standing::Unknown, None);
         Ok(true)
     }
 }

@@ -50,7 +50,7 @@ impl State {
             }
             Termination::Continuous | Termination::Region(_) => Corner::Unbounded,
         };
-        let motion = ArmMove { path, corner, turning, posture };
+        let motion = ArmMove { path, corner, turning, posture, rail: None };
         channel.motion(scan.line, motion)
     }
 

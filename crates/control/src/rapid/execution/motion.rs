@@ -52,7 +52,7 @@ impl State {
             ArmPath::Joints(_) => None,
             ArmPath::Point(end) | ArmPath::Line(end) | ArmPath::Arc { end, .. } => Some(end),
         };
-        let motion = ArmMove { path, corner, turning, posture };
+        let motion = ArmMove { path, corner, turning, posture, rail: None };
         channel.motion(line, motion)
     }
 

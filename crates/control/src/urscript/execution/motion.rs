@@ -112,7 +112,7 @@ fn report(
 ) -> Outcome {
     // No word says a posture.
     let posture = ArmPosture::default();
-    let motion = ArmMove { path, corner, turning: Some(turning), posture };
+    let motion = ArmMove { path, corner, turning: Some(turning), posture, rail: None };
     channel.motion(scan.line, motion)
 }
 

@@ -12,10 +12,11 @@ const SAME_JOINTS: f64 = 1e-4;
 
 impl Comparison<'_> {
     /// A motion of all joints.
-    pub(super) fn joints(&mut self, shown: [f64; 6]) -> Outcome {
-        let Some((before, Standing { joints, tool: at, .. })) = self.turn_joints(shown)? else {
+    pub(super) fn joints(&mut self, shown: [f64; 6], rail: f64) -> Outcome {
+        let Some((before, now)) = self.turn_joints(shown, rail)? else {
             return Ok(());
         };
+        let Standing { joints, tool: at, .. } = now;
         let home = self.is_home;
         let same = before.joints.iter().zip(joints).all(|(a, b)| (a - b).abs() <= SAME_JOINTS);
         if same && before.tool.translation.distance(at.translation) <= self.tip(true) {
@@ -39,7 +40,7 @@ impl Comparison<'_> {
             (_, Some((Some(from), to))) => Some([from.point(), to.point()]),
             (_, _) => None,
         };
-        self.clear(&before.joints, &joints, line.filter(|_| arrives))?;
+        self.clear(&before, &now, line.filter(|_| arrives))?;
         // From above the end of a rapid the tool goes down to it along its axis.
         let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));
         match arrives {
@@ -64,8 +65,13 @@ impl Comparison<'_> {
     ///
     /// # Errors
     /// A joint beyond its limit, too fast, or frames that are not those of the cell; the first motion does not lead home.
-    pub(super) fn turn_joints(&mut self, shown: [f64; 6]) -> Outcome<Option<(Standing, Standing)>> {
-        let home = shown.iter().zip(self.cell.home).all(|(at, home)| (at - home).abs() < 1e-3);
+    pub(super) fn turn_joints(
+        &mut self,
+        shown: [f64; 6],
+        rail: f64,
+    ) -> Outcome<Option<(Standing, Standing)>> {
+        let home = shown.iter().zip(self.cell.home).all(|(at, home)| (at - home).abs() < 1e-3)
+            && (rail - self.cell.rail_home()).abs() < 1e-3;
         let Some(joints) = self.arm.model(&shown.map(f64::to_radians)) else {
             return refused(Rule::ArmCoupling, "how the controller counts joint 3 is not known");
         };
@@ -77,9 +83,9 @@ impl Comparison<'_> {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(None);
         };
-        let at = base.inverse() * self.arm.flange(&joints) * tool;
+        let at = base.inverse() * self.cell.foot(rail) * self.arm.flange(&joints) * tool;
         let exact = self.arm.unmeasured() == 0.0;
-        let now = Standing { joints, tool: at, exact, by_joints: true };
+        let now = Standing { joints, rail, tool: at, exact, by_joints: true };
         let before = self.standing.replace(now);
         self.is_home = home;
         match (before, home) {
@@ -162,20 +168,23 @@ impl Comparison<'_> {
 
     /// # Errors
     /// On the way of the joints the tool is neither beyond all cuts along its axis nor near the line of the source.
-    pub(super) fn clear(&self, from: &Joints, to: &Joints, line: Option<[Vec3; 2]>) -> Outcome {
+    pub(super) fn clear(&self, from: &Standing, to: &Standing, line: Option<[Vec3; 2]>) -> Outcome {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };
-        let turns: f64 = from.iter().zip(to).map(|(a, b)| (b - a).abs()).sum();
-        let count = (turns * self.lever() / STRIDE).ceil().clamp(1.0, 1e6);
+        let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
+        let along = (to.rail - from.rail).abs();
+        let count = ((turns * self.lever() + along) / STRIDE).ceil().clamp(1.0, 1e6);
         let unmeasured = self.arm.unmeasured();
         let clearance = self.machine.capabilities.rapid_clearance + unmeasured;
         let corridor = self.machine.capabilities.rapid_corridor;
         let line = line.filter(|_| unmeasured == 0.0);
         for step in 0..=count as usize {
             let part = step as f64 / count;
-            let joints = std::array::from_fn(|i| from[i] + part * (to[i] - from[i]));
-            let at = self.in_part(&(base.inverse() * self.arm.flange(&joints) * tool));
+            let joints: Joints =
+                std::array::from_fn(|i| from.joints[i] + part * (to.joints[i] - from.joints[i]));
+            let foot = self.cell.foot(from.rail + part * (to.rail - from.rail));
+            let at = self.in_part(&(base.inverse() * foot * self.arm.flange(&joints) * tool));
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
             let beyond = tip.dot(axis) - self.cuts.reach(axis);
             let near =

@@ -237,6 +237,12 @@ impl Comparison<'_> {
                 .into());
         }
         match self.standing {
+            Some(standing) if motion.rail.is_some_and(|at| (at - standing.rail).abs() > 1e-6) => {
+                let message = "the rail moves while the tool goes straight or on an arc";
+                Err(Diagnostic::error(Rule::Rail, message)
+                    .help("move the rail in motions of the joints alone, with the tool beyond all cuts")
+                    .into())
+            }
             Some(standing) => Ok(standing),
             None => refused(Rule::UnknownPosition, "a straight line from where nobody knows"),
         }
@@ -278,6 +284,7 @@ impl Comparison<'_> {
         });
         let end = (path.at)(1.0);
         let path = Path { time: Some(time), ..path };
+        let base = self.cell.foot(start.rail).inverse() * base;
         let followed = follow(self.arm, [&base, &tool], start.joints, &path);
         let Followed { joints, limit, wrist, speed } = match followed {
             Ok(followed) => followed,
@@ -291,7 +298,8 @@ impl Comparison<'_> {
         checked.note_limit(limit);
         checked.note_wrist(wrist);
         checked.speed_percent = checked.speed_percent.max(100.0 * speed);
-        self.standing = Some(Standing { joints, tool: end, exact: true, by_joints: false });
+        let rail = start.rail;
+        self.standing = Some(Standing { joints, rail, tool: end, exact: true, by_joints: false });
         self.is_home = false;
         Ok(())
     }

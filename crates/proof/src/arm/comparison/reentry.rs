@@ -142,10 +142,10 @@ impl Comparison<'_> {
     ///
     /// # Errors
     /// It ends neither home nor above the place, comes near to a cut on the way, or goes beyond a limit.
-    pub(super) fn joints_away(&mut self, shown: [f64; 6]) -> Outcome {
+    pub(super) fn joints_away(&mut self, shown: [f64; 6], rail: f64) -> Outcome {
         let Some(away) = self.away else { return Ok(()) };
-        let Some((before, now)) = self.turn_joints(shown)? else { return Ok(()) };
-        self.clear(&before.joints, &now.joints, None)?;
+        let Some((before, now)) = self.turn_joints(shown, rail)? else { return Ok(()) };
+        self.clear(&before, &now, None)?;
         match self.is_home || self.is_above(&now.tool, &away.place, f64::INFINITY) {
             true => Ok(()),
             false => refused(
