@@ -211,6 +211,7 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
             needed.push((block, vec![word]));
         }
     }
+    rail(machine, templates).into_iter().for_each(|error| errors.push(error));
     for (block, words) in needed {
         if !templates.has(block) {
             let message = format!("the block `{}` is missing: a robot needs it", block.name());
@@ -225,6 +226,29 @@ pub(crate) fn check_arm(machine: &Machine, templates: &Templates) -> Result<(), 
     }
     let errors = errors.finish();
     if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// What is wrong with where the blocks place the position of a rail: in motions of the joints, which move it; and nowhere without a rail.
+fn rail(machine: &Machine, templates: &Templates) -> Option<Diagnostic> {
+    use BlockName as B;
+    let joints = if templates.has(B::Position) { B::PositionJoints } else { B::Joints };
+    let has = machine.cell.as_ref().is_some_and(|cell| cell.rail.is_some());
+    let places = templates.has(joints) && templates.places(joints, WordName::Rail);
+    let (message, help) = match (has, places) {
+        (true, true) | (false, false) => return None,
+        (true, false) => (
+            format!(
+                "the arm stands on a rail (`rail` below [cell]), and the block `{}` lacks `RAIL`",
+                joints.name()
+            ),
+            "`{{RAIL}}` in the blocks of motions, as docs/machines.md shows for each control; URScript has no word for a rail",
+        ),
+        (false, true) => (
+            format!("the block `{}` places `RAIL`, and the arm stands on no rail", joints.name()),
+            "`rail` below [cell]",
+        ),
+    };
+    Some(Diagnostic::error(Rule::MissingWord, message).help(help).file(machine.file.clone()))
 }
 
 /// The words that a block needs for a pose: with those of the form of the orientation of which it places any.

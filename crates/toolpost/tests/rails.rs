@@ -4,15 +4,34 @@ mod dice;
 mod files;
 mod robot;
 
+use control::{Action, ArmAction, Dialect, Event};
 use machine::Machine;
 use program::Program;
-use robot::{LINE, proof_of, proven, source};
+use robot::{JOB, LINE, proof_of, proven, source};
 
 /// The KR 6 on a rail of 2 m along Y, on which the part of the library's cell lies 1 m from where the rail stands at home.
 fn on_rail() -> Machine {
     let rail = "part = [450, 1000, 150, 0, 0, 0]\nrail = { direction = [0, 2, 0], origin = [0, 0, 0, 0, 0, 0], min = 0, max = 2000, \
                 speed = 60000, home = 0 }";
     robot::changed("kuka-kr6-r900", &[("part = [450, 0, 150, 0, 0, 0]", rail)])
+}
+
+/// The blocks of KRL with the rail.
+const KRL: &str = "[blocks]\njoints = \"PTP { {{J1}},{{J2}},{{J3}},{{J4}},{{J5}},{{J6}},{{RAIL}}}\"\n\
+    linear = \"LIN { {{X}},{{Y}},{{Z}},{{A}},{{B}},{{C}},{{RAIL}}}{{corner}}\"\n\
+    arc_through = \"CIRC { {{MX}},{{MY}},{{MZ}},{{MA}},{{MB}},{{MC}}},{ {{X}},{{Y}},{{Z}},{{A}},{{B}},{{C}},{{RAIL}}}{{corner}}\"\n\n[spindle]";
+
+/// The same with a control that writes the rail, and with the spindle straight down at home: where a tool leans it would have to be far
+/// above all of a long part.
+fn writing_rail() -> Machine {
+    let rail = "part = [450, 1000, 150, 0, 0, 0]\nrail = { direction = [0, 2, 0], origin = [0, 0, 0, 0, 0, 0], min = 0, max = 2000, \
+                speed = 60000, home = 0 }";
+    let changes = [
+        ("part = [450, 0, 150, 0, 0, 0]", rail),
+        ("home = [0, -90, 90, 0, 45, 0]", "home = [0, -90, 90, 0, 90, 0]"),
+        ("[spindle]", KRL),
+    ];
+    robot::changed("kuka-kr6-r900", &changes)
 }
 
 /// The program of the arm that stands before the part on the floor, by hand on the rail: at E1 1000 it stands before the part as well, so
@@ -79,4 +98,71 @@ fn a_rail_that_stands_elsewhere_is_refused() {
     // An arm that stands on no rail.
     let report = proof_of(&source, &machine::load("kuka-kr6-r900").unwrap(), &text);
     assert!(!report.proven);
+}
+
+/// Where the rail is at the end of each motion, mm.
+fn rails(text: &str) -> Vec<f64> {
+    let of = |event: Event| match event.action {
+        Action::Arm(ArmAction::Move(motion)) => motion.rail,
+        _ => None,
+    };
+    robot::events(Dialect::Krl, text).into_iter().filter_map(of).collect()
+}
+
+#[test]
+fn the_writer_takes_the_rail_to_where_the_arm_reaches_the_part() {
+    let text = proven(&source(JOB), &writing_rail());
+    let rails = rails(&text);
+    // Home, at one place for the whole cut, home.
+    let place = rails[1];
+    assert!((300.0..=1700.0).contains(&place), "{text}");
+    assert_eq!((rails[0], rails[rails.len() - 1]), (0.0, 0.0));
+    assert!(rails[1..rails.len() - 1].iter().all(|at| *at == place), "{text}");
+    // From home the part is 1 m out of reach.
+    let fixed = [("part = [450, 0, 150, 0, 0, 0]", "part = [450, 1000, 150, 0, 0, 0]")];
+    let found = post::write(&source(JOB), &robot::changed("kuka-kr6-r900", &fixed)).unwrap_err();
+    assert_eq!(found[0].rule.name(), "arm-path", "{found:?}");
+}
+
+/// Two cuts of 100 mm, 2.4 m apart along Y, with a rapid between them.
+const FAR_APART: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,-1200,50\nFEDRAT/MMPM,1200\n\
+GOTO/0,-1200,-2\nGOTO/100,-1200,-2\nRAPID\nGOTO/100,-1200,50\nRAPID\nGOTO/0,1200,50\nFEDRAT/MMPM,1200\nGOTO/0,1200,-2\nGOTO/100,1200,-2\n\
+RAPID\nGOTO/100,1200,50\nFINI\n";
+
+#[test]
+fn the_rail_moves_between_cuts_and_in_none() {
+    let (source, machine) = (source(FAR_APART), writing_rail());
+    let text = proven(&source, &machine);
+    let mut places = rails(&text);
+    places.dedup();
+    let [home, first, second, end] = places[..] else { panic!("{text}") };
+    assert_eq!((home, end), (0.0, 0.0));
+    // The arm reaches 0.9 m, the cuts lie at -200 and 2200 mm along the rail.
+    assert!(first < 700.0 && second > 1300.0, "{text}");
+    let lines: Vec<&str> = text.lines().collect();
+    let moved = lines.windows(2).filter(|pair| {
+        let at = |line: &str| Some(String::from(line.split_once("E1 ")?.1.split_once('}')?.0));
+        pair[1].starts_with("LIN") && at(pair[0]).is_some() && at(pair[0]) != at(pair[1])
+    });
+    assert_eq!(moved.count(), 0, "{text}");
+}
+
+#[test]
+fn a_control_that_has_no_word_for_the_rail_is_refused_and_says_so() {
+    let rail = "rapid = 6000\nrail = { direction = [1, 0, 0], origin = [0, 0, 0, 0, 0, 0], min = 0, max = 2000, speed = 60000, home = 0 }";
+    for name in ["universal-ur5e", "kuka-kr6-r900"] {
+        let text =
+            std::fs::read_to_string(files::root().join(format!("machines/robots/{name}.toml")));
+        let line =
+            text.unwrap().lines().find(|line| line.starts_with("rapid = ")).map(String::from);
+        let line = line.unwrap();
+        let machine = robot::changed(name, &[(&line, rail)]);
+        let found = post::write(&source(LINE), &machine).unwrap_err();
+        assert!(found[0].message.contains("the block `joints` lacks `RAIL`"), "{found:?}");
+        assert!(found[0].help.contains("URScript has no word for a rail"), "{found:?}");
+    }
+    // And the other way round.
+    let machine = robot::changed("kuka-kr6-r900", &[("[spindle]", KRL)]);
+    let found = post::write(&source(LINE), &machine).unwrap_err();
+    assert!(found[0].message.contains("the arm stands on no rail"), "{found:?}");
 }

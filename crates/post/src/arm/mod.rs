@@ -5,6 +5,7 @@
 
 mod parts;
 mod plan;
+mod rail;
 mod rapid;
 pub(crate) mod reach;
 
@@ -237,7 +238,7 @@ impl<'a> Walk<'a> {
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             tool: None,
-            here: Position { tool: Frame::IDENTITY, joints: home },
+            here: Position { tool: Frame::IDENTITY, joints: home, rail: cell.rail_home() },
             is_exact: false,
             feed_unit: 0,
             vector: Vec3::ZERO,
@@ -374,7 +375,7 @@ impl<'a> Walk<'a> {
         };
         self.tool = Some(frame);
         self.state_frames(&frame)?;
-        self.joints(&self.home_joints())
+        self.joints(&self.home_position(&frame))
     }
 
     /// States the frames, the load and the speeds of all that follows.
@@ -451,11 +452,8 @@ impl<'a> Walk<'a> {
 
     /// The joints go home, where the path is clear.
     fn home(&mut self) -> Outcome {
-        let (Some(tool), home) = (self.tool, self.home_joints()) else { return Ok(()) };
-        if self.here.joints == home {
-            return Ok(());
-        }
-        let end = self.at_joints(&tool, &home);
+        let Some(tool) = self.tool.filter(|_| !self.is_home()) else { return Ok(()) };
+        let end = self.home_position(&tool);
         let route = self.rapids.route(&tool, &self.here, &end, true);
         // Home is where joints lead: not down to it from above.
         let by_joints = |route: &Vec<RapidSegment>| {
@@ -471,10 +469,18 @@ impl<'a> Walk<'a> {
         self.follow(&route)
     }
 
-    /// The position of these joints.
-    fn at_joints(&self, tool: &Frame, joints: &Joints) -> Position {
-        let at = self.cell.part.inverse() * self.arm.flange(joints) * *tool;
-        Position { tool: at, joints: *joints }
+    fn home_position(&self, tool: &Frame) -> Position {
+        self.at_joints(tool, (&self.home_joints(), self.cell.rail_home()))
+    }
+
+    fn is_home(&self) -> bool {
+        self.here.joints == self.home_joints() && self.here.rail == self.cell.rail_home()
+    }
+
+    /// The position of these joints, and of the rail.
+    fn at_joints(&self, tool: &Frame, (joints, rail): (&Joints, f64)) -> Position {
+        let at = self.cell.part_from(rail).inverse() * self.arm.flange(joints) * *tool;
+        Position { tool: at, joints: *joints, rail }
     }
 
     /// A straight line to where joints have led an arm that is measured one by one, and whose measures are not known here: its controller
@@ -492,7 +498,7 @@ impl<'a> Walk<'a> {
     fn follow(&mut self, route: &[RapidSegment]) -> Outcome {
         for segment in route {
             match segment.path {
-                RapidPath::Joints => self.joints(&segment.end.joints)?,
+                RapidPath::Joints => self.joints(&segment.end)?,
                 RapidPath::Straight(feed) => {
                     self.correct()?;
                     self.feed(feed)?;
@@ -503,14 +509,16 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn joints(&mut self, joints: &Joints) -> Outcome {
-        let Some(shown) = self.arm.shown(joints) else {
+    fn joints(&mut self, to: &Position) -> Outcome {
+        let Some(shown) = self.arm.shown(&to.joints) else {
             let message = "how the controller counts joint 3 is not stated";
             return Err(Diagnostic::error(Rule::ArmCoupling, message).into());
         };
         self.set_each(JOINTS, shown.map(f64::to_degrees));
+        self.writer.set(WordName::Rail, to.rail);
         let point = self.position(BlockName::PositionJoints)?;
         self.set_each(JOINTS, shown.map(f64::to_degrees));
+        self.writer.set(WordName::Rail, to.rail);
         self.writer.set(WordName::Point, point);
         self.say_joint_speed();
         // The speed of the tip, for controls that bound moves of joints by it.
@@ -518,7 +526,7 @@ impl<'a> Walk<'a> {
         self.required(BlockName::Joints)?;
         self.is_exact = self.arm.unmeasured() == 0.0;
         let tool = self.tool.unwrap_or(Frame::IDENTITY);
-        self.here = self.at_joints(&tool, joints);
+        self.here = self.at_joints(&tool, (&to.joints, to.rail));
         Ok(())
     }
 
@@ -535,11 +543,12 @@ impl<'a> Walk<'a> {
         let apart = self.here.tool.translation.distance(motion.end.tool.translation);
         let turns = self.here.joints.iter().zip(motion.end.joints).map(|(a, b)| (a - b).abs());
         // What is less than a step of the words is no motion.
-        if apart < self.machine.resolution() && turns.fold(0.0, f64::max) < SAME_JOINTS {
+        let is_same = turns.fold(0.0, f64::max) < SAME_JOINTS && self.here.rail == motion.end.rail;
+        if apart < self.machine.resolution() && is_same {
             return Ok(());
         }
         // From home no line of the source leads.
-        let free = self.here.joints == self.home_joints();
+        let free = self.is_home();
         let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, free) else {
             let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut, and straight the \
                            posture or a turn of a joint would not fit";
@@ -554,7 +563,7 @@ impl<'a> Walk<'a> {
     fn reenter(&mut self, reentry: &Reentry) -> Outcome {
         let Some(tool) = self.tool else { return Ok(()) };
         let Reentry { line, back, feed, why } = *reentry;
-        let home = self.at_joints(&tool, &self.home_joints());
+        let home = self.home_position(&tool);
         let route = self.rapids.reentry(&tool, [&self.here, &back, &home], feed);
         let blocked = armpath::Blocked { point: 0, why };
         let Some((route, height)) = route else {
@@ -643,6 +652,7 @@ impl<'a> Walk<'a> {
     /// The words that lines and arcs have in common: their end, how it is passed, and the feed.
     fn along(&mut self, end: &Position, (corner, point): (f64, f64)) {
         self.set(&POSE, &end.tool);
+        self.writer.set(WordName::Rail, end.rail);
         self.writer.set(WordName::Point, point);
         self.set_configuration(&end.joints);
         let code = if corner > 0.0 { corner::BLEND } else { corner::EXACT };
@@ -681,6 +691,7 @@ impl<'a> Walk<'a> {
             return Ok(0.0);
         }
         self.set(&POSE, &at.tool);
+        self.writer.set(WordName::Rail, at.rail);
         let posture = self.arm.posture(&at.joints);
         self.writer.code(WordName::Wrist, usize::from(posture.flip()));
         self.writer.code(WordName::Elbow, usize::from(posture.below()));
@@ -709,7 +720,7 @@ impl<'a> Walk<'a> {
     /// It does not reach there.
     fn at_frame(&self, tool: &Frame) -> Outcome<Position> {
         let off = self.tool.unwrap_or(Frame::IDENTITY).inverse();
-        let flange = self.cell.part * *tool * off;
+        let flange = self.cell.part_from(self.here.rail) * *tool * off;
         let before = self.here.joints;
         let found = self.arm.inverse(&flange, before[3]);
         let Some(joints) = found.get(self.arm.posture(&before)) else {
@@ -717,7 +728,7 @@ impl<'a> Walk<'a> {
             return Err(Diagnostic::error(Rule::ArmPath, message).into());
         };
         let joints = std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
-        Ok(Position { tool: *tool, joints })
+        Ok(Position { tool: *tool, joints, ..self.here })
     }
 
     /// Quarters of joints 1, 4 and 6 and the posture. Where a joint is at the edge of a quarter, the control does not use it.

@@ -5,7 +5,6 @@
 
 use super::{BlockName, Step, Walk, WordName, named};
 use crate::Part;
-use ::arm::Joints;
 use machine::Machine;
 use program::{Diagnostic, Outcome, Rule};
 
@@ -68,8 +67,8 @@ impl Walk<'_> {
 
     /// Whether a file may end here: nothing is cut, and the tool is beyond all cuts.
     pub(super) fn is_border(&self) -> bool {
-        let joints: [&Joints; 2] = [&self.here.joints; 2];
-        !self.is_cutting && self.tool.is_some_and(|tool| self.rapids.is_clear(&tool, joints, None))
+        let here = [&self.here; 2];
+        !self.is_cutting && self.tool.is_some_and(|tool| self.rapids.is_clear(&tool, here, None))
     }
 
     /// Writes the program in files, of which `whole` is the size of all, and then the one that calls them.
@@ -103,7 +102,7 @@ impl Walk<'_> {
                     self.start(start)?;
                     if let Some(tool) = self.tool {
                         self.state_frames(&tool)?;
-                        self.joints(&self.here.joints.clone())?;
+                        self.joints(&self.here.clone())?;
                     }
                 }
             }

@@ -1,5 +1,6 @@
 //! From records to the motions of an arm: where they end, and with which joints.
 
+use super::rail::{Group, Stand, groups};
 use ::arm::{Arm, Joints};
 use armpath::{Blocked, Cell as Frames, Choice, Point, Settings, Why, Worst, choose};
 use geom::{Arc, Frame, Mat3, Vec3};
@@ -22,6 +23,9 @@ const ALONG_ARC: f64 = 0.1;
 /// controllers refuse three points so near to a line or to each other (RAPID: 1° between the other two points, 0.1 mm).
 const LEAST_SWEEP: f64 = 0.08;
 const LEAST_CHORD: f64 = 0.12;
+
+/// So many places of the rail are tried for points that are cut from one.
+const TRIES: usize = 4;
 
 /// What an arm does, in order.
 pub(super) enum Step<'a> {
@@ -102,6 +106,8 @@ pub(super) struct Position {
     /// The tool in the frame of the part.
     pub(super) tool: Frame,
     pub(super) joints: Joints,
+    /// Of the rail, mm; 0 without one.
+    pub(super) rail: f64,
 }
 
 /// What the source says up to a tool change, and what of it are points of a path.
@@ -185,12 +191,12 @@ impl<'a> Stretch<'a> {
         self.points.len() - 1
     }
 
-    /// The steps, with the joints that are chosen for them; the least margins on the way.
+    /// The steps, with the joints that are chosen for them; the least margins on the way, of each place of the rail.
     pub(super) fn chosen(
         self,
         (arm, cell): (&Arm, &Cell),
         steps: &mut Vec<Step<'a>>,
-    ) -> Outcome<Option<Worst>> {
+    ) -> Outcome<Vec<Worst>> {
         let chosen = match self.points.is_empty() {
             true => Chosen::default(),
             false => self.positions(arm, cell)?,
@@ -217,28 +223,51 @@ impl<'a> Stretch<'a> {
                 Diagnostic::error(Rule::ToolLength, message).help(help).line(self.lines[0]),
             ));
         };
-        let frames = Frames { tool, part: cell.part };
+        let mut chosen = Chosen::default();
+        for group in groups(&Stand { arm, cell, tool }, &self.points) {
+            self.place((arm, cell, tool), &group, &mut chosen)?;
+        }
+        Ok(chosen)
+    }
+
+    /// The positions of points that are cut from one place of the rail.
+    fn place(
+        &self,
+        (arm, cell, tool): (&Arm, &Cell, Frame),
+        group: &Group,
+        chosen: &mut Chosen,
+    ) -> Outcome {
+        let points = &self.points[group.points.clone()];
+        let lines = &self.lines[group.points.clone()];
         // Where axis 1 turns by a revolution the arm reaches everything over its back as well: it does not leave the posture of home.
         let is_round = arm.joints()[0].max - arm.joints()[0].min > TAU;
         let home = arm.model(&cell.home.map(f64::to_radians)).filter(|_| is_round);
         let settings = Settings { start: home, ..Settings::default() };
-        let choice: Choice = choose(arm, &frames, &self.points, &settings).map_err(|blocked| {
+        let at = |rail: f64| {
+            let frames = Frames { tool, part: cell.part_from(rail) };
+            choose(arm, &frames, points, &settings).map(|choice| (rail, choice))
+        };
+        // The places have been looked at with some of the points.
+        let mut tries = group.places.iter().take(TRIES).map(|rail| at(*rail));
+        let first = tries.next().unwrap_or_else(|| at(0.0));
+        let found = first.or_else(|blocked| tries.find_map(Result::ok).ok_or(blocked));
+        let (rail, choice): (f64, Choice) = found.map_err(|blocked| {
             let message = format!("the arm cannot go here: {blocked}");
             let help = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
-            let line = self.lines[blocked.point.min(self.lines.len() - 1)];
+            let line = lines[blocked.point.min(lines.len() - 1)];
             Diagnostic::error(Rule::ArmPath, message).help(help).line(line)
         })?;
-        let mut chosen = Chosen { worst: Some(choice.worst), ..Chosen::default() };
+        chosen.worst.push(choice.worst);
         for section in &choice.sections {
-            let positions = self.points[section.first..].iter().zip(&section.positions);
+            let positions = points[section.first..].iter().zip(&section.positions);
             let mut positions = positions.map(|(point, position)| {
                 let z = -point.axis;
                 let axes = Mat3::from_cols(position.side, z.cross(position.side), z);
                 let tool = Frame::from_mat3_translation(axes, point.tip);
-                Position { tool, joints: position.joints }
+                Position { tool, joints: position.joints, rail }
             });
             if let Some(why) = section.reentry {
-                let line = self.lines[section.first];
+                let line = lines[section.first];
                 let Some(feed) = cell.reentry_feed else {
                     let blocked = Blocked { point: section.first, why };
                     let message = format!(
@@ -251,12 +280,13 @@ impl<'a> Stretch<'a> {
                     ));
                 };
                 if let Some(back) = positions.next() {
-                    chosen.reentries.insert(section.first, Reentry { line, back, feed, why });
+                    let point = group.points.start + section.first;
+                    chosen.reentries.insert(point, Reentry { line, back, feed, why });
                 }
             }
             chosen.positions.extend(positions);
         }
-        Ok(chosen)
+        Ok(())
     }
 }
 
@@ -267,7 +297,8 @@ struct Chosen {
     positions: Vec<Position>,
     /// By the number of the point at which the cut is left.
     reentries: BTreeMap<usize, Reentry>,
-    worst: Option<Worst>,
+    /// The least margins from each place of the rail.
+    worst: Vec<Worst>,
 }
 
 struct Walk<'a, 'm> {

@@ -59,7 +59,7 @@ impl RapidPlanner<'_> {
         free: bool,
     ) -> Option<Vec<RapidSegment>> {
         let line = [from.tool.translation, to.tool.translation];
-        if self.is_clear(tool, [&from.joints, &to.joints], (!free).then_some(line)) {
+        if self.is_clear(tool, [from, to], (!free).then_some(line)) {
             return Some(vec![RapidSegment { path: RapidPath::Joints, end: *to }]);
         }
         if !free && let Some(feed) = self.straight(tool, from, to) {
@@ -68,7 +68,7 @@ impl RapidPlanner<'_> {
         RETRACTS.into_iter().find_map(|height| {
             let (start, up) = self.retracted(tool, from, height)?;
             let (end, down) = self.retracted(tool, to, height)?;
-            if !self.is_clear(tool, [&start.joints, &end.joints], None) {
+            if !self.is_clear(tool, [&start, &end], None) {
                 return None;
             }
             let up = up.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: start });
@@ -95,9 +95,7 @@ impl RapidPlanner<'_> {
         RETRACTS.into_iter().find_map(|height| {
             let (start, up) = self.retracted(tool, &out, height)?;
             let (end, down) = self.retracted(tool, &over, height)?;
-            let is_clear = |from: &Position, to: &Position| {
-                self.is_clear(tool, [&from.joints, &to.joints], None)
-            };
+            let is_clear = |from: &Position, to: &Position| self.is_clear(tool, [from, to], None);
             // Where the joints go from one posture into the other in one motion the tool may tilt too far.
             let through = match is_clear(&start, &end) {
                 true => None,
@@ -138,11 +136,11 @@ impl RapidPlanner<'_> {
     fn raised(&self, tool: &Frame, at: &Position, height: f64) -> Option<(Position, f64)> {
         let tip = at.tool.translation - at.tool.matrix3.z_axis * height;
         let raised = Frame::from_mat3_translation(at.tool.matrix3, tip);
-        let flange = self.cell.part * raised * tool.inverse();
+        let flange = self.cell.part_from(at.rail) * raised * tool.inverse();
         let found = self.arm.inverse(&flange, at.joints[3]);
         let joints = found.get(self.arm.posture(&at.joints))?;
         let joints = std::array::from_fn(|i| at.joints[i] + wrap(joints[i] - at.joints[i]));
-        let raised = Position { tool: raised, joints };
+        let raised = Position { tool: raised, joints, ..*at };
         self.straight(tool, at, &raised).map(|feed| (raised, feed))
     }
 
@@ -150,16 +148,18 @@ impl RapidPlanner<'_> {
     pub(super) fn is_clear(
         &self,
         tool: &Frame,
-        [from, to]: [&Joints; 2],
+        [from, to]: [&Position; 2],
         line: Option<[Vec3; 2]>,
     ) -> bool {
-        let turns: f64 = from.iter().zip(to).map(|(a, b)| (b - a).abs()).sum();
+        let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
-        let count = (turns * lever / STRIDE).ceil().clamp(1.0, 1e6);
-        let world = self.cell.part.inverse();
+        let along = (to.rail - from.rail).abs();
+        let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
         (0..=count as usize).all(|step| {
             let part = step as f64 / count;
-            let joints = std::array::from_fn(|i| from[i] + part * (to[i] - from[i]));
+            let joints =
+                std::array::from_fn(|i| from.joints[i] + part * (to.joints[i] - from.joints[i]));
+            let world = self.cell.part_from(from.rail + part * (to.rail - from.rail)).inverse();
             let at = world * self.arm.flange(&joints) * *tool;
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
             let near = line.filter(|_| self.arm.unmeasured() == 0.0).is_some_and(|[from, to]| {
@@ -172,9 +172,10 @@ impl RapidPlanner<'_> {
     /// The feed at which the arm goes straight, mm/min, in one posture and to these very joints.
     fn straight(&self, tool: &Frame, from: &Position, to: &Position) -> Option<f64> {
         let posture = self.arm.posture(&from.joints);
-        if self.arm.posture(&to.joints) != posture {
+        if self.arm.posture(&to.joints) != posture || from.rail != to.rail {
             return None;
         }
+        let world = self.cell.part_from(from.rail);
         let length = from.tool.translation.distance(to.tool.translation);
         let [a, b] = [&from.tool.matrix3, &to.tool.matrix3].map(Quat::from_mat3);
         let turn = a.angle_between(b);
@@ -185,7 +186,7 @@ impl RapidPlanner<'_> {
             let part = step as f64 / count;
             let turned = Mat3::from_quat(a.slerp(b, part));
             let tip = from.tool.translation.lerp(to.tool.translation, part);
-            let flange = self.cell.part * Frame::from_mat3_translation(turned, tip) * off;
+            let flange = world * Frame::from_mat3_translation(turned, tip) * off;
             let next = self.next(&flange, posture, &joints)?;
             for (i, joint) in self.arm.joints().iter().enumerate() {
                 slowest = slowest.max((next[i] - joints[i]).abs() / (SPEED * joint.speed));

@@ -1,6 +1,7 @@
 //! What an arm makes of a toolpath before anything is written: its joints along the way, its margins, and how it would be elsewhere.
 
 use super::plan::{Act, Kind, Motion, Position, Reentry, Step, stretches};
+use super::rail::{Stand, groups};
 use crate::arcs::arc_through;
 use crate::center;
 use ::arm::{Arm, Joints};
@@ -102,14 +103,8 @@ pub fn arm_samples(
     let (arm, cell) = robot(machine)?;
     let program = followed(program, machine)?;
     let (steps, margins) = chosen(&program, machine)?;
-    let mut along = Along {
-        arm,
-        part: cell.part,
-        tool: cell.tool(None),
-        here: None,
-        time: 0.0,
-        samples: Vec::new(),
-    };
+    let mut along =
+        Along { arm, cell, tool: cell.tool(None), here: None, time: 0.0, samples: Vec::new() };
     for step in &steps {
         match step {
             Step::Act(Act::Tool(tool), _) => {
@@ -134,7 +129,7 @@ fn chosen<'a>(
     let mut margins: Option<ArmMargins> = None;
     let found = stretches(program, machine, robot.1).and_then(|stretches| {
         for stretch in stretches {
-            if let Some(worst) = stretch.chosen(robot, &mut steps)? {
+            for worst in stretch.chosen(robot, &mut steps)? {
                 margins = Some(margins.map_or(ArmMargins::of(&worst), |known| known.least(&worst)));
             }
         }
@@ -148,7 +143,7 @@ fn chosen<'a>(
 /// An arm on its way.
 struct Along<'a> {
     arm: &'a Arm,
-    part: Frame,
+    cell: &'a Cell,
     tool: Option<Frame>,
     here: Option<Position>,
     time: f64,
@@ -169,12 +164,13 @@ impl Along<'_> {
             let parts = (length / SPACING).max(a.angle_between(b) / LEAN).ceil().clamp(1.0, MOST);
             let tip = path(motion.kind, from.tool.translation, motion.end.tool.translation);
             let posture = self.arm.posture(&motion.end.joints);
+            let part_frame = self.cell.part_from(motion.end.rail);
             let mut before = from.joints;
             for k in 1..parts as usize {
                 let part = k as f64 / parts;
                 let turned = Mat3::from_quat(a.slerp(b, part));
                 let at = Frame::from_mat3_translation(turned, tip(part));
-                let found = self.arm.inverse(&(self.part * at * tool.inverse()), before[3]);
+                let found = self.arm.inverse(&(part_frame * at * tool.inverse()), before[3]);
                 let Some(joints) = found.get(posture) else { continue };
                 let joints: Joints =
                     std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
@@ -277,10 +273,23 @@ impl<'m> ArmLooks<'m> {
     /// How easily the arm stands at all of them with the part there, as [`ArmMargins::ease`] without speeds, with one turn about the tool and one
     /// posture for each tool; `None` where it does not.
     pub fn ease(&self, part: Frame) -> Option<f64> {
+        if self.cell.rail.is_some() {
+            return self.ease_on_rail(part);
+        }
         self.tools.iter().try_fold(f64::INFINITY, |least, tool| {
             let frames = Frames { tool: self.cell.tool(tool.length)?, part };
             let points: Vec<Point> = tool.looks.iter().map(|at| tool.points[*at]).collect();
             Some(least.min(stand(self.arm, &frames, &points, TURNS)?))
+        })
+    }
+
+    /// The same of an arm on a rail, which goes to several places for a tool.
+    fn ease_on_rail(&self, part: Frame) -> Option<f64> {
+        let cell = Cell { part, ..self.cell.clone() };
+        self.tools.iter().try_fold(f64::INFINITY, |least, tool| {
+            let stand = Stand { arm: self.arm, cell: &cell, tool: cell.tool(tool.length)? };
+            let groups = groups(&stand, &tool.points);
+            groups.into_iter().try_fold(least, |least, group| Some(least.min(group.ease?)))
         })
     }
 }
