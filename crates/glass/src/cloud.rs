@@ -48,44 +48,84 @@ pub struct Grid {
     side: i64,
     /// The corner of the first cube.
     low: Point,
-    /// Cubes along X and Y.
-    counts: [i64; 2],
-    /// The rows that hold points, in order, and where their points begin in `order`.
-    rows: Vec<(i64, u32)>,
+    /// Cubes along each axis.
+    counts: [i64; 3],
     /// Numbers of points, row by row and from low to high X.
     order: Vec<u32>,
-    /// The number along X of the cube of each of them.
-    along: Vec<u32>,
+    /// Where the points of each cube are among them.
+    cubes: Cubes,
 }
+
+/// Where the points of each cube begin.
+#[derive(Debug)]
+enum Cubes {
+    /// Of every cube, and of one more.
+    All(Vec<u32>),
+    /// Of the rows that hold points, in order; and of each point the number of its cube along X.
+    Rows(Vec<(i64, u32)>, Vec<u32>),
+}
+
+/// Cubes for each point up to which all of them are listed.
+const LISTED: i64 = 4;
 
 impl Grid {
     /// Cubes of `side` (µm, 1 at least) over `points`, of which there are fewer than 2³².
     pub fn new(points: &[Point], side: i64) -> Grid {
         let (low, high) = bounds(points).unwrap_or_default();
         let side = side.max(1);
-        let count = |axis: usize| (i64::from(high[axis]) - i64::from(low[axis])) / side + 1;
-        let mut grid = Grid {
-            side,
-            low,
-            counts: [count(0), count(1)],
-            rows: Vec::new(),
-            order: Vec::new(),
-            along: Vec::new(),
-        };
+        let counts =
+            [0, 1, 2].map(|axis: usize| (i64::from(high[axis]) - i64::from(low[axis])) / side + 1);
+        let none = Cubes::Rows(Vec::new(), Vec::new());
+        let grid = Grid { side, low, counts, order: Vec::new(), cubes: none };
+        let [x, y, z] = counts;
+        let all = x.saturating_mul(y).saturating_mul(z);
+        match all <= LISTED * points.len() as i64 {
+            true => grid.with_all(points, all as usize),
+            false => grid.with_rows(points),
+        }
+    }
+
+    /// Lists all cubes: points are counted and then put where those of their cube begin.
+    fn with_all(self, points: &[Point], all: usize) -> Grid {
+        let of: Vec<u32> = points
+            .par_iter()
+            .map(|&point| {
+                let [x, y, z] = self.cell(point);
+                ((z * self.counts[1] + y) * self.counts[0] + x) as u32
+            })
+            .collect();
+        // One place later than where each cube begins, so that it is there once its points are put.
+        let mut starts = vec![0u32; all + 2];
+        of.iter().for_each(|&cube| starts[cube as usize + 2] += 1);
+        for i in 2..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut order = vec![0; points.len()];
+        for (i, &cube) in of.iter().enumerate() {
+            let at = &mut starts[cube as usize + 1];
+            order[*at as usize] = i as u32;
+            *at += 1;
+        }
+        Grid { order, cubes: Cubes::All(starts), ..self }
+    }
+
+    /// Lists the rows that hold points.
+    fn with_rows(self, points: &[Point]) -> Grid {
         let number = |(i, &point): (usize, &Point)| {
-            let [x, y, z] = grid.cell(point);
-            (z * grid.counts[1] + y, x as u32, i as u32)
+            let [x, y, z] = self.cell(point);
+            (z * self.counts[1] + y, x as u32, i as u32)
         };
         let mut keyed: Vec<(i64, u32, u32)> = points.par_iter().enumerate().map(number).collect();
         keyed.par_sort_unstable();
+        let mut rows: Vec<(i64, u32)> = Vec::new();
         for (at, &(row, _, _)) in keyed.iter().enumerate() {
-            if grid.rows.last().is_none_or(|(last, _)| *last != row) {
-                grid.rows.push((row, at as u32));
+            if rows.last().is_none_or(|(last, _)| *last != row) {
+                rows.push((row, at as u32));
             }
         }
-        grid.order = keyed.iter().map(|(_, _, i)| *i).collect();
-        grid.along = keyed.into_iter().map(|(_, x, _)| x).collect();
-        grid
+        let order = keyed.iter().map(|(_, _, i)| *i).collect();
+        let along = keyed.into_iter().map(|(_, x, _)| x).collect();
+        Grid { order, cubes: Cubes::Rows(rows, along), ..self }
     }
 
     fn cell(&self, point: Point) -> [i64; 3] {
@@ -96,16 +136,25 @@ impl Grid {
     /// The points in the cubes whose numbers along X go from `x` to `x + 2` in one row: these are neighbours in the order.
     fn row(&self, x: i64, y: i64, z: i64) -> &[u32] {
         let (from, to) = (x.max(0), (x + 2).min(self.counts[0] - 1));
-        if from > to || !(0..self.counts[1]).contains(&y) || z < 0 {
+        let inside = (0..self.counts[1]).contains(&y) && (0..self.counts[2]).contains(&z);
+        if from > to || !inside {
             return &[];
         }
         let row = z * self.counts[1] + y;
-        let Ok(number) = self.rows.binary_search_by_key(&row, |(row, _)| *row) else {
+        let (rows, along) = match &self.cubes {
+            Cubes::All(starts) => {
+                let first = row * self.counts[0];
+                let start = |x: i64| starts[(first + x) as usize] as usize;
+                return &self.order[start(from)..start(to + 1)];
+            }
+            Cubes::Rows(rows, along) => (rows, along),
+        };
+        let Ok(number) = rows.binary_search_by_key(&row, |(row, _)| *row) else {
             return &[];
         };
-        let start = self.rows[number].1 as usize;
-        let end = self.rows.get(number + 1).map_or(self.order.len(), |(_, end)| *end as usize);
-        let along = &self.along[start..end];
+        let start = rows[number].1 as usize;
+        let end = rows.get(number + 1).map_or(self.order.len(), |(_, end)| *end as usize);
+        let along = &along[start..end];
         let first = along.partition_point(|cube| i64::from(*cube) < from);
         let beyond = along[first..].partition_point(|cube| i64::from(*cube) <= to);
         &self.order[start + first..start + first + beyond]

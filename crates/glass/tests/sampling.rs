@@ -4,7 +4,7 @@ mod bodies;
 
 use bodies::{sphere, torus};
 use glam::DVec3;
-use toolpost_glass::cloud::{distances, squared};
+use toolpost_glass::cloud::{Grid, distances, squared};
 use toolpost_glass::mesh::Mesh;
 use toolpost_glass::sample::{Apart, LARGEST_GAP, surface};
 
@@ -132,4 +132,27 @@ fn heights_that_lose_four_times_the_spacing_keep_what_is_left() {
         (x, y) == (a, b) && high - low < 5
     };
     assert_eq!(points.windows(2).filter(close).count(), 0);
+}
+
+#[test]
+fn the_points_near_a_place_are_found_where_cubes_are_many_and_where_they_are_few() {
+    let mut state = 7u64;
+    let mut any = |below: u64| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((state >> 33) % below) as i32
+    };
+    // 64 cubes of 100 µm for 800 points, and 1,000,000.
+    for size in [400, 10_000] {
+        let points: Vec<[i32; 3]> =
+            (0..800).map(|_| [any(size), any(size) - 77, any(size) - 5_000]).collect();
+        let grid = Grid::new(&points, 100);
+        for here in points.iter().map(|[x, y, z]| [x + 30, y - 150, z + 99]) {
+            let is_near =
+                |i: &u32| (0..3).all(|axis| (points[*i as usize][axis] - here[axis]).abs() <= 100);
+            let mut found: Vec<u32> = grid.near(here).filter(is_near).collect();
+            found.sort_unstable();
+            let all: Vec<u32> = (0..800).filter(is_near).collect();
+            assert_eq!(found, all, "{size} {here:?}");
+        }
+    }
 }
