@@ -20,6 +20,10 @@ const ONE: f64 = 1e-4;
 /// How far a link may be inside of what the tool stays out of, mm: paths are merged within 5 µm, and regions exact to 1 µm.
 const NEAR: f64 = 0.006;
 
+/// No link is longer than this, mm: farther apart there is nearly always something to stay out of between two contours, and all that
+/// is within it of each element is looked at.
+const FAR: f64 = 4.0;
+
 /// From place to place of a link that is looked at, mm.
 const STEP: f64 = 0.02;
 
@@ -200,17 +204,17 @@ struct Link {
 }
 
 /// `paths` with those contours in one from one to another of which the tool may go: straight, outside of `kept`, along no
-/// more than `longest` mm forth and back; or along an open path between them. Open paths that lead from a contour nowhere
+/// more than `longest` mm forth and back, and [`FAR`] at most; or along an open path between them. Open paths that lead from a contour nowhere
 /// are part of it where that is as short.
 pub(crate) fn linked(paths: &[Path], kept: &Region, longest: f64) -> Vec<Path> {
     let (rings, mut open): (Vec<&Path>, Vec<&Path>) =
         paths.iter().partition(|path| path.is_closed());
     let kept = Index::new(kept);
     let elements = Elements::new(&rings);
-    let mut links = elements.links(&rings, &kept, longest / 2.0);
+    let most = FAR.min(longest / 2.0);
+    let mut links = elements.links(&rings, most);
     links.extend(open.iter().enumerate().filter_map(|(i, path)| {
-        let ends = [path.start(), path.end()]
-            .map(|end| elements.nearest(&rings, &kept, end, longest / 2.0));
+        let ends = [path.start(), path.end()].map(|end| elements.nearest(&rings, &kept, end, most));
         let [Some((a, at)), Some((b, to))] = ends else { return None };
         let way = way(&[rings[a].at(at), path.start()], path, &[path.end(), rings[b].at(to)])?;
         Some((way.length(), Some(i), Link { of: [a, b], at: [at, to], way }))
@@ -222,7 +226,10 @@ pub(crate) fn linked(paths: &[Path], kept: &Region, longest: f64) -> Vec<Path> {
     let mut ways: Vec<Link> = Vec::new();
     for (length, path, link) in links {
         let [a, b] = link.of;
-        let goes_on = (path.is_some() || 2.0 * length <= longest) && groups.join(a, b);
+        // Most pairs are joined by others before: whether a link is free is asked of those alone that would join two.
+        let may_join = (path.is_some() || 2.0 * length <= longest) && groups.of(a) != groups.of(b);
+        let is_free = || path.is_some() || is_free(&kept, [link.way.start(), link.way.end()]);
+        let goes_on = may_join && is_free() && groups.join(a, b);
         let is_spur = !goes_on && path.is_some() && 2.0 * length <= longest;
         if !goes_on && !is_spur {
             continue;
@@ -379,13 +386,8 @@ impl Elements {
         found.filter_map(|i| self.of.get(i).copied())
     }
 
-    /// Of each two contours the shortest link that is no longer than `longest` mm, where it is free.
-    fn links(
-        &self,
-        rings: &[&Path],
-        kept: &Index,
-        longest: f64,
-    ) -> Vec<(f64, Option<usize>, Link)> {
+    /// Of each two contours the shortest link that is no longer than `longest` mm, whether the tool may go along it or not.
+    fn links(&self, rings: &[&Path], longest: f64) -> Vec<(f64, Option<usize>, Link)> {
         let mut best: BTreeMap<[usize; 2], (f64, Vec2, Vec2)> = BTreeMap::new();
         for &(ring, i) in &self.of {
             let Some(element) = rings[ring].elements().get(i) else { continue };
@@ -410,7 +412,7 @@ impl Elements {
             let at = [entry(rings[of[0]], one), entry(rings[of[1]], two)];
             let ends = [rings[of[0]].at(at[0]), rings[of[1]].at(at[1])];
             let way = Path::new(vec![Element::line(ends[0], ends[1])])?;
-            is_free(kept, ends).then(|| (way.length(), None, Link { of, at, way }))
+            Some((way.length(), None, Link { of, at, way }))
         };
         best.into_iter().filter_map(link).collect()
     }
@@ -530,6 +532,8 @@ mod tests {
             );
         }
         assert_eq!(linked(&paths, &kept, 0.9).len(), 4);
+        // The last is 13 mm away: no link is so long, however fast the tool cuts and slowly it comes down.
+        assert_eq!(linked(&paths, &kept, 100.0).len(), 2);
         // What stands between two may not be cut.
         let wall =
             Ring::polygon(&[(2.1, -5.0), (2.4, -5.0), (2.4, 5.0), (2.1, 5.0)].map(Vec2::from))
