@@ -356,19 +356,54 @@ pub fn are_own(path: &Path, parts: &[&str]) -> Result<(), Box<Diagnostic>> {
     if others.is_empty() {
         return Ok(());
     }
-    let report = read(&report_of(path)).unwrap_or_default();
-    let report: serde_json::Value = serde_json::from_slice(&report).unwrap_or_default();
-    let own: Vec<&str> = report["program"]["parts"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(|part| part["file"].as_str())
-        .collect();
-    match others.iter().find(|other| !own.contains(&&*name(other))) {
+    let own = parts_in(&report_of(path));
+    match others.iter().find(|other| !own.contains(&name(other))) {
         Some(other) => {
             let message = "it is there already, and the report beside the program does not name it as one of its parts";
             let help = "move it away, or give the program another name";
             Err(about(other, Rule::OutputFile, message.into()).help(help).into())
+        }
+        None => Ok(()),
+    }
+}
+
+/// The parts that a report names; none where there is none, or it is not read.
+fn parts_in(report: &Path) -> Vec<String> {
+    let report = read(report).unwrap_or_default();
+    let report: serde_json::Value = serde_json::from_slice(&report).unwrap_or_default();
+    let parts = report["program"]["parts"].as_array().into_iter().flatten();
+    parts.filter_map(|part| part["file"].as_str().map(str::to_owned)).collect()
+}
+
+/// Files of the program that has been saved at `path` before, which the new one with these `parts` does not call any more.
+pub fn parts_left(path: &Path, parts: &[&str]) -> Vec<String> {
+    let mut left = parts_in(&report_of(path));
+    left.retain(|part| !parts.contains(&&**part) && path.with_file_name(part).is_file());
+    left
+}
+
+/// Checks that a program at `path` does not take the place of a part of another one beside it.
+///
+/// # Errors
+/// It would.
+pub fn is_no_part(path: &Path) -> Result<(), Box<Diagnostic>> {
+    let own = name(path);
+    let cut = |name: &str| name.replace('-', "_").to_ascii_lowercase();
+    // A part has the first letters of the program that calls it, and a number.
+    let Some((begins, _)) = own.rsplit_once('_').filter(|_| path.is_file()) else { return Ok(()) };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else { return Ok(()) };
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<String> = names
+        .filter(|name| name.ends_with(".report.json") && cut(name).starts_with(&cut(begins)))
+        .collect();
+    names.sort_unstable();
+    let calls = |report: &&String| parts_in(&path.with_file_name(report)).contains(&own);
+    match names.iter().find(calls) {
+        Some(report) => {
+            let message = format!("it is there already, and a part of the program of {report}");
+            let help = "give the program another name";
+            Err(about(path, Rule::OutputFile, message).help(help).into())
         }
         None => Ok(()),
     }
@@ -387,6 +422,7 @@ pub fn save_program(
     inputs: &[&Path],
 ) -> Result<(), Box<Diagnostic>> {
     let target = Target::new(path, inputs)?;
+    is_no_part(path)?;
     are_own(path, &parts.iter().map(|(file, _)| *file).collect::<Vec<_>>())?;
     let report = report.map(|report| (report_of(path), report.as_bytes()));
     let others = parts.iter().map(|(file, text)| (path.with_file_name(file), *text)).chain(report);

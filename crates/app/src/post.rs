@@ -82,7 +82,7 @@ pub fn proven(
     watch.begin("writing")?;
     let program = &toolpath.program;
     // What is reported of the toolpath is found meanwhile.
-    let headed = headed(program, tolerances);
+    let headed = headed(program, machine, file, tolerances);
     let (output, (shape, times)) = parallel(
         || write(headed.as_ref().unwrap_or(program), machine, toolpath, &mut warnings),
         || (Shape::of(program), Times::of(program, machine)),
@@ -158,13 +158,26 @@ fn files(output: &Output) -> Option<String> {
     ))
 }
 
-/// The program with the rules that are let pass in its head, where there are some.
-fn headed(program: &Program, tolerances: &Tolerances) -> Option<Program> {
+/// The program with the rules that are let pass in its head, where there are some, and with the name of its file, by which controllers of
+/// robots know it.
+fn headed(
+    program: &Program,
+    machine: &Machine,
+    file: &str,
+    tolerances: &Tolerances,
+) -> Option<Program> {
     let names: Vec<&str> = tolerances.accepted.rules().map(Rule::name).collect();
-    if names.is_empty() {
+    let is_renamed = machine.cell.is_some() && program.name != file;
+    if names.is_empty() && !is_renamed {
         return None;
     }
     let mut headed = program.clone();
+    if is_renamed {
+        file.clone_into(&mut headed.name);
+    }
+    if names.is_empty() {
+        return Some(headed);
+    }
     let op = Op::Comment(format!("accepted for this run: {}", names.join(", ")).into());
     headed.records.insert(0, Record { line: 0, op });
     Some(headed)

@@ -564,7 +564,7 @@ pub fn read(
         Language::Sinumerik(facts) => sinumerik::run(facts, settings, text, channel),
         Language::Klartext => klartext::run(settings, text, channel),
         Language::Points => points::run(settings, text, channel),
-        Language::Krl => krl::run(settings, text, channel),
+        Language::Krl => krl::run(settings, (file_name, text), channel),
         Language::UrScript => urscript::run(settings, text, channel),
         Language::Ls => ls::run(settings, text, channel),
         Language::Rapid => rapid::run(settings, text, channel),

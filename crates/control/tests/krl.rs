@@ -99,6 +99,10 @@ fn the_program_of_robodk_is_read_with_its_messages_and_its_call() {
     let Some(folder) = judge::data("robots") else { return };
     let text = std::fs::read(folder.join("programs/robodk-Program.src")).unwrap();
     let text = String::from_utf8(text).unwrap();
+    // Its file is Program.src.
+    let found = run_with(&settings(), &text).unwrap_err();
+    assert!(found.contains("program is called PROGRAM, and its file job"), "{found}");
+    let text = text.replacen("DEF Program", "DEF Job", 1);
     let found = run_with(&settings(), &text).unwrap_err();
     assert!(found.contains("job.src:64:") && found.contains("SUBPROG"), "{found}");
     let called = tempfile::tempdir().unwrap();

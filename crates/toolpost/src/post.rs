@@ -8,7 +8,7 @@ use app::post::{Posted, proven};
 use app::toolpath::{self, Toolpath};
 use app::{Stop, Verdict, Watch};
 use machine::Machine;
-use program::Purpose;
+use program::{Diagnostic, Purpose, Rule};
 use std::path::Path;
 
 /// Writes the program, proves it, and only then saves it with its report.
@@ -22,7 +22,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(4, silent);
     progress.step("reading");
     let origin = args.source.origin.origin();
-    let mut toolpath = toolpath::read(
+    let toolpath = toolpath::read(
         &source.as_path().into(),
         args.source.strict,
         &origin,
@@ -31,8 +31,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     )?;
     let file = files::name(&args.output);
     if machine.cell.is_some() {
-        // Controllers of robots know a program by the name of its file.
-        toolpath.program.name.clone_from(&file);
+        files::is_no_part(&args.output)?;
     }
     let tolerances = args.closeness.tolerances();
     let posted = proven(&toolpath, &machine, &file, &tolerances, &progress)?;
@@ -46,6 +45,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let parts = parts.collect::<Result<Vec<_>, _>>()?;
     let files: Vec<&str> = posted.parts.iter().map(|part| &*part.file).collect();
     files::are_own(&args.output, &files)?;
+    let left = files::parts_left(&args.output, &files);
     let targets: Vec<&Target> = parts.iter().chain([&target, &report_target]).collect();
     spare(&targets, &toolpath, &machine)?;
     progress.step("saving");
@@ -56,6 +56,14 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     saved.push((&target, &posted.text));
     files::save(&saved)?;
     let Posted { mut account, .. } = posted;
+    if !left.is_empty() {
+        let message = format!(
+            "{} of the program that was here before stay in the folder, and nothing calls them",
+            left.join(", ")
+        );
+        let found = Diagnostic::warning(Rule::OutputFile, message);
+        account.findings.push(found.help("remove them, and from the controller").file(file));
+    }
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
     Ok(account.into())

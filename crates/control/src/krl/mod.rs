@@ -12,9 +12,9 @@ use crate::Settings;
 use crate::kernel::Channel;
 use program::Outcome;
 
-/// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
-    flow::run(settings, text, channel)
+/// Runs a program, of which the name of its file is known.
+pub(crate) fn run(settings: &Settings, program: (&str, &[u8]), channel: &mut Channel) -> Outcome {
+    flow::run(settings, program, channel)
 }
 
 /// A statement of each word that is understood.

@@ -198,6 +198,24 @@ fn a_program_in_several_files_is_saved_whole_or_not_at_all_and_proven_from_its_f
     let said = folder.run(&other);
     assert!(said.code == 2 && said.err.contains("rows_a_1.ls: error[output-file]"), "{said:?}");
     assert_eq!(folder.names().len(), names.len());
+    // Nor does a program take the place of a part.
+    folder.write("own-one.toml", "extends = \"fanuc-lrmate-200id-mill\"\n");
+    let whole = |output| ["post", "rows.cls", "--machine", "own-one.toml", "-o", output];
+    let said = folder.run(&whole("rows_a_1.ls"));
+    assert!(said.code == 2 && said.err.contains("a part of the program of rows-a.ls"), "{said:?}");
+    // Written in one file, its parts stay, and that is told.
+    let said = folder.run(&whole("rows-a.ls"));
+    assert!(
+        said.code == 0
+            && said
+                .err
+                .contains("rows_a_1.ls, rows_a_2.ls, rows_a_3.ls, rows_a_4.ls of the program"),
+        "{said:?}"
+    );
+    assert_eq!(folder.names().len(), names.len() + 1);
+    for part in parts {
+        std::fs::remove_file(folder.path().join(part)).unwrap();
+    }
     assert_eq!(folder.run(&post).code, 0);
     // A digit of a part: the proof refuses it; a remark: the report is of another program.
     let third = folder.read("rows_a_3.ls");

@@ -58,7 +58,7 @@ pub fn written(source: &Program, machine: &Machine) -> Result<String, String> {
 }
 
 pub fn proof_of(source: &Program, machine: &Machine, text: &str) -> Report {
-    proof::prove(source, machine, "job.src", text.as_bytes(), &Default::default())
+    proof::prove(source, machine, "job", text.as_bytes(), &Default::default())
 }
 
 #[track_caller]

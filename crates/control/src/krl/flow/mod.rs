@@ -9,6 +9,8 @@ use crate::kernel::source::Source;
 use crate::{ArmAction, Settings};
 use program::{Diagnostic, Outcome, Rule};
 use std::collections::HashMap;
+use std::ffi::OsStr;
+use std::path::Path;
 
 /// Most calls within calls (KSS: 20 levels).
 const DEEPEST: usize = 20;
@@ -24,16 +26,40 @@ struct File<'t> {
 }
 
 /// Runs a program.
-pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
+pub(super) fn run(
+    settings: &Settings,
+    (file_name, text): (&str, &[u8]),
+    channel: &mut Channel,
+) -> Outcome {
     let file = File::of(text, None)?;
     let Some((name, at)) = file.first else {
         let message = "the file has no program: it begins with DEF name ( )";
         return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
     };
+    is_called_as((name, at.line - 1), file_name)?;
     let mut run = Run { settings, state: State::new(&settings.tool_change), channel };
     run.data(name)?;
     let end = run.routine(&file, at, 0)?;
     run.channel.report(end, Action::End)
+}
+
+/// # Errors
+/// A file that a controller takes has another name than its first program.
+fn is_called_as((name, line): (Name, u32), file_name: &str) -> Outcome {
+    let path = Path::new(file_name);
+    let is_source = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("src"));
+    let stem = path.file_stem().and_then(OsStr::to_str).unwrap_or_default();
+    if !is_source || stem.eq_ignore_ascii_case(name.as_str()) {
+        return Ok(());
+    }
+    let message = format!(
+        "the program is called {name}, and its file {stem}: the controller finds a program by the name of its file"
+    );
+    let help = format!(
+        "save it as {}.src, or give both a name of up to 24 letters, digits and _",
+        name.as_str().to_ascii_lowercase()
+    );
+    Err(Diagnostic::error(Rule::ProgramFrame, message).help(help).line(line).into())
 }
 
 impl<'t> File<'t> {
