@@ -27,6 +27,8 @@ pub enum ArmAction {
     Acceleration,
     /// How fast the tool may turn in lines and arcs, degrees/s: its axis, and about its axis; `None` is as the control is set up.
     TurnSpeed([Option<f64>; 2]),
+    /// How fast the rail on which the arm stands may go, mm/s.
+    RailSpeed(f64),
     /// The program goes on in the file of this name, or in the one that is run where it has none: the arm stops there. The line of this event is
     /// still of the file before.
     File(Option<Box<str>>),

@@ -328,7 +328,8 @@ fn a_listing_has_its_parts_and_its_positions_are_whole() {
         ("'N U T, 0, 0, 0'", "'N U T, 0, 0'", "`,` is needed"),
         ("P[2]{", "P[1]{", "two positions P[1]"),
         ("GP1:", "GP2:", "GP2 of a position"),
-        ("X =     0.000  mm", "X =     0.000  mm, E1= 1.000 mm", "E1 of a position"),
+        ("X =     0.000  mm", "X =     0.000  mm, E2= 1.000 mm", "E2 of a position"),
+        ("X =     0.000  mm", "X =     0.000  mm, E1= 1.000 deg", "E1 counts in mm"),
     ] {
         assert!(text.contains(from), "{from}");
         let found = run_with(&settings(), &text.replacen(from, to, 1)).expect_err(from);

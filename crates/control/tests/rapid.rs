@@ -355,7 +355,8 @@ fn what_is_not_understood_is_refused_with_its_line() {
         ("v100", "v100\\T:=5", "of options only \\V"),
         ("v100", "vmax", "VMAX is not declared"),
         ("[0,0,1,0]", "[0,0,0.99,0]", "the length 0.99"),
-        ("9E9,9E9,9E9,9E9,9E9,9E9", "0,9E9,9E9,9E9,9E9,9E9", "beyond the arm"),
+        ("9E9,9E9,9E9,9E9,9E9,9E9", "9E9,0,9E9,9E9,9E9,9E9", "beyond the arm and its rail"),
+        ("9E9,9E9,9E9,9E9,9E9,9E9", "-1E7,9E9,9E9,9E9,9E9,9E9", "eax_a is beyond any rail"),
         (
             "tool0",
             "[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]]",
@@ -388,4 +389,22 @@ fn every_damage_of_a_job_is_read_or_refused_without_a_panic() {
             let _ = read(&settings(), "job.mod", &text, &mut |_| Ok(()));
         }
     }
+}
+
+#[test]
+fn eax_a_is_the_rail_and_an_arc_states_one_position_of_it() {
+    let target = |x: u8, y: u8, rail: &str| {
+        format!("[[{x},{y},3],[0,0,1,0],[0,0,0,0],[{rail},9E9,9E9,9E9,9E9,9E9]]")
+    };
+    let arc = |via: &str, end: &str| {
+        format!("MoveC {},{},v100,fine,tool0;", target(2, 1, via), target(4, 0, end))
+    };
+    let start = format!("MoveL {},v100,fine,tool0;\n", target(0, 0, "-12.5"));
+    let rail = |text: &str| moves(&body(text).unwrap()).last().unwrap().1.rail;
+    assert_eq!(rail(&start), Some(-12.5));
+    assert_eq!(rail(&format!("{start}{}", arc("9E9", "9E9"))), None);
+    assert_eq!(rail(&format!("{start}{}", arc("40", "40"))), Some(40.0));
+    let joints = "MoveAbsJ [[0,0,0,0,30,0],[250,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;";
+    assert_eq!(rail(joints), Some(250.0));
+    refused(&format!("{start}{}", arc("40", "41")), 5, "different positions of the rail");
 }

@@ -201,6 +201,7 @@ names! {
         J4 Word "J4", "degrees", "Position of joint 4.";
         J5 Word "J5", "degrees", "Position of joint 5.";
         J6 Word "J6", "degrees", "Position of joint 6.";
+        RailSpeed Word "RAIL_SPEED", "mm/s", "How fast that rail goes in motions of the joints: `joint_speed` of the cell, as percent of its `speed`.";
         Rail Word "RAIL", "mm", "Position of the rail on which a robot stands (`rail` below [cell]), at the end of each motion.";
         Point Word "POINT", "", "Number of the position at which a robot's motion ends, where positions stand behind the instructions.";
         MiddlePoint Word "MIDDLE_POINT", "", "Number of the position half way along an arc.";

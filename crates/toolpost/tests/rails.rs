@@ -166,3 +166,83 @@ fn a_control_that_has_no_word_for_the_rail_is_refused_and_says_so() {
     let found = post::write(&source(LINE), &machine).unwrap_err();
     assert!(found[0].message.contains("the arm stands on no rail"), "{found:?}");
 }
+
+/// The IRB 6700 and the R-2000iC on a rail of 6 m along Y, with the blocks that docs/machines.md shows.
+fn on_long_rails() -> [(Machine, Dialect, &'static str); 2] {
+    let docs = std::fs::read_to_string(files::root().join("docs/machines.md")).unwrap();
+    let blocks = |of: &str| {
+        let (_, blocks) = docs.split_once(of).unwrap();
+        let (_, blocks) = blocks.split_once("```toml\n").unwrap();
+        format!("{}\n[spindle]", blocks.split_once("```").unwrap().0)
+    };
+    let rail = |part: &str| {
+        format!(
+            "part = {part}\nrail = {{ direction = [0, 1, 0], origin = [0, 0, 0, 0, 0, 0], min = 0, max = 6000, speed = 90000, home = 0 }}"
+        )
+    };
+    let rapid = [
+        ("part = [1600, 0, 700, 0, 0, 0]", &rail("[1600, 3000, 700, 0, 0, 0]")[..]),
+        ("home = [0, 0, 0, 0, 60, 0]", "home = [0, 0, 0, 0, 90, 0]"),
+        ("[spindle]", &blocks("In RAPID:")),
+    ];
+    let ls = [
+        ("part = [1400, 0, -300, 0, 0, 0]", &rail("[1400, 3000, -300, 0, 0, 0]")[..]),
+        ("[spindle]", &blocks("On FANUC:")),
+    ];
+    [
+        (robot::changed("abb-irb6700-235-mill", &rapid), Dialect::Rapid, ",9E9,9E9,9E9,9E9,9E9]"),
+        (robot::changed("fanuc-r2000ic-mill", &ls), Dialect::Ls, " mm\r\n};"),
+    ]
+}
+
+#[test]
+fn rapid_and_ls_write_the_rail_into_each_position_and_damages_are_refused() {
+    for (machine, dialect, behind) in on_long_rails() {
+        let source = source(JOB);
+        let text = proven(&source, &machine);
+        let moved: Vec<f64> = robot::events(dialect, &text)
+            .into_iter()
+            .filter_map(|event| match event.action {
+                Action::Arm(ArmAction::Move(motion)) => Some(motion.rail.unwrap()),
+                _ => None,
+            })
+            .collect();
+        let place = moved[1];
+        // The arm reaches 2.65 m.
+        assert!((place - 3000.0).abs() < 2000.0, "{text}");
+        assert!(moved[1..moved.len() - 1].iter().all(|at| *at == place), "{text}");
+        assert_eq!((moved[0], moved[moved.len() - 1]), (0.0, 0.0));
+        // Each position in turn, 1 mm on, of the other sign, and beyond the end of the rail.
+        let written = format!("{place:.3}{behind}");
+        let places: Vec<usize> = text.match_indices(&written).map(|(at, _)| at).collect();
+        assert!(places.len() >= 4, "{text}");
+        for at in places {
+            for other in [place + 1.0, -place, 6000.1] {
+                let damaged =
+                    format!("{}{other:.3}{behind}{}", &text[..at], &text[at + written.len()..]);
+                let report = proof_of(&source, &machine, &damaged);
+                assert!(!report.proven, "{other} in {}", &text[..at]);
+            }
+        }
+        // Left out everywhere: what the rail does then, the program does not say.
+        let without = match dialect {
+            Dialect::Rapid => text.replace(&written, &format!("9E9{behind}")),
+            _ => text.replace(&format!(",\r\nE1= {written}"), "\r\n};"),
+        };
+        assert_ne!(without, text);
+        let report = proof_of(&source, &machine, &without);
+        assert_eq!(report.mismatches[0].rule.name(), "rail", "{:#?}", report.mismatches);
+    }
+}
+
+#[test]
+fn rapid_that_lets_the_rail_go_faster_than_the_cell_is_refused() {
+    let [(machine, ..), _] = on_long_rails();
+    let source = source(LINE);
+    let text = proven(&source, &machine);
+    // 20 % of 90000 mm/min.
+    let (from, to) = (",300.0,1000],fine", ",301.0,1000],fine");
+    assert!(text.contains(from), "{text}");
+    let report = proof_of(&source, &machine, &text.replace(from, to));
+    assert_eq!(report.mismatches[0].rule.name(), "rapid-feed", "{:#?}", report.mismatches);
+}

@@ -74,7 +74,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("[FALSE,0.100,0.100,0.100", "[FALSE,0.100,0.500,0.100", "path-tolerance"),
     ("fine,tPost", "z1,tPost", "path-tolerance"),
     ("fine,tPost\\WObj:=wPost", "fine,tool0\\WObj:=wPost", "payload"),
-    ("[9E9,9E9,9E9,9E9,9E9,9E9]],[", "[0,9E9,9E9,9E9,9E9,9E9]],[", "unsupported"),
+    ("[9E9,9E9,9E9,9E9,9E9,9E9]],[", "[0,9E9,9E9,9E9,9E9,9E9]],[", "rail"),
     (
         "MoveAbsJ [[0.0000,0.0000,0.0000,0.0000,60.0000",
         "MoveAbsJ [[0.0000,0.0000,5.0000,0.0000,60.0000",

@@ -811,6 +811,10 @@ impl<'a> Walk<'a> {
     fn say_joint_speed(&mut self) {
         let slowest =
             self.arm.joints().iter().map(|joint| joint.speed).fold(f64::INFINITY, f64::min);
+        if let Some(rail) = self.cell.rail {
+            let speed = rail.speed / 60.0 * self.cell.joint_speed / 100.0;
+            self.writer.set(WordName::RailSpeed, speed);
+        }
         self.writer.set(WordName::JointSpeed, self.cell.joint_speed);
         self.writer.set(WordName::JointRate, slowest.to_degrees() * self.cell.joint_speed / 100.0);
     }

@@ -10,7 +10,7 @@ mod reentry;
 use super::expected::{Expected, Step};
 use crate::report::{ArmChecked, Report};
 use ::arm::{Arm, Joints};
-use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Event, Rounding};
+use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
 use geom::{Frame, Vec3, angle_between};
 use machine::{Cell, Machine, OptionValue};
 use program::{CutBox, Diagnostic, Feed, Outcome, Pose, Program, Rule};
@@ -25,6 +25,8 @@ struct Running {
     turn_speed: [Option<f64>; 2],
     /// Percent.
     joint_speed: Option<f64>,
+    /// mm/s, where the control states one.
+    rail_speed: Option<f64>,
     is_on: bool,
     speed: Option<f64>,
     /// How long the spindle still takes to its speed, s.
@@ -117,6 +119,7 @@ impl<'a> Comparison<'a> {
                 feed: None,
                 turn_speed: [None; 2],
                 joint_speed: None,
+                rail_speed: None,
                 is_on: false,
                 speed: None,
                 runs_up: 0.0,
@@ -303,6 +306,7 @@ impl<'a> Comparison<'a> {
             }
             ArmAction::PartOnFlange(on_flange) => self.running.on_flange = Some(*on_flange),
             ArmAction::JointSpeed(speed) => self.running.joint_speed = *speed,
+            ArmAction::RailSpeed(speed) => self.running.rail_speed = Some(*speed),
             ArmAction::JointRate(rate) => {
                 let slowest =
                     self.arm.joints().iter().map(|joint| joint.speed).fold(f64::INFINITY, f64::min);
@@ -499,12 +503,15 @@ impl<'a> Comparison<'a> {
         let refused = |rule, message: String, help: &str| {
             Err(Diagnostic::error(rule, message).help(help).into())
         };
+        // KUKA's controllers write E1 0 into positions that are taught, of an arm without outer axes as well.
+        let is_taught = Dialect::named(&self.machine.reader) == Some(Dialect::Krl);
         match (&self.cell.rail, motion.rail) {
-            (None, None | Some(0.0)) => Ok(0.0),
+            (None, None) => Ok(0.0),
+            (None, Some(0.0)) if is_taught => Ok(0.0),
             (None, Some(at)) => refused(
                 Rule::Rail,
                 format!("the program moves a rail to {at:.3} mm, and the arm stands on none"),
-                "`rail` below [cell] of the machine file, or the position 0",
+                "`rail` below [cell] of the machine file, or no position of it (9E9 in RAPID)",
             ),
             (Some(_), None) => refused(
                 Rule::Rail,

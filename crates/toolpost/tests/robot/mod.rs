@@ -118,6 +118,7 @@ fn kept(dialect: Dialect, text: &str) -> Vec<(Action, f64)> {
             | Action::Arm(
                 ArmAction::JointSpeed(_)
                 | ArmAction::JointRate(_)
+                | ArmAction::RailSpeed(_)
                 | ArmAction::TurnSpeed(_)
                 | ArmAction::TipAcceleration(_)
                 | ArmAction::JointAcceleration(_),

@@ -26,6 +26,15 @@ impl State {
                 Err(scan.since(0, Rule::Unsupported, message))
             }
         };
+        let rail_at = |number: u32| positions.get(&number).and_then(|position| position.rail);
+        let rail = match motion.shape {
+            Shape::Joint(number) | Shape::Linear(number) => rail_at(number),
+            Shape::Circular(via, end) if rail_at(via) != rail_at(end) => {
+                let message = format!("P[{via}] and P[{end}] of an arc state different E1");
+                return Err(scan.since(0, Rule::Unsupported, message));
+            }
+            Shape::Circular(_, end) => rail_at(end),
+        };
         let (path, posture) = match motion.shape {
             Shape::Joint(number) => match coordinates(number)? {
                 Coordinates::Joints(joints) => (ArmPath::Joints(joints), Default::default()),
@@ -50,7 +59,7 @@ impl State {
             }
             Termination::Continuous | Termination::Region(_) => Corner::Unbounded,
         };
-        let motion = ArmMove { path, corner, turning, posture, rail: None };
+        let motion = ArmMove { path, corner, turning, posture, rail };
         channel.motion(scan.line, motion)
     }
 

@@ -26,6 +26,8 @@ pub(crate) struct Position {
     pub(crate) coordinates: Coordinates,
     /// Numbers of the user frame and of the tool in which it counts.
     pub(crate) frames: [u32; 2],
+    /// Where the rail on which the arm stands is, mm: the outer axis `E1`.
+    pub(crate) rail: Option<f64>,
 }
 
 /// The positions of these lines.
@@ -82,10 +84,12 @@ struct Reading {
     posture: Option<ArmPosture>,
     pose: [Option<f64>; 6],
     joints: [Option<f64>; 6],
+    rail: Option<f64>,
 }
 
 const POSE: [&str; 6] = ["X", "Y", "Z", "W", "P", "R"];
 const JOINTS: [&str; 6] = ["J1", "J2", "J3", "J4", "J5", "J6"];
+const RAIL: &str = "E1";
 
 impl Reading {
     /// An entry, and the comma behind it.
@@ -116,6 +120,7 @@ impl Reading {
                     let i = names.iter().position(|own| *own == name)?;
                     Some((&mut values[i], if *names == POSE && i > 2 { "deg" } else { unit }))
                 });
+                let found = if name == RAIL { Some((&mut self.rail, "mm")) } else { found };
                 let Some((value, unit)) = found else {
                     let message = format!("{name} of a position is not followed");
                     return Err(scan.since(from, Rule::Unsupported, message));
@@ -167,7 +172,7 @@ impl Reading {
                 return refused("has neither six joints nor X, Y, Z, W, P, R with CONFIG");
             }
         };
-        Ok(Position { coordinates, frames: [frame, tool] })
+        Ok(Position { coordinates, frames: [frame, tool], rail: self.rail })
     }
 }
 

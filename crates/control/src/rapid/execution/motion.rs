@@ -37,7 +37,8 @@ impl State {
     ) -> Outcome {
         let wrong = |rule: Rule, message: String| scan.since(from, rule, message);
         self.surroundings((scan, from, line), motion, channel)?;
-        let (path, posture) = self.path(motion).map_err(|(rule, message)| wrong(rule, message))?;
+        let (path, posture, rail) =
+            self.path(motion).map_err(|(rule, message)| wrong(rule, message))?;
         let corner = corner(motion).map_err(|message| wrong(Rule::Number, message))?;
         let turning = match path {
             ArmPath::Joints(_) | ArmPath::Point(_) => Some(Turning::ByJoints),
@@ -52,26 +53,28 @@ impl State {
             ArmPath::Joints(_) => None,
             ArmPath::Point(end) | ArmPath::Line(end) | ArmPath::Arc { end, .. } => Some(end),
         };
-        let motion = ArmMove { path, corner, turning, posture, rail: None };
+        let motion = ArmMove { path, corner, turning, posture, rail };
         channel.motion(line, motion)
     }
 
-    fn path(&self, motion: &Motion) -> Result<(ArmPath, ArmPosture), (Rule, String)> {
+    /// Where a motion goes, in which posture, and where it takes the rail.
+    fn path(&self, motion: &Motion) -> Result<(ArmPath, ArmPosture, Option<f64>), (Rule, String)> {
         let framed = |message: String| (Rule::Frame, message);
         if let (MotionKind::AbsoluteJoints, [axes, others]) = (motion.kind, motion.to.parts()) {
-            no_others(others)?;
+            let rail = rail(others)?;
             let joints = axes.numbers::<6>().filter(|all| all.iter().all(|at| at.abs() < FARTHEST));
             let joints = joints.ok_or((Rule::Number, String::from("a joint is beyond any arm")))?;
-            return Ok((ArmPath::Joints(joints), ArmPosture::default()));
+            return Ok((ArmPath::Joints(joints), ArmPosture::default(), rail));
         }
         let end = place(&motion.to).map_err(framed)?;
         let [_, _, configuration, others] = motion.to.parts() else {
             return Err((Rule::Type, String::from("a robtarget is needed here")));
         };
-        no_others(others)?;
+        let rail = rail(others)?;
         let posture = self.posture(configuration, motion.kind)?;
         let path = match (motion.kind, &motion.via) {
             (MotionKind::Arc, Some(via)) => {
+                same_rail(via, rail)?;
                 let via = place(via).map_err(framed)?;
                 self.is_arc(&via, &end)?;
                 ArmPath::Arc { via, end }
@@ -79,7 +82,7 @@ impl State {
             (MotionKind::Joints, _) => ArmPath::Point(end),
             (_, _) => ArmPath::Line(end),
         };
-        Ok((path, posture))
+        Ok((path, posture, rail))
     }
 
     /// # Errors
@@ -149,11 +152,11 @@ impl State {
     ) -> Outcome {
         let wrong = |rule: Rule, message: String| scan.since(from, rule, message);
         let speed = motion.speed.parts();
-        let speeds = [speed.first(), speed.get(1)].map(|speed| speed.and_then(Value::number));
-        let [Some(tip), Some(turn)] = speeds else {
+        let speeds = [0, 1, 2].map(|i| speed.get(i).and_then(Value::number));
+        let [Some(tip), Some(turn), Some(rail)] = speeds else {
             return Err(wrong(Rule::Type, String::from("a speeddata is needed here")));
         };
-        if !(tip > 0.0 && turn > 0.0) {
+        if !(tip > 0.0 && turn > 0.0 && rail > 0.0) {
             return Err(wrong(Rule::Feed, String::from("speeds of a speeddata are above 0")));
         }
         let [Value::Flag(held), tool, load] = motion.tool.parts() else {
@@ -194,11 +197,12 @@ impl State {
             before.map(|speed| speed[1]) != Some(turn),
             arm(ArmAction::TurnSpeed([Some(turn); 2])),
         )?;
+        report(before.map(|speed| speed[2]) != Some(rail), arm(ArmAction::RailSpeed(rail)))?;
         reported.tool = Some(tool);
         reported.base = Some(base);
         reported.on_flange = Some(on_flange);
         reported.load = Some(load);
-        reported.speed = Some([tip, turn]);
+        reported.speed = Some([tip, turn, rail]);
         self.reported = reported;
         Ok(())
     }
@@ -213,15 +217,32 @@ fn place(target: &Value) -> Result<Frame, String> {
     }
 }
 
+/// Where the outer axis a is, mm: a rail on which the arm stands. `None` where it is not there.
+///
 /// # Errors
-/// An axis beyond the arm is moved.
-fn no_others(others: &Value) -> Result<(), (Rule, String)> {
+/// Another outer axis is moved; no rail is that long.
+fn rail(others: &Value) -> Result<Option<f64>, (Rule, String)> {
     let none = |value: &Value| value.number() == Some(NO_AXIS);
-    match others.parts().iter().all(none) {
+    let Some((first, others)) = others.parts().split_first() else { return Ok(None) };
+    if !others.iter().all(none) {
+        let message = "axes beyond the arm and its rail (eax_a) are not followed: 9E9 stands for one that is not there";
+        return Err((Rule::Unsupported, String::from(message)));
+    }
+    match first.number() {
+        Some(NO_AXIS) => Ok(None),
+        Some(at) if at.abs() <= FARTHEST => Ok(Some(at)),
+        _ => Err((Rule::Number, String::from("eax_a is beyond any rail"))),
+    }
+}
+
+/// # Errors
+/// The point on the way of an arc states another position of the rail than its end.
+fn same_rail(via: &Value, end: Option<f64>) -> Result<(), (Rule, String)> {
+    let [_, _, _, others] = via.parts() else { return Ok(()) };
+    match rail(others)? == end {
         true => Ok(()),
         false => {
-            let message =
-                "axes beyond the arm are not followed: 9E9 stands for one that is not there";
+            let message = "the two points of an arc state different positions of the rail (eax_a)";
             Err((Rule::Unsupported, String::from(message)))
         }
     }

@@ -26,7 +26,7 @@ pub(super) struct Reported {
     pub(super) base: Option<Frame>,
     pub(super) on_flange: Option<bool>,
     pub(super) load: Option<[f64; 4]>,
-    pub(super) speed: Option<[f64; 2]>,
+    pub(super) speed: Option<[f64; 3]>,
 }
 
 /// What is active. The modes are not known before the program states them: what a program that was stopped has left is in force

@@ -91,6 +91,9 @@ impl Comparison<'_> {
         match (before, home) {
             (Some(before), _) => {
                 self.leaves_turning(&before)?;
+                if before.rail != rail {
+                    self.rail_speed()?;
+                }
                 Ok(Some((before, now)))
             }
             (None, true) => Ok(None),
@@ -122,6 +125,26 @@ impl Comparison<'_> {
                 Err(Diagnostic::error(Rule::RapidFeed, message).help(help).into())
             }
         }
+    }
+
+    /// Where a control says how fast the rail goes, that is as fast as the cell lets joints go, in percent, or less; else the percents of the joints
+    /// are those of the rail, too.
+    ///
+    /// # Errors
+    /// It goes faster.
+    fn rail_speed(&self) -> Outcome {
+        let (Some(rail), Some(stated)) = (&self.cell.rail, self.running.rail_speed) else {
+            return Ok(());
+        };
+        let most = rail.speed / 60.0 * self.cell.joint_speed / 100.0;
+        if stated <= most * 1.001 {
+            return Ok(());
+        }
+        let message = format!(
+            "the rail goes at {stated:.1} mm/s, `joint_speed` of the cell leaves {most:.1} to it"
+        );
+        let help = "a slower speed of linear outer axes in the motion";
+        Err(Diagnostic::error(Rule::RapidFeed, message).help(help).into())
     }
 
     /// RAPID says how fast the tip goes and how fast the tool turns in motions of joints, too; the slower decides.

@@ -164,6 +164,7 @@ impl Comparison<'_> {
                 ArmAction::Move(_)
                     | ArmAction::JointSpeed(_)
                     | ArmAction::JointRate(_)
+                    | ArmAction::RailSpeed(_)
                     | ArmAction::TurnSpeed(_)
             ) | Action::Feed(_)
                 | Action::Comment(_)
