@@ -5,6 +5,7 @@ mod common;
 
 use bodies::sphere;
 use common::k9;
+use glam::DVec3;
 use toolpost_glass::cloud::{Point, distances};
 use toolpost_glass::control::read;
 use toolpost_glass::curve::{self, Layers, read as read_curves};
@@ -13,6 +14,7 @@ use toolpost_glass::job::{self, Made, Order, Placing, Settings, make};
 use toolpost_glass::machine::{Machine, library};
 use toolpost_glass::mesh::{Mesh, Shape};
 use toolpost_glass::optics::Ray;
+use toolpost_glass::order::Effort;
 use toolpost_glass::proof::{Proof, Task, prove};
 
 fn machine(format: &str) -> Machine {
@@ -590,5 +592,26 @@ fn the_light_that_a_material_reflects_absorbs_and_lets_pass_is_one_in_all() {
     for wrong in ["[0.08, 0.05, 0.9]", "[-0.1, 0.2, 0.9]", "[nan, 0.1, 0.9]"] {
         let found = find(&table(wrong), "t.toml", "own", 532.0).unwrap_err();
         assert!(found.message.contains("1 in all") && found.file == "t.toml", "{found}");
+    }
+}
+
+#[test]
+fn a_program_is_the_same_on_any_number_of_threads() {
+    // Several tiles, bands and stretches: some 80,000 points.
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let filling = Filling { fill: Fill::Solid, step: None, direction: DVec3::Z };
+        let effort = Effort { rounds: 2, tries: 100, until: None };
+        let settings = Settings { filling, effort, ..settings() };
+        let body = Shape::Mesh(sphere(3.4, 30));
+        pool.install(|| made(body, "binary", &settings))
+    };
+    let one = on(1);
+    assert!(one.proven && one.report.points > 60_000, "{}", one.report.points);
+    for threads in [2, 5] {
+        let more = on(threads);
+        assert!(more.text == one.text && more.cloud == one.cloud, "{threads} threads");
+        let [more, one] = [&more.report, &one.report].map(|of| serde_json::to_string(of).unwrap());
+        assert_eq!(more, one);
     }
 }
