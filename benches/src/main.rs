@@ -70,9 +70,15 @@ struct Arguments {
     /// Frames that an arm is to reach; 0 leaves it out.
     #[arg(long, default_value_t = 200_000)]
     frames: usize,
-    /// Points on a sphere in glass; 0 leaves it out.
+    /// Points on a sphere and a torus in glass; 0 leaves them out.
     #[arg(long, default_value_t = 100_000)]
     pulses: usize,
+    /// Body (.stl, .obj, .ply, .3mf) that gets as many points; may be given several times.
+    #[arg(long)]
+    body: Vec<PathBuf>,
+    /// Points of a solid ball in glass, from its mesh to a proven program; 0 leaves it out.
+    #[arg(long, default_value_t = 200_000)]
+    solid: usize,
     /// Folder of a real circuit board, to be made whole; may be given several times.
     #[arg(long)]
     board: Vec<PathBuf>,
@@ -121,7 +127,10 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
         arm::measure(arguments.frames, arguments.rounds)?;
     }
     if arguments.pulses > 0 {
-        glass::measure(arguments.pulses, arguments.rounds)?;
+        glass::measure(arguments.pulses, &arguments.body, arguments.rounds)?;
+    }
+    if arguments.solid > 0 {
+        glass::solid(arguments.solid)?;
     }
     board::measure(&arguments.board, arguments.rounds)?;
     if arguments.records > 0 {
