@@ -80,3 +80,30 @@ fn a_spline_reaches_two_thirds_of_a_triangle_in_a_tick() {
     let spline = Profile::Spline.reach(0.01, limits);
     assert!((spline - 0.125).abs() < 1e-12, "{spline}");
 }
+
+#[test]
+fn the_tables_name_every_slip_of_the_source() {
+    let text = report();
+    let slips = text.split("Slips of the source").nth(1).unwrap();
+    for slip in [
+        "Table 6",
+        "120 mm",
+        "leaves out the corners",
+        "A spline does not have",
+        "Equation 14",
+        "A_M and V_M",
+        "V printed as W",
+        "up to 60 mm (f = 43)",
+        "parallel port",
+        "400 000",
+        "(116) and (117)",
+        "temperature of plasma",
+        "+23 points",
+        "+82 %",
+        "+47 %",
+        "1.5195",
+        "1.88 mm",
+    ] {
+        assert!(slips.contains(slip), "{slip}");
+    }
+}
