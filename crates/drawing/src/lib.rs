@@ -29,6 +29,7 @@
 
 mod arm_path;
 mod board;
+mod chart;
 mod glass;
 mod lettering;
 mod paper;
@@ -41,6 +42,7 @@ mod wire_path;
 
 pub use arm_path::{ArmPicture, ArmSample, arm_path};
 pub use board::{BoardPicture, BoardSheet, BoardSide, board, board_sheet};
+pub use chart::{Chart, Curve, charts};
 pub use glass::{GlassPicture, GlassView, glass};
 pub use reach::{ReachPicture, reach};
 pub use tool_path::tool_path;

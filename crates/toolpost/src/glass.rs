@@ -15,9 +15,11 @@ use ::glass::mesh::{self, Form, Shape};
 use ::glass::optics::Ray;
 use ::glass::order::Effort;
 use ::glass::picture::{self, Manner};
+use ::glass::profile::Limits;
 use ::glass::scenario::{Blocks, Scenario};
 use ::glass::simulate::{Events, simulate};
-use ::glass::{cloud, control, material, source};
+use ::glass::source::surrogate::FITTED;
+use ::glass::{cloud, comparison, control, material, source};
 use app::files::{self, Target};
 use app::{Account, Stop, Verdict, Watch};
 use drawing::Format;
@@ -30,7 +32,7 @@ use std::time::{Duration, Instant};
 pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
     match args {
         Glass::Engrave(engraving) => engrave(engraving, silent),
-        Glass::Command(GlassCommand::Tables) => Ok(tables()),
+        Glass::Command(GlassCommand::Tables { output }) => tables(output.as_deref()),
         Glass::Command(GlassCommand::Show { name }) => show(name),
         Glass::Command(GlassCommand::Prove { program, job }) => prove(program, job, silent),
         Glass::Command(GlassCommand::Simulate {
@@ -55,6 +57,9 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
             };
             simulated(program, machine, events, *start, output.as_deref())
         }
+        Glass::Command(GlassCommand::Sweep { program, machine, output }) => {
+            swept(program, machine, output.as_deref())
+        }
         Glass::Command(GlassCommand::Reach { machine, block, output }) => {
             reach(machine, *block, output)
         }
@@ -65,9 +70,64 @@ pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
 }
 
 /// The tables of the source next to ours.
-fn tables() -> Answer {
+fn tables(output: Option<&Path>) -> Result<Answer, Stop> {
+    if let Some(output) = output {
+        let target = Target::new(output, &[])?;
+        let drawn = drawing::charts("THROUGHPUT: MARKS ARE THE SOURCE, LINES THE MODEL", &charts());
+        let bytes = Format::of(output)?.bytes(drawn)?;
+        files::save(&[(&target, &bytes)])?;
+    }
     let data = json!({ "series": source::series(), "checks": source::checks() });
-    Answer::product(source::report(), data)
+    Ok(Answer::product(source::report(), data))
+}
+
+/// The series of the source as charts, and what other drives would reach.
+fn charts() -> Vec<drawing::Chart> {
+    let all = source::series();
+    let (by_angle, swept): (Vec<_>, Vec<_>) =
+        all.iter().partition(|series| series.rows.iter().all(|row| row.ours.is_none()));
+    let curve = |color: usize, name: &str, is_marked: bool, points: Vec<[f64; 2]>| drawing::Curve {
+        name: name.to_uppercase().replace('²', "2"),
+        points,
+        is_marked,
+        color,
+    };
+    type Value = fn(&source::Row) -> Option<f64>;
+    let chart = |up: &str, across: &str, series: &[&source::Series], values: [Value; 2]| {
+        let curves = series.iter().enumerate().flat_map(|(color, series)| {
+            let name = series.title.split(", by").next().unwrap_or_default();
+            [true, false].map(|is_marked| {
+                let place = |row: &source::Row| {
+                    Some([row.parameter, values[usize::from(!is_marked)](row)?])
+                };
+                let points: Vec<_> = series.rows.iter().filter_map(place).collect();
+                curve(color, name, is_marked, points)
+            })
+        });
+        let curves = curves.filter(|curve| !curve.points.is_empty()).collect();
+        drawing::Chart { up: up.to_owned(), across: across.to_owned(), curves }
+    };
+    let rates: [Value; 2] = [|row| Some(row.rate), |row| Some(source::POINTS / row.ours?)];
+    let times: [Value; 2] = [|row| Some(row.time), |row| row.ours];
+    let drive = |color: usize, rate: f64| {
+        let of = |acceleration: f64| {
+            let limits = Limits::metric(acceleration, 1.5);
+            [acceleration, rate / FITTED.ticks_per_point(rate, limits)]
+        };
+        let points = (4..=60).map(|half| of(0.5 * f64::from(half))).collect();
+        curve(color, &format!("{rate} Hz, 1.5 m/s"), false, points)
+    };
+    let drives = [50.0, 100.0, 200.0].into_iter().enumerate();
+    vec![
+        chart("POINTS/S", "ACCELERATION, M/S2", &swept, rates),
+        chart("TIME OF 16179 POINTS, S", "ACCELERATION, M/S2", &swept, times),
+        chart("POINTS/S", "SORTING ANGLE, DEGREES", &by_angle, rates),
+        drawing::Chart {
+            up: String::from("POINTS/S, PREDICTED"),
+            across: String::from("ACCELERATION, M/S2"),
+            curves: drives.map(|(color, rate)| drive(color, rate)).collect(),
+        },
+    ]
 }
 
 /// Cells of a map of reach along X.
@@ -107,6 +167,59 @@ fn reach(name: &str, block: [f64; 3], output: &Path) -> Result<Answer, Stop> {
     Ok(Answer::summary(Verdict::Done, app::summary::rows(&rows), data))
 }
 
+/// A program as its machine runs it.
+fn run_of(program: &Path, machine: &Machine) -> Result<control::Run, Stop> {
+    let in_program = |found: Vec<Diagnostic>| {
+        found.into_iter().map(|found| found.file(files::name(program))).collect::<Vec<_>>()
+    };
+    Ok(control::read(&program_text(program, machine)?, machine).map_err(in_program)?)
+}
+
+/// What a program takes on other drives.
+fn swept(program: &Path, name: &str, output: Option<&Path>) -> Result<Answer, Stop> {
+    let inputs = [program, Path::new(name)];
+    let drawn = output.map(|file| Ok::<_, Stop>((Target::new(file, &inputs)?, Format::of(file)?)));
+    let drawn = drawn.transpose()?;
+    let machine = machine(name)?;
+    let run = run_of(program, &machine)?;
+    let swept =
+        comparison::sweep(&run, &machine).map_err(|found| found.file(files::name(program)))?;
+    let unit = if machine.coordinates()[0].turns { "deg/s2" } else { "m/s2" };
+    let rates: Vec<&[comparison::Swept]> = swept.chunk_by(|a, b| a.rate == b.rate).collect();
+    let mut text = format!(
+        "{}: {} pulses; points/s, and s, by the acceleration of {} (all axes in proportion)\n\n{unit:>10}",
+        machine.title,
+        run.pulses.len(),
+        machine.coordinates()[0].word
+    );
+    rates.iter().for_each(|own| text.push_str(&format!("{:>17} Hz", own[0].rate)));
+    text.push('\n');
+    for row in 0..rates.first().map_or(0, |own| own.len()) {
+        text.push_str(&format!("{:>10.3}", rates[0][row].acceleration));
+        for own in &rates {
+            text.push_str(&format!("{:>8.2} {:>9.1} s", own[row].points, own[row].seconds));
+        }
+        text.push('\n');
+    }
+    if let Some((target, format)) = drawn {
+        let chart = |up: &str, value: fn(&comparison::Swept) -> f64| {
+            let curve = |(color, own): (usize, &&[comparison::Swept])| drawing::Curve {
+                name: format!("{} HZ", own[0].rate),
+                points: own.iter().map(|of| [of.acceleration, value(of)]).collect(),
+                is_marked: false,
+                color,
+            };
+            let curves = rates.iter().enumerate().map(curve).collect();
+            let across = format!("ACCELERATION, {}", unit.to_uppercase());
+            drawing::Chart { up: up.to_owned(), across, curves }
+        };
+        let charts = [chart("POINTS/S", |of| of.points), chart("TIME, S", |of| of.seconds)];
+        let title = format!("{} on {}", files::name(program), machine.title);
+        files::save(&[(&target, &format.bytes(drawing::charts(&title, &charts))?)])?;
+    }
+    Ok(Answer::product(text, json!({ "machine": machine.title, "swept": swept })))
+}
+
 /// Runs a program tick by tick.
 fn simulated(
     program: &Path,
@@ -117,9 +230,7 @@ fn simulated(
 ) -> Result<Answer, Stop> {
     let target = output.map(|file| Target::new(file, &[program, Path::new(name)])).transpose()?;
     let machine = machine(name)?;
-    let run = control::read(&program_text(program, &machine)?, &machine).map_err(|found| {
-        found.into_iter().map(|found| found.file(files::name(program))).collect::<Vec<_>>()
-    })?;
+    let run = run_of(program, &machine)?;
     if events.from as usize > run.pulses.len() {
         let message =
             format!("the program has {} points, no point {}", run.pulses.len(), events.from);

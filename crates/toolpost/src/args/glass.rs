@@ -49,7 +49,11 @@ impl Args for Glass {
 #[derive(Debug, Subcommand)]
 pub enum GlassCommand {
     /// Print the tables of the source of the models next to ours, its test vectors, and its known slips.
-    Tables,
+    Tables {
+        /// Where to save charts of the tables and of what other drives would reach, as .svg or .png.
+        #[arg(long, short, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
     /// Print a machine of the library, or `materials`, ready to be copied.
     Show {
         /// Name of a machine, or `materials`.
@@ -91,6 +95,17 @@ pub enum GlassCommand {
         #[arg(long, value_name = "DATE", value_parser = start, default_value = "2000-01-01 00:00:00")]
         start: i64,
         /// Where to save the statistics: duration, progress, start, predicted end, counted points.
+        #[arg(long, short, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
+    /// Say what a program takes at other rates of the laser and with other accelerations, also as charts.
+    Sweep {
+        /// The program.
+        program: PathBuf,
+        /// Name in the library, or a file ending in .toml.
+        #[arg(long, short, value_name = "NAME|FILE")]
+        machine: String,
+        /// Where to save charts of it, as .svg or .png.
         #[arg(long, short, value_name = "FILE")]
         output: Option<PathBuf>,
     },

@@ -468,6 +468,12 @@ const READERS: &[(&str, &str, &str)] = &[
         "glass simulate out.prg -m in.toml",
     ),
     ("PULSES", "in.prg", "glass simulate in.prg -m glass-xyz-100hz"),
+    (
+        "../../crates/glass/machines/glass-xyz-100hz.toml",
+        "in.toml",
+        "glass sweep out.prg -m in.toml",
+    ),
+    ("PULSES", "in.prg", "glass sweep in.prg -m glass-xyz-100hz"),
     ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
     ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
     ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),

@@ -32,6 +32,15 @@ fn the_tables_of_the_glass_engraver_agree_and_name_the_slips() {
     assert!(said.out.contains("(24, 30)") && said.out.contains("<- not its point"), "{said:?}");
     assert!(said.out.contains("Slips of the source"), "{said:?}");
     assert!(!said.out.contains("<- differs"), "{said:?}");
+    // Four charts of them.
+    assert_eq!(folder.run(&["glass", "tables", "-o", "rates.svg"]).out, said.out);
+    let svg = folder.read("rates.svg");
+    for label in ["50 HZ, 0.08 M/S", "100 HZ, 0.1 M/S", "SORTING ANGLE, DEGREES", "200 HZ, 1.5 M/S"]
+    {
+        assert!(svg.contains(&format!("aria-label=\"{label}\"")), "{label}");
+    }
+    let said = folder.run(&["glass", "tables", "-o", "rates.gif"]);
+    assert!(said.code == 2 && said.err.contains("error[drawing]"), "{said:?}");
 }
 
 #[test]
@@ -427,4 +436,39 @@ fn shells_and_channels_are_given_on_the_command_line() {
     assert!(first.lines().next().unwrap().ends_with("BLOCKS 2"), "{first:.100}");
     assert_eq!(first.lines().count(), one);
     assert!(engrave(&folder, &["--machine", "glass-xyz-50hz", "--blocks", "5"]).code != 0);
+}
+
+#[test]
+fn what_a_program_takes_on_other_drives_is_told_and_drawn() {
+    let folder = Folder::empty();
+    // Steps of 0.187 and 0.7 mm: at 7.5 m/s², 0.1 m/s and 100 Hz one tick and two.
+    folder.write(
+        "three.prg",
+        "N1 BEGIN BLOCK X20.000 Y20.000 Z30.000 POINTS 3\nN2 PULSE X1.000 Y1.000 Z-1.000\nN3 PULSE X1.187 Y1.000 Z-1.000\nN4 PULSE X1.187 Y1.700 Z-1.000\nN5 END\n",
+    );
+    let words = ["glass", "sweep", "three.prg", "-m", "glass-xyz-100hz"];
+    let said = folder.run(&words);
+    assert_eq!(said.code, 0, "{said:?}");
+    let row = |start: &str| -> Vec<String> {
+        let line = said.out.lines().find(|line| line.trim_start().starts_with(start));
+        line.unwrap_or_default().split_whitespace().map(str::to_owned).collect()
+    };
+    // 4 ticks of 10 ms.
+    assert_eq!(row("7.500")[4..7], ["75.00", "0.0", "s"], "{said:?}");
+    // A quarter of the acceleration: 0.187 mm takes 2 √(0.187 / 1875) = 19.97 ms, 2 ticks, 0.7 mm 38.64 ms, 4 ticks, all 7; at 50 Hz 1, 2
+    // and 1 for the first pulse.
+    assert_eq!(row("1.875")[4], "42.86", "{said:?}");
+    assert_eq!(row("1.875")[1], "37.50", "{said:?}");
+    // At 200 Hz and 30 m/s²: 0.187 mm takes 4.99 ms, 0.7 mm 10.3 ms (it does not go faster than 0.1 m/s): 1, 1 and 3 ticks.
+    assert_eq!(row("30.000")[7], "120.00", "{said:?}");
+    assert_eq!(folder.run(&[&words[..], &["-o", "three.svg"]].concat()).out, said.out);
+    let svg = folder.read("three.svg");
+    assert!(svg.contains("aria-label=\"200 HZ\"") && svg.contains("aria-label=\"TIME, S\""));
+    let json = folder.run(&[&words[..], &["--json"]].concat()).json();
+    assert_eq!(json["swept"].as_array().map(Vec::len), Some(27), "{json}");
+    // A scanner's time is that of its stage too.
+    folder.write("roof.stl", body());
+    assert_eq!(engrave(&folder, &["--machine", "glass-galvo-1000hz"]).code, 0);
+    let said = folder.run(&["glass", "sweep", "roof.prg", "-m", "glass-galvo-1000hz"]);
+    assert!(said.code == 2 && said.err.contains("from rest to rest"), "{said:?}");
 }
