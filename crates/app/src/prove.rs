@@ -158,8 +158,11 @@ pub(crate) fn failed(proof: &Report, source: &Toolpath, program: &str) -> Accoun
         ("program", String::from("the motion differs from the source")),
     ];
     if let Some(first) = &proof.first_mismatch {
-        let (place, text) = source.location(first.source_line);
-        rows.push(("source says", format!("{place}  {}", text.trim())));
+        // A board has no lines.
+        if first.source_line > 0 {
+            let (place, text) = source.location(first.source_line);
+            rows.push(("source says", format!("{place}  {}", text.trim())));
+        }
         let block = first.block.trim();
         let file = first.program_file.as_deref().unwrap_or(program);
         rows.push(("program says", format!("{file}:{}  {block}", first.program_line)));

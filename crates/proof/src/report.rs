@@ -8,6 +8,7 @@ use machine::limits::Travel;
 use program::{Diagnostic, Severity};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// The most mismatches and the most warnings that a report names; more of a rule raise its count.
 pub(crate) const MOST: usize = 20;
@@ -394,5 +395,17 @@ fn note(list: &mut Vec<Diagnostic>, found: Diagnostic) {
         same.count = same.count.saturating_add(1);
     } else if list.len() < MOST {
         list.push(found);
+    }
+}
+
+/// A line of the source at the head of a message; nothing where the source has no lines, as a board.
+pub(crate) struct SourceLine(pub u32);
+
+impl fmt::Display for SourceLine {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.0 {
+            0 => Ok(()),
+            line => write!(f, "source line {line}: "),
+        }
     }
 }

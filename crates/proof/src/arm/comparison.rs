@@ -8,7 +8,7 @@ mod path;
 mod reentry;
 
 use super::expected::{Expected, Step};
-use crate::report::{ArmChecked, Report};
+use crate::report::{ArmChecked, Report, SourceLine};
 use ::arm::{Arm, Joints};
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
 use geom::{Frame, Vec3, angle_between};
@@ -160,7 +160,7 @@ impl<'a> Comparison<'a> {
         if !self.failed {
             self.leave_out();
             if let Some(missing) = self.expected.get(self.next) {
-                let message = format!("source line {}: the program ends before this", missing.line);
+                let message = format!("{}the program ends before this", SourceLine(missing.line));
                 self.differs(Diagnostic::error(Rule::Missing, message));
             } else if !self.ended {
                 self.differs(Diagnostic::error(Rule::NoEnd, "the program has no end"));
@@ -188,10 +188,7 @@ impl<'a> Comparison<'a> {
             Err(found) => Err(found),
         };
         done.map_err(|found| {
-            let message = match source {
-                0 => found.message.clone(),
-                line => format!("source line {line}: {}", found.message),
-            };
+            let message = format!("{}{}", SourceLine(source), found.message);
             let line = if found.line == 0 { event.line } else { found.line };
             let file = self.file.as_deref().unwrap_or_default().to_owned();
             Box::new(Diagnostic { message, ..*found }.line(line).file(file))

@@ -7,6 +7,7 @@ pub(crate) mod centre;
 pub(crate) mod resolved;
 pub(crate) mod trail;
 
+use crate::report::SourceLine;
 use control::{Action, ArcTo, Dialect, Position};
 use machine::{Machine, ToolRadius};
 use program::{CompensatedPath, Compensation, Diagnostic, Program, Rule};
@@ -40,7 +41,7 @@ pub(crate) fn unsettled(source: &Program, machine: &Machine) -> Option<Diagnosti
             "`tool_radius = \"full\"` in [settings] of the machine file, where it does",
         ),
     };
-    let message = format!("source line {line}: {message}");
+    let message = format!("{}{message}", SourceLine(line));
     Some(Diagnostic::error(Rule::CompensatedPath, message).help(help))
 }
 
@@ -49,7 +50,8 @@ pub(crate) fn unsettled(source: &Program, machine: &Machine) -> Option<Diagnosti
 pub(crate) fn unsettled_for_arm(source: &Program) -> Option<Diagnostic> {
     let line = source.compensates().filter(|_| source.compensated_path.is_none())?;
     let message = format!(
-        "source line {line}: whether the coordinates with compensation are the path of the tool's centre or the contour is not known"
+        "{}whether the coordinates with compensation are the path of the tool's centre or the contour is not known",
+        SourceLine(line)
     );
     let help = "`--cutcom centre` or `--cutcom contour`";
     Some(Diagnostic::error(Rule::CompensatedPath, message).help(help))

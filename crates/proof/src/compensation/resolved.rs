@@ -4,7 +4,7 @@ use super::centre::{Fault, Slack};
 use super::trail::{CompensatedMoves, Piece};
 use super::{Part, centre};
 use crate::gauge::Gauge;
-use crate::report::Report;
+use crate::report::{Report, SourceLine};
 use crate::resolved_pose::{Number, ResolvedPose};
 use control::{ArcTo, Dialect, Event, Position, Setup, ToolData};
 use machine::{Machine, ToolRadius};
@@ -160,8 +160,8 @@ impl Run<'_> {
                     _ => String::new(),
                 };
                 let message = format!(
-                    "source line {}: with a radius of {} mm {how}{at}",
-                    stretch.terms.source_line,
+                    "{}with a radius of {} mm {how}{at}",
+                    SourceLine(stretch.terms.source_line),
                     Number(radius)
                 );
                 let line = block.or(element).unwrap_or_default();

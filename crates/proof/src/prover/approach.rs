@@ -95,9 +95,9 @@ impl Prover<'_> {
         }
         let clearance = Number(machine.capabilities.rapid_clearance);
         let message = format!(
-            "source line {}: the program sends Z home from {} with a tilted tool, {} mm short of {clearance} mm beyond all \
+            "{}the program sends Z home from {} with a tilted tool, {} mm short of {clearance} mm beyond all \
              cuts along the tool axis",
-            self.cursor.line,
+            SourceLine(self.cursor.line),
             at.place,
             Number(short)
         );
@@ -311,9 +311,9 @@ impl Prover<'_> {
             return None;
         }
         let message = format!(
-            "source line {}: with Z home the tool is {} mm short of {} mm above all that the source cuts, as the table \
+            "{}with Z home the tool is {} mm short of {} mm above all that the source cuts, as the table \
              and the head stand",
-            self.cursor.line,
+            SourceLine(self.cursor.line),
             Number(short),
             Number(machine.capabilities.rapid_clearance)
         );

@@ -55,7 +55,7 @@ impl Prover<'_> {
             return Err(self.lost_at(to.line, Rule::UnknownStart, &message));
         }
         let message =
-            format!("source line {}: feeds to {} from an unknown place", goal.line, to.place);
+            format!("{}feeds to {} from an unknown place", SourceLine(goal.line), to.place);
         self.report.warn(Diagnostic::warning(Rule::UnknownStart, message).line(to.line));
         let feed = self.feed_by_number();
         self.check_cut(to, feed, false);
@@ -140,7 +140,7 @@ impl Prover<'_> {
         let closer = state::closer_than_asked(&self.gauge.corners, wanted, running);
         let in_plane = to.place.is_across(self.here.place.tip, rounding);
         if let Some(message) = closer {
-            let message = format!("source line {}: {message}", self.cursor.line);
+            let message = format!("{}{message}", SourceLine(self.cursor.line));
             self.report.warn(Diagnostic::warning(Rule::PathMode, message).line(to.line));
         }
         for difference in found {

@@ -22,14 +22,14 @@ impl Prover<'_> {
         }
         if !left.is_empty() {
             let (source, left) = (self.cursor.line, left.join(", "));
-            let message = format!("source line {source}: the program ends and leaves {left}");
+            let message = format!("{}the program ends and leaves {left}", SourceLine(source));
             let help = "switch it off, or select that of the last cut, before the end: the next program takes it as off";
             self.found(Diagnostic::error(Rule::LeftOn, message).help(help).line(line));
         }
         if machine.wire.is_none() && self.here.position.point.z.is_finite() {
             let message = format!(
-                "source line {}: the program ends where Z has not been home since the last move",
-                self.cursor.line
+                "{}the program ends where Z has not been home since the last move",
+                SourceLine(self.cursor.line)
             );
             let help = "send Z home before the end: the next program, or the operator, may move X and Y first";
             self.report.warn(Diagnostic::warning(Rule::EndHeight, message).help(help).line(line));

@@ -13,8 +13,8 @@ impl Prover<'_> {
         }
         if !self.gauge.machine.tools.retracts && self.here.position.point.z.is_finite() {
             let message = format!(
-                "source line {}: the program changes the tool where Z has not been home since the last move",
-                self.cursor.line
+                "{}the program changes the tool where Z has not been home since the last move",
+                SourceLine(self.cursor.line)
             );
             let help = "send Z home before it, or say `retracts = true` in [tools] of the machine's file where its \
                         tool change brings Z up by itself";
@@ -23,7 +23,7 @@ impl Prover<'_> {
         if !self.gauge.machine.tools.retracts && !self.raised && !self.has_stood {
             let message =
                 "changes the first tool wherever Z stands: nothing before it has sent Z home";
-            let message = format!("source line {}: the program {message}", self.cursor.line);
+            let message = format!("{}the program {message}", SourceLine(self.cursor.line));
             let help = "send Z home before it, or bring the spindle up before you start";
             let found = Diagnostic::warning(Rule::ToolChangeHeight, message).help(help);
             self.report.warn(found.line(line));
@@ -62,9 +62,9 @@ impl Prover<'_> {
             return;
         };
         let message = format!(
-            "source line {}: the program changes the tool while the head is turned: {letter} does not stand at 0, or nobody knows \
+            "{}the program changes the tool while the head is turned: {letter} does not stand at 0, or nobody knows \
              that it does",
-            self.cursor.line
+            SourceLine(self.cursor.line)
         );
         let help = "turn the axes of the head to 0 behind the retract, or say `turns_upright = true` in [tools] of the machine's \
                     file where its tool change does that by itself";

@@ -21,7 +21,7 @@ use crate::hole::{Drilled, Hole, Run};
 use crate::line::Followed;
 use crate::machine_pose::PossiblePositions;
 use crate::pace::{self, Compared, Pace};
-use crate::report::{Excursion, Report, TravelChecked};
+use crate::report::{Excursion, Report, SourceLine, TravelChecked};
 use crate::resolved_pose::{Number, PartialPose, ResolvedPose};
 use crate::state::{self, CornerLimits, Difference, Running};
 use crate::tolerance::{Applied, Tolerances};
@@ -73,6 +73,8 @@ pub struct Prover<'a> {
     raised: bool,
     /// The height over the work zero to which a machine without switches has retracted, mm: from there it only comes down.
     top: f64,
+    /// Whether the operator has set up a machine without switches, or the tool has moved.
+    is_set_up: bool,
     /// How far the touch-off of the tool is that has been put in by hand.
     touch: touch_off::Touch,
     /// Whether the control has turned the rotary axes to a tilted plane, and nothing has moved since.
@@ -155,6 +157,7 @@ impl<'a> Prover<'a> {
             accepted: tolerances.accepted,
             raised: false,
             top: f64::NEG_INFINITY,
+            is_set_up: false,
             touch: touch_off::Touch::default(),
             swivelled: false,
             has_stood: false,
@@ -171,7 +174,7 @@ impl<'a> Prover<'a> {
     /// Refuses a source with two different tools under one number: the control skips the change from the one to the other.
     fn look_for_two_tools(&mut self) {
         for found in self.source.tools_under_one_number() {
-            let message = format!("source line {}: {}", found.line, found.message);
+            let message = format!("{}{}", SourceLine(found.line), found.message);
             let line = found.line;
             let found = Diagnostic { message, ..found }.line(0);
             match found.severity {
@@ -272,6 +275,7 @@ impl<'a> Prover<'a> {
         if self.ended && !passive {
             return Err(self.lost_at(line, Rule::AfterEnd, "goes on after the end of the program"));
         }
+        self.awaits_set_up(event);
         if self.touches_off(event) {
             return Ok(());
         }
@@ -390,8 +394,7 @@ impl<'a> Prover<'a> {
                 running.cycle = None;
             }
             Action::Risk(risk) => {
-                let message =
-                    format!("source line {}: the program {}", self.cursor.line, risk.what);
+                let message = format!("{}the program {}", SourceLine(self.cursor.line), risk.what);
                 if risk.refused {
                     self.found(Diagnostic::error(risk.rule, message).help(risk.help).line(line));
                 } else {
@@ -599,8 +602,8 @@ impl<'a> Prover<'a> {
             return;
         }
         let message = format!(
-            "source line {}: the program turns rotary axes where Z has not been home since the last move",
-            self.cursor.line
+            "{}the program turns rotary axes where Z has not been home since the last move",
+            SourceLine(self.cursor.line)
         );
         let help = "send Z home before it";
         self.found(Diagnostic::error(Rule::TurnHeight, message).help(help).line(line));
@@ -720,7 +723,7 @@ impl<'a> Prover<'a> {
     /// A difference after which the comparison goes on.
     fn differs(&mut self, line: u32, (rule, what): Difference) {
         let source = self.cursor.line;
-        let message = format!("source line {source}: {what}");
+        let message = format!("{}{what}", SourceLine(source));
         self.found(Diagnostic::error(rule, message).help(ALIKE).line(line));
     }
 
@@ -765,7 +768,7 @@ impl<'a> Prover<'a> {
 
     /// The mismatch on `line` of the program after which the comparison cannot go on.
     fn lost_at(&self, line: u32, rule: Rule, what: &str) -> Box<Diagnostic> {
-        let message = format!("source line {}: the program {what}", self.cursor.line);
+        let message = format!("{}the program {what}", SourceLine(self.cursor.line));
         Diagnostic::error(rule, message).help(ALIKE).line(line).into()
     }
 }

@@ -214,7 +214,7 @@ impl Prover<'_> {
     /// home position.
     pub(super) fn machine_move(&mut self, line: u32, to: &MachineMove) -> Outcome {
         if let Some(found) = self.gauge.machine.unsafe_position(to) {
-            let message = format!("source line {}: {}", self.cursor.line, found.message);
+            let message = format!("{}{}", SourceLine(self.cursor.line), found.message);
             return Err(Diagnostic { message, ..found }.line(line).into());
         }
         self.home(line, to.axes())
@@ -245,6 +245,19 @@ impl Prover<'_> {
             && !is_sources()
     }
 
+    /// A machine without switches waits for the operator before it first moves: its Z is where it was switched on until a tool has
+    /// set it.
+    pub(super) fn awaits_set_up(&mut self, event: &Event) {
+        let moves =
+            matches!(event.action, Action::Home(_) | Action::MachineMove(_) | Action::Probe(_))
+                || event.action.position().is_some();
+        if !self.is_set_up && moves && self.gauge.machine.retract_height().is_some() {
+            let message = "moves before it has stopped for the operator to fit the tool and set Z 0 with it: the machine has no switches";
+            self.differs(event.line, (Rule::Stop, message.into()));
+        }
+        self.is_set_up |= moves || event.action == Action::Stop;
+    }
+
     /// A retract to the `retract_height`, which is home on a machine without switches: above all that the source cuts.
     pub(super) fn retract(&mut self, line: u32, to: &Position) -> Outcome {
         let to = self.gauge.resolve(line, *to);
@@ -254,8 +267,8 @@ impl Prover<'_> {
         let short = self.short_below(&to, Vec3::Z);
         if short > self.gauge.machine.resolution() {
             let message = format!(
-                "source line {}: the program retracts to Z{}, {} mm short of {} mm above all that the source cuts",
-                self.cursor.line,
+                "{}the program retracts to Z{}, {} mm short of {} mm above all that the source cuts",
+                SourceLine(self.cursor.line),
                 Number(to.position.point.z),
                 Number(short),
                 Number(self.gauge.machine.capabilities.rapid_clearance)

@@ -164,8 +164,9 @@ impl Prover<'_> {
 
     pub(super) fn way_refused(&self, to: &ResolvedPose, what: &str) -> Diagnostic {
         let message = format!(
-            "source line {}: the program goes by rapid to {} and {what}",
-            self.cursor.line, to.place
+            "{}the program goes by rapid to {} and {what}",
+            SourceLine(self.cursor.line),
+            to.place
         );
         let help = match self.gauge.machine.settings.rapid_path {
             _ if self.gauge.machine.has_straight_rapids() && !self.gauge.straight_rapids => {

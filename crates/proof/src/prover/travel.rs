@@ -39,7 +39,7 @@ impl Prover<'_> {
             if let Some(way_out) = self.standing.way_out() {
                 found.help = format!("{}; {way_out}", found.help);
             }
-            let message = format!("source line {}: {}", self.cursor.line, found.message);
+            let message = format!("{}{}", SourceLine(self.cursor.line), found.message);
             self.found(Diagnostic { message, ..found }.line(to.line));
         }
     }
@@ -52,9 +52,9 @@ impl Prover<'_> {
         }
         let Some(near) = self.standing.passes_pole(axis) else { return };
         let message = format!(
-            "source line {}: the vector of the tool goes past the pole of the rotary axes at {}°: within 2° (MD24530) the \
+            "{}the vector of the tool goes past the pole of the rotary axes at {}°: within 2° (MD24530) the \
              control leads it through the pole, or stops with alarm 14112 (MD24540)",
-            self.cursor.line,
+            SourceLine(self.cursor.line),
             Number(near)
         );
         let help = "tool axes in the source that go round the pole by more than 2° or through it, or positions of the rotary axes \

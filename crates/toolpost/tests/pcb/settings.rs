@@ -434,6 +434,8 @@ fn tools_are_touched_off_on_a_plate() {
         let said = prove(&text.replacen(from, to, 1));
         assert!(said.code == 1 && said.err.contains(why), "{from} {to} {said:?}");
     }
+    // No line of a source is named where there is none.
+    assert!(!said.err.contains("source line 0") && !said.out.contains("board-drill:0"), "{said:?}");
     // A plate as high as the tool goes up, and a depth that is no binary fraction.
     let at = |height: &str| {
         folder.run(
@@ -444,6 +446,13 @@ fn tools_are_touched_off_on_a_plate() {
     assert!(said.code == 1 && said.err.contains("mm of room are needed"), "{said:?}");
     assert_eq!(at("18.6").code, 0);
     assert!(folder.read("out/drill.gcode").contains("G38.2 Z3.6 F30\n"));
+    for (wrong, need) in [
+        ("touch_travel=0.0001", "0, or a number from 0.5 to 1000 mm"),
+        ("touch_feed=601", "0, or a number from 1 to 100 mm/min"),
+    ] {
+        let said = folder.run(&[&call[..], &machine[..], &["--option", wrong]].concat());
+        assert!(said.code == 2 && said.err.contains(need), "{wrong} {said:?}");
+    }
     // A machine without a plate takes none of it, and stops with a message.
     folder.write("out/drill.gcode", &text);
     let words = ["prove", "out/drill.gcode", "--against", "board", "-m", "grbl-3018"];
@@ -558,4 +567,29 @@ fn judged_by_linuxcnc(folder: &Folder, text: &str) {
     let [none, first, second] = lengths[..] else { panic!("{said}") };
     assert_eq!([none, first], [0.0, 30.0], "{said}");
     assert!((second - (30.0 - 13.4 - 1.6)).abs() < 0.26, "{second}");
+}
+
+/// A machine without switches does not know where its zero is until the operator has set it: a program that moves before a stop is
+/// refused.
+#[test]
+fn a_machine_without_switches_stops_before_its_first_move() {
+    let folder = small();
+    folder.write("own.toml", "extends = \"generic-3axis-grbl\"\n[options]\nretract_height = 20\n");
+    for machine in ["grbl-3018", "own.toml"] {
+        let call = ["pcb", "board", "--tool", "0.4", "--only", "front", "-o", "out", "-m", machine];
+        let said = folder.run(&call);
+        assert_eq!(said.code, 0, "{said:?}");
+        let text = folder.read("out/front.gcode");
+        let stop = "(Z goes up next: see that there is room)\nM0\n";
+        assert_eq!(text.matches(stop).count(), 1, "{text}");
+        for wrong in ["", "M5\n", "M1\n", "G4 P1\n", "G0 Z20\nM0\n"] {
+            folder.write("out/front.gcode", text.replacen(stop, wrong, 1));
+            let said =
+                folder.run(&["prove", "out/front.gcode", "-m", machine, "--against", "board"]);
+            assert!(
+                said.code == 1 && said.err.contains("stopped for the operator"),
+                "{machine} {wrong:?} {said:?}"
+            );
+        }
+    }
 }
