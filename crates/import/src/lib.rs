@@ -5,6 +5,8 @@
 //! one `foreign::Post`; `write` makes a file of it that extends a control of the library, which provides what the
 //! post does not have. The same bytes give the same file. Lengths are mm, as in every machine file.
 //!
+//! A millproject of pcb2gcode becomes the options of `toolpost pcb` that do the same.
+//!
 //! Nothing is evaluated: a template of another system is text. Nothing is proven here either: whoever imports a post
 //! loads the file and proves a program with it.
 //!
@@ -27,6 +29,7 @@
 mod arms;
 mod foreign;
 mod items;
+mod millproject;
 mod moves;
 mod parameters;
 mod placeholders;
@@ -35,6 +38,7 @@ mod vectric;
 mod write;
 
 pub use arms::{import_calibration, import_urdf};
+pub use millproject::{Stated, import_millproject};
 
 use machine::{is_path, load_origin};
 use program::{Diagnostic, Rule};

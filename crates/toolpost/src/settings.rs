@@ -1,13 +1,12 @@
 //! Options of `toolpost pcb` in a file: `toolpost.toml` beside the board, or a millproject of pcb2gcode. They become words of the command
 //! line, in front of those that are typed.
 
-mod millproject;
-
 use crate::args::CommandLine;
 use app::pcb::SETTINGS;
 use app::{Source, Stop};
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, CommandFactory, Parser};
+use import::{Stated, import_millproject};
 use program::{Diagnostic, Rule, nearest};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -19,16 +18,6 @@ pub struct Expanded {
     pub words: Vec<OsString>,
     /// What was found in the file.
     pub found: Vec<Diagnostic>,
-}
-
-/// An option of a file.
-struct Stated {
-    /// As it is typed, without the dashes in front.
-    name: String,
-    /// What is typed behind it; none for one that needs nothing.
-    values: Vec<String>,
-    /// The line of the file, from 1.
-    line: u32,
 }
 
 /// Options that are files or folders: one in a file lies where that file does.
@@ -64,7 +53,7 @@ pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
     let name = file.display().to_string();
     let (stated, found) = match is_toml {
         true => (of_toml(&text).map_err(|found| (*found).file(&name))?, Vec::new()),
-        false => millproject::read(&text).map_err(|found| (*found).file(&name))?,
+        false => import_millproject(&text).map_err(|found| (*found).file(&name))?,
     };
     let found = found.into_iter().map(|found: Diagnostic| found.file(&name)).collect();
     let more = spelled(&stated, typed, &file).map_err(|found| {

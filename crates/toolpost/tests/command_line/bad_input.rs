@@ -356,7 +356,11 @@ const READERS: &[(&str, &str, &str)] = &[
     ("sinumerik/style.mpf", "in.mpf", "show in.mpf --from sinumerik-828d"),
     ("klartext/milling.h", "in.h", "show in.h --from heidenhain-tnc640"),
     ("SETTINGS", "in.toml", "pcb board.toml -m grbl-3018 --tool 0.3 -o out --settings in.toml"),
-    ("PROJECT", "in", "pcb board.toml -m grbl-3018 --tool 0.3 -o out --settings in"),
+    (
+        "millproject/small.millproject",
+        "in",
+        "pcb board.toml -m grbl-3018 --tool 0.3 -o out --settings in",
+    ),
     ("krl/job.src", "in.src", "prove in.src -m kuka-kr6-r900 --against part.cls"),
     ("urscript/job.script", "in.script", "prove in.script -m universal-ur5e --against part.cls"),
     ("ls/job.ls", "in.ls", "prove in.ls -m fanuc-lrmate-200id-mill --against part.cls"),
@@ -503,7 +507,6 @@ fn text_of(seed: &str) -> Vec<u8> {
     match seed {
         "CALLED" => b"%\nO0100\nG1 X40. F200.\nM99\n%\n".to_vec(),
         "CLOUD" => b"0 0 0\n1 0 0\n".to_vec(),
-        "PROJECT" => b"zwork=-0.1mm\nmill-feed=100mm/min\n".to_vec(),
         "SETTINGS" => b"passes = 2\ndepth = 0.1\n".to_vec(),
         "MACHINE" => b"extends = \"generic-3axis-fanuc\"\n".to_vec(),
         "PULSES" => b"N1 BEGIN BLOCK X9.000 Y9.000 Z9.000 POINTS 1\nN2 PULSE X3.000 Y3.000 Z-3.947\nN3 END\n".to_vec(),

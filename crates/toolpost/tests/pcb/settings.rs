@@ -387,6 +387,21 @@ fn programs_of_a_board_are_proven_again() {
     assert!(said.code == 2 && said.err.contains("report.json"), "{said:?}");
 }
 
+/// Two keys of a millproject for the one option that says where the cuts are: the first counts, and the other is named.
+#[test]
+fn a_millproject_that_says_two_places_of_the_cuts_gets_the_first() {
+    let folder = small();
+    folder.write(
+        "board/millproject",
+        "mill-diameters=0.4mm\nvoronoi=1\ndraw-gerber-lines=1\nzero-start=1\n",
+    );
+    let call = ["pcb", "board", "--settings", "board/millproject", "-o", "out", "-m", "grbl-3018"];
+    let said = folder.run(&call);
+    assert_eq!(said.code, 0, "{said:?}");
+    let why = "draw-gerber-lines (--isolate is one: middle)";
+    assert!(said.err.contains(why), "{said:?}");
+}
+
 /// Each further tool sets Z 0 on a touch plate; the proof refuses whatever would set another zero, break the tool or hit the plate.
 #[test]
 fn tools_are_touched_off_on_a_plate() {

@@ -1,6 +1,5 @@
 //! A millproject of pcb2gcode 2: each key as the option that does the same, or with the reason why it is not taken.
 
-use super::Stated;
 use geom::INCH;
 use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
@@ -69,6 +68,17 @@ const NEEDLESS: [(&str, &[&str]); 6] = [
     ("what is odd is a warning; --strict stops for it", &["ignore-warnings", "no-export"]),
 ];
 
+/// An option of `toolpost pcb` that a file states.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stated {
+    /// As it is typed, without the dashes in front.
+    pub name: String,
+    /// What is typed behind it; none for one that needs nothing. Lengths are mm.
+    pub values: Vec<String>,
+    /// The line of the file, from 1; 0 for one that follows from what the file does not say.
+    pub line: u32,
+}
+
 /// The keys of a project, with their lines.
 struct Project<'a> {
     keys: BTreeMap<&'a str, (&'a str, u32)>,
@@ -80,8 +90,8 @@ struct Project<'a> {
 /// The options that a millproject states, and what of it is not taken.
 ///
 /// # Errors
-/// A line that is no `key=value`, a key twice, a value that is none.
-pub fn read(text: &str) -> Result<(Vec<Stated>, Vec<Diagnostic>), Box<Diagnostic>> {
+/// A line that is no `key=value`, a value that is none.
+pub fn import_millproject(text: &str) -> Result<(Vec<Stated>, Vec<Diagnostic>), Box<Diagnostic>> {
     let mut keys = BTreeMap::new();
     for (i, line) in text.lines().enumerate() {
         let number = i as u32 + 1;
@@ -179,8 +189,13 @@ impl Project<'_> {
             ("invert-gerbers", "invert", ""),
             ("mirror-yaxis", "turn", "x"),
         ] {
-            if let Some((_, line)) = self.keys.remove(key).filter(|(given, _)| is_on(given)) {
-                self.state(option, value, line);
+            let Some((_, line)) = self.keys.remove(key).filter(|(given, _)| is_on(given)) else {
+                continue;
+            };
+            let before = self.stated.iter().find(|stated| stated.name == option);
+            match before.map(|stated| stated.values.join(",")) {
+                None => self.state(option, value, line),
+                Some(before) => self.left.push(format!("{key} (--{option} is one: {before})")),
             }
         }
         if let Some((value, line)) = self.keys.remove("spinup-time") {
