@@ -102,6 +102,11 @@ impl Dialect {
         matches!(self, Dialect::UrScript | Dialect::Rapid)
     }
 
+    /// Whether the orientation at the way point of an arc may count for the way from its start to its end.
+    pub fn turns_over_way_point(self) -> bool {
+        self == Dialect::Ls
+    }
+
     /// Every dialect of a control with the name that its file gives as its `reader`.
     pub const NAMES: [(&'static str, Dialect); 17] = [
         ("fanuc", Dialect::Fanuc),

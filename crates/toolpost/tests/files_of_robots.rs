@@ -200,6 +200,18 @@ fn a_finding_in_a_part_names_its_file_and_its_line() {
     }
 }
 
+/// A load that only the operator knows, chosen at the beginning of a part.
+#[test]
+fn another_load_in_a_part_is_refused() {
+    let (source, machine, mut written) = four(ROBOTS[0].0, ROBOTS[0].1);
+    let part = String::from_utf8(written.parts["job_2.ls"].clone()).unwrap();
+    let part = part.replacen("/MN\r\n", "/MN\r\n1:PAYLOAD[2] ;\r\n", 1);
+    written.parts.insert("job_2.ls".into(), part.into_bytes());
+    let report = proof_of(&source, &machine, &written);
+    assert_eq!(rules(&report), ["payload"], "{:?}", report.mismatches);
+    assert_eq!(report.mismatches[0].file, "job_2.ls");
+}
+
 /// Where the first cut of a file begins: the instructions before stay in the file before.
 #[test]
 fn a_file_that_begins_within_a_cut_is_refused() {

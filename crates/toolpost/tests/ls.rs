@@ -267,3 +267,36 @@ fn no_file_of_cutter_location_data_fails_its_own_proof_on_the_robots() {
     }
     assert!(made > 0);
 }
+
+/// A spindle that leans back: the choice turns the tool so that joint 6 comes to -180 degrees, at which rounding would decide its turns.
+#[test]
+fn a_tool_is_turned_by_a_hundredth_of_a_degree_where_rounding_would_decide_the_turns_of_a_joint() {
+    let text = "extends = \"fanuc-m20ia-mill\"\n[cell]\nspindle = [0, 0, 100, 0, -20, 0]\n";
+    let machine = machine::load_text("mine.toml", text).unwrap();
+    let written = proven(&source(JOB), &machine);
+    // Turned the other way about the tool's axis as far it is another number of turns: the control finds it.
+    assert!(written.contains("CONFIG : 'N U T, 0, 0, -1',"), "{written}");
+    let damaged = written.replacen("'N U T, 0, 0, -1'", "'N U T, 0, 0, 0'", 1);
+    let report = proof_of(&source(JOB), &machine, &damaged);
+    assert!(!report.proven);
+}
+
+/// No source says whether the tool takes the orientation of the way point of an arc.
+#[test]
+fn the_orientation_of_the_way_point_of_an_arc_is_on_the_way() {
+    let (source, machine) = (source(JOB), lrmate());
+    let text = proven(&source, &machine);
+    let at = text.find("\r\nP[5]{").unwrap();
+    let turned = |by: &str| {
+        let (before, after) = text.split_at(at);
+        let line = after.lines().find(|line| line.starts_with("W = ")).unwrap();
+        format!("{before}{}", after.replacen(line, &line.replace("P = 0.0000", by), 1))
+    };
+    for (by, rule) in [("P = 3.0000", Some("orientation-way")), ("P = 0.5000", None)] {
+        let damaged = turned(by);
+        assert_ne!(damaged, text);
+        let report = proof_of(&source, &machine, &damaged);
+        let found = report.mismatches.first().map(|found| found.rule.name());
+        assert_eq!(found, rule, "{:?}", report.mismatches);
+    }
+}

@@ -40,6 +40,19 @@ const ROUGH: f64 = 0.05;
 /// By how much a word may round a feed before a finer one is taken, as a part of it.
 const FAIR: f64 = 0.005;
 
+/// Joints of which a position states how many turns they have made, and its words.
+const TURNS: [(WordName, usize); 3] =
+    [(WordName::Turn1, 0), (WordName::Turn4, 3), (WordName::Turn6, 5)];
+
+/// By how much the tool is turned about its axis where rounding would decide that, degrees.
+const NUDGES: [f64; 6] = [0.01, -0.01, 0.03, -0.03, 0.1, -0.1];
+
+/// Whether rounding decides how many turns a joint has made, degrees as the controller shows it.
+fn is_on_edge(shown: f64) -> bool {
+    let turns = (shown + 180.0) / 360.0;
+    (turns - turns.round()).abs() * 360.0 < 2e-3
+}
+
 /// Joints that differ by less are the same, radians.
 const SAME_JOINTS: f64 = 1e-5;
 
@@ -604,13 +617,15 @@ impl<'a> Walk<'a> {
                     [&self.here.tool, &motion.end.tool].map(|tool| Quat::from_mat3(&tool.matrix3));
                 let half = Mat3::from_quat(a.slerp(b, 0.5));
                 let middle = Frame::from_mat3_translation(half, via);
-                let via = self.point(&self.at_frame(&middle)?)?;
-                let end = self.point(&motion.end)?;
-                self.set(&MIDDLE, &middle);
+                let middle = self.settled(self.at_frame(&middle)?);
+                let to = self.settled(motion.end);
+                let via = self.point(&middle)?;
+                let end = self.point(&to)?;
+                self.set(&MIDDLE, &middle.tool);
                 self.writer.set(WordName::MiddlePoint, via);
-                self.along(&motion.end, (distance, end));
+                self.along(&to, (distance, end));
                 self.required(BlockName::ArcThrough)?;
-                self.here = motion.end;
+                self.here = to;
                 Ok(())
             }
             Kind::Line | Kind::Rapid => self.straight(&motion.end, distance),
@@ -697,21 +712,40 @@ impl<'a> Walk<'a> {
         self.writer.code(WordName::Elbow, usize::from(posture.below()));
         self.writer.code(WordName::Shoulder, usize::from(posture.rear()));
         let shown = self.arm.shown(&at.joints).unwrap_or(at.joints).map(f64::to_degrees);
-        for (word, joint) in [(WordName::Turn1, 0), (WordName::Turn4, 3), (WordName::Turn6, 5)] {
-            let turns = (shown[joint] + 180.0) / 360.0;
-            if (turns - turns.round()).abs() * 360.0 < 2e-3 {
+        for (word, joint) in TURNS {
+            if is_on_edge(shown[joint]) {
                 let message = format!(
                     "joint {} comes to {:.4}°, where rounding decides how many turns the position states",
                     joint + 1,
                     shown[joint]
                 );
-                let help =
-                    "turn the part or the spindle by some degrees (`part`, `spindle` below [cell])";
+                let help = "turn the part by some degrees (`part` below [cell]): no small turn of the tool about its axis moves that joint off the edge";
                 return Err(Diagnostic::error(Rule::Posture, message).help(help).into());
             }
-            self.writer.set(word, turns.floor());
+            self.writer.set(word, ((shown[joint] + 180.0) / 360.0).floor());
         }
         self.position(BlockName::Position)
+    }
+
+    /// The same tip and axis, turned about the axis by so little that no rounding decides how many turns of a joint the position states;
+    /// as it is where the control states none, or no such turn does.
+    fn settled(&self, at: Position) -> Position {
+        let states =
+            TURNS.iter().any(|(word, _)| self.templates.places(BlockName::Position, *word));
+        let is_settled = |joints: &Joints| {
+            let shown = self.arm.shown(joints).unwrap_or(*joints);
+            TURNS.iter().all(|(_, joint)| !is_on_edge(shown[*joint].to_degrees()))
+        };
+        if !states || is_settled(&at.joints) {
+            return at;
+        }
+        let turned = NUDGES.iter().filter_map(|turn| {
+            let turn = Quat::from_rotation_z(turn.to_radians());
+            let tool = at.tool * Frame::from_rotation_translation(turn, Vec3::ZERO);
+            self.near(&tool, &at.joints)
+        });
+        let mut turned = turned.filter(|found| is_settled(&found.joints));
+        turned.next().unwrap_or(at)
     }
 
     /// The position of the arm at a frame near where it is, in the same posture.
@@ -719,16 +753,20 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// It does not reach there.
     fn at_frame(&self, tool: &Frame) -> Outcome<Position> {
+        self.near(tool, &self.here.joints).ok_or_else(|| {
+            let message = "the arm does not reach the point half way along the arc in its posture";
+            Diagnostic::error(Rule::ArmPath, message).into()
+        })
+    }
+
+    /// The position at a frame, near these joints and in their posture; `None` where the arm does not reach there.
+    fn near(&self, tool: &Frame, before: &Joints) -> Option<Position> {
         let off = self.tool.unwrap_or(Frame::IDENTITY).inverse();
         let flange = self.cell.part_from(self.here.rail) * *tool * off;
-        let before = self.here.joints;
         let found = self.arm.inverse(&flange, before[3]);
-        let Some(joints) = found.get(self.arm.posture(&before)) else {
-            let message = "the arm does not reach the point half way along the arc in its posture";
-            return Err(Diagnostic::error(Rule::ArmPath, message).into());
-        };
+        let joints = found.get(self.arm.posture(before))?;
         let joints = std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
-        Ok(Position { tool: *tool, joints, ..self.here })
+        Some(Position { tool: *tool, joints, ..self.here })
     }
 
     /// Quarters of joints 1, 4 and 6 and the posture. Where a joint is at the edge of a quarter, the control does not use it.
@@ -748,10 +786,11 @@ impl<'a> Walk<'a> {
     }
 
     fn straight(&mut self, end: &Position, corner: f64) -> Outcome {
-        let point = self.point(end)?;
-        self.along(end, (corner, point));
+        let end = self.settled(*end);
+        let point = self.point(&end)?;
+        self.along(&end, (corner, point));
         self.required(BlockName::Linear)?;
-        (self.here, self.is_exact) = (*end, true);
+        (self.here, self.is_exact) = (end, true);
         Ok(())
     }
 

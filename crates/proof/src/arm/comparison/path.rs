@@ -6,7 +6,7 @@ use super::{Comparison, STRIDE, Standing, refused};
 use crate::report::Excursion;
 use ::arm::Joints;
 use control::kernel::arc::through;
-use control::{ArmMove, ArmPosture, Corner, Rounding, Turning};
+use control::{ArmMove, ArmPosture, Corner, Dialect, Rounding, Turning};
 use geom::{Arc, Frame, Mat3, Quat, Vec3, angle_between, between, nearest_on_segment};
 use program::{Diagnostic, Outcome, Pose, Rule};
 use std::f64::consts::TAU;
@@ -25,6 +25,9 @@ const SMALL_TURN: f64 = 1.745_329_251_994_329_6e-4;
 
 /// By so much of itself the time of a cut may be longer than its feed wants it.
 const SLOWER: f64 = 0.05;
+
+/// How much farther the turn over the way point of an arc may be than the turn to its end, radians.
+const DETOUR: f64 = 0.02;
 
 impl Comparison<'_> {
     /// A straight line of the tip.
@@ -217,6 +220,12 @@ impl Comparison<'_> {
         let (a, b) = (start.tool.matrix3, end.matrix3);
         let at = |part: f64| Frame::from_mat3_translation(turned(&a, &b, part), arc.at(part));
         let turn = sure_turn(&a, &b)?;
+        let counts =
+            Dialect::named(&self.machine.reader).is_some_and(Dialect::turns_over_way_point);
+        if counts && angle(&a, &via.matrix3) + angle(&via.matrix3, &b) > angle(&a, &b) + DETOUR {
+            let message = "the orientation at the way point of the arc is not on the way from its start to its end";
+            return refused(Rule::OrientationWay, message);
+        }
         self.on_arc(&at, wanted, &arc, to, line)?;
         self.bulge(&arc, points[1], wanted, line)?;
         self.in_cut(&expected)?;
