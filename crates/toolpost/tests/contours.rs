@@ -4,8 +4,9 @@ mod dice;
 mod files;
 mod robot;
 
+use control::{ArmPath, Dialect};
 use dice::Dice;
-use geom::Vec2;
+use geom::{Vec2, Vec3, nearest_on_segment};
 use machine::Machine;
 use program::{CompensatedPath, Program};
 use std::fmt::Write as _;
@@ -279,5 +280,37 @@ fn a_way_that_comes_near_to_a_contour_is_a_warning() {
     for found in warned(&square([[-20.0, 20.0], [-20.0, 20.0]], &second), 4) {
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].1.contains("goes over another contour"), "{}", found[0].1);
+    }
+}
+
+/// A tool of radius 8 around a corner of 4 degrees: one chord would come to 8 cos 2° = 7.9951 mm from it.
+#[test]
+fn a_flat_outer_corner_is_cut_into_by_two_steps_of_the_words_at_the_most() {
+    let corner = Vec2::new(40.0, 0.0);
+    let mut contour = Contour::begin(16.0, "LEFT", [Vec2::new(-12.0, 12.0), Vec2::ZERO], 4);
+    contour.line(corner);
+    contour.line(corner + 40.0 * Vec2::from_angle(-4_f64.to_radians()));
+    let source = contour.end(Vec2::new(92.0, 10.0));
+    for (name, dialect) in
+        LANGUAGES.iter().zip([Dialect::Krl, Dialect::UrScript, Dialect::Ls, Dialect::Rapid])
+    {
+        let machine = machine::load(name).unwrap();
+        let text = robot::proven(&source, &machine);
+        let part = machine.cell.as_ref().unwrap().part;
+        // Poses of URScript count in the base of the robot.
+        let in_world = dialect == Dialect::UrScript;
+        let tips: Vec<Vec3> = robot::paths(dialect, &text)
+            .into_iter()
+            .filter_map(|path| match path {
+                ArmPath::Line(end) => Some(end.translation),
+                ArmPath::Arc { .. } | ArmPath::Joints(_) | ArmPath::Point(_) => None,
+            })
+            .map(|tip| if in_world { part.inverse().transform_point3(tip) } else { tip })
+            .collect();
+        let nearest = tips
+            .windows(2)
+            .map(|pair| nearest_on_segment(pair[0], pair[1], corner.extend(-2.0)).1)
+            .fold(f64::INFINITY, f64::min);
+        assert!((8.0 - 0.0025..8.0 + 1e-3).contains(&nearest), "{name}: {nearest}\n{text}");
     }
 }

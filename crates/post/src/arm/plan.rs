@@ -27,6 +27,9 @@ const LEAST_CHORD: f64 = 0.12;
 /// So many places of the rail are tried for points that are cut from one.
 const TRIES: usize = 4;
 
+/// Chords leave an arc in a plane by no more steps of the words; one that a single chord leaves by no more is written as that.
+const FLATTEST: f64 = 2.0;
+
 /// What an arm does, in order.
 pub(super) enum Step<'a> {
     /// A motion.
@@ -495,12 +498,17 @@ impl<'a> Walk<'a, '_> {
         let feed = self.feed(arc.length())?;
         let corner = self.corner;
         let pose = |part: f64| end.at(arc.at(part));
-        let count = arc.chords(self.machine.capabilities.lowering_tolerance);
+        let rises = arc.rise().abs() > self.machine.resolution();
+        // Chords of an arc cut into what it goes around: by what rounding of its points does.
+        let count = arc.chords(match rises {
+            true => self.machine.capabilities.lowering_tolerance,
+            false => FLATTEST * self.machine.resolution(),
+        });
         let most = self.machine.capabilities.arc_sweep;
         let half_way = 2.0 * arc.length() / arc.sweep * (arc.sweep.min(most) / 4.0).sin();
         let is_flat = arc.sweep < LEAST_SWEEP || half_way < LEAST_CHORD;
         // An arc that its chord does not leave has no third point off the line.
-        if count == 1 || is_flat || arc.rise().abs() > self.machine.resolution() {
+        if count == 1 || is_flat || rises {
             for i in 1..=count {
                 self.go(line, &pose(i as f64 / count as f64)?, Kind::Line, (feed, corner));
             }
