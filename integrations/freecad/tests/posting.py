@@ -28,6 +28,13 @@ from work import Piece, Work, run
 FOLDER = os.environ["TOOLPOST_CASES"]
 LONG = int(os.environ["TOOLPOST_LONG"])
 LINUXCNC = "--machine generic-3axis-linuxcnc"
+# One of each language, and what its files end with.
+ROBOTS = {
+    "kuka-kr6-r900": "src",
+    "universal-ur5e": "script",
+    "fanuc-lrmate-200id-mill": "ls",
+    "abb-irb120-mill": "mod",
+}
 
 cases = {}
 
@@ -86,6 +93,8 @@ def right():
     case("offset-twice-dotted", objects, LINUXCNC + " --work-offset G54.7")
     case("offset-of-none", objects[1:], LINUXCNC + " --work-offset G56")
     case("sinumerik", objects, "--machine generic-3axis-sinumerik")
+    for robot, ending in ROBOTS.items():
+        case(robot, objects, f"--machine {robot}", os.path.join(FOLDER, f"part_1.{ending}"))
     operation = work.job.Operations.Group[0]
     group = work.document.addObject("App::DocumentObjectGroup", "Outer")
     compound = work.document.addObject("Path::FeatureCompound", "Compound")

@@ -71,6 +71,22 @@ def test_without_a_file_the_program_is_only_answered(cases):
     assert "G1 X" in case["answer"]
 
 
+@pytest.mark.parametrize(
+    ("robot", "named"),
+    [
+        ("kuka-kr6-r900", "\nDEF part_1 ( )\n"),
+        ("universal-ur5e", "def job_part_1():\n"),
+        ("fanuc-lrmate-200id-mill", "/PROG PART_1\n"),
+        ("abb-irb120-mill", "MODULE MOD_part_1\n"),
+    ],
+)
+def test_a_robot_gets_a_program_of_the_name_of_its_file(cases, robot, named):
+    case = cases["cases"][robot]
+    assert case["saved"] is not None, case["said"]
+    assert named in case["saved"]
+    assert "proven" in case["said"]
+
+
 def test_the_report_is_saved_where_it_is_asked_for(cases):
     case = cases["cases"]["report"]
     folder = case["file"].rsplit("/", 1)[0]

@@ -68,6 +68,13 @@ def test_what_was_put_right_is_saved(window):
     assert post["saved"] == post["shown"][0]
 
 
+def test_a_robot_is_posted_to_like_a_mill(window):
+    post = window["robot"]
+    assert post["saved"] == post["shown"][0], window["said"]
+    assert "\nDEF block ( )\n" in post["saved"]
+    assert "kuka-kr6-r900" in window["said"]
+
+
 def test_cancel_saves_nothing(window):
     assert window["cancelled"]["saved"] is None
     assert "cancelled, nothing was saved" in window["said"]

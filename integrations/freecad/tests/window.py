@@ -40,7 +40,7 @@ def arrange():
     window.resizeDocks([panels["Report view"]], [150], QtCore.Qt.Vertical)
 
 
-def post(job, *answers):
+def post(job, *answers, program=PROGRAM):
     """Post the job; each dialog on the way gets one of the answers, and one too many is left."""
     answers = list(answers)
     shown = []
@@ -59,15 +59,16 @@ def post(job, *answers):
     timer = QtCore.QTimer()
     timer.timeout.connect(answer)
     timer.start(200)
-    if os.path.exists(PROGRAM):
-        os.remove(PROGRAM)
+    if os.path.exists(program):
+        os.remove(program)
+    job.PostProcessorOutputFile = program
     FreeCADGui.Selection.clearSelection()
     FreeCADGui.Selection.addSelection(job)
     FreeCADGui.runCommand("Path_Post")
     timer.stop()
     saved = None
-    if os.path.exists(PROGRAM):
-        with open(PROGRAM, encoding="utf-8") as file:
+    if os.path.exists(program):
+        with open(program, encoding="utf-8") as file:
             saved = file.read()
     return {"shown": shown, "saved": saved, "left": len(answers), "unexpected": unexpected}
 
@@ -130,6 +131,8 @@ def main():
         ),
         "cancelled": post(job, cancel),
     }
+    job.PostProcessorArgs = "--machine kuka-kr6-r900"
+    found["robot"] = post(job, accept, program=os.path.join(FOLDER, "block.src"))
     with open(os.path.join(FOLDER, "window.json"), "w", encoding="utf-8") as file:
         json.dump(found, file)
 
