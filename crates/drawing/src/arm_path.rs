@@ -10,14 +10,14 @@ use std::fmt::Write as _;
 /// The field of the path: low and high corner, pixels.
 const PATH: [DVec2; 2] = [DVec2::new(50.0, 110.0), DVec2::new(560.0, 590.0)];
 
-/// From where to where the joints are drawn: across, the top of the first, and the height of one with its speed.
+/// From where to where the joints are drawn: across, and the tops of the first and of what is below the last.
 const ACROSS: [f64; 2] = [700.0, 1150.0];
 const TOP: f64 = 100.0;
-const ROW: f64 = 103.0;
+const BELOW: f64 = 718.0;
 
-/// How high the angles of a joint are drawn, and its speeds below them, pixels.
-const ANGLES: f64 = 56.0;
+/// How high the speeds of a joint are drawn, below its angles, and what is left free above and below them, pixels.
 const SPEEDS: f64 = 22.0;
+const FREE: f64 = 25.0;
 
 /// How far a drawn line may be from the path, pixels; doubled until the picture is small enough.
 const TOLERANCE: f64 = 0.1;
@@ -42,6 +42,8 @@ pub struct ArmPicture {
     pub samples: Vec<ArmSample>,
     /// The limits of each joint, degrees.
     pub limits: [[f64; 2]; 6],
+    /// From where to where the rail goes on which the arm stands, mm; `None` without one.
+    pub rail: Option<[f64; 2]>,
     /// What is said below the title.
     pub text: String,
 }
@@ -61,6 +63,8 @@ pub struct ArmSample {
     pub joints: [f64; 6],
     /// Which part of its speed each joint needs on the way here.
     pub speeds: [f64; 6],
+    /// Where the rail stands, mm.
+    pub rail: f64,
     /// The least margin as a part of what is ample.
     pub ease: f64,
 }
@@ -71,11 +75,14 @@ pub fn arm_path(title: &str, picture: &ArmPicture) -> String {
     write_text(&mut out, &shorten(title, 70), DVec2::new(40.0, 40.0), 12.0, INK);
     write_text(&mut out, &shorten(&picture.text, 160), DVec2::new(40.0, 62.0), 7.0, INK);
     path(&mut out, &picture.samples);
-    for joint in 0..6 {
-        row(&mut out, picture, joint);
+    let joints = (0..6).map(|joint| (Axis::Joint(joint), picture.limits[joint]));
+    let rows: Vec<_> = joints.chain(picture.rail.map(|limits| (Axis::Rail, limits))).collect();
+    let height = (BELOW - TOP) / rows.len() as f64;
+    for (i, (axis, limits)) in rows.into_iter().enumerate() {
+        row(&mut out, &picture.samples, (axis, limits), [TOP + height * i as f64, height]);
     }
     let seconds = picture.samples.last().map_or(0.0, |last| last.time);
-    let below = TOP + 6.0 * ROW - 4.0;
+    let below = BELOW - 4.0;
     write_text(&mut out, "0", DVec2::new(ACROSS[0], below), 8.0, INK);
     let end = format!("{seconds:.0} S");
     let start = ACROSS[1] - crate::lettering::width(&end, 8.0);
@@ -167,32 +174,61 @@ struct Column {
     speed: f64,
 }
 
-/// A joint along the time: its angle between its limits, and which part of its speed it needs.
-fn row(out: &mut String, picture: &ArmPicture, joint: usize) {
+/// What a row is of.
+#[derive(Clone, Copy, PartialEq)]
+enum Axis {
+    /// A joint, from 0.
+    Joint(usize),
+    /// It stands in cuts: no speed is drawn.
+    Rail,
+}
+
+impl Axis {
+    fn name(self) -> String {
+        match self {
+            Axis::Joint(joint) => format!("JOINT {}", joint + 1),
+            Axis::Rail => String::from("RAIL, MM"),
+        }
+    }
+
+    /// Where it is at a sample, and which part of its speed it needs on the way there.
+    fn at(self, sample: &ArmSample) -> (f64, f64) {
+        match self {
+            Axis::Joint(joint) => (sample.joints[joint], sample.speeds[joint]),
+            Axis::Rail => (sample.rail, 0.0),
+        }
+    }
+}
+
+/// A joint, or the rail, along the time: where it is between its limits, and which part of its speed it needs; at the top and as high as stated.
+fn row(
+    out: &mut String,
+    samples: &[ArmSample],
+    (axis, [min, max]): (Axis, [f64; 2]),
+    [top, height]: [f64; 2],
+) {
     let [left, right] = ACROSS;
-    let top = TOP + ROW * joint as f64;
-    let [min, max] = picture.limits[joint];
-    let whole = picture.samples.last().map_or(0.0, |last| last.time).max(1e-9);
+    let angles_height = height - SPEEDS - FREE;
+    let whole = samples.last().map_or(0.0, |last| last.time).max(1e-9);
     let mut columns: Vec<Option<Column>> = vec![None; (right - left) as usize + 1];
     let last = columns.len() - 1;
     let mut from = 0;
-    for sample in &picture.samples {
+    for sample in samples {
+        let (angle, speed) = axis.at(sample);
         let at = ((sample.time / whole * last as f64) as usize).min(last);
         for column in columns[from..at].iter_mut().filter(|_| sample.cuts) {
-            let speed = sample.speeds[joint];
             let known = column.get_or_insert(Column { angles: None, speed });
             known.speed = known.speed.max(speed);
         }
         from = at;
-        let (angle, speed) = (sample.joints[joint], sample.speeds[joint]);
         let before = columns[at].unwrap_or(Column { angles: None, speed });
         let [low, high] = before.angles.unwrap_or([angle; 2]);
         let angles = Some([low.min(angle), high.max(angle)]);
         columns[at] = Some(Column { angles, speed: before.speed.max(speed) });
     }
-    let place = |angle: f64| top + ANGLES * (1.0 - (angle - min) / (max - min));
+    let place = |angle: f64| top + angles_height * (1.0 - (angle - min) / (max - min));
     let (mut angles, mut speeds) = (String::new(), String::new());
-    let floor = top + ANGLES + 6.0 + SPEEDS;
+    let floor = top + angles_height + 6.0 + SPEEDS;
     let mut most: f64 = 0.0;
     for (i, column) in columns.iter().enumerate() {
         let Some(Column { angles: found, speed }) = column else { continue };
@@ -206,24 +242,30 @@ fn row(out: &mut String, picture: &ArmPicture, joint: usize) {
         }
         most = most.max(*speed);
     }
+    let (mut base, mut fastest) = (String::new(), String::new());
+    if axis != Axis::Rail {
+        base = format!("M{left} {floor}h{}", right - left);
+        fastest = format!("M{left} {}H{right}", floor - SPEEDS);
+    }
     let _ = writeln!(
         out,
-        "<path stroke=\"{FRAME}\" d=\"M{left} {top}h{0}v{ANGLES}h-{0}zM{left} {floor}h{0}\"/>\n\
-         <path stroke=\"{LIMIT}\" stroke-width=\"0.8\" d=\"M{left} {top}H{right}M{left} {1}H{right}M{left} {2}H{right}\"/>\n\
+        "<path stroke=\"{FRAME}\" d=\"M{left} {top}h{0}v{angles_height}h-{0}z{base}\"/>\n\
+         <path stroke=\"{LIMIT}\" stroke-width=\"0.8\" d=\"M{left} {top}H{right}M{left} {1}H{right}{fastest}\"/>\n\
          <path stroke=\"{SPEED}\" d=\"{speeds}\"/>\n<path stroke=\"{ANGLE}\" stroke-width=\"1.6\" d=\"{angles}\"/>",
         right - left,
-        top + ANGLES,
-        floor - SPEEDS,
+        top + angles_height,
     );
-    let name = DVec2::new(left - 92.0, top + ANGLES / 2.0 + 4.0);
-    write_text(out, &format!("JOINT {}", joint + 1), name, 9.0, INK);
+    let name = DVec2::new(left - 92.0, top + angles_height / 2.0 + 4.0);
+    write_text(out, &axis.name(), name, 9.0, INK);
     let mut beside = |text: String, y: f64| {
         let x = left - 6.0 - crate::lettering::width(&text, 6.5);
         write_text(out, &text, DVec2::new(x, y), 6.5, LIMIT);
     };
     beside(format!("{max:.0}"), top + 5.0);
-    beside(format!("{min:.0}"), top + ANGLES + 1.0);
-    beside(format!("{:.0} % OF ITS SPEED", 100.0 * most), floor);
+    beside(format!("{min:.0}"), top + angles_height + 1.0);
+    if axis != Axis::Rail {
+        beside(format!("{:.0} % OF ITS SPEED", 100.0 * most), floor);
+    }
     debug_assert!(floor < SIZE.y, "the rows are within the paper");
 }
 
@@ -240,6 +282,7 @@ mod tests {
             tip,
             joints: [angle; 6],
             speeds: [speed; 6],
+            rail: 500.0,
             ease,
         }
     }
@@ -250,6 +293,7 @@ mod tests {
         let picture = |ease: f64, speed: f64| ArmPicture {
             samples: vec![sample(0.0, ease, 0.0, 0.0), sample(1.0, ease, 45.0, speed)],
             limits: [[-90.0, 90.0]; 6],
+            rail: None,
             text: String::new(),
         };
         let near = arm_path("job", &picture(0.1, 0.5));
@@ -266,6 +310,9 @@ mod tests {
         assert!(near.contains("M1150 184V173.0"), "{near}");
         // 45 of -90 to 90 degrees: a quarter of 56 pixels below the top.
         assert!(near.contains("L1150 114.0"), "{near}");
+        // Seven rows of 618 / 7 pixels; 500 of 0 to 2000 mm is three quarters of 41.3 pixels below the top of the last.
+        let rail = arm_path("job", &ArmPicture { rail: Some([0.0, 2000.0]), ..picture(0.1, 0.5) });
+        assert!(rail.contains("L1150 660.7"), "{rail}");
         assert!(
             arm_path("nothing", &ArmPicture { samples: Vec::new(), ..picture(1.0, 0.0) })
                 .ends_with("</svg>\n")

@@ -85,11 +85,14 @@ fn led(toolpath: &mut Toolpath, name: &str) -> Result<Led, Stop> {
         tip: at.tip,
         joints: at.joints,
         speeds: at.speeds,
+        rail: at.rail,
         ease: at.ease,
     };
     let text =
         format!("{}: {}", machine.title, margins.as_ref().map_or_else(String::new, fit::margins));
     let samples = samples.into_iter().map(drawn).collect();
-    let picture = ArmPicture { samples, limits: limits.unwrap_or_default(), text };
+    let rail = machine.cell.as_ref().and_then(|cell| cell.rail);
+    let rail = rail.map(|rail| [rail.min, rail.max]);
+    let picture = ArmPicture { samples, limits: limits.unwrap_or_default(), rail, text };
     Ok(Led { picture, margins })
 }

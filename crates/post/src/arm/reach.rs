@@ -57,6 +57,8 @@ pub struct ArmSample {
     pub joints: [f64; 6],
     /// Which part of its speed each joint needs on the way here, where the tool cuts.
     pub speeds: [f64; 6],
+    /// Where the rail stands on which the arm is, mm; 0 without one.
+    pub rail: f64,
     /// How easily it stands, as [`ArmMargins::ease`] without speeds.
     pub ease: f64,
 }
@@ -199,6 +201,7 @@ impl Along<'_> {
             tip: reentry.back.tool.translation,
             joints: joints.map(f64::to_degrees),
             speeds: [0.0; 6],
+            rail: reentry.back.rail,
             ease: ease_of(self.arm, &joints),
         });
     }
@@ -222,6 +225,7 @@ impl Along<'_> {
             tip,
             joints: joints.map(f64::to_degrees),
             speeds: std::array::from_fn(speed),
+            rail: motion.end.rail,
             ease: ease_of(self.arm, &joints),
         });
     }
