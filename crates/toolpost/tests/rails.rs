@@ -246,3 +246,17 @@ fn rapid_that_lets_the_rail_go_faster_than_the_cell_is_refused() {
     let report = proof_of(&source, &machine, &text.replace(from, to));
     assert_eq!(report.mismatches[0].rule.name(), "rapid-feed", "{:#?}", report.mismatches);
 }
+
+#[test]
+fn of_200_single_damages_to_programs_with_a_rail_each_is_refused_or_changes_nothing() {
+    let [(rapid, ..), (ls, ..)] = on_long_rails();
+    let krl = writing_rail();
+    for (machine, dialect, begin) in [
+        (&krl, Dialect::Krl, "BAS (#VEL_PTP"),
+        (&rapid, Dialect::Rapid, "ConfJ"),
+        (&ls, Dialect::Ls, "/MN"),
+    ] {
+        let refused = robot::damaged_by_dice(FAR_APART, (machine, dialect), begin, 29);
+        assert!(refused > 100, "{refused}");
+    }
+}

@@ -151,7 +151,9 @@ fn same(machine: &Machine, from: Option<Vec3>, pair: (&Action, &Action)) -> bool
     match pair {
         // A corner that is left by less is a better one.
         (Action::Arm(ArmAction::Move(a)), Action::Arm(ArmAction::Move(b))) => {
+            let [rail, other] = [a, b].map(|motion| motion.rail.unwrap_or(0.0));
             a.turning == b.turning
+                && (rail - other).abs() < 2e-2
                 && match (a.path, b.path) {
                     (ArmPath::Joints(a), ArmPath::Joints(b)) => {
                         let [a, b] =
