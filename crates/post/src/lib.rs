@@ -143,14 +143,8 @@ fn write_arm(
 ) -> Result<Output, Vec<Diagnostic>> {
     let centered = center::centered(program, machine.resolution());
     let (centered, warning) = centered.map_err(|found| vec![*found])?.unzip();
-    let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot)?;
-    // A contour is proven as a whole: no way out of it is.
-    let left = output.warnings.iter().find(|found| found.rule == Rule::Rewind);
-    if let Some(left) = left.filter(|_| centered.is_some()) {
-        let message = "the arm would have to leave a cut here and enter it again, which is not written where contours are offset";
-        let help = "the path of the tool's centre from the CAM system, or another place of the part (`part` below [cell])";
-        return Err(vec![Diagnostic::error(Rule::ArmPath, message).help(help).line(left.line)]);
-    }
+    let offsets = centered.is_some();
+    let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot, offsets)?;
     output.warnings.extend(warning);
     Ok(output)
 }

@@ -293,3 +293,40 @@ fn a_joint_that_goes_round_carries_the_whole_cut_until_cables_end_it() {
     let text = proven(&source, &leaving);
     assert!(!proof_of(&source, &leaving, &text).excursions.is_empty());
 }
+
+
+#[test]
+fn where_cables_leave_joint_6_little_the_cuts_are_made_in_the_posture_of_home() {
+    let changes = [("rapid = 6000", "rapid = 6000\ncable_joint_6 = [-30, 30]")];
+    let machine = robot::changed("kuka-kr6-r900", &changes);
+    // Home has joint 5 at 45 degrees: a wrist that were turned over would swing the tool through the part on the way.
+    let text = proven(&source(LINE), &machine);
+    for line in text.lines().filter(|line| line.starts_with("PTP")) {
+        let (_, a5) = line.split_once("A5 ").unwrap();
+        assert!(!a5.starts_with('-'), "{text}");
+    }
+}
+
+#[test]
+fn a_cut_that_cannot_be_entered_again_is_not_offered_a_word_of_the_cell() {
+    // Behind line 1078 of the dome no turn of the M-20iA leads on but with the elbow below, to which no way above the cuts leads.
+    let dome = source(&std::fs::read_to_string(files::root().join("examples/dome.cls")).unwrap());
+    let machine = machine::load("fanuc-m20ia-mill").unwrap();
+    let found = &post::write(&dome, &machine).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 1078), "{found}");
+    assert!(found.help.contains("toolpost fit") && !found.help.contains("reentry_feed"), "{found}");
+}
+
+#[test]
+fn a_refusal_within_an_arc_says_that_a_cut_is_left_at_its_end_alone() {
+    // Round the KUKA's own foot, below it, from one side over its back: joint 1 turns by 170 degrees at the most.
+    let round = "PARTNO/ROUND\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,-600,50\nFEDRAT/MMPM,1200\nGOTO/0,-600,0\n\
+        GOTO/-200,-565.685425,0\nCIRCLE/0,0,0,0,0,-1,600\nGOTO/-200,565.685425,0\nRAPID\nGOTO/-200,565.685425,50\nFINI\n";
+    let part =
+        ("part = [450, 0, 150, 0, 0, 0]", "part = [0, 0, -350, 0, 0, 0]\nreentry_feed = 600");
+    let machine = robot::changed("kuka-kr6-r900", &[part]);
+    let found = &post::write(&source(round), &machine).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 11), "{found}");
+    assert!(found.message.contains("joint 1"), "{found}");
+    assert!(found.help.contains("divide the arc there in the source"), "{found}");
+}

@@ -93,7 +93,7 @@ pub(crate) const MIDDLE: PoseWords = PoseWords {
 const JOINTS: [WordName; 6] =
     [WordName::J1, WordName::J2, WordName::J3, WordName::J4, WordName::J5, WordName::J6];
 
-/// Writes `program` for the arm of `machine`.
+/// Writes `program` for the arm of `machine`; `offsets` where its contours have been offset.
 ///
 /// # Errors
 /// As [`crate::write`].
@@ -101,14 +101,15 @@ pub(crate) fn write(
     program: &Program,
     machine: &Machine,
     robot: (&Arm, &Cell),
+    offsets: bool,
 ) -> Result<Output, Vec<Diagnostic>> {
-    let mut walk = Walk::new(program, machine, robot)?;
+    let mut walk = Walk { offsets, ..Walk::new(program, machine, robot)? };
     let planned = plan(program, machine, robot);
     match planned.as_ref().map_err(Clone::clone).and_then(|steps| walk.all(steps)) {
         Ok(size) if parts::bounds(machine).hold(&size) => {}
         Ok(size) => {
             let whole = walk;
-            walk = Walk::new(program, machine, robot)?;
+            walk = Walk { offsets, ..Walk::new(program, machine, robot)? };
             let steps = planned.as_deref().unwrap_or_default();
             if let Err(error) = walk.divided(steps, &whole.borders, size) {
                 walk.findings.error(*error);
@@ -163,6 +164,8 @@ struct Walk<'a> {
     limits: Limits<'a>,
     rapids: RapidPlanner<'a>,
     sent: Sent,
+    /// Whether contours have been offset.
+    offsets: bool,
     /// What the source wants in cuts.
     spindle: Spindle,
     coolant: Coolant,
@@ -248,6 +251,7 @@ impl<'a> Walk<'a> {
                 cuts: CutBox::of(program),
             },
             sent: Sent { feed: None, corner: None, spindle: Spindle::Off, coolant: Coolant::Off },
+            offsets: false,
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             tool: None,
@@ -577,13 +581,29 @@ impl<'a> Walk<'a> {
         let Some(tool) = self.tool else { return Ok(()) };
         let Reentry { line, back, feed, why } = *reentry;
         let home = self.home_position(&tool);
-        let route = self.rapids.reentry(&tool, [&self.here, &back, &home], feed);
+        let most = feed.unwrap_or(self.cell.rapid);
+        // A contour is proven as a whole: no way out of it is.
+        let route = match self.offsets {
+            true => None,
+            false => self.rapids.reentry(&tool, [&self.here, &back, &home], most),
+        };
+        let Some(feed) = feed else { return Err(reentry.refusal(route.is_some()).into()) };
         let blocked = armpath::Blocked { point: 0, why };
         let Some((route, height)) = route else {
-            let message = format!(
-                "behind this point {blocked}, and the arm cannot retract here along the tool, turn above all cuts and enter the cut again"
+            let (what, first) = match self.offsets {
+                true => (
+                    "a cut is not left and entered again where contours are offset",
+                    "the path of the tool's centre from the CAM system, ",
+                ),
+                false => (
+                    "the arm cannot retract here along the tool, turn above all cuts and enter the cut again",
+                    "",
+                ),
+            };
+            let message = format!("behind this point {blocked}, and {what}");
+            let help = format!(
+                "{first}another place of the part (`toolpost fit` looks for one), or cut it in two operations"
             );
-            let help = "another place of the part (`toolpost fit` looks for one), or cut it in two operations";
             return Err(Diagnostic::error(Rule::ArmPath, message).help(help).into());
         };
         self.follow(&route)?;

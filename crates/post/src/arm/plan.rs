@@ -47,10 +47,30 @@ pub(super) struct Reentry {
     pub(super) line: u32,
     /// Where the arm stands when it is back.
     pub(super) back: Position,
-    /// mm/min.
-    pub(super) feed: f64,
+    /// mm/min; `None` where the cell allows no cut to be left.
+    pub(super) feed: Option<f64>,
     /// What ends the cut with the turn and the posture before.
     pub(super) why: Why,
+}
+
+impl Reentry {
+    /// What is wrong where no cut may be left, and whether it would help to allow that.
+    pub(super) fn refusal(&self, helps: bool) -> Diagnostic {
+        let blocked = Blocked { point: 0, why: self.why };
+        let message = format!(
+            "no turn about the tool and no posture passes the whole cut: behind this point {blocked}, and the arm would have to retract, turn \
+             and enter the cut again"
+        );
+        let help = match helps {
+            true => {
+                "`reentry_feed` below [cell] of the machine file allows that; or move the part (`part`), or cut it in two operations"
+            }
+            false => {
+                "that cannot be written here: another place of the part (`toolpost fit` looks for one), or cut it in two operations"
+            }
+        };
+        Diagnostic::error(Rule::ArmPath, message).help(help).line(self.line)
+    }
 }
 
 /// What happens between motions.
@@ -256,7 +276,13 @@ impl<'a> Stretch<'a> {
         let found = first.or_else(|blocked| tries.find_map(Result::ok).ok_or(blocked));
         let (rail, choice): (f64, Choice) = found.map_err(|blocked| {
             let message = format!("the arm cannot go here: {blocked}");
-            let help = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
+            let place = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
+            let arc = "a cut is left and entered again at the ends of an arc alone: divide the arc there in the source, in case another posture passes its rest; or";
+            let within = points.get(blocked.point).is_some_and(|point| point.inside);
+            let help = match within && !matches!(blocked.why, Why::Reach(_) | Why::Numbers) {
+                true => format!("{arc} {place}"),
+                false => String::from(place),
+            };
             let line = lines[blocked.point.min(lines.len() - 1)];
             Diagnostic::error(Rule::ArmPath, message).help(help).line(line)
         })?;
@@ -270,18 +296,7 @@ impl<'a> Stretch<'a> {
                 Position { tool, joints: position.joints, rail }
             });
             if let Some(why) = section.reentry {
-                let line = lines[section.first];
-                let Some(feed) = cell.reentry_feed else {
-                    let blocked = Blocked { point: section.first, why };
-                    let message = format!(
-                        "no turn about the tool and no posture passes the whole cut: behind this point {blocked}, and the arm would have \
-                         to retract, turn and enter the cut again"
-                    );
-                    let help = "`reentry_feed` below [cell] of the machine file allows that; or move the part (`part`), or cut it in two operations";
-                    return Err(Box::new(
-                        Diagnostic::error(Rule::ArmPath, message).help(help).line(line),
-                    ));
-                };
+                let (line, feed) = (lines[section.first], cell.reentry_feed);
                 if let Some(back) = positions.next() {
                     let point = group.points.start + section.first;
                     chosen.reentries.insert(point, Reentry { line, back, feed, why });

@@ -91,7 +91,8 @@ pub fn arm_margins(
     program: &Program,
     machine: &Machine,
 ) -> Result<Option<ArmMargins>, Vec<Diagnostic>> {
-    chosen(&*followed(program, machine)?, machine).map(|(_, margins)| margins)
+    let (program, offsets) = followed(program, machine)?;
+    chosen(&program, machine, offsets).map(|(_, margins)| margins)
 }
 
 /// Where the writer lets the arm stand along `program`, at its points and every 5 mm or 2° between those of cuts, and the margins.
@@ -103,8 +104,8 @@ pub fn arm_samples(
     machine: &Machine,
 ) -> Result<(Vec<ArmSample>, Option<ArmMargins>), Vec<Diagnostic>> {
     let (arm, cell) = robot(machine)?;
-    let program = followed(program, machine)?;
-    let (steps, margins) = chosen(&program, machine)?;
+    let (program, offsets) = followed(program, machine)?;
+    let (steps, margins) = chosen(&program, machine, offsets)?;
     let mut along =
         Along { arm, cell, tool: cell.tool(None), here: None, time: 0.0, samples: Vec::new() };
     for step in &steps {
@@ -121,10 +122,14 @@ pub fn arm_samples(
     Ok((along.samples, margins))
 }
 
-/// The steps of a program, and the least margins of all tools.
+/// The steps of a program, whose contours have been offset or not, and the least margins of all tools.
+///
+/// # Errors
+/// As [`arm_margins`].
 fn chosen<'a>(
     program: &'a Program,
     machine: &Machine,
+    offsets: bool,
 ) -> Result<(Vec<Step<'a>>, Option<ArmMargins>), Vec<Diagnostic>> {
     let robot = robot(machine)?;
     let mut steps = Vec::new();
@@ -138,7 +143,14 @@ fn chosen<'a>(
         Ok(())
     });
     found.map_err(|found| vec![*found])?;
-    let reentries = steps.iter().filter(|step| matches!(step, Step::Reenter(_))).count();
+    let mut reentries = 0;
+    for step in &steps {
+        let Step::Reenter(reentry) = step else { continue };
+        if reentry.feed.is_none() || offsets {
+            return Err(vec![reentry.refusal(!offsets)]);
+        }
+        reentries += 1;
+    }
     Ok((steps, margins.map(|margins| ArmMargins { reentries, ..margins })))
 }
 
@@ -247,7 +259,7 @@ impl<'m> ArmLooks<'m> {
     /// What no arm can do; the machine is no robot.
     pub fn of(program: &Program, machine: &'m Machine) -> Result<ArmLooks<'m>, Vec<Diagnostic>> {
         let (arm, cell) = robot(machine)?;
-        let program = followed(program, machine)?;
+        let (program, _) = followed(program, machine)?;
         let stretches = stretches(&program, machine, cell).map_err(|found| vec![*found])?;
         let tools = stretches.into_iter().filter(|stretch| !stretch.points.is_empty());
         let tools = tools.map(|stretch| ToolPoints {
@@ -333,15 +345,15 @@ fn robot(machine: &Machine) -> Result<(&Arm, &Cell), Vec<Diagnostic>> {
     })
 }
 
-/// The program whose path the arm follows: of a contour the path of the tool's centre.
+/// The program whose path the arm follows: of a contour the path of the tool's centre; and whether there was one.
 fn followed<'a>(
     program: &'a Program,
     machine: &Machine,
-) -> Result<Cow<'a, Program>, Vec<Diagnostic>> {
+) -> Result<(Cow<'a, Program>, bool), Vec<Diagnostic>> {
     let centered = center::centered(program, machine.resolution());
     Ok(match centered.map_err(|found| vec![*found])? {
-        Some((centered, _)) => Cow::Owned(centered),
-        None => Cow::Borrowed(program),
+        Some((centered, _)) => (Cow::Owned(centered), true),
+        None => (Cow::Borrowed(program), false),
     })
 }
 

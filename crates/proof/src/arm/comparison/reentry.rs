@@ -171,12 +171,12 @@ impl Comparison<'_> {
                 | Action::Message(_)
                 | Action::Risk(_)
         );
-        match self.away {
-            Some(_) if !harmless => refused(
+        match (self.away, harmless) {
+            (None, _) | (Some(_), true) => Ok(()),
+            (Some(_), false) => refused(
                 Rule::Missing,
                 "the tool has left a cut, and something else happens before it is back in it",
             ),
-            _ => Ok(()),
         }
     }
 }
