@@ -7,10 +7,14 @@ use app::{Verdict, summary};
 use machine::Machine;
 use serde_json::{Value, json};
 
-/// Joints, reach (mm), and what is known of it.
+/// Joints, reach and rail (mm), and what is known of it.
 pub fn abilities(machine: &Machine) -> String {
     let reach = machine.arm.as_ref().map_or(0.0, Arm::reach);
-    format!("six joints, reach {} mm", summary::number(reach, 1))
+    let rail = machine.cell.as_ref().and_then(|cell| cell.rail);
+    let rail = rail.map_or_else(String::new, |rail| {
+        format!(", on a rail of {} mm", summary::number(rail.max - rail.min, 1))
+    });
+    format!("six joints, reach {} mm{rail}", summary::number(reach, 1))
 }
 
 /// An arm without mistakes: how far it reaches, its joints, and what is left open.

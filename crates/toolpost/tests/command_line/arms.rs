@@ -8,6 +8,8 @@ fn arms_are_listed_with_their_reach() {
     let said = folder.run(&["machines", "list"]).out;
     let row = said.lines().find(|line| line.contains("kuka-kr6-r900-sixx")).unwrap();
     assert!(row.contains("KUKA KR 6 R900 sixx: six joints, reach 901.5 mm"), "{row}");
+    let row = said.lines().find(|line| line.contains("kuka-kr120-rail")).unwrap();
+    assert!(row.ends_with("six joints, reach 2705.4 mm, on a rail of 6000 mm"), "{row}");
     let listed = folder.run(&["machines", "list", "--json"]).json();
     assert_eq!(listed["arms"].as_array().unwrap().len(), 12);
     for arm in listed["arms"].as_array().unwrap() {
