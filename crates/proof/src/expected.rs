@@ -218,6 +218,14 @@ impl<'a> Cursor<'a> {
         self.step = Step::End;
     }
 
+    /// Which record of the source the step is; the number of records behind the last one.
+    pub fn record(&self) -> usize {
+        match self.step {
+            Step::End => self.records.len(),
+            _ => self.next - 1,
+        }
+    }
+
     /// Whether the tool is changed here, or nothing has moved yet.
     pub fn at_tool_change(&self) -> bool {
         self.tool_change || self.here.is_none()

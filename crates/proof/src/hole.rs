@@ -271,14 +271,19 @@ pub(crate) struct Drilled {
 }
 
 impl Drilled {
-    /// The hole at `pose` on `line` of the program. The heights of a cycle count along Z of the
-    /// block's coordinates, which in the work frame is the tool axis.
-    pub fn new(gauge: &Gauge, line: u32, pose: &Position, cycle: Cycle) -> Drilled {
-        let along = match pose.orientation {
+    /// Which way the heights of a cycle count at `pose`, in the frame of its coordinates.
+    pub fn along(gauge: &Gauge, pose: &Position) -> Vec3 {
+        match pose.orientation {
             Orientation::Axis(axis) => axis,
             Orientation::Rotary { degrees, tool_center: true } => gauge.machine.axis_at(degrees),
             Orientation::Rotary { .. } => Vec3::Z,
-        };
+        }
+    }
+
+    /// The hole at `pose` on `line` of the program. The heights of a cycle count along Z of the
+    /// block's coordinates, which in the work frame is the tool axis.
+    pub fn new(gauge: &Gauge, line: u32, pose: &Position, cycle: Cycle) -> Drilled {
+        let along = Drilled::along(gauge, pose);
         let moved = |by: Vec3| gauge.resolve(line, Position { point: pose.point + by, ..*pose });
         let at = |height: f64| moved(along * height);
         let tip = |by: Vec3| moved(by).place.tip;

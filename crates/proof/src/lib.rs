@@ -75,6 +75,7 @@ mod gauge;
 mod hole;
 mod line;
 mod machine_pose;
+mod observer;
 mod pace;
 mod prover;
 mod report;
@@ -87,6 +88,7 @@ mod tolerance;
 mod travel;
 
 pub use accepted::{ACCEPTABLE, Accepted};
+pub use observer::{AxisPositions, Motion, MotionKind, Observer, ToolPose};
 pub use prover::Prover;
 pub use report::{
     ArmChecked, Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary,
@@ -97,6 +99,7 @@ pub use tolerance::{Applied, Tolerances};
 use compensation::resolved;
 use control::{Folders, Setup};
 use machine::Machine;
+use observer::Silent;
 use program::{Diagnostic, Program, Rule};
 use surfaces::MappedSurface;
 
@@ -110,21 +113,21 @@ pub fn prove(
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Report {
-    prove_while(source, machine, file_name, text, tolerances, &|| true)
+    prove_for(source, machine, file_name, text, tolerances, &mut ())
 }
 
-/// The same for as long as `go_on` says so, which is asked every few thousand events of the control. A proof that ends
-/// before is not proven: its mismatch has the rule `cancelled`.
-pub fn prove_while(
+/// The same for an observer, who is asked whether the proof goes on. A proof that ends before its end is not proven: its mismatch has the rule
+/// `cancelled`.
+pub fn prove_for(
     source: &Program,
     machine: &Machine,
     file_name: &str,
     text: &[u8],
     tolerances: &Tolerances,
-    go_on: &dyn Fn() -> bool,
+    observer: &mut dyn Observer,
 ) -> Report {
     let alone = Folders::default();
-    prove_files(source, machine, (file_name, text, &alone), tolerances, go_on)
+    prove_files(source, machine, (file_name, text, &alone), tolerances, observer)
 }
 
 /// The same of a program that may call those of `folders`.
@@ -133,17 +136,18 @@ pub fn prove_files(
     machine: &Machine,
     (file_name, text, folders): (&str, &[u8], &Folders),
     tolerances: &Tolerances,
-    go_on: &dyn Fn() -> bool,
+    observer: &mut dyn Observer,
 ) -> Report {
     if let (Some(arm), Some(cell)) = (&machine.arm, &machine.cell) {
         let robot = (machine, arm, cell);
-        return arm::prove(source, robot, (file_name, text, folders), tolerances, go_on);
+        return arm::prove(source, robot, (file_name, text, folders), tolerances, observer);
     }
     if let Some(found) = compensation::unsettled(source, machine) {
         return refused(source, machine, tolerances, found);
     }
-    let run = |source: &Program, setup: Setup| {
-        let report = prove_on(source, machine, setup.clone(), (file_name, text), tolerances, go_on);
+    let run = |source: &Program, setup: Setup, observer: &mut dyn Observer| {
+        let program = (file_name, text);
+        let report = prove_on(source, machine, setup.clone(), program, tolerances, observer);
         let mut optional = control::optional_blocks(text);
         let Some((_, level)) = optional.next().filter(|_| report.proven) else { return report };
         if let Some((line, other)) = optional.find(|(_, other)| *other != level) {
@@ -156,14 +160,17 @@ pub fn prove_files(
         }
         // The operator may have switched the blocks behind `/` off.
         let setup = Setup { block_delete: true, ..setup };
-        let mut without = prove_on(source, machine, setup, (file_name, text), tolerances, go_on);
+        let mut without =
+            prove_on(source, machine, setup, program, tolerances, &mut Silent(observer));
         for found in &mut without.mismatches {
             found.message = format!("without the blocks behind `/`: {}", found.message);
         }
         if without.proven { report } else { without }
     };
     let setup = Setup { folders: folders.clone(), ..Setup::default() };
-    let Some(surface) = surfaces::found(source) else { return run(source, setup) };
+    let Some(surface) = surfaces::found(source) else {
+        return run(source, setup, observer);
+    };
     let trials = match surfaces::trials(surface) {
         Ok(trials) => trials,
         Err(found) => return refused(source, machine, tolerances, *found),
@@ -172,7 +179,8 @@ pub fn prove_files(
     for MappedSurface { places, heights } in trials {
         let setup = Setup { surface: places, ..setup.clone() };
         let report = match heights.raise(source) {
-            Ok(raised) => run(&raised, setup),
+            Ok(raised) if proven.is_none() => run(&raised, setup, observer),
+            Ok(raised) => run(&raised, setup, &mut Silent(observer)),
             Err(found) => return refused(source, machine, tolerances, *found),
         };
         match &mut proven {
@@ -206,9 +214,13 @@ fn prove_on(
     setup: Setup,
     (file_name, text): (&str, &[u8]),
     tolerances: &Tolerances,
-    go_on: &dyn Fn() -> bool,
+    observer: &mut dyn Observer,
 ) -> Report {
     let mut prover = Prover::new(source, machine, tolerances);
+    let wants_motions = observer.wants_motions();
+    if wants_motions {
+        prover.keep_motions();
+    }
     let resolved = compensation::is_resolved(source, machine);
     if resolved == Ok(true) {
         prover.keep_trail();
@@ -218,13 +230,17 @@ fn prove_on(
             let mut events: u32 = 0;
             control::read(&settings, file_name, text, &mut |event| {
                 events = events.wrapping_add(1);
-                if events.is_multiple_of(EVENTS_AT_ONCE) && !go_on() {
+                if events.is_multiple_of(EVENTS_AT_ONCE) && !observer.goes_on() {
                     let message = "the proof was ended before its end";
                     return Err(Diagnostic::error(Rule::Cancelled, message)
                         .help("prove it again")
                         .into());
                 }
-                prover.event(&event)
+                let outcome = prover.event(&event);
+                if wants_motions {
+                    prover.take_motions(|motion| observer.moved(motion));
+                }
+                outcome
             })
         }
         Err(found) => Err(found),

@@ -6,10 +6,10 @@ use control::{Action, Position, Setup};
 use geom::Vec3;
 use machine::Machine;
 use program::{NoPose, Program};
-use proof::{Prover, Report, Tolerances};
+use proof::{Observer, Prover, Report, Tolerances};
 use wire::segment::{End, Segment};
 
-/// Runs `text` on the control of `machine` and compares it with what `cut` wants, for as long as `go_on` says so.
+/// Runs `text` on the control of `machine` and compares it with what `cut` wants, for as long as `observer` says so.
 ///
 /// # Errors
 /// A contour with a point that is not finite.
@@ -20,14 +20,14 @@ pub fn of(
     file: &str,
     text: &[u8],
     tolerances: &Tolerances,
-    go_on: &dyn Fn() -> bool,
+    observer: &mut dyn Observer,
 ) -> Result<Report, NoPose> {
     if !cut.segments.iter().any(Segment::leans) {
         let contour = cut.end(name, End::Lower)?;
-        return Ok(proof::prove_while(&contour, machine, file, text, tolerances, go_on));
+        return Ok(proof::prove_for(&contour, machine, file, text, tolerances, observer));
     }
     let program = cut.program(name)?;
-    let mut report = proof::prove_while(&program, machine, file, text, tolerances, go_on);
+    let mut report = proof::prove_for(&program, machine, file, text, tolerances, observer);
     for end in [End::Lower, End::Upper] {
         if report.proven {
             let contour = cut.end(name, end)?;
@@ -113,7 +113,7 @@ mod tests {
         let cut = Cut::of(vec![segment], Some(30.0), &machine);
         machine.capabilities.lowering_tolerance = 0.01;
         let written = post::write(&cut.program("cone").unwrap(), &machine).unwrap().text;
-        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default(), &|| true).unwrap()
+        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default(), &mut ()).unwrap()
     }
 
     #[test]

@@ -4,10 +4,12 @@ mod between;
 mod contour;
 mod cut;
 mod joints;
+mod motions;
 mod path;
 mod reentry;
 
 use super::expected::{Expected, Step};
+use crate::observer::Motion;
 use crate::report::{ArmChecked, Report, SourceLine};
 use ::arm::{Arm, Joints};
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
@@ -85,6 +87,10 @@ pub(super) struct Comparison<'a> {
     changes: Changes,
     /// The called file in which the program is; none where it is in the one that is run.
     file: Option<Box<str>>,
+    /// The motions since they were taken last, where they are wanted.
+    motions: Option<Vec<Motion>>,
+    /// The record that the motion at hand has made.
+    made: Option<usize>,
     /// The called files in which it has been.
     files: Vec<Box<str>>,
     ended: bool,
@@ -141,6 +147,8 @@ impl<'a> Comparison<'a> {
                 asked: None,
             },
             file: None,
+            motions: None,
+            made: None,
             files: Vec::new(),
             ended: false,
             failed: false,
@@ -196,6 +204,14 @@ impl<'a> Comparison<'a> {
     }
 
     fn take(&mut self, event: &Event) -> Outcome {
+        let before = self.standing;
+        self.made = None;
+        self.obey(event)?;
+        self.keep_motion(event, before);
+        Ok(())
+    }
+
+    fn obey(&mut self, event: &Event) -> Outcome {
         self.stays_away(&event.action)?;
         match &event.action {
             Action::Arm(action) => self.of_arm(event.line, action),
@@ -377,6 +393,12 @@ impl<'a> Comparison<'a> {
             return Err(Diagnostic::error(Rule::FileBorder, message).help(help).into());
         }
         Ok(())
+    }
+
+    /// The program has made the next step, which is a motion.
+    fn make_next(&mut self) {
+        self.made = self.expected.get(self.next).map(|expected| expected.record);
+        self.next += 1;
     }
 
     /// Steps of the source that need nothing of the program: a tool that is in the spindle, a way home, moves shorter than a step.

@@ -26,6 +26,8 @@ const MOST_PECKS: usize = 10_000;
 pub(super) struct Expected {
     /// Line of the source.
     pub(super) line: u32,
+    /// Which record of the source it is.
+    pub(super) record: usize,
     pub(super) step: Step,
     /// What is on while it moves.
     pub(super) state: State,
@@ -57,10 +59,21 @@ pub(super) struct Contour {
     pub(super) radius: f64,
     /// 1 where the tool is on the left, -1 where it is on the right.
     pub(super) left: f64,
-    /// Line of the source and what is on, of each piece and of the way out.
-    pub(super) states: Vec<(u32, State)>,
+    /// Of each piece, and of the way out.
+    pub(super) elements: Vec<Element>,
     /// Where the centre is at its end.
     pub(super) end: Pose,
+}
+
+/// An element of a contour, as the source has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Element {
+    /// Line of the source.
+    pub(super) line: u32,
+    /// Which record of it.
+    pub(super) record: usize,
+    /// What is on.
+    pub(super) state: State,
 }
 
 /// A contour that is not at its end.
@@ -70,7 +83,7 @@ struct Open {
     radius: f64,
     left: f64,
     pieces: Vec<Piece>,
-    states: Vec<(u32, State)>,
+    elements: Vec<Element>,
     /// Whether compensation is off, from the next move in the plane on.
     leaves: bool,
 }
@@ -104,6 +117,7 @@ impl Expected {
             // A path of the centre is followed as it is.
             offsets: source.compensated_path == Some(CompensatedPath::Contour),
             open: None,
+            at: 0,
             state: State {
                 feed: 0.0,
                 spindle: Spindle::Off,
@@ -112,7 +126,8 @@ impl Expected {
                 tool_length: None,
             },
         };
-        for record in &source.records {
+        for (at, record) in source.records.iter().enumerate() {
+            walk.at = at;
             walk.record(record.line, &record.op)
                 .map_err(|found| Box::new(found.line(record.line)))?;
         }
@@ -131,12 +146,14 @@ struct Walk<'a> {
     /// Whether compensation offsets the coordinates.
     offsets: bool,
     open: Option<Open>,
+    /// Which record of the source is at hand.
+    at: usize,
     state: State,
 }
 
 impl Walk<'_> {
     fn push(&mut self, line: u32, step: Step) {
-        self.steps.push(Expected { line, step, state: self.state });
+        self.steps.push(Expected { line, record: self.at, step, state: self.state });
     }
 
     fn record(&mut self, line: u32, op: &Op) -> Outcome {
@@ -246,8 +263,8 @@ impl Walk<'_> {
         let Some(radius) = self.radius else {
             return unproven("a contour is offset, and the radius of the tool is not known");
         };
-        let (pieces, states) = (Vec::new(), Vec::new());
-        self.open = Some(Open { line, side, radius, left, pieces, states, leaves: false });
+        let (pieces, elements) = (Vec::new(), Vec::new());
+        self.open = Some(Open { line, side, radius, left, pieces, elements, leaves: false });
         Ok(())
     }
 
@@ -320,23 +337,23 @@ impl Walk<'_> {
     fn piece(&mut self, line: u32, (from, to): (Pose, Pose), arc: Option<Arc>) {
         let place = |pose: Pose| PartialPose { tip: pose.point(), axis: pose.axis() };
         let piece = Piece { line, from: place(from), to: place(to), arc };
-        let state = self.state;
+        let element = Element { line, record: self.at, state: self.state };
         if let Some(open) = &mut self.open {
             open.pieces.push(piece);
-            open.states.push((line, state));
+            open.elements.push(element);
         }
     }
 
     /// The contour ends: on its way out, whose end is a pose of the source, or where its last element does.
     fn close(&mut self, exit: Option<Pose>) -> Outcome {
         let (Some(open), Some(here)) = (self.open.take(), self.here) else { return Ok(()) };
-        let Open { line, side, radius, left, mut pieces, mut states, .. } = open;
+        let Open { line, side, radius, left, mut pieces, mut elements, .. } = open;
         let state = self.state;
         let exit = exit.and_then(|to| Some((to, pieces.pop()?)));
         let end = match &exit {
             Some((to, _)) => *to,
             None => {
-                states.push((line, state));
+                elements.push(Element { line, record: self.at, state });
                 let last = pieces.iter().rev().find(|piece| {
                     let way = piece.to.tip - piece.from.tip;
                     way.reject_from_normalized(here.axis()).length() > NOWHERE
@@ -351,7 +368,7 @@ impl Walk<'_> {
         let terms = Terms { source_line: line, side, radius: Some(radius), tool_length: None };
         let moves =
             CompensatedMoves { terms, before: 0, pieces, exit: exit.map(|(_, piece)| piece) };
-        let contour = Contour { moves, radius, left, states, end };
+        let contour = Contour { moves, radius, left, elements, end };
         self.push(line, Step::Contour(Rc::new(contour)));
         self.here = Some(end);
         Ok(())

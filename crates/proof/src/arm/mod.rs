@@ -25,6 +25,7 @@ mod comparison;
 mod expected;
 mod follow;
 
+use crate::observer::Observer;
 use crate::report::Report;
 use crate::tolerance::{Applied, Tolerances};
 use ::arm::Arm;
@@ -35,13 +36,13 @@ use machine::{Cell, Machine};
 use program::{Diagnostic, Program, Rule};
 use std::collections::BTreeMap;
 
-/// Runs `text` on the virtual control of the robot and compares it with `source`, while `go_on` says so.
+/// Runs `text` on the virtual control of the robot and compares it with `source`, while `observer` says so.
 pub(crate) fn prove(
     source: &Program,
     (machine, arm, cell): (&Machine, &Arm, &Cell),
     (file_name, text, folders): (&str, &[u8], &Folders),
     tolerances: &Tolerances,
-    go_on: &dyn Fn() -> bool,
+    observer: &mut dyn Observer,
 ) -> Report {
     let applied = Applied::new(machine, tolerances);
     let mut report = Report { tolerances: applied, ..Report::default() };
@@ -57,18 +58,26 @@ pub(crate) fn prove(
         }
     };
     let mut comparison = Comparison::new(source, (machine, arm, cell), expected, report);
+    let wants_motions = observer.wants_motions();
+    if wants_motions {
+        comparison.keep_motions();
+    }
     let mut events = 0_u32;
     let setup = Setup { folders: folders.clone(), ..Setup::default() };
     let run = nc::settings(machine, setup).and_then(|settings| {
         control::read(&settings, file_name, text, &mut |event| {
             events = events.wrapping_add(1);
-            if events.is_multiple_of(crate::EVENTS_AT_ONCE) && !go_on() {
+            if events.is_multiple_of(crate::EVENTS_AT_ONCE) && !observer.goes_on() {
                 let message = "the proof was ended before its end";
                 return Err(Diagnostic::error(Rule::Cancelled, message)
                     .help("prove it again")
                     .into());
             }
-            comparison.event(&event)
+            let outcome = comparison.event(&event);
+            if wants_motions {
+                comparison.take_motions(|motion| observer.moved(motion));
+            }
+            outcome
         })
     });
     let (mut report, called) = comparison.finish(run);

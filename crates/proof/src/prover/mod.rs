@@ -6,6 +6,7 @@ mod cut;
 mod drilling;
 mod ending;
 mod events;
+mod motions;
 mod rapid;
 mod rapid_path;
 mod single;
@@ -60,6 +61,8 @@ pub struct Prover<'a> {
     compensation: Compensation,
     /// The stretches in which the program compensates, where they are wanted.
     trail: Option<Trail>,
+    /// The motions since they were taken last, where they are wanted.
+    motions: Option<motions::Motions>,
     here: ResolvedPose,
     /// Where the rotary axes stand.
     standing: PossiblePositions<'a>,
@@ -151,6 +154,7 @@ impl<'a> Prover<'a> {
             contact: contact::Contact::new(),
             compensation: Compensation::Off,
             trail: None,
+            motions: None,
             progress: MotionProgress::default(),
             pace: Pace::default(),
             report: Report { tolerances: allowed, ..Report::default() },
@@ -203,7 +207,11 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.follow(event);
+        self.begin_motion();
         let outcome = self.take(event);
+        if outcome.is_ok() {
+            self.end_motion(event);
+        }
         if event.action.position().is_some() {
             self.contact.moved(self.running.spindle);
         }
@@ -655,6 +663,7 @@ impl<'a> Prover<'a> {
             self.report.deviations.axis_degrees.note(axis, goal.line, to.line);
         }
         self.here = *to;
+        self.has_arrived();
         self.advance();
     }
 

@@ -1,7 +1,7 @@
 //! The tool's centre along a contour: what the program does is gathered up to its end, compared as a whole, and then taken as lines and
 //! arcs of the source, with all that is asked of those.
 
-use super::super::expected::{Contour, Expected, Step};
+use super::super::expected::{Contour, Element, Expected, Step};
 use super::{Comparison, refused};
 use crate::compensation::centre::{self, Fault, Slack};
 use crate::compensation::trail::Piece;
@@ -119,14 +119,15 @@ impl Comparison<'_> {
         let Some(Gathered { events, pieces, .. }) = self.gathered.take() else { return Ok(()) };
         let axis = contour.end.axis();
         let steps = pieces.iter().zip(belongs).map(|(piece, of)| {
-            let (line, state) = contour.states[of.min(contour.states.len() - 1)];
+            let element = contour.elements[of.min(contour.elements.len() - 1)];
+            let Element { line, record, state } = element;
             let pose = |place: &PartialPose| Pose::new(place.tip, axis);
             let (from, to) = (pose(&piece.from)?, pose(&piece.to)?);
             let step = match piece.arc {
                 Some(arc) => Step::Arc(Box::new(arc), to),
                 None => Step::Line(from, to),
             };
-            Ok(Expected { line, step, state })
+            Ok(Expected { line, record, step, state })
         });
         let steps: Vec<Expected> = steps.collect::<Outcome<_>>()?;
         self.expected.splice(self.next..=self.next, steps);

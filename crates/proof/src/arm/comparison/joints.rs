@@ -46,7 +46,7 @@ impl Comparison<'_> {
         match arrives {
             true => {
                 self.report.compared.rapids += 1;
-                self.next += 1;
+                self.make_next();
                 Ok(())
             }
             false if self.done == 0.0 && (home || is_over) => Ok(()),

@@ -400,7 +400,7 @@ impl Comparison<'_> {
             }
             *counted += 1;
         }
-        self.next += 1;
+        self.make_next();
         self.done = 0.0;
     }
 

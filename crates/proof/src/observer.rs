@@ -1,0 +1,119 @@
+//! Who follows a proof while it runs: it is asked whether the proof goes on, and told what the control does.
+
+use crate::resolved_pose::PartialPose;
+use geom::{Arc, Vec3};
+
+/// Who follows a proof. `()` follows nothing and never ends it; a closure is asked whether the proof goes on.
+pub trait Observer {
+    /// Whether the proof goes on. It is asked every few thousand events of the control.
+    fn goes_on(&mut self) -> bool {
+        true
+    }
+
+    /// Whether it is told the motions. It is asked once, at the beginning.
+    fn wants_motions(&self) -> bool {
+        false
+    }
+
+    /// The next motion of the program, in the order in which the control makes them. Of a program that the proof runs
+    /// several times (with and without its optional blocks, on several surfaces) it is told the motions of the first run.
+    fn moved(&mut self, _motion: &Motion) {}
+}
+
+impl Observer for () {}
+
+impl<F: Fn() -> bool> Observer for F {
+    fn goes_on(&mut self) -> bool {
+        self()
+    }
+}
+
+/// An observer that is only asked whether the proof goes on.
+pub(crate) struct Silent<'a>(pub &'a mut dyn Observer);
+
+impl Observer for Silent<'_> {
+    fn goes_on(&mut self) -> bool {
+        self.0.goes_on()
+    }
+}
+
+/// A motion of the program that the proof has accepted. What nobody knows is NaN: where an axis stands that has gone
+/// home, or that no block has set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// The file that the block stands in; none where it is the program itself.
+    pub file: Option<Box<str>>,
+    /// Line of that file, from 1.
+    pub line: u32,
+    /// Which record of the source (place in [`program::Program::records`]) it makes, or on the way to which it is; the number of
+    /// records behind the last one.
+    pub record: usize,
+    /// How it goes.
+    pub kind: MotionKind,
+    /// Where the tool is before it and behind it, in the work frame.
+    pub tool: [ToolPose; 2],
+    /// Where the axes of the machine stand behind it.
+    pub axes: AxisPositions,
+}
+
+/// How a motion goes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MotionKind {
+    /// As fast as the axes can.
+    Rapid,
+    /// At the feed, on a straight line of the tip, or as the rotary axes lead it.
+    Line,
+    /// At the feed, along an arc or a helix of the tip.
+    Arc(Box<Arc>),
+    /// All joints of an arm together, each from where it stands to where it goes: the tip goes along no line.
+    Joints,
+}
+
+/// A tool tip, mm, and a tool axis (unit vector), in the work frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolPose {
+    /// The tip, mm.
+    pub tip: Vec3,
+    /// The axis, from the tip to the spindle.
+    pub axis: Vec3,
+}
+
+impl From<ToolPose> for PartialPose {
+    fn from(ToolPose { tip, axis }: ToolPose) -> PartialPose {
+        PartialPose { tip, axis }
+    }
+}
+
+impl From<PartialPose> for ToolPose {
+    fn from(PartialPose { tip, axis }: PartialPose) -> ToolPose {
+        ToolPose { tip, axis }
+    }
+}
+
+/// Where the axes of a machine stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AxisPositions {
+    /// Of a mill: X, Y and Z as its control shows them in machine coordinates, mm, where the machine's file states its
+    /// `work_zero`, otherwise from the work zero; to the gauge line of the spindle where the source states the length of
+    /// the tool, otherwise to its tip. A, B and C, degrees; NaN where several positions are possible.
+    Mill {
+        /// X, Y, Z, mm.
+        linear: Vec3,
+        /// A, B, C, degrees.
+        rotary: [f64; 3],
+    },
+    /// Of a wire: X, Y and Z in the work frame, mm, and how far the upper end of the wire is from the lower one along U and V, mm.
+    Wire {
+        /// X, Y, Z, mm.
+        guide: Vec3,
+        /// U, V, mm.
+        lean: [f64; 2],
+    },
+    /// Of an arm: its joints as its controller counts them, degrees, and where the rail stands on which it is, mm.
+    Arm {
+        /// Joints 1 to 6, degrees; NaN where nobody says how the controller counts joint 3.
+        joints: [f64; 6],
+        /// mm; none where it stands on no rail.
+        rail: Option<f64>,
+    },
+}

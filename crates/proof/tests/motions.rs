@@ -1,0 +1,169 @@
+//! The motions that a proof hands out: line, record, way, and where the axes stand.
+
+use geom::Vec3;
+use program::{Builder, Cycle, CycleKind, Feed, Program, Spindle, Tool};
+use toolpost_proof::{AxisPositions, Motion, MotionKind, Observer, Tolerances, prove_for};
+
+/// Keeps all motions.
+#[derive(Default)]
+struct Keeper(Vec<Motion>);
+
+impl Observer for Keeper {
+    fn wants_motions(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        self.0.push(motion.clone());
+    }
+}
+
+/// The motions of a program that is proven.
+fn motions(source: &Program, machine: &machine::Machine, text: &str) -> Vec<Motion> {
+    let mut keeper = Keeper::default();
+    let tolerances = Tolerances::default();
+    let report = prove_for(source, machine, "p.ngc", text.as_bytes(), &tolerances, &mut keeper);
+    assert!(report.proven, "{:#?}", report.mismatches);
+    keeper.0
+}
+
+/// Line, record, way (R, L or A), tip behind it.
+type Row = (u32, usize, char, [f64; 3]);
+
+fn row(motion: &Motion) -> Row {
+    let way = match motion.kind {
+        MotionKind::Rapid => 'R',
+        MotionKind::Line => 'L',
+        MotionKind::Arc(_) => 'A',
+        MotionKind::Joints => 'J',
+    };
+    (motion.line, motion.record, way, motion.tool[1].tip.to_array())
+}
+
+/// NaN is alike to NaN.
+fn alike(is: &Row, should: &Row) -> bool {
+    let same = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 || a.is_nan() && b.is_nan();
+    (is.0, is.1, is.2) == (should.0, should.1, should.2) && is.3.iter().zip(&should.3).all(same)
+}
+
+fn job(length: Option<f64>) -> Builder {
+    let mut job = Builder::new("job");
+    // Records 0, 1 and 2.
+    job.tool(Tool { number: 1, length, ..Tool::default() }).unwrap();
+    job.spindle(Spindle::Clockwise(5000.0)).unwrap();
+    job.feed(Feed::PerMinute(300.0)).unwrap();
+    job
+}
+
+const START: &str =
+    "G21 G17 G40 G49 G80 G90 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\n";
+const END: &str = "M5\nG53 G0 Z0\nM2\n";
+
+#[test]
+fn each_block_names_the_record_that_it_makes_or_leads_to() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.arc([10.0, 0.0, -1.0], [5.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0).unwrap();
+    source.rapid([10.0, 0.0, 5.0], None).unwrap();
+    // The way to record 3 takes two blocks; the arc is record 5.
+    let text = format!("{START}G0 X0 Y0\nZ5\nG1 Z-1 F300\nG3 X10 Y0 I5 J0\nG0 Z5\n{END}");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let found = motions(&source.build(), &machine, &text);
+    let unknown = f64::NAN;
+    let should: [Row; 7] = [
+        (3, 3, 'R', [unknown; 3]),
+        (7, 3, 'R', [0.0, 0.0, unknown]),
+        (8, 3, 'R', [0.0, 0.0, 5.0]),
+        (9, 4, 'L', [0.0, 0.0, -1.0]),
+        (10, 5, 'A', [10.0, 0.0, -1.0]),
+        (11, 6, 'R', [10.0, 0.0, 5.0]),
+        // Behind the last record, which is the end of the program.
+        (13, 8, 'R', [10.0, 0.0, unknown]),
+    ];
+    let rows: Vec<Row> = found.iter().map(row).collect();
+    assert!(rows.len() == 7 && rows.iter().zip(&should).all(|(a, b)| alike(a, b)), "{rows:#?}");
+    let MotionKind::Arc(arc) = &found[4].kind else { panic!("{:?}", found[4]) };
+    assert!(arc.at(0.5).distance(Vec3::new(5.0, -5.0, -1.0)) < 1e-9, "{:?}", arc.at(0.5));
+    // Each begins where the one before ends.
+    for pair in found.windows(2) {
+        let [end, start] = [pair[0].tool[1].tip, pair[1].tool[0].tip].map(|tip| tip.to_array());
+        assert!(end.iter().zip(start).all(|(a, b)| *a == b || a.is_nan() && b.is_nan()));
+    }
+}
+
+#[test]
+fn a_canned_cycle_goes_across_down_and_by_its_pecks() {
+    let mut source = job(Some(40.0));
+    source.rapid([0.0, 0.0, 20.0], None).unwrap();
+    let cycle = Cycle {
+        kind: CycleKind::Deep,
+        depth: 5.0,
+        clearance: 2.0,
+        retract: 20.0,
+        feed: Some(Feed::PerMinute(100.0)),
+        dwell: 0.0,
+        first_peck: None,
+        peck: Some(3.0),
+    };
+    source.drill(cycle, &[[10.0, 0.0, 0.0]], None).unwrap();
+    let text = format!("{START}G0 X0 Y0\nZ20\nG98 G83 X10 Y0 Z-5 R2 Q3 F100\nG80\n{END}");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let found = motions(&source.build(), &machine, &text);
+    let heights: Vec<(u32, char, f64)> = found
+        .iter()
+        .filter(|motion| motion.line == 9)
+        .map(|motion| {
+            let (line, _, way, [x, y, z]) = row(motion);
+            assert_eq!([x, y], [10.0, 0.0]);
+            (line, way, z)
+        })
+        .collect();
+    // LinuxCNC counts Q from the R plane: -1, -4, and the rest. A further peck begins 0.5 mm above the last depth (`REENTRY`).
+    let should = [
+        (9, 'R', 20.0),
+        (9, 'R', 2.0),
+        (9, 'L', -1.0),
+        (9, 'R', 2.0),
+        (9, 'R', -0.5),
+        (9, 'L', -4.0),
+        (9, 'R', 2.0),
+        (9, 'R', -3.5),
+        (9, 'L', -5.0),
+        (9, 'R', 20.0),
+    ];
+    assert_eq!(heights, should);
+    // To the gauge line, 40 mm above the tip.
+    let bottom = found.iter().find(|motion| motion.tool[1].tip.z == -5.0).unwrap();
+    let AxisPositions::Mill { linear, rotary } = bottom.axes else { panic!("{bottom:?}") };
+    assert_eq!((linear, rotary), (Vec3::new(10.0, 0.0, 35.0), [0.0; 3]));
+}
+
+#[test]
+fn without_optional_blocks_nothing_is_told_twice() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    let text = format!("{START}G0 X0 Y0\nZ5\n/M9\nG1 Z-1 F300\nG0 Z5\n{END}");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let found = motions(&source.build(), &machine, &text);
+    assert_eq!(found.iter().filter(|motion| motion.kind == MotionKind::Line).count(), 1);
+}
+
+#[test]
+fn what_is_refused_is_not_told() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    let text = format!("{START}G0 X0 Y0\nZ5\nG1 X1 Z-1 F300\nG0 Z5\n{END}");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let mut keeper = Keeper::default();
+    let tolerances = Tolerances::default();
+    let source = source.build();
+    let report = prove_for(&source, &machine, "p.ngc", text.as_bytes(), &tolerances, &mut keeper);
+    assert!(!report.proven);
+    let last = keeper.0.last().unwrap();
+    assert_eq!((last.line, last.tool[1].tip), (8, Vec3::new(0.0, 0.0, 5.0)));
+}
