@@ -220,10 +220,7 @@ impl<'a> Cursor<'a> {
 
     /// Which record of the source the step is; the number of records behind the last one.
     pub fn record(&self) -> usize {
-        match self.step {
-            Step::End => self.records.len(),
-            _ => self.next - 1,
-        }
+        if matches!(self.step, Step::End) { self.records.len() } else { self.next - 1 }
     }
 
     /// Whether the tool is changed here, or nothing has moved yet.

@@ -294,7 +294,6 @@ fn a_joint_that_goes_round_carries_the_whole_cut_until_cables_end_it() {
     assert!(!proof_of(&source, &leaving, &text).excursions.is_empty());
 }
 
-
 #[test]
 fn where_cables_leave_joint_6_little_the_cuts_are_made_in_the_posture_of_home() {
     let changes = [("rapid = 6000", "rapid = 6000\ncable_joint_6 = [-30, 30]")];

@@ -75,7 +75,7 @@ fn tip(machine: &Machine, linear: Vec3, rotary: [f64; 3], length: f64) -> [f64; 
 #[test]
 fn the_axes_of_each_mill_bring_the_tip_to_where_the_motion_ends() {
     let mut compared = 0;
-    for machine in mills().into_iter().filter(|machine| !machine.rotary.is_empty()) {
+    for machine in mills().filter(|machine| !machine.rotary.is_empty()) {
         let text = std::fs::read(root().join("machines/samples/five-axes.cls")).unwrap();
         let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
         let mut length = 0.0;
