@@ -304,7 +304,8 @@ impl<'r> Steps<'r> {
             });
             let chain: Vec<[f64; 3]> =
                 std::iter::once(before.at).chain(known).chain([after.at]).collect();
-            let ticks = chain.windows(2).map(|pair| steps.step(pair[0], pair[1])).sum();
+            let ticks = chain.windows(2).map(|pair| steps.step(pair[0], pair[1]));
+            let ticks = ticks.fold(0, u64::saturating_add);
             steps.own.insert(next, ticks);
         }
         steps
@@ -332,7 +333,10 @@ impl<'r> Steps<'r> {
 
     /// The ticks of all of them.
     pub fn sum(&self) -> u64 {
-        (0..self.len()).into_par_iter().map(|number| self.get(number)).sum()
+        (0..self.len())
+            .into_par_iter()
+            .map(|number| self.get(number))
+            .reduce(|| 0, u64::saturating_add)
     }
 
     fn between(&self, next: usize) -> Option<(Pulse, Pulse)> {
@@ -595,7 +599,7 @@ fn travel(glass: &Glass) -> f64 {
         let ((from, before), (to, after)) = (glass.place(number - 1), glass.place(number));
         if before == after { (from.distance(to) * 1e3).round() as u64 } else { 0 }
     };
-    (1..glass.len()).into_par_iter().map(length).sum::<u64>() as f64 * 1e-3
+    (1..glass.len()).into_par_iter().map(length).reduce(|| 0, u64::saturating_add) as f64 * 1e-3
 }
 
 /// The line of a pulse.
