@@ -1,7 +1,7 @@
 //! Where copper stays that is part of no conductor, since the tool does not go in.
 
 use crate::{Copper, Path, SAME};
-use geom::region::{Cap, Fill, Index, Region, RegionError, Ring};
+use geom::region::{self, Fill, Index, Region, RegionError, Ring};
 use geom::{Element, Vec2};
 use std::collections::BTreeSet;
 
@@ -93,7 +93,6 @@ fn across(copper: &Index, side: &Element, most: f64) -> Option<f64> {
 /// What a tool of `width` mm takes away along `paths`.
 pub(super) fn strokes(paths: &[Path], width: f64) -> Result<Region, RegionError> {
     let elements = paths.iter().flat_map(Path::elements);
-    let strokes: Result<Vec<Region>, _> =
-        elements.map(|element| Region::stroke(element, width, Cap::Round)).collect();
-    Region::union_of(&strokes?)
+    let drawn: Vec<(Element, f64)> = elements.map(|element| (*element, width)).collect();
+    Region::inside(&region::strokes(&drawn)?, Fill::Positive)
 }
