@@ -277,12 +277,16 @@ impl<T: Terms> Grammar for Formula<'_, '_, T> {
     }
 
     fn operator(&mut self) -> Option<Next<Operator>> {
-        self.scan.peek()?;
+        let next = self.scan.peek()?;
         let at = self.scan.at;
-        let is_word = |sign: &str| sign.starts_with(|first: char| first.is_ascii_alphabetic());
-        let (_, operator, rank) = T::OPERATORS.iter().find(|(sign, _, _)| match is_word(sign) {
-            true => self.scan.take_word(sign),
-            false => self.scan.take_text(sign),
+        let (_, operator, rank) = T::OPERATORS.iter().find(|(sign, _, _)| {
+            let first = sign.bytes().next().unwrap_or_default();
+            // Behind most numbers none stands.
+            first.eq_ignore_ascii_case(&next)
+                && match first.is_ascii_alphabetic() {
+                    true => self.scan.take_word(sign),
+                    false => self.scan.take_text(sign),
+                }
         })?;
         Some(Next { operator: *operator, rank: Rank::Left(*rank), at })
     }
