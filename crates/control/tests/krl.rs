@@ -187,6 +187,10 @@ fn e1_is_the_rail_and_stays_where_a_position_leaves_it_out() {
     );
     let rails: Vec<_> = moves(&events.unwrap()).iter().map(|(_, motion)| motion.rail).collect();
     assert_eq!(rails, [None, Some(250.5), Some(250.5), Some(-3.0), Some(-3.0)]);
+    // Where the operator leads it while the program is stopped, no one knows.
+    let halted = body("PTP {A1 0,A2 -90,A3 90,A4 0,A5 45,A6 0,E1 5}\nHALT\nPTP {A1 10}").unwrap();
+    let rails: Vec<_> = moves(&halted).iter().map(|(_, motion)| motion.rail).collect();
+    assert_eq!(rails, [Some(5.0), None]);
     let arc =
         "LIN {X 1,Y 2,Z 3,A 0,B 90,C 0}\nCIRC {X 3,Y 3,Z 3,E1 1},{X 4,Y 2,Z 3,A 0,B 90,C 0,E1 2}";
     refused(&format!("{START}{arc}"), 4, "state different E1");

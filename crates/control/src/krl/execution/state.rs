@@ -76,6 +76,11 @@ impl State {
         }
     }
 
+    /// The program stops: the operator may lead the rail elsewhere.
+    pub(in crate::krl) fn halted(&mut self) {
+        self.rail = None;
+    }
+
     /// The field of a structure that has been set as a whole.
     fn field_of(&self, name: Name, index: Option<i64>, field: Name) -> Option<Value> {
         let Value::Fields(fields) = self.variables.get(&(name, index, None))? else { return None };

@@ -176,7 +176,10 @@ impl Run<'_, '_> {
                 self.state.assign(scan, target, value, self.channel)
             }
             Statement::Wait(waiting) => self.state.wait(scan, waiting, self.channel),
-            Statement::Halt => self.channel.report(number, Action::Stop),
+            Statement::Halt => {
+                self.state.halted();
+                self.channel.report(number, Action::Stop)
+            }
             Statement::Declare(_, _, Some(_)) => {
                 let message =
                     "values of declarations stand in the data list (.dat), not in the program";
