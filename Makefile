@@ -163,8 +163,9 @@ samples: rust
 	@for sample in $(filter-out %.cls,$(wildcard machines/samples/*.*)); do \
 		name=$$(basename $${sample%.*}); axes=three-axes; \
 		if test -f machines/robots/$$name.toml; then \
-			$(TOOLPOST) --quiet post machines/samples/robot.cls -m $$name \
-				-o out/samples/$$(basename $$sample) || exit; \
+			mkdir -p out/samples/robot; named=out/samples/robot/SAMPLEROBOT.$${sample##*.}; \
+			$(TOOLPOST) --quiet post machines/samples/robot.cls -m $$name -o $$named || exit; \
+			mv $$named out/samples/$$(basename $$sample); \
 			continue; \
 		fi; \
 		if grep -Eq '^extends = "(points|wire-iso)"' machines/$$name.toml; then \
@@ -177,7 +178,7 @@ samples: rust
 		$(TOOLPOST) --quiet post machines/samples/$$axes.cls -m $$name \
 			-o out/samples/$$(basename $$sample) || exit; \
 	done
-	@rm out/samples/*.report.json
+	@rm -r out/samples/*.report.json out/samples/robot
 	@mv out/samples/* machines/samples/
 
 rust:
