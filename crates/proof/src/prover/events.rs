@@ -24,9 +24,19 @@ impl Prover<'_> {
             let message =
                 "changes the first tool wherever Z stands: nothing before it has sent Z home";
             let message = format!("{}the program {message}", SourceLine(self.cursor.line));
-            let help = "send Z home before it, or bring the spindle up before you start";
-            let found = Diagnostic::warning(Rule::ToolChangeHeight, message).help(help);
-            self.report.warn(found.line(line));
+            match self.gauge.machine.retract_height() {
+                // Z 0 is set with the tool after it: up before the start is not up then.
+                Some(height) => {
+                    let help = format!("raise Z to {} mm by rapid before it", Number(height));
+                    let found = Diagnostic::error(Rule::ToolChangeHeight, message).help(help);
+                    self.found(found.line(line));
+                }
+                None => {
+                    let help = "send Z home before it, or bring the spindle up before you start";
+                    let found = Diagnostic::warning(Rule::ToolChangeHeight, message).help(help);
+                    self.report.warn(found.line(line));
+                }
+            }
         }
         if self.gauge.machine.tools.retracts {
             self.leaves_for_home(line);
@@ -37,6 +47,9 @@ impl Prover<'_> {
         self.report.compared.tool_changes += 1;
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);
+        if let Some((_, length)) = self.running.last_offsets {
+            self.length_before_tool = length;
+        }
         self.running.change_tool(line, tool.clone());
         self.awaits_touch_off();
         Ok(())

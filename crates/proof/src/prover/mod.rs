@@ -80,6 +80,8 @@ pub struct Prover<'a> {
     is_set_up: bool,
     /// How far the touch-off of the tool is that has been put in by hand.
     touch: touch_off::Touch,
+    /// The length register of the last cut with the tool before.
+    length_before_tool: Option<u32>,
     /// Whether the control has turned the rotary axes to a tilted plane, and nothing has moved since.
     swivelled: bool,
     /// Whether the tool has stood at a place that is known.
@@ -163,6 +165,7 @@ impl<'a> Prover<'a> {
             top: f64::NEG_INFINITY,
             is_set_up: false,
             touch: touch_off::Touch::default(),
+            length_before_tool: None,
             swivelled: false,
             has_stood: false,
             down: None,

@@ -9,7 +9,7 @@
 
 use super::*;
 use machine::TouchPlate;
-use program::Rule;
+use program::{Rule, WorkOffset};
 
 /// How far it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -141,6 +141,8 @@ impl Prover<'_> {
                 Number(plate.at.x),
                 Number(plate.at.y)
             )
+        } else if let Some(what) = self.other_offsets() {
+            what
         } else if !self.is_slow(plate) {
             format!(
                 "touches off faster than {} mm/min, or at a feed that is not known",
@@ -161,6 +163,20 @@ impl Prover<'_> {
         self.differs(line, (Rule::Probe, what));
     }
 
+    /// What is wrong with the offsets by which the heights of a touch-off count: the plate's from the first work offset, and on a
+    /// control whose words name a length by that of the last cut with the tool before, since nobody knows that of this one.
+    fn other_offsets(&self) -> Option<String> {
+        let counts = "the height of the plate counts";
+        if self.running.work_offset != Some(WorkOffset::FIRST) {
+            return Some(format!(
+                "touches off in another work offset than the first, by which {counts}"
+            ));
+        }
+        (self.running.length_offset != self.length_before_tool).then(|| {
+            format!("touches off by another length offset than the last cut had, by which {counts}")
+        })
+    }
+
     /// Whether the feed that is on is no more than the plate's.
     fn is_slow(&self, plate: &TouchPlate) -> bool {
         matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed <= plate.feed * (1.0 + 1e-9))
@@ -173,6 +189,9 @@ impl Prover<'_> {
                 Number(height),
                 Number(plate.height)
             );
+            self.differs(line, (Rule::Probe, what));
+        }
+        if let Some(what) = self.other_offsets() {
             self.differs(line, (Rule::Probe, what));
         }
         let mut on = self.here.position;

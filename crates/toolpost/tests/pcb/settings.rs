@@ -444,6 +444,8 @@ fn tools_are_touched_off_on_a_plate() {
         ("(take the touch plate away)\nM0\n", "", "taken away"),
         ("G38.2 Z-13.4 F30\nG10 L20 P0 Z1.6\n", "", "not been touched off"),
         ("G10 L20 P0 Z1.6\n", "", "does not set Z"),
+        // Z 0 has been set with the tool: the first tool would go across the board at that height.
+        ("M0\nG0 Z20\n", "M0\n", "wherever Z stands"),
     ] {
         assert!(text.contains(from), "{from}");
         let said = prove(&text.replacen(from, to, 1));
@@ -535,6 +537,12 @@ fn tools_get_their_lengths_on_a_plate() {
         ("G38.2 Z-13.4 F30\nG10 L10 P2 Z1.6\n", "", "not been touched off"),
         ("G10 L10 P2 Z1.6\n", "", "does not set Z"),
         ("H2\n", "H1\n", "length"),
+        // The heights of plate and tool count from another zero, or by another length.
+        ("G10 L10 P2 Z1.6", "G55\nG10 L10 P2 Z1.6\nG54", "another work offset"),
+        ("G10 L10 P2 Z1.6", "G55 G10 L10 P2 Z1.6\nG54", "another work offset"),
+        ("G38.2 Z-13.4", "G55\nG38.2 Z-13.4", "the plate is at X-3 Y2"),
+        ("G38.2 Z-13.4", "G49\nG38.2 Z-13.4", "another length offset"),
+        ("G38.2 Z-13.4", "G43 H4\nG38.2 Z-13.4", "another length offset"),
     ] {
         assert!(text.contains(from), "{from}");
         let said = prove(&text.replacen(from, to, 1));
