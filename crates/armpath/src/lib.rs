@@ -97,8 +97,11 @@ pub struct Settings {
     pub limit: f64,
     /// Largest part of a joint's speed that a cut may use, above 0, at most 1.
     pub speed: f64,
-    /// Where the arm stands before. Where it is given, the arm changes its posture only where no path keeps it.
-    pub start: Option<Joints>,
+    /// Where the arm stands before the path: of two postures that pass it about as well the one in which it stands there is taken. Later
+    /// sections keep near to the one before them, so it comes back in it, too.
+    pub home: Option<Joints>,
+    /// Whether the arm leaves the posture of `home` only where no path keeps it.
+    pub keeps_posture: bool,
 }
 
 impl Default for Settings {
@@ -113,7 +116,8 @@ impl Default for Settings {
             elbow: 5_f64.to_radians(),
             limit: 1_f64.to_radians(),
             speed: 0.9,
-            start: None,
+            home: None,
+            keeps_posture: false,
         }
     }
 }

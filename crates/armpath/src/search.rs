@@ -23,6 +23,9 @@ const TURNING: f32 = 0.02;
 /// What another posture costs than the one before where it is to be kept, s: more than any path.
 const POSTURE: f32 = 1e5;
 
+/// What it costs to come from home into another posture, s: the tool swings on the way, which may not be clear. A minute right at a limit costs as much.
+const FROM_HOME: f32 = 60.0;
+
 /// The cheapest steps to a node.
 #[derive(Clone, Copy)]
 struct Label {
@@ -43,7 +46,7 @@ pub(crate) type Edge = (usize, usize, i32);
 
 pub(crate) fn search(job: &Job) -> Result<Choice, Blocked> {
     let mut choice = Choice { sections: Vec::new(), worst: follow::NO_WORST };
-    let mut last = job.settings.start;
+    let mut last = job.settings.home.filter(|_| job.settings.keeps_posture);
     for cut in &job.cuts {
         let (mut from, mut reentry) = (cut.samples.start, None);
         loop {
@@ -233,8 +236,11 @@ fn begin(job: &Job, node: &Node, (last, keeps_arm): Before) -> Label {
     if keeps_arm && !same_arm(earlier).contains(&posture) {
         return Label::DEAD;
     }
-    let changes = earlier != posture;
-    let keeping = if changes && job.settings.start.is_some() { POSTURE } else { 0.0 };
+    let keeping = match last {
+        None if job.settings.home.is_some_and(|home| arm.posture(&home) != posture) => FROM_HOME,
+        Some(_) if job.settings.keeps_posture && earlier != posture => POSTURE,
+        None | Some(_) => 0.0,
+    };
     Label {
         cost: node.cost + time as f32 + keeping,
         joints: node.end,

@@ -264,8 +264,8 @@ impl<'a> Stretch<'a> {
         let lines = &self.lines[group.points.clone()];
         // Where axis 1 turns by a revolution the arm reaches everything over its back as well: it does not leave the posture of home.
         let is_round = arm.joints()[0].max - arm.joints()[0].min > TAU;
-        let home = arm.model(&cell.home.map(f64::to_radians)).filter(|_| is_round);
-        let settings = Settings { start: home, ..Settings::default() };
+        let home = arm.model(&cell.home.map(f64::to_radians));
+        let settings = Settings { home, keeps_posture: is_round, ..Settings::default() };
         let at = |rail: f64| {
             let frames = Frames { tool, part: cell.part_from(rail) };
             choose(arm, &frames, points, &settings).map(|choice| (rail, choice))
