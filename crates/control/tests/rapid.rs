@@ -408,3 +408,124 @@ fn eax_a_is_the_rail_and_an_arc_states_one_position_of_it() {
     assert_eq!(rail(joints), Some(250.0));
     refused(&format!("{start}{}", arc("40", "41")), 5, "different positions of the rail");
 }
+
+/// A program that loads modules one after the other, as the example of `Load` in the Technical reference manual RAPID.
+const LOADS: &str = "MODULE Job\nPROC main()\nLoad \\Dynamic,diskhome\\File:=\"A.MOD\";\n%\"route_a\"%;\nUnLoad diskhome\\File:=\"A.MOD\";\n\
+Load \\Dynamic,\"HOME:/b.mod\";\n%\"PartB:route_b\"%;\nUnLoad \"HOME:/b.mod\";\nEXIT;\nENDPROC\nENDMODULE\n";
+
+/// The modules that it loads: each has data of its own, by the same name.
+fn loading(text: &str) -> Result<Vec<Event>, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let module = |name: &str, seconds: u32| {
+        format!(
+            "MODULE Part{name}\nLOCAL PERS num time:=0;\nPROC route_{name}()\ntime:={seconds};\nWaitTime time;\nENDPROC\nENDMODULE\n"
+        )
+    };
+    std::fs::write(folder.path().join("a.mod"), module("a", 1)).unwrap();
+    std::fs::write(folder.path().join("b.mod"), module("b", 2)).unwrap();
+    std::fs::write(folder.path().join("c.mod"), module("a", 3)).unwrap();
+    let mut settings = settings();
+    settings.setup.folders = vec![folder.path().to_path_buf()].into();
+    run_with(&settings, text)
+}
+
+#[test]
+fn modules_are_loaded_called_by_a_name_and_unloaded() {
+    let events = loading(LOADS).unwrap();
+    let file = |name: Option<&str>| Action::Arm(ArmAction::File(name.map(Box::from)));
+    let expected = [
+        // The arm stands while a module is loaded.
+        (3, file(None)),
+        (4, file(Some("a.mod"))),
+        (5, Action::Dwell(1.0)),
+        (6, file(None)),
+        (5, file(None)),
+        (6, file(None)),
+        (7, file(Some("b.mod"))),
+        (5, Action::Dwell(2.0)),
+        (6, file(None)),
+        (8, file(None)),
+        (9, Action::End),
+    ];
+    assert_eq!(events, expected.map(|(line, action)| Event { line, action }));
+}
+
+#[test]
+fn modules_that_are_not_there_or_there_twice_or_stay_are_refused() {
+    for (from, to, line, what) in [
+        (
+            "Load \\Dynamic,diskhome\\File:=\"A.MOD\";\n",
+            "",
+            3,
+            "no module that is loaded has a procedure ROUTE_A",
+        ),
+        ("UnLoad diskhome\\File:=\"A.MOD\";\n", "", 8, "HOME:/A.MOD is still loaded"),
+        (
+            "UnLoad diskhome\\File:=\"A.MOD\"",
+            "UnLoad diskhome\\File:=\"B.MOD\"",
+            5,
+            "HOME:/B.MOD is not loaded",
+        ),
+        (
+            "\"HOME:/b.mod\";\n%",
+            "\"HOME:/A.MOD\";\n%",
+            7,
+            "no module that is loaded has a procedure ROUTE_B",
+        ),
+        (
+            "UnLoad diskhome\\File:=\"A.MOD\";\nLoad \\Dynamic,\"HOME:/b.mod\"",
+            "Load \\Dynamic,\"HOME:/a.mod\"",
+            5,
+            "HOME:/a.mod is loaded already",
+        ),
+        (
+            "UnLoad diskhome\\File:=\"A.MOD\";\nLoad \\Dynamic,\"HOME:/b.mod\"",
+            "Load \\Dynamic,\"HOME:/c.mod\"",
+            5,
+            "another of that name is there",
+        ),
+        ("A.MOD", "D.MOD", 3, "HOME:/D.MOD is in no folder"),
+        ("\"A.MOD\"", "\"parts/A.MOD\"", 3, "no file that lies in HOME: itself"),
+        ("\"A.MOD\"", "\"../A.MOD\"", 3, "no file that lies in HOME: itself"),
+        ("HOME:/b.mod", "TEMP:/b.mod", 6, "no file that lies in HOME: itself"),
+        ("\\Dynamic,diskhome", "diskhome", 3, "loaded without \\Dynamic"),
+        ("%\"route_a\"%", "%\"route_x\"%", 4, "has a procedure ROUTE_X"),
+        ("%\"route_a\"%", "%\"PartB:route_a\"%", 4, "has a procedure ROUTE_A"),
+        ("%\"route_a\"%", "%\"route a\"%", 4, "no name of a procedure"),
+        ("%\"route_a\"%", "%name%", 4, "as a text alone"),
+        ("%\"route_a\"%", "%\"route_a\"% 1", 4, "with arguments"),
+        ("%\"route_a\"%", "%\"main\"%", 3, "is loaded already"),
+    ] {
+        let text = LOADS.replace(from, to);
+        assert_ne!(text, LOADS, "{from}");
+        let found = loading(&text).unwrap_err();
+        assert!(
+            found.contains(&format!("job.mod:{line}:")) && found.contains(what),
+            "{to}: {found}"
+        );
+    }
+}
+
+/// A module that is unloaded by its own procedure, and what is wrong in a module: with its file and line.
+#[test]
+fn what_is_wrong_in_a_module_has_its_file_and_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "MODULE Job\nPROC main()\nLoad \\Dynamic,\"HOME:/a.mod\";\n%\"go\"%;\nUnLoad \"HOME:/a.mod\";\nEXIT;\nENDPROC\nENDMODULE\n";
+    for (body, line, what) in [
+        ("UnLoad \"HOME:/a.mod\";", 3, "while it is run"),
+        ("WaitTime -1;", 3, "not below 0 s"),
+        ("%\"go\"%;", 3, "nest deeper than 20"),
+        ("time:=1;", 3, "TIME is not declared here"),
+        ("WaitTime 1", 3, "`;` is missing"),
+    ] {
+        let module = format!("MODULE A\nPROC go()\n{body}\nENDPROC\nENDMODULE\n");
+        std::fs::write(folder.path().join("a.mod"), module).unwrap();
+        let mut settings = settings();
+        settings.setup.folders = vec![folder.path().to_path_buf()].into();
+        let found = run_with(&settings, text).unwrap_err();
+        assert!(
+            found.contains(&format!("a.mod:{line}:")) && found.contains(what),
+            "{body}: {found}"
+        );
+    }
+}

@@ -71,6 +71,7 @@ fn a_job_of_10_000_points_is_divided_at_retracts_and_proven_with_its_parts() {
         ("fanuc-lrmate-200id-mill", "program_points = 2500"),
         ("kuka-kr6-r900", "program_bytes = 200000"),
         ("kuka-kr6-r900", "program_lines = 2500"),
+        ("abb-irb120-mill", "program_lines = 2500"),
     ] {
         let machine = bounded(name, bound);
         let written = written(&source, &machine);
@@ -109,8 +110,22 @@ fn four(name: &str, bound: &str) -> (Program, Machine, Written) {
     (source, machine, written)
 }
 
-const ROBOTS: [(&str, &str); 2] =
-    [("fanuc-lrmate-200id-mill", "program_lines = 42"), ("kuka-kr6-r900", "program_lines = 44")];
+const ROBOTS: [(&str, &str); 3] = [
+    ("fanuc-lrmate-200id-mill", "program_lines = 42"),
+    ("kuka-kr6-r900", "program_lines = 44"),
+    ("abb-irb120-mill", "program_lines = 38"),
+];
+
+/// How a program calls a part.
+fn call_of(robot: &str, number: usize) -> String {
+    match robot.split_once('-') {
+        Some(("fanuc", _)) => format!("CALL JOB_{number} ;"),
+        Some(("kuka", _)) => format!("JOB_{number} ( )"),
+        _ => format!(
+            "Load \\Dynamic,diskhome\\File:=\"job_{number}.mod\";\r\n%\"JOB_{number}\"%;\r\nUnLoad diskhome\\File:=\"job_{number}.mod\";"
+        ),
+    }
+}
 
 #[test]
 fn a_main_program_calls_its_parts_by_the_names_of_their_files() {
@@ -132,6 +147,16 @@ fn a_main_program_calls_its_parts_by_the_names_of_their_files() {
     assert!(written.text.ends_with(calls), "{}", written.text);
     let part = String::from_utf8_lossy(&written.parts["job_2.src"]);
     assert!(part.contains("DEF JOB_2 ( )\r\n") && part.contains("\r\nPTP {A1 "), "{part}");
+    // The example of `Load` in the Technical reference manual RAPID: load, a call by name, unload.
+    let (.., written) = four(ROBOTS[2].0, ROBOTS[2].1);
+    let calls: Vec<String> = (1..=4).map(|number| call_of(ROBOTS[2].0, number)).collect();
+    let calls =
+        format!("PROC main()\r\n{}\r\nEXIT;\r\nENDPROC\r\nENDMODULE\r\n", calls.join("\r\n"));
+    assert!(written.text.ends_with(&calls), "{}", written.text);
+    let part = String::from_utf8_lossy(&written.parts["job_2.mod"]);
+    let (begins, ends) = ("MODULE MOD_JOB_2\r\n", "\r\nENDPROC\r\nENDMODULE\r\n");
+    assert!(part.starts_with(begins) && part.ends_with(ends) && !part.contains("EXIT"), "{part}");
+    assert!(part.contains("\r\nPROC JOB_2()\r\n") && part.contains("\r\nMoveAbsJ "), "{part}");
 }
 
 /// Each damage to the files of a program, and the rule by which the proof refuses it.
@@ -139,10 +164,7 @@ fn a_main_program_calls_its_parts_by_the_names_of_their_files() {
 fn a_part_that_is_missing_or_in_the_wrong_order_or_called_twice_or_begins_in_a_cut_is_refused() {
     for (name, bound) in ROBOTS {
         let (source, machine, written) = four(name, bound);
-        let call = |number: usize| match name.starts_with("fanuc") {
-            true => format!("CALL JOB_{number} ;"),
-            false => format!("JOB_{number} ( )"),
-        };
+        let call = |number: usize| call_of(name, number);
         let damaged = |text: String| {
             assert_ne!(text, written.text);
             let report =
@@ -174,11 +196,12 @@ fn a_part_that_is_missing_or_in_the_wrong_order_or_called_twice_or_begins_in_a_c
 fn a_finding_in_a_part_names_its_file_and_its_line() {
     for (name, bound) in ROBOTS {
         let (source, machine, written) = four(name, bound);
-        let (file, from, to, unknown) = match name.starts_with("fanuc") {
-            true => ("job_2.ls", ":L P[5]", ":L P[6]", "syntax"),
-            false => {
+        let (file, from, to, unknown) = match name.split_once('-') {
+            Some(("fanuc", _)) => ("job_2.ls", ":L P[5]", ":L P[6]", "syntax"),
+            Some(("kuka", _)) => {
                 ("job_2.src", "LIN {X 12.000,Y 10.000", "LIN {X 12.000,Y 11.000", "unknown-word")
             }
+            _ => ("job_2.mod", "MoveL [[12.000,10.000", "MoveL [[12.000,11.000", "syntax"),
         };
         let text = String::from_utf8(written.parts[file].clone()).unwrap();
         let line = 1 + text.lines().position(|line| line.contains(from)).unwrap();
@@ -218,21 +241,24 @@ fn a_file_that_begins_within_a_cut_is_refused() {
     for (name, bound) in ROBOTS {
         let (source, machine, written) = four(name, bound);
         let is_fanuc = name.starts_with("fanuc");
-        let (file, other) = match is_fanuc {
-            true => ("job_2.ls", "job_9.ls"),
-            false => ("job_2.src", "job_9.src"),
+        let (file, other, mark, begin, end) = match name.split_once('-') {
+            Some(("fanuc", _)) => ("job_2.ls", "job_9.ls", ":L P[", "/MN\r\n", "/POS"),
+            Some(("kuka", _)) => ("job_2.src", "job_9.src", "LIN {", "( )\r\n", "END\r\n"),
+            _ => ("job_2.mod", "job_9.mod", "MoveL [", "()\r\n", "ENDPROC\r\n"),
         };
-        let part = String::from_utf8(written.parts[file].clone()).unwrap();
+        let mut part = String::from_utf8(written.parts[file].clone()).unwrap();
+        // A corner that is passed is refused before that.
+        while let Some(at) = part.find("[FALSE,0.") {
+            let end = at + part[at..].find(']').unwrap();
+            part.replace_range(at..=end, "fine");
+        }
         // Its fifth line of a cut and all behind it go into a file of their own, with the same head and positions.
-        let mark = if is_fanuc { ":L P[" } else { "LIN {" };
         let at = part.match_indices(mark).nth(4).unwrap().0;
         let at = part[..at].rfind("\r\n").unwrap() + 2;
-        let end = part.find(if is_fanuc { "/POS" } else { "END\r\n" }).unwrap();
-        let begin = match is_fanuc {
-            true => part.find("/MN\r\n").unwrap() + 5,
-            false => part.find("BAS (#INITMOV").unwrap(),
-        };
-        let call = if is_fanuc { "99:CALL JOB_9 ;\r\n" } else { "JOB_9 ( )\r\n" };
+        let end = part.find(end).unwrap();
+        let begin = part.find(begin).unwrap() + begin.len();
+        let number = if is_fanuc { "99:" } else { "" };
+        let call = format!("{number}{}\r\n", call_of(name, 9));
         let first = format!("{}{call}{}", &part[..at], &part[end..]);
         let second = format!("{}{}{}", &part[..begin], &part[at..end], &part[end..]);
         let mut damaged = written.clone();
@@ -252,5 +278,6 @@ fn what_cannot_be_divided_is_refused() {
     // A control without a call.
     let found =
         post::write(&source, &bounded("universal-ur5e", "program_lines = 150")).unwrap_err();
-    assert!(found[0].message.contains("calls no other files"), "{}", found[0]);
+    assert!(found[0].message.contains("no call of another file"), "{}", found[0]);
+    assert!(found[0].help.contains("for each operation"), "{}", found[0]);
 }

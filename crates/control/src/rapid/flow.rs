@@ -1,20 +1,26 @@
 //! Through a module: its data, `main`, and what that calls in it and in the modules of other files.
 
-use super::execution::State;
+use super::execution::{Data, State};
 use super::language::{Name, REFUSED, RESERVED, Routine, Scan, Statement, declaration, read};
 use crate::event::{Action, Risk};
 use crate::kernel::Channel;
 use crate::kernel::flow::BlockLocation;
 use crate::{ArmAction, Settings};
 use program::{Diagnostic, Outcome, OutputValue, Rule};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
 /// Most calls within calls.
 const DEEPEST: usize = 20;
 
+/// Most modules that are loaded at once: no manual at hand states a number.
+const MOST_MODULES: usize = 50;
+
 /// A module.
 struct Module<'t> {
-    text: &'t [u8],
+    text: Cow<'t, [u8]>,
+    name: Name,
     /// The name of its file; none of the one that is run.
     file: Option<Box<str>>,
     /// Where its procedures begin: behind their heads.
@@ -31,14 +37,21 @@ enum Ended {
 /// Runs a program.
 pub(super) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Outcome {
     let mut state = State::new(&settings.tool_change, &settings.signals);
-    let module = Module::of(text, None, &mut state)?;
+    let module = Module::of(Cow::Borrowed(text), None, &mut state)?;
     let main = Name::of("MAIN").and_then(|name| module.routines.get(&name).copied());
     let Some(main) = main else {
         let message = "the module has no procedure main";
         return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
     };
-    let mut run = Run { settings, state, channel };
-    let end = match run.routine(&module, main, 0)? {
+    let mut run = Run { settings, state, channel, loaded: Vec::new() };
+    let ended = run.routine(&module, main, 0)?;
+    if let Some(loaded) = run.loaded.first() {
+        let (Ended::Program(line) | Ended::Routine(line)) = ended;
+        let message = format!("the program ends, and {} is still loaded", loaded.path);
+        let found = Diagnostic::error(Rule::CalledProgram, message);
+        return Err(found.help("UnLoad with the same file behind its call").line(line).into());
+    }
+    let end = match ended {
         Ended::Program(end) => end,
         Ended::Routine(end) => {
             run.channel.report(end, Action::Risk(BEGINS_ANEW.into()))?;
@@ -61,8 +74,8 @@ impl<'t> Module<'t> {
     ///
     /// # Errors
     /// What is not understood, but for what stands in procedures.
-    fn of(text: &'t [u8], file: Option<Box<str>>, state: &mut State) -> Outcome<Module<'t>> {
-        let mut scan = Scan::within(text, BlockLocation { at: 0, line: 1 });
+    fn of(text: Cow<'t, [u8]>, file: Option<Box<str>>, state: &mut State) -> Outcome<Module<'t>> {
+        let mut scan = Scan::within(&text, BlockLocation { at: 0, line: 1 });
         head(&mut scan)?;
         if !scan.take_word("MODULE") {
             return Err(scan.wrong("the file begins with MODULE and a name"));
@@ -110,10 +123,10 @@ impl<'t> Module<'t> {
         for name in declared {
             state.outlive(name, assigned.contains(&name));
         }
-        match scan.peek() {
-            None => Ok(Module { text, file, routines }),
-            Some(_) => Err(scan.wrong("something stands behind ENDMODULE")),
+        if scan.peek().is_some() {
+            return Err(scan.wrong("something stands behind ENDMODULE"));
         }
+        Ok(Module { text, name, file, routines })
     }
 }
 
@@ -135,7 +148,10 @@ fn head(scan: &mut Scan) -> Outcome {
 /// Goes over the statements of a procedure to behind its `ENDPROC`, and notes what they assign.
 fn over(scan: &mut Scan, assigned: &mut HashSet<Name>) -> Outcome {
     loop {
-        scan.peek();
+        if scan.peek() == Some(b'%') {
+            scan.skip()?;
+            continue;
+        }
         let from = scan.at;
         let name = scan.needed("a statement or ENDPROC")?;
         if matches!(scan.peek(), Some(b'.' | b':')) {
@@ -157,16 +173,26 @@ fn over(scan: &mut Scan, assigned: &mut HashSet<Name>) -> Outcome {
     }
 }
 
+/// A module that `Load` has taken from a file.
+struct Loaded {
+    /// As it is written.
+    path: Box<str>,
+    module: Rc<Module<'static>>,
+    /// None while it is run.
+    data: Option<Data>,
+}
+
 struct Run<'r, 'c> {
     settings: &'r Settings,
     state: State,
     channel: &'r mut Channel<'c>,
+    loaded: Vec<Loaded>,
 }
 
 impl Run<'_, '_> {
     /// Runs a procedure from behind its head to its end.
     fn routine(&mut self, module: &Module, from: BlockLocation, depth: usize) -> Outcome<Ended> {
-        let mut scan = Scan::within(module.text, from);
+        let mut scan = Scan::within(&module.text, from);
         let mut declared = Vec::new();
         let ended = loop {
             scan.blanks();
@@ -192,6 +218,15 @@ impl Run<'_, '_> {
                         break Ended::Program(end);
                     }
                 }
+                Statement::CallByName(of, name) => {
+                    let place = (&scan, from, line);
+                    let ended = self.call_by_name(module, place, (of, name), depth)?;
+                    if let Ended::Program(end) = ended {
+                        break Ended::Program(end);
+                    }
+                }
+                Statement::Load(path) => self.load(module, (&scan, from, line), path)?,
+                Statement::Unload(path) => self.unload(module, (&scan, from, line), &path)?,
                 Statement::Declare(declaration) => {
                     declared.push(declaration.name);
                     self.state.declare(&scan, from, declaration)?;
@@ -233,6 +268,9 @@ impl Run<'_, '_> {
             Statement::Nothing
             | Statement::Declare(_)
             | Statement::Call(..)
+            | Statement::CallByName(..)
+            | Statement::Load(_)
+            | Statement::Unload(_)
             | Statement::Exit
             | Statement::Return
             | Statement::EndRoutine => {}
@@ -268,14 +306,136 @@ impl Run<'_, '_> {
             return Err(refused(Rule::CalledProgram, message));
         };
         let inside = |found: Box<Diagnostic>| called.inside(found);
-        let other = Module::of(&called.text, Some(called.name.as_str().into()), &mut self.state)
-            .map_err(inside)?;
+        let other = Module::of(
+            Cow::Borrowed(&called.text),
+            Some(called.name.as_str().into()),
+            &mut self.state,
+        )
+        .map_err(inside)?;
         let Some(place) = other.routines.get(&name).copied() else {
             let message = format!("{} has no procedure {name}", called.name);
             return Err(refused(Rule::CalledProgram, message));
         };
         self.channel.arm(line, ArmAction::File(other.file.clone()))?;
         let ended = self.routine(&other, place, depth + 1).map_err(inside)?;
+        if let Ended::Routine(end) = ended {
+            self.channel.arm(end, ArmAction::File(module.file.clone())).map_err(inside)?;
+        }
+        Ok(ended)
+    }
+
+    /// `Load`: the arm stands meanwhile.
+    fn load(
+        &mut self,
+        module: &Module,
+        (scan, from, line): (&Scan, usize, u32),
+        path: Box<str>,
+    ) -> Outcome {
+        let refused = |message: String| Err(scan.since(from, Rule::CalledProgram, message));
+        let file = path.strip_prefix("HOME:").map(|file| file.trim_start_matches('/'));
+        let parts = file.filter(|file| !file.contains('/')).and_then(|file| file.rsplit_once('.'));
+        let Some((stem, ending)) = parts else {
+            return refused(format!("{path:?} is no file that lies in HOME: itself"));
+        };
+        if self.loaded.iter().any(|loaded| loaded.path.eq_ignore_ascii_case(&path)) {
+            return refused(format!("{path} is loaded already"));
+        }
+        if self.loaded.len() == MOST_MODULES {
+            let message = format!("more than {MOST_MODULES} modules are loaded at once");
+            return Err(scan.since(from, Rule::TooMuch, message));
+        }
+        let called = self.settings.setup.folders.called(stem, ending);
+        let called = called.map_err(|message| scan.since(from, Rule::CalledProgram, message))?;
+        let Some(called) = called else {
+            return refused(format!("the module {path} is in no folder for called programs"));
+        };
+        self.channel.arm(line, ArmAction::File(module.file.clone()))?;
+        let outer = self.state.exchange(Data::default());
+        let name: Box<str> = called.name.as_str().into();
+        let read = Module::of(Cow::Owned(called.text), Some(name.clone()), &mut self.state);
+        let data = self.state.exchange(outer);
+        let read = read.map_err(|found| match found.file.is_empty() {
+            true => Box::new(found.file(name.to_string())),
+            false => found,
+        })?;
+        let others = self.loaded.iter().map(|loaded| loaded.module.name);
+        if let Some(other) = others.chain([module.name]).find(|other| *other == read.name) {
+            return refused(format!(
+                "{path} has the module {other}, and another of that name is there"
+            ));
+        }
+        self.loaded.push(Loaded { path, module: Rc::new(read), data: Some(data) });
+        Ok(())
+    }
+
+    /// `UnLoad`.
+    fn unload(
+        &mut self,
+        module: &Module,
+        (scan, from, line): (&Scan, usize, u32),
+        path: &str,
+    ) -> Outcome {
+        let refused = |message: String| Err(scan.since(from, Rule::CalledProgram, message));
+        let at = self.loaded.iter().position(|loaded| loaded.path.eq_ignore_ascii_case(path));
+        let Some(at) = at else { return refused(format!("{path} is not loaded")) };
+        if self.loaded[at].data.is_none() {
+            return refused(format!("{path} is unloaded while it is run"));
+        }
+        self.channel.arm(line, ArmAction::File(module.file.clone()))?;
+        self.loaded.remove(at);
+        Ok(())
+    }
+
+    /// `%"name"%`: of the module that is run, or of one that is loaded.
+    fn call_by_name(
+        &mut self,
+        module: &Module,
+        (scan, from, line): (&Scan, usize, u32),
+        (of, name): (Option<Name>, Name),
+        depth: usize,
+    ) -> Outcome<Ended> {
+        let refused = |rule: Rule, message: String| scan.since(from, rule, message);
+        let counted = self.channel.budget.call(depth, DEEPEST);
+        counted.map_err(|(rule, message)| refused(rule, message))?;
+        let has = |module: &Module| {
+            of.is_none_or(|of| of == module.name) && module.routines.contains_key(&name)
+        };
+        let own = has(module).then(|| module.routines[&name]);
+        let other = |at: &usize| self.loaded[*at].module.name != module.name;
+        let mut found =
+            (0..self.loaded.len()).filter(other).filter(|at| has(&self.loaded[*at].module));
+        let (loaded, next) = (found.next(), found.next());
+        let at = match (own, loaded, next) {
+            (Some(place), None, _) => return self.routine(module, place, depth + 1),
+            (None, Some(at), None) => at,
+            (None, None, _) => {
+                let message = format!("no module that is loaded has a procedure {name}");
+                return Err(refused(Rule::CalledProgram, message));
+            }
+            (Some(_), Some(_), _) | (None, Some(_), Some(_)) => {
+                let message = format!("two modules have a procedure {name}");
+                return Err(refused(Rule::CalledProgram, message));
+            }
+        };
+        let Some(data) = self.loaded[at].data.take() else {
+            let message = format!("{name} belongs to a module that is run already");
+            return Err(refused(Rule::CalledProgram, message));
+        };
+        let other = Rc::clone(&self.loaded[at].module);
+        let inside = |found: Box<Diagnostic>| match (&other.file, found.file.is_empty()) {
+            (Some(file), true) => Box::new(found.file(file.to_string())),
+            (_, _) => found,
+        };
+        let place = other.routines[&name];
+        self.channel.arm(line, ArmAction::File(other.file.clone()))?;
+        let outer = self.state.exchange(data);
+        let ended = self.routine(&other, place, depth + 1).map_err(inside)?;
+        let data = self.state.exchange(outer);
+        if let Some(loaded) =
+            self.loaded.iter_mut().find(|loaded| Rc::ptr_eq(&loaded.module, &other))
+        {
+            loaded.data = Some(data);
+        }
         if let Ended::Routine(end) = ended {
             self.channel.arm(end, ArmAction::File(module.file.clone())).map_err(inside)?;
         }

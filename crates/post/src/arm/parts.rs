@@ -78,7 +78,8 @@ impl Walk<'_> {
     pub(super) fn divided(&mut self, steps: &[Step], borders: &[Border], whole: Size) -> Outcome {
         let bounds = bounds(self.machine);
         if !self.templates.has(BlockName::PartCall) {
-            return Err(too_large(&whole, &bounds, "its control calls no other files"));
+            let why = "its control has no call of another file";
+            return Err(too_large(&whole, &bounds, why).help("a program of its own for each operation of the toolpath, run one after the other; or fewer points: a larger tolerance of the toolpath").into());
         }
         let [start, end] = [
             (BlockName::PartStart, BlockName::ProgramStart),
@@ -141,11 +142,8 @@ impl Walk<'_> {
     ) -> Outcome {
         let size = self.end(start, end)?;
         if !bounds.hold(&size) {
-            return Err(too_large(
-                &size,
-                bounds,
-                "there is no retract at which it could be divided",
-            ));
+            let why = "there is no retract at which it could be divided";
+            return Err(too_large(&size, bounds, why).help("rapids of the source that take the tool beyond all cuts, or fewer points: a larger tolerance of the toolpath").into());
         }
         let name = names.last().map_or("", |name| name).to_ascii_lowercase();
         let file = format!("{name}.{}", self.machine.extension);
@@ -158,7 +156,7 @@ impl Walk<'_> {
 }
 
 /// The refusal of a file.
-fn too_large(size: &Size, bounds: &Size, why: &str) -> Box<Diagnostic> {
+fn too_large(size: &Size, bounds: &Size, why: &str) -> Diagnostic {
     let row = |has: usize, most: usize, what: &str| {
         (has > most).then(|| format!("{has} {what}, the control takes {most}"))
     };
@@ -169,6 +167,5 @@ fn too_large(size: &Size, bounds: &Size, why: &str) -> Box<Diagnostic> {
     ];
     let rows: Vec<String> = rows.into_iter().flatten().collect();
     let message = format!("a file of the program has {}, and {why}", rows.join("; "));
-    let help = "rapids of the source that take the tool beyond all cuts, or fewer points: a larger tolerance of the toolpath";
-    Diagnostic::error(Rule::Memory, message).help(help).into()
+    Diagnostic::error(Rule::Memory, message)
 }

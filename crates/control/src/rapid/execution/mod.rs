@@ -3,4 +3,4 @@
 mod motion;
 mod state;
 
-pub(super) use state::State;
+pub(super) use state::{Data, State};

@@ -19,6 +19,14 @@ struct Variable {
     fixed: bool,
 }
 
+/// The data of a module.
+#[derive(Default)]
+pub(in crate::rapid) struct Data {
+    variables: HashMap<Name, Variable>,
+    /// How often the operator's procedure had been called when they were in use last.
+    changes: u32,
+}
+
 /// What the motion before has set, so that each is reported where it changes alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Reported {
@@ -44,8 +52,17 @@ pub(in crate::rapid) struct State {
     pub(super) standing: Option<Frame>,
     /// The name of the operator's procedure that changes tools.
     tool_change: String,
+    /// How often it has been called.
+    changes: u32,
     /// What names of digital and of analog signals begin with; their numbers follow.
     signals: [String; 2],
+}
+
+/// What the operator's procedure leaves of data.
+fn forget(variables: &mut HashMap<Name, Variable>) {
+    for variable in variables.values_mut().filter(|variable| !variable.constant) {
+        variable.value = None;
+    }
 }
 
 impl Readable for State {
@@ -64,6 +81,7 @@ impl State {
             is_nearest: false,
             reported: Reported::default(),
             standing: None,
+            changes: 0,
             tool_change: tool_change.to_ascii_uppercase(),
             signals: signals.clone().map(|name| name.to_ascii_uppercase()),
         }
@@ -115,6 +133,15 @@ impl State {
                 false => variable.fixed = true,
             }
         }
+    }
+
+    /// Other data take the place of those that are there, which come back.
+    pub(in crate::rapid) fn exchange(&mut self, mut data: Data) -> Data {
+        if data.changes < self.changes {
+            forget(&mut data.variables);
+        }
+        let variables = std::mem::replace(&mut self.variables, data.variables);
+        Data { variables, changes: self.changes }
     }
 
     /// What a procedure has declared ends with it.
@@ -180,9 +207,8 @@ impl State {
         // What the operator's procedure leaves behind, this program does not say.
         (self.turning, self.circles, self.is_nearest) = (None, None, false);
         (self.reported, self.standing) = (Reported::default(), None);
-        for variable in self.variables.values_mut().filter(|variable| !variable.constant) {
-            variable.value = None;
-        }
+        self.changes += 1;
+        forget(&mut self.variables);
         channel.arm(line, ArmAction::TurnSpeed([None; 2]))?;
         channel.arm(line, ArmAction::Base(None))?;
         channel.arm(line, ArmAction::Tool(None))?;

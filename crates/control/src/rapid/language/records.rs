@@ -138,6 +138,7 @@ pub(crate) fn predefined(name: Name) -> Option<(&'static str, Value)> {
     };
     match name {
         "FINE" => return Some(zone(true, [0.0; 2])),
+        "DISKHOME" => return Some(("STRING", Value::Text("HOME:".into()))),
         "WOBJ0" => {
             let flags = [Value::Flag(false), Value::Flag(true), Value::Text("".into())];
             return Some((

@@ -6,6 +6,7 @@ use super::scan::Scan;
 use super::value::{Name, Value};
 use super::words::{REFUSED, RESERVED};
 use crate::Turning;
+use crate::kernel::flow::BlockLocation;
 use program::{Outcome, Rule};
 
 /// Most arguments of a call that are read.
@@ -22,6 +23,12 @@ pub(crate) enum Statement {
     Declare(Declaration),
     /// A call of a procedure with its arguments.
     Call(Name, Vec<Value>),
+    /// A call by a name that a text has: of a module, or of the only one that has it.
+    CallByName(Option<Name>, Name),
+    /// `Load \Dynamic`: a module from this file of the controller.
+    Load(Box<str>),
+    /// `UnLoad`: the module of this file.
+    Unload(Box<str>),
     /// `ConfL \On`, `ConfL \Off`.
     Configuration(bool),
     /// `SingArea`: how the tool turns along lines.
@@ -162,10 +169,24 @@ pub(crate) fn declaration(
 /// # Errors
 /// What is not understood, at its place.
 pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
-    scan.peek();
+    if scan.take(b'%') {
+        let statement = by_name(scan)?;
+        scan.expect(";")?;
+        return Ok(statement);
+    }
     let from = scan.at;
     let first = scan.needed("a statement, which begins with a word,")?;
     let statement = match first.as_str() {
+        "LOAD" => {
+            let dynamic = scan.take(b'\\');
+            if !dynamic || !scan.take_word("DYNAMIC") {
+                let message = "a module that is loaded without \\Dynamic is still there when the program is started anew";
+                return Err(scan.since(from, Rule::Unsupported, message));
+            }
+            scan.expect(",")?;
+            Statement::Load(path(scan, variables)?)
+        }
+        "UNLOAD" => Statement::Unload(path(scan, variables)?),
         "ENDPROC" => return Ok(Statement::EndRoutine),
         "CONST" | "VAR" | "PERS" => {
             return declaration(scan, variables, first).map(Statement::Declare);
@@ -236,6 +257,53 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
     };
     scan.expect(";")?;
     Ok(statement)
+}
+
+/// The name in `%"procedure"%` or `%"module:procedure"%` behind its first sign.
+fn by_name(scan: &mut Scan) -> Outcome<Statement> {
+    if scan.peek() != Some(b'"') {
+        return Err(scan.wrong("between two % the name of a procedure is followed as a text alone"));
+    }
+    let from = scan.at;
+    let text = scan.text()?;
+    scan.expect("%")?;
+    let (module, routine) = match text.split_once(':') {
+        Some((module, routine)) => (Some(module), routine),
+        None => (None, &*text),
+    };
+    let name = |text: &str| {
+        let mut inner = Scan::within(text.as_bytes(), BlockLocation { at: 0, line: 1 });
+        let name = inner.name().ok().flatten();
+        name.filter(|_| inner.at == text.len())
+    };
+    let wrong = || scan.since(from, Rule::Argument, format!("{text:?} is no name of a procedure"));
+    let module = module.map(|module| name(module).ok_or_else(wrong)).transpose()?;
+    let routine = name(routine).ok_or_else(wrong)?;
+    if scan.peek() != Some(b';') {
+        return Err(scan.wrong("a call by a name with arguments is not followed"));
+    }
+    Ok(Statement::CallByName(module, routine))
+}
+
+/// A file of the controller: `diskhome\File:="NAME.MOD"`, or one text.
+fn path(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Box<str>> {
+    let text = |scan: &mut Scan| match read_as(scan, variables, "STRING")? {
+        Value::Text(text) => Ok(text),
+        Value::Number(_) | Value::Flag(_) | Value::List(_) => {
+            Err(scan.wrong("the name of a file is needed here"))
+        }
+    };
+    let folder = text(scan)?;
+    if !scan.take(b'\\') {
+        return Ok(folder);
+    }
+    if !scan.take_word("FILE") {
+        return Err(scan.wrong("of options only \\File is followed here"));
+    }
+    scan.expect(":=")?;
+    let file = text(scan)?;
+    let between = if folder.ends_with('/') { "" } else { "/" };
+    Ok(format!("{folder}{between}{file}").into())
 }
 
 /// What an option such as `\On` means.

@@ -74,8 +74,6 @@ pub(crate) const REFUSED: &[&str] = &[
     "STARTMOVE",
     "CLEARPATH",
     "STOREPATH",
-    "LOAD",
-    "UNLOAD",
     "BREAK",
 ];
 
