@@ -82,9 +82,9 @@ pub fn proven(
     watch.begin("writing")?;
     let program = &toolpath.program;
     // What is reported of the toolpath is found meanwhile.
-    let headed = headed(program, machine, file, tolerances);
+    let headed = headed(program, tolerances);
     let (output, (shape, times)) = parallel(
-        || write(headed.as_ref().unwrap_or(program), machine, toolpath, &mut warnings),
+        || write((headed.as_ref().unwrap_or(program), file), machine, toolpath, &mut warnings),
         || (Shape::of(program), Times::of(program, machine)),
     );
     let output = output?;
@@ -158,43 +158,30 @@ fn files(output: &Output) -> Option<String> {
     ))
 }
 
-/// The program with the rules that are let pass in its head, where there are some, and with the name of its file, by which controllers of
-/// robots know it.
-fn headed(
-    program: &Program,
-    machine: &Machine,
-    file: &str,
-    tolerances: &Tolerances,
-) -> Option<Program> {
+/// The program with the rules that are let pass in its head, where there are some.
+fn headed(program: &Program, tolerances: &Tolerances) -> Option<Program> {
     let names: Vec<&str> = tolerances.accepted.rules().map(Rule::name).collect();
-    let is_renamed = machine.cell.is_some() && program.name != file;
-    if names.is_empty() && !is_renamed {
+    if names.is_empty() {
         return None;
     }
     let mut headed = program.clone();
-    if is_renamed {
-        file.clone_into(&mut headed.name);
-    }
-    if names.is_empty() {
-        return Some(headed);
-    }
     let op = Op::Comment(format!("accepted for this run: {}", names.join(", ")).into());
     headed.records.insert(0, Record { line: 0, op });
     Some(headed)
 }
 
-/// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that
+/// Writes `program`, which came from `toolpath`, for the file of this name. What the writer has to say goes behind the warnings that
 /// there are, with the text of its lines.
 ///
 /// # Errors
 /// The same, where nothing could be written.
 pub(crate) fn write(
-    program: &Program,
+    (program, file): (&Program, &str),
     machine: &Machine,
     toolpath: &Toolpath,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Output, Stop> {
-    match ::post::write(program, machine) {
+    match ::post::write_named(program, machine, file) {
         Ok(mut output) => {
             warnings.append(&mut output.warnings);
             toolpath.quote(warnings);

@@ -107,6 +107,18 @@ pub struct Part {
 /// Everything that keeps the program from being written, up to a fixed number of findings, each with
 /// the source line it comes from; mistakes in the machine's own files with their place there.
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
+    write_named(program, machine, &program.name)
+}
+
+/// The same for the file `name`: by that, not by the name of the program, controllers of robots know it.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_named(
+    program: &Program,
+    machine: &Machine,
+    name: &str,
+) -> Result<Output, Vec<Diagnostic>> {
     let is_error = |found: &Diagnostic| found.severity == Severity::Error;
     let (errors, warnings) = program.tools_under_one_number().into_iter().partition(is_error);
     let errors: Vec<Diagnostic> = errors;
@@ -120,7 +132,7 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     let (errors, of_leads) = leads.into_iter().partition(is_error);
     let (mut errors, of_leads): (Vec<Diagnostic>, Vec<Diagnostic>) = (errors, of_leads);
     let written = match robot(machine) {
-        Some(robot) => write_arm(program, machine, robot),
+        Some(robot) => write_arm(program, machine, robot, name),
         None => write_moves(program, machine),
     };
     let mut output = match written {
@@ -140,11 +152,13 @@ fn write_arm(
     program: &Program,
     machine: &Machine,
     robot: (&::arm::Arm, &machine::Cell),
+    name: &str,
 ) -> Result<Output, Vec<Diagnostic>> {
     let centered = center::centered(program, machine.resolution());
     let (centered, warning) = centered.map_err(|found| vec![*found])?.unzip();
     let offsets = centered.is_some();
-    let mut output = arm::write(centered.as_ref().unwrap_or(program), machine, robot, offsets)?;
+    let program = centered.as_ref().unwrap_or(program);
+    let mut output = arm::write(program, machine, robot, (name, offsets))?;
     output.warnings.extend(warning);
     Ok(output)
 }

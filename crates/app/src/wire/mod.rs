@@ -165,7 +165,7 @@ pub fn make(
     divide(&mut segments, settings.step, &machine)?;
     let cut = Cut::of(segments, height, &machine);
     let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
-    let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
+    let output = post::write((&program, file), &machine, &toolpath, &mut warnings)?;
     watch.begin("proving")?;
     if cut.points().is_some() {
         // Chords may leave their arcs by what the conversion has made of them, and by no more.

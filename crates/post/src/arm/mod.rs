@@ -93,7 +93,7 @@ pub(crate) const MIDDLE: PoseWords = PoseWords {
 const JOINTS: [WordName; 6] =
     [WordName::J1, WordName::J2, WordName::J3, WordName::J4, WordName::J5, WordName::J6];
 
-/// Writes `program` for the arm of `machine`; `offsets` where its contours have been offset.
+/// Writes `program` for the arm of `machine` under a name; `offsets` where its contours have been offset.
 ///
 /// # Errors
 /// As [`crate::write`].
@@ -101,15 +101,15 @@ pub(crate) fn write(
     program: &Program,
     machine: &Machine,
     robot: (&Arm, &Cell),
-    offsets: bool,
+    (name, offsets): (&str, bool),
 ) -> Result<Output, Vec<Diagnostic>> {
-    let mut walk = Walk { offsets, ..Walk::new(program, machine, robot)? };
+    let mut walk = Walk { offsets, ..Walk::new(program, machine, robot, name)? };
     let planned = plan(program, machine, robot);
     match planned.as_ref().map_err(Clone::clone).and_then(|steps| walk.all(steps)) {
         Ok(size) if parts::bounds(machine).hold(&size) => {}
         Ok(size) => {
             let whole = walk;
-            walk = Walk { offsets, ..Walk::new(program, machine, robot)? };
+            walk = Walk { offsets, ..Walk::new(program, machine, robot, name)? };
             let steps = planned.as_deref().unwrap_or_default();
             if let Err(error) = walk.divided(steps, &whole.borders, size) {
                 walk.findings.error(*error);
@@ -141,7 +141,7 @@ pub(crate) fn write(
 /// # Errors
 /// The mistakes in its files.
 pub(crate) fn check(machine: &Machine, robot: (&Arm, &Cell)) -> Result<(), Vec<Diagnostic>> {
-    Walk::new(&Program::default(), machine, robot).map(drop)
+    Walk::new(&Program::default(), machine, robot, "").map(drop)
 }
 
 /// What the control has been sent.
@@ -203,6 +203,7 @@ impl<'a> Walk<'a> {
         program: &Program,
         machine: &'a Machine,
         (arm, cell): (&'a Arm, &'a Cell),
+        name: &str,
     ) -> Result<Walk<'a>, Vec<Diagnostic>> {
         let templates = Templates::compile(machine)?;
         promises::check_arm(machine, &templates)?;
@@ -217,7 +218,7 @@ impl<'a> Walk<'a> {
             return Err(one(Diagnostic::error(Rule::AxisLimit, message)));
         }
         let mut scope = Scope::new(machine);
-        let name = name_of(&program.name);
+        let name = name_of(name);
         scope.program = named(machine, &name, "");
         let mut writer = Writer::new(machine);
         if let Some(number) = cell.own_frame {
