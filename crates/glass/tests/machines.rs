@@ -1,8 +1,6 @@
 //! Machine files.
 
-use toolpost_glass::control::read;
 use toolpost_glass::machine::{LIBRARY, Machine, library};
-use toolpost_glass::proof::{Task, prove};
 
 #[test]
 fn every_machine_of_the_library_is_one_and_says_its_rate_in_its_name() {
@@ -56,33 +54,4 @@ fn a_machine_file_that_cannot_be_is_refused_with_its_line() {
         let gcode = format!("\"gcode\"\nfire = \"{word}\"");
         assert!(refused("\"numbered\"", &gcode).1.contains("more than fire once"), "{word}");
     }
-}
-
-#[test]
-fn pulses_farther_off_than_can_be_counted_are_refused() {
-    let machine = Machine::read(
-        &library("glass-xyz-100hz").unwrap().replacen("numbered\"", "points\"", 1),
-        "far.toml",
-    )
-    .unwrap();
-    let task = Task {
-        cloud: &[[10_000, 10_000, 15_000]],
-        machine: &machine,
-        lens: machine.lens(70.0).unwrap(),
-        index: 1.5195,
-        block: [20.0, 20.0, 30.0],
-        blocks: 1,
-        spacing: 0.13,
-        accept_shadowed: false,
-    };
-    // Each way is longer than 2^64 µm, and all of them together.
-    let far = "5".repeat(50);
-    let text = format!("0 0 0\n{far} 0 0\n-{far} 0 0\n{far} 0 0\n-{far} 0 0\n");
-    let found = match read(text.as_bytes(), &machine) {
-        Ok(run) => match prove(&run, &task) {
-            Ok((_, found)) | Err(found) => found,
-        },
-        Err(found) => found,
-    };
-    assert!(found.iter().any(program::Diagnostic::is_error), "{found:?}");
 }

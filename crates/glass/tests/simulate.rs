@@ -3,6 +3,7 @@
 use toolpost_glass::control::{Run, read};
 use toolpost_glass::engraver::{Event, Refused, Settled, State};
 use toolpost_glass::machine::{Machine, library};
+use toolpost_glass::proof::{Task, prove};
 use toolpost_glass::simulate::{Events, seconds_of, simulate};
 
 const PLAIN: Events =
@@ -147,23 +148,44 @@ fn an_open_door_stops_a_run_which_goes_on_from_the_next_point() {
     assert!(whole.states.contains(&State::Finished) && whole.states[1] == State::Checked);
 }
 
-#[test]
-fn the_travel_of_a_program_is_the_length_of_its_lines() {
-    use toolpost_glass::proof::{Task, prove};
-    let machine = machine();
-    let task = Task {
-        // 5 mm of drive are 7.6 mm deep in K9 (Snell's law: 5 / 0.657873).
-        cloud: &[[0, 5_000, 22_400], [3_000, 9_000, 22_400], [3_000, 10_000, 22_400]],
-        machine: &machine,
+/// The proof of a program of points at depths in K9.
+fn task<'a>(machine: &'a Machine, cloud: &'a [[i32; 3]]) -> Task<'a> {
+    Task {
+        cloud,
+        machine,
         lens: machine.lens(70.0).unwrap(),
         index: 1.5195,
         block: [20.0, 20.0, 30.0],
         blocks: 1,
         spacing: 0.13,
         accept_shadowed: false,
-    };
+    }
+}
+
+#[test]
+fn the_travel_of_a_program_is_the_length_of_its_lines() {
+    let machine = machine();
+    // 5 mm of drive are 7.6 mm deep in K9 (Snell's law: 5 / 0.657873).
+    let cloud = [[0, 5_000, 22_400], [3_000, 9_000, 22_400], [3_000, 10_000, 22_400]];
+    let task = task(&machine, &cloud);
     let run = read(b"0.000 5.000 -5.000\n3.000 9.000 -5.000\n3.000 10.000 -5.000\n", &machine);
     let (proof, found) = prove(&run.unwrap(), &task).unwrap();
     // 3 and 4 mm are 5 mm, and 1 mm.
     assert_eq!((proof.travel, found.len()), (6.0, 0), "{found:?}");
+}
+
+#[test]
+fn pulses_farther_off_than_can_be_counted_are_refused() {
+    let machine = machine();
+    let task = task(&machine, &[[10_000, 10_000, 15_000]]);
+    // Each way is longer than 2^64 µm, and all of them together.
+    let far = "5".repeat(50);
+    let text = format!("0 0 0\n{far} 0 0\n-{far} 0 0\n{far} 0 0\n-{far} 0 0\n");
+    let found = match read(text.as_bytes(), &machine) {
+        Ok(run) => match prove(&run, &task) {
+            Ok((_, found)) | Err(found) => found,
+        },
+        Err(found) => found,
+    };
+    assert!(found.iter().any(program::Diagnostic::is_error), "{found:?}");
 }

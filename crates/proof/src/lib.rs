@@ -192,9 +192,6 @@ pub fn prove_files(
     proven.unwrap_or_default()
 }
 
-/// After so many events of the control the caller is asked whether the proof goes on: some milliseconds.
-const EVENTS_AT_ONCE: u32 = 4096;
-
 /// The report of a proof that cannot begin.
 fn refused(
     source: &Program,
@@ -225,26 +222,15 @@ fn prove_on(
     if resolved == Ok(true) {
         prover.keep_trail();
     }
-    let run = match nc::settings(machine, setup.clone()) {
-        Ok(settings) => {
-            let mut events: u32 = 0;
-            control::read(&settings, file_name, text, &mut |event| {
-                events = events.wrapping_add(1);
-                if events.is_multiple_of(EVENTS_AT_ONCE) && !observer.goes_on() {
-                    let message = "the proof was ended before its end";
-                    return Err(Diagnostic::error(Rule::Cancelled, message)
-                        .help("prove it again")
-                        .into());
-                }
-                let outcome = prover.event(&event);
-                if wants_motions {
-                    prover.take_motions(|motion| observer.moved(motion));
-                }
-                outcome
-            })
-        }
-        Err(found) => Err(found),
-    };
+    let run = nc::settings(machine, setup.clone()).and_then(|settings| {
+        observer::run(&settings, (file_name, text), observer, |event, observer| {
+            let outcome = prover.event(event);
+            if wants_motions {
+                prover.take_motions(|motion| observer.moved(motion));
+            }
+            outcome
+        })
+    });
     if let Err(found) = run {
         prover.refused(*found);
     }

@@ -1,7 +1,9 @@
 //! Who follows a proof while it runs: it is asked whether the proof goes on, and told what the control does.
 
 use crate::resolved_pose::PartialPose;
+use control::{Event, Settings};
 use geom::{Arc, Vec3};
+use program::{Diagnostic, Outcome, Rule};
 
 /// Who follows a proof. `()` follows nothing and never ends it; a closure is asked whether the proof goes on.
 pub trait Observer {
@@ -26,6 +28,41 @@ impl<F: Fn() -> bool> Observer for F {
     fn goes_on(&mut self) -> bool {
         self()
     }
+}
+
+/// It keeps all motions.
+impl Observer for Vec<Motion> {
+    fn wants_motions(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        self.push(motion.clone());
+    }
+}
+
+/// After so many events of the control the observer is asked whether the proof goes on: some milliseconds.
+const EVENTS_AT_ONCE: u32 = 4096;
+
+/// Runs a program, for as long as the observer says so, and hands each event to `take`.
+///
+/// # Errors
+/// What the control or `take` refuses; the observer has ended the proof (`cancelled`).
+pub(crate) fn run(
+    settings: &Settings,
+    (file_name, text): (&str, &[u8]),
+    observer: &mut dyn Observer,
+    mut take: impl FnMut(&Event, &mut dyn Observer) -> Outcome,
+) -> Outcome {
+    let mut events: u32 = 0;
+    control::read(settings, file_name, text, &mut |event| {
+        events = events.wrapping_add(1);
+        if events.is_multiple_of(EVENTS_AT_ONCE) && !observer.goes_on() {
+            let message = "the proof was ended before its end";
+            return Err(Diagnostic::error(Rule::Cancelled, message).help("prove it again").into());
+        }
+        take(&event, observer)
+    })
 }
 
 /// An observer that is only asked whether the proof goes on.

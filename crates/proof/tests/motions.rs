@@ -2,29 +2,15 @@
 
 use geom::Vec3;
 use program::{Builder, Cycle, CycleKind, Feed, Program, Spindle, Tool};
-use toolpost_proof::{AxisPositions, Motion, MotionKind, Observer, Tolerances, prove_for};
-
-/// Keeps all motions.
-#[derive(Default)]
-struct Keeper(Vec<Motion>);
-
-impl Observer for Keeper {
-    fn wants_motions(&self) -> bool {
-        true
-    }
-
-    fn moved(&mut self, motion: &Motion) {
-        self.0.push(motion.clone());
-    }
-}
+use toolpost_proof::{AxisPositions, Motion, MotionKind, Tolerances, prove_for};
 
 /// The motions of a program that is proven.
 fn motions(source: &Program, machine: &machine::Machine, text: &str) -> Vec<Motion> {
-    let mut keeper = Keeper::default();
+    let mut motions: Vec<Motion> = Vec::new();
     let tolerances = Tolerances::default();
-    let report = prove_for(source, machine, "p.ngc", text.as_bytes(), &tolerances, &mut keeper);
+    let report = prove_for(source, machine, "p.ngc", text.as_bytes(), &tolerances, &mut motions);
     assert!(report.proven, "{:#?}", report.mismatches);
-    keeper.0
+    motions
 }
 
 /// Line, record, way (R, L or A), tip behind it.
@@ -159,11 +145,11 @@ fn what_is_refused_is_not_told() {
     source.rapid([0.0, 0.0, 5.0], None).unwrap();
     let text = format!("{START}G0 X0 Y0\nZ5\nG1 X1 Z-1 F300\nG0 Z5\n{END}");
     let machine = machine::load("generic-3axis-linuxcnc").unwrap();
-    let mut keeper = Keeper::default();
+    let mut motions: Vec<Motion> = Vec::new();
     let tolerances = Tolerances::default();
     let source = source.build();
-    let report = prove_for(&source, &machine, "p.ngc", text.as_bytes(), &tolerances, &mut keeper);
+    let report = prove_for(&source, &machine, "p.ngc", text.as_bytes(), &tolerances, &mut motions);
     assert!(!report.proven);
-    let last = keeper.0.last().unwrap();
+    let last = motions.last().unwrap();
     assert_eq!((last.line, last.tool[1].tip), (8, Vec3::new(0.0, 0.0, 5.0)));
 }

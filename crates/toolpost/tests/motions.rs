@@ -7,31 +7,17 @@ use files::{mills, root};
 use geom::Vec3;
 use machine::{Machine, Mount};
 use program::{Builder, Feed, Op, Program, Spindle, Tool};
-use proof::{AxisPositions, Motion, MotionKind, Observer, Tolerances};
-
-/// Keeps all motions.
-#[derive(Default)]
-struct Keeper(Vec<Motion>);
-
-impl Observer for Keeper {
-    fn wants_motions(&self) -> bool {
-        true
-    }
-
-    fn moved(&mut self, motion: &Motion) {
-        self.0.push(motion.clone());
-    }
-}
+use proof::{AxisPositions, Motion, MotionKind, Tolerances};
 
 /// The proven program, and its motions.
 fn posted(source: &Program, machine: &Machine) -> (String, Vec<Motion>) {
     let written =
         post::write(source, machine).unwrap_or_else(|why| panic!("{}: {why:?}", machine.name));
-    let mut keeper = Keeper::default();
+    let mut motions: Vec<Motion> = Vec::new();
     let tolerances = Tolerances::default();
-    let report = proof::prove_for(source, machine, "p", &written.text, &tolerances, &mut keeper);
+    let report = proof::prove_for(source, machine, "p", &written.text, &tolerances, &mut motions);
     assert!(report.proven, "{}: {:#?}", machine.name, report.mismatches);
-    (String::from_utf8(written.text).unwrap(), keeper.0)
+    (String::from_utf8(written.text).unwrap(), motions)
 }
 
 /// `v` turned about a unit vector by so many degrees (Rodrigues).

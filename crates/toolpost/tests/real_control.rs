@@ -9,7 +9,7 @@ use machine::Machine;
 
 use program::lowering::{self, HoleMove};
 use program::{Builder, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
-use proof::{Motion, MotionKind, Observer};
+use proof::{Motion, MotionKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -30,19 +30,6 @@ struct Sample {
 struct PathSegment {
     line: u32,
     points: Vec<Vec3>,
-}
-
-/// Keeps all motions of a proof.
-struct Keeper(Vec<Motion>);
-
-impl Observer for Keeper {
-    fn wants_motions(&self) -> bool {
-        true
-    }
-
-    fn moved(&mut self, motion: &Motion) {
-        self.0.push(motion.clone());
-    }
 }
 
 /// Runs `text` on the real control, with feeds at `feed` times what they are.
@@ -132,9 +119,10 @@ fn followed(machine: &Machine, text: &str) -> Vec<PathSegment> {
 
 /// The segments that the proof tells whoever follows it, for tools that are [`LENGTHS`] long.
 fn told(program: &Program, machine: &Machine, text: &str) -> Vec<PathSegment> {
-    let mut keeper = Keeper(Vec::new());
+    let mut motions: Vec<Motion> = Vec::new();
     let tolerances = Default::default();
-    let report = proof::prove_for(program, machine, "p", text.as_bytes(), &tolerances, &mut keeper);
+    let report =
+        proof::prove_for(program, machine, "p", text.as_bytes(), &tolerances, &mut motions);
     assert!(report.proven, "{:#?}\n{text}", report.mismatches);
     let (mut length, mut lengths) = (Vec3::ZERO, Vec::new());
     for record in &program.records {
@@ -155,7 +143,7 @@ fn told(program: &Program, machine: &Machine, text: &str) -> Vec<PathSegment> {
         };
         PathSegment { line: motion.line, points }
     };
-    keeper.0.iter().map(moved).collect()
+    motions.iter().map(moved).collect()
 }
 
 /// How far `point` is from a line through `points`, mm; coordinates that are not known count for nothing.

@@ -12,8 +12,9 @@ use super::expected::{Expected, Step};
 use crate::observer::Motion;
 use crate::report::{ArmChecked, Report, SourceLine};
 use ::arm::{Arm, Joints};
+use control::kernel::arc::through;
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
-use geom::{Frame, Vec3, angle_between};
+use geom::{Arc, Frame, Vec3, angle_between};
 use machine::{Cell, Machine, OptionValue};
 use program::{CutBox, Diagnostic, Feed, Outcome, Pose, Program, Rule};
 
@@ -580,6 +581,22 @@ impl<'a> Comparison<'a> {
 /// The first number of a text.
 fn first_number(text: &str) -> Option<u32> {
     text.split(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty())?.parse().ok()
+}
+
+/// The arc through three points.
+///
+/// # Errors
+/// There is none.
+fn arc_through([from, via, to]: [Vec3; 3]) -> Outcome<Arc> {
+    let Some((center, normal)) = through(from, via, to) else {
+        return refused(
+            Rule::ArcPoints,
+            "the three points of the arc are on a line, or two of them are one",
+        );
+    };
+    let radius = from.distance(center);
+    Arc::new(from, to, center, normal, 0, radius * 1e-6)
+        .or_else(|_| refused(Rule::Arc, "the three points span no arc"))
 }
 
 fn refused<T>(rule: Rule, message: impl Into<String>) -> Outcome<T> {

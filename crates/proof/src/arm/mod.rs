@@ -25,7 +25,7 @@ mod comparison;
 mod expected;
 mod follow;
 
-use crate::observer::Observer;
+use crate::observer::{self, Observer};
 use crate::report::Report;
 use crate::tolerance::{Applied, Tolerances};
 use ::arm::Arm;
@@ -33,7 +33,7 @@ use comparison::Comparison;
 use control::{Folders, Setup};
 use expected::Expected;
 use machine::{Cell, Machine};
-use program::{Diagnostic, Program, Rule};
+use program::{Diagnostic, Program};
 use std::collections::BTreeMap;
 
 /// Runs `text` on the virtual control of the robot and compares it with `source`, while `observer` says so.
@@ -62,18 +62,10 @@ pub(crate) fn prove(
     if wants_motions {
         comparison.keep_motions();
     }
-    let mut events = 0_u32;
     let setup = Setup { folders: folders.clone(), ..Setup::default() };
     let run = nc::settings(machine, setup).and_then(|settings| {
-        control::read(&settings, file_name, text, &mut |event| {
-            events = events.wrapping_add(1);
-            if events.is_multiple_of(crate::EVENTS_AT_ONCE) && !observer.goes_on() {
-                let message = "the proof was ended before its end";
-                return Err(Diagnostic::error(Rule::Cancelled, message)
-                    .help("prove it again")
-                    .into());
-            }
-            let outcome = comparison.event(&event);
+        observer::run(&settings, (file_name, text), observer, |event, observer| {
+            let outcome = comparison.event(event);
             if wants_motions {
                 comparison.take_motions(|motion| observer.moved(motion));
             }

@@ -2,11 +2,10 @@
 //! arcs of the source, with all that is asked of those.
 
 use super::super::expected::{Contour, Element, Expected, Step};
-use super::{Comparison, refused};
+use super::{Comparison, arc_through, refused};
 use crate::compensation::centre::{self, Fault, Slack};
 use crate::compensation::trail::Piece;
 use crate::resolved_pose::{Number, PartialPose};
-use control::kernel::arc::through;
 use control::{Action, ArmAction, ArmPath, Event};
 use geom::{Arc, Vec3};
 use program::{Diagnostic, Outcome, Pose, Rule};
@@ -194,14 +193,5 @@ fn moved(event: &Event) -> Option<ArmPath> {
 /// The arc through three points, seen along the tool.
 fn in_plane([from, via, to]: [Vec3; 3], axis: Vec3) -> Outcome<Arc> {
     let flat = |point: Vec3| point - axis * (point - from).dot(axis);
-    let (via, to) = (flat(via), flat(to));
-    let Some((center, normal)) = through(from, via, to) else {
-        return refused(
-            Rule::ArcPoints,
-            "the three points of the arc are on a line, or two of them are one",
-        );
-    };
-    let radius = from.distance(center);
-    Arc::new(from, to, center, normal, 0, radius * 1e-6)
-        .or_else(|_| refused(Rule::Arc, "the three points span no arc"))
+    arc_through([from, flat(via), flat(to)])
 }

@@ -1,9 +1,9 @@
 //! The motions of the program for whoever follows the proof.
 
-use super::{Comparison, Standing};
+use super::{Comparison, Standing, arc_through};
 use crate::observer::{AxisPositions, Motion, MotionKind, ToolPose};
 use control::{Action, ArmAction, ArmPath, Event};
-use geom::{Arc, Frame, Vec3};
+use geom::{Frame, Vec3};
 
 impl Comparison<'_> {
     /// Keeps the motions of each event until they are taken.
@@ -36,7 +36,7 @@ impl Comparison<'_> {
             ArmPath::Line(_) => MotionKind::Line,
             ArmPath::Arc { via, .. } => {
                 let via = self.in_part(via).translation;
-                through([start.tip, via, end.tip])
+                arc_through([start.tip, via, end.tip])
                     .map_or(MotionKind::Line, |arc| MotionKind::Arc(Box::new(arc)))
             }
         };
@@ -54,10 +54,4 @@ impl Comparison<'_> {
         let tool = self.in_part(tool);
         ToolPose { tip: tool.translation, axis: -tool.matrix3.z_axis }
     }
-}
-
-/// The arc through three points; none where they are on a line.
-fn through([from, via, to]: [Vec3; 3]) -> Option<Arc> {
-    let (center, normal) = control::kernel::arc::through(from, via, to)?;
-    Arc::new(from, to, center, normal, 0, from.distance(center)).ok()
 }

@@ -2,10 +2,9 @@
 
 use super::super::expected::{Expected, REENTRY, Step};
 use super::super::follow::{Followed, Path, angle, follow, turned};
-use super::{Comparison, STRIDE, Standing, refused};
+use super::{Comparison, STRIDE, Standing, arc_through, refused};
 use crate::report::Excursion;
 use ::arm::Joints;
-use control::kernel::arc::through;
 use control::{ArmMove, ArmPosture, Corner, Dialect, Rounding, Turning};
 use geom::{Arc, Frame, Mat3, Quat, Vec3, angle_between, between, nearest_on_segment};
 use program::{Diagnostic, Outcome, Pose, Rule};
@@ -207,16 +206,7 @@ impl Comparison<'_> {
             return refused(Rule::Arc, "the program cuts an arc where the source does not");
         };
         let points = [start.tool.translation, via.translation, end.translation];
-        let Some((center, normal)) = through(points[0], points[1], points[2]) else {
-            return refused(
-                Rule::ArcPoints,
-                "the three points of the arc are on a line, or two of them are one",
-            );
-        };
-        let radius = points[0].distance(center);
-        let Ok(arc) = Arc::new(points[0], points[2], center, normal, 0, radius * 1e-6) else {
-            return refused(Rule::Arc, "the three points span no arc");
-        };
+        let arc = arc_through(points)?;
         let (a, b) = (start.tool.matrix3, end.matrix3);
         let at = |part: f64| Frame::from_mat3_translation(turned(&a, &b, part), arc.at(part));
         let turn = sure_turn(&a, &b)?;
