@@ -113,7 +113,7 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
 /// The same for the file `name`: by that, not by the name of the program, controllers of robots know it.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_named(
     program: &Program,
     machine: &Machine,
