@@ -7,7 +7,7 @@
 //! events, which leads the tool's centre where compensation is resolved, ends loops that never move (the [`budget`]), and hands
 //! over what a long program does while it is read. Called programs are looked for in [`Folders`](crate::Folders).
 //!
-//! `tests/fourth_language.rs` is a whole language of this kind: labels, variables, a loop, subprograms, arcs by a point between
+//! `tests/all/fourth_language.rs` is a whole language of this kind: labels, variables, a loop, subprograms, arcs by a point between
 //! their ends. Lengths are mm, angles degrees where a text says them; a coordinate that nobody knows is NaN.
 
 pub mod arc;

@@ -1,0 +1,328 @@
+//! Cells of robots: cuts that are left and entered again.
+
+use crate::robot::{LINE, proof_of, proven, source};
+use arm::Joints;
+use geom::{Euler, Frame, Mat3, Vec3};
+use machine::Machine;
+use program::Program;
+
+/// A KUKA that may leave a cut and enter it again, at 300 mm/min.
+fn reentering() -> Machine {
+    crate::robot::changed("kuka-kr6-r900", &[("rapid = 6000", "rapid = 6000\nreentry_feed = 300")])
+}
+
+/// The joints, as the controller shows them, that put the tool straight down at a point, turned by `turn` degrees about its axis.
+fn joints(machine: &Machine, tip: [f64; 3], turn: f64) -> Joints {
+    let (arm, cell) = (machine.arm.as_ref().unwrap(), machine.cell.as_ref().unwrap());
+    let turns = [180.0_f64, 0.0, turn].map(f64::to_radians);
+    let turned: Mat3 = Euler::FixedXyz.matrix(turns);
+    let at = Frame::from_mat3_translation(turned, Vec3::from_array(tip));
+    let flange = cell.part * at * cell.tool(None).unwrap().inverse();
+    let found = arm.inverse(&flange, 0.0);
+    let home = arm.model(&cell.home.map(f64::to_radians)).unwrap();
+    let posture = arm.posture(&home);
+    let (_, joints) = found.iter().find(|(of, _)| *of == posture).unwrap();
+    arm.shown(joints).unwrap().map(f64::to_degrees)
+}
+
+/// [`LINE`] on the KUKA with its cut left at X30 and entered again with the tool turned by 90 degrees, written by hand.
+fn left_at_30(source: &Program, machine: &Machine) -> String {
+    let text = proven(source, machine);
+    let cut = "LIN {X 60.000,Y 0.000,Z -2.000,A 0.0000,B 0.0000,C 180.0000}\r\n";
+    let (before, after) = text.split_once(cut).unwrap();
+    let [a1, a2, a3, a4, a5, a6] = joints(machine, [30.0, 0.0, 20.0], 90.0);
+    let way = format!(
+        "LIN {{X 30.000,Y 0.000,Z -2.000,A 0.0000,B 0.0000,C 180.0000}}\r\n\
+         $VEL.CP=0.005000\r\n\
+         LIN {{X 30.000,Y 0.000,Z -0.500,A 0.0000,B 0.0000,C 180.0000}}\r\n\
+         $VEL.CP=0.100000\r\n\
+         LIN {{X 30.000,Y 0.000,Z 20.000,A 0.0000,B 0.0000,C 180.0000}}\r\n\
+         PTP {{A1 {a1:.4},A2 {a2:.4},A3 {a3:.4},A4 {a4:.4},A5 {a5:.4},A6 {a6:.4}}}\r\n\
+         LIN {{X 30.000,Y 0.000,Z -0.500,A 90.0000,B 0.0000,C 180.0000}}\r\n\
+         $VEL.CP=0.005000\r\n\
+         LIN {{X 30.000,Y 0.000,Z -2.000,A 90.0000,B 0.0000,C 180.0000}}\r\n\
+         $VEL.CP=0.020000\r\n"
+    );
+    let after = after.replace("A 0.0000,B 0.0000,C 180.0000", "A 90.0000,B 0.0000,C 180.0000");
+    format!("{before}{way}{}{after}", cut.replace("A 0.0000", "A 90.0000"))
+}
+
+#[test]
+fn a_cut_that_is_left_along_the_tool_and_entered_at_the_same_place_is_proven_where_the_cell_allows_it()
+ {
+    let (source, machine) = (source(LINE), reentering());
+    let text = left_at_30(&source, &machine);
+    let report = proof_of(&source, &machine, &text);
+    assert!(report.proven, "{text}\n{:#?}", report.mismatches);
+    let left = &report.excursions[0];
+    let line = 1 + text.lines().position(|line| line.contains("Z -0.500,A 0.0000")).unwrap();
+    assert_eq!((left.source_line, left.first_program_line), (10, line as u32), "{left:?}");
+    assert_eq!(left.last_program_line, line as u32 + 6, "{left:?}");
+    assert!((left.lift_mm - 22.0).abs() < 1e-2, "{left:?}");
+    // Without a word of the cell it is a motion that the source does not have.
+    let report = proof_of(&source, &machine::load("kuka-kr6-r900").unwrap(), &text);
+    assert_eq!(report.mismatches[0].rule.name(), "path", "{:?}", report.mismatches);
+}
+
+#[test]
+fn a_cut_that_is_left_otherwise_is_refused() {
+    let (source, machine) = (source(LINE), reentering());
+    let text = left_at_30(&source, &machine);
+    let back = "LIN {X 30.000,Y 0.000,Z -2.000,A 90.0000,B 0.0000,C 180.0000}\r\n";
+    let up = "LIN {X 30.000,Y 0.000,Z 20.000,A 0.0000,B 0.0000,C 180.0000}\r\n";
+    let on = "LIN {X 60.000,Y 0.000,Z -2.000,A 90.0000";
+    let ptp =
+        text.lines().rfind(|line| line.starts_with("PTP {A1") && !line.contains("A2 -90")).unwrap();
+    let elsewhere = {
+        let [a1, a2, a3, a4, a5, a6] = joints(&machine, [32.0, 0.0, 20.0], 90.0);
+        format!("PTP {{A1 {a1:.4},A2 {a2:.4},A3 {a3:.4},A4 {a4:.4},A5 {a5:.4},A6 {a6:.4}}}")
+    };
+    let damages: &[(&str, &str, &str)] = &[
+        // In again farther on, higher, or deeper.
+        (back, &back.replace("X 30.000", "X 31.000"), "extra-motion"),
+        (back, &back.replace("Y 0.000", "Y 0.050"), "extra-motion"),
+        (back, &back.replace("Z -2.000", "Z -1.000"), "extra-motion"),
+        (back, &back.replace("Z -2.000", "Z -2.100"), "extra-motion"),
+        (back, "", "extra-motion"),
+        // Out sideways, or leaning.
+        (
+            "LIN {X 30.000,Y 0.000,Z -0.500,A 0.0000",
+            "LIN {X 30.000,Y 1.000,Z -0.500,A 0.0000",
+            "path",
+        ),
+        (up, &up.replace("X 30.000", "X 35.000"), "extra-motion"),
+        (up, &up.replace("A 0.0000", "A 90.0000"), "extra-motion"),
+        // The turn is made too low.
+        (&format!("$VEL.CP=0.100000\r\n{up}"), &up.replace("Z 20.000", "Z -1.800"), "rapid-path"),
+        // Over another place.
+        (ptp, &elsewhere, "extra-motion"),
+        // A corner is passed out of the cut.
+        (back, &back.replace("}\r\n", "} C_DIS\r\n"), "path-tolerance"),
+        // Too fast near the cut.
+        (
+            "$VEL.CP=0.005000\r\nLIN {X 30.000,Y 0.000,Z -0.500",
+            "$VEL.CP=0.010000\r\nLIN {X 30.000,Y 0.000,Z -0.500",
+            "feed",
+        ),
+        (&format!("$VEL.CP=0.005000\r\n{back}"), back, "feed"),
+        // Something else happens meanwhile, or a part of the cut is missing.
+        (back, &format!("$OUT[1]=FALSE\r\n{back}"), "missing"),
+        (back, &format!("WAIT SEC 1.0\r\n{back}"), "missing"),
+        (on, &on.replace("X 60.000", "X 29.000"), "path"),
+        (on, &on.replace("Y 0.000", "Y 0.100"), "path"),
+    ];
+    for (from, to, rule) in damages {
+        let damaged = text.replacen(from, to, 1);
+        assert_ne!(damaged, text, "{from}");
+        let report = proof_of(&source, &machine, &damaged);
+        let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
+        assert_eq!(found, [*rule], "{from} -> {to}: {:#?}", report.mismatches);
+    }
+}
+
+/// So many steps of 6 degrees round a ball of 20 mm, the tool 25° off a direction that leans by 45° towards the arm: about the direction of
+/// its forearm, so that joint 4 turns with the cut.
+fn rings(steps: u32) -> Program {
+    let (tilt, half) = (45_f64.to_radians(), 25_f64.to_radians());
+    let direction = Vec3::new(-tilt.sin(), 0.0, tilt.cos());
+    let across = Vec3::new(tilt.cos(), 0.0, tilt.sin());
+    let mut text =
+        String::from("PARTNO/RINGS\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\n");
+    let last = f64::from(steps) * std::f64::consts::TAU / 60.0;
+    let mut goto = |height: f64, turn: f64| {
+        let about = across * turn.cos() + Vec3::Y * turn.sin();
+        let axis = direction * half.cos() + about * half.sin();
+        let tip = axis * (20.0 + height) + Vec3::Z * 100.0;
+        let [x, y, z] = tip.to_array();
+        let [i, j, k] = axis.to_array();
+        text += &format!("GOTO/{x:.5},{y:.5},{z:.5},{i:.9},{j:.9},{k:.9}\n");
+        if height > 0.0 && turn == 0.0 {
+            text += "FEDRAT/MMPM,300\n";
+        } else if turn == 0.0 {
+            text += "FEDRAT/MMPM,600\n";
+        } else if turn == last && height == 0.0 {
+            text += "RAPID\n";
+        }
+    };
+    goto(60.0, 0.0);
+    for step in 0..=steps {
+        goto(0.0, f64::from(step) * std::f64::consts::TAU / 60.0);
+    }
+    goto(60.0, last);
+    source(&format!("{text}FINI\n"))
+}
+
+/// Robots that have to turn their wrist over on [`rings`], with a place of the part at which they reach it, and why.
+const TURNING: [(&str, &str, &str, &str); 3] = [
+    (
+        "kuka-kr6-r900",
+        "part = [450, 0, 150, 0, 0, 0]",
+        "part = [700, 0, 0, 0, 0, 0]",
+        "joint 4 would have turned through all of its range",
+    ),
+    (
+        "abb-irb120-mill",
+        "part = [350, 0, 150, 0, 0, 0]",
+        "part = [620, 0, 0, 0, 0, 0]",
+        "no turn about the tool",
+    ),
+    (
+        "fanuc-lrmate-200id-mill",
+        "part = [450, 0, -180, 0, 0, 0]",
+        "part = [680, 25, -330, 0, 0, 0]",
+        "joint 4 would have turned through all of its range",
+    ),
+];
+
+#[test]
+fn a_cut_that_no_posture_carries_is_left_and_entered_again_and_the_line_is_reported() {
+    let source = rings(150);
+    for (name, from, to, why) in TURNING {
+        let part = crate::robot::changed(name, &[(from, to)]);
+        let found = &post::write(&source, &part).unwrap_err()[0];
+        assert_eq!(found.rule.name(), "arm-path", "{found}");
+        assert!(found.message.contains(why) && found.help.contains("reentry_feed"), "{found}");
+        let machine = crate::robot::changed(name, &[(from, &format!("{to}\nreentry_feed = 600"))]);
+        let output = post::write(&source, &machine).unwrap();
+        assert!(output.warnings.iter().all(|found| found.rule.name() == "rewind"));
+        let lines = |found: &program::Diagnostic| [vec![found.line], found.lines.clone()].concat();
+        let mut left: Vec<u32> = output.warnings.iter().flat_map(lines).collect();
+        left.sort_unstable();
+        assert_eq!(left[0], found.line, "{name}");
+        let text = String::from_utf8(output.text).unwrap();
+        let report = proof_of(&source, &machine, &text);
+        assert!(report.proven, "{name} {:#?}", report.mismatches);
+        assert_eq!(report.compared.lines, 151);
+        let places: Vec<u32> = report.excursions.iter().map(|place| place.source_line).collect();
+        assert_eq!(places, left, "{name}");
+        // A program whose way is left out, but for the first line, is refused.
+        let (first, last) =
+            (report.excursions[0].first_program_line, report.excursions[0].last_program_line);
+        let lines = || text.split_inclusive('\n').zip(1..);
+        for leave_out in first..=last {
+            let damaged: String =
+                lines().filter(|(_, number)| *number != leave_out).map(|(line, _)| line).collect();
+            let kept = proof_of(&source, &machine, &damaged).proven;
+            assert!(
+                !kept || !text.lines().nth(leave_out as usize - 1).unwrap().contains("PTP"),
+                "{leave_out}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_range_that_cables_leave_to_a_joint_is_kept_in_cuts_and_in_the_air() {
+    let (source, machine) = (source(crate::robot::JOB), machine::load("kuka-kr6-r900").unwrap());
+    let text = proven(&source, &machine);
+    let with = |range: &str| {
+        let cables = format!("rapid = 6000\ncable_joint_6 = {range}");
+        crate::robot::changed("kuka-kr6-r900", &[("rapid = 6000", &cables)])
+    };
+    let axis_6 = |text: &str| -> Vec<f64> {
+        let of = |path| match path {
+            control::ArmPath::Joints(joints) => Some(joints[5]),
+            _ => None,
+        };
+        crate::robot::paths(control::Dialect::Krl, text).into_iter().filter_map(of).collect()
+    };
+    // The choice of all turns takes one that cables do not allow, so the joint comes the other way round, and the proof knows which.
+    let most = axis_6(&text).into_iter().map(f64::abs).fold(0.0, f64::max);
+    assert!(most > 100.0, "{text}");
+    let narrow = with("[-20, 200]");
+    let other = proven(&source, &narrow);
+    assert!(axis_6(&other).iter().all(|at| (-20.0..=200.0).contains(at)), "{other}");
+    let report = proof_of(&source, &narrow, &text);
+    assert_eq!(report.mismatches[0].rule.name(), "axis-limit", "{:?}", report.mismatches);
+    // A whole turn in the air, to the same pose: the maker's limits allow it, cables do not.
+    let start = axis_6(&other).into_iter().find(|at| *at != 0.0).unwrap_or(0.0);
+    let (from, to) = (
+        format!("A6 {start:.4}"),
+        format!("A6 {:.4}", start + if start > 0.0 { -360.0 } else { 360.0 }),
+    );
+    assert!((start + if start > 0.0 { -360.0 } else { 360.0_f64 }).abs() < 350.0, "{start}");
+    let damaged = other.replace(&from, &to);
+    assert_ne!(damaged, other, "{other}");
+    let report = proof_of(&source, &narrow, &damaged);
+    assert_eq!(report.mismatches[0].rule.name(), "axis-limit", "{:?}", report.mismatches);
+    // Ranges that are none.
+    let path = crate::files::root().join("machines/robots/kuka-kr6-r900.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    for (range, what) in [
+        ("[-400, 100]", "beyond the limits of the joint"),
+        ("[100, -100]", "the lower one first"),
+        ("[10]", "cable_joint_6"),
+    ] {
+        let text = text.replace("rapid = 6000", &format!("rapid = 6000\ncable_joint_6 = {range}"));
+        let found = machine::load_text("mine.toml", &text).unwrap_err();
+        assert!(found.to_string().contains(what), "{found}");
+    }
+}
+
+/// The joints of the KR 6 with a joint 4 that turns three times either way.
+const ROUND: &str = "model = \"kuka-kr6-r900-sixx\"\njoints = [{ min = -170, max = 170, speed = 360 }, { min = -190, max = 45, speed = 300 }, \
+{ min = -120, max = 156, speed = 360 }, { min = -1080, max = 1080, speed = 381 }, { min = -120, max = 120, speed = 388 }, \
+{ min = -350, max = 350, speed = 615 }]";
+
+#[test]
+fn a_joint_that_goes_round_carries_the_whole_cut_until_cables_end_it() {
+    let source = rings(120);
+    let (_, from, to, _) = TURNING[0];
+    let round = |more: &str| {
+        let part = format!("{to}{more}");
+        let model = "model = \"kuka-kr6-r900-sixx\"";
+        let home = ("home = [0, -90, 90, 0, 45, 0]", "home = [0, -90, 120, 0, 30, 0]");
+        crate::robot::changed("kuka-kr6-r900", &[(from, &part), (model, ROUND), home])
+    };
+    let machine = round("");
+    let text = proven(&source, &machine);
+    assert!(proof_of(&source, &machine, &text).excursions.is_empty());
+    // Along the lines of the program no joint is printed: the proof counts the revolutions of joint 4 all the same.
+    let cables = round("\ncable_joint_4 = [-185, 185]");
+    let report = proof_of(&source, &cables, &text);
+    let found = &report.mismatches[0];
+    assert_eq!(found.rule.name(), "axis-limit", "{found}");
+    assert!(found.message.contains("joint 4 would be"), "{found}");
+    let found = &post::write(&source, &cables).unwrap_err()[0];
+    assert!(found.message.contains("joint 4 would have turned"), "{found}");
+    let leaving = round("\ncable_joint_4 = [-185, 185]\nreentry_feed = 600");
+    let text = proven(&source, &leaving);
+    assert!(!proof_of(&source, &leaving, &text).excursions.is_empty());
+}
+
+#[test]
+fn where_cables_leave_joint_6_little_the_cuts_are_made_in_the_posture_of_home() {
+    let changes = [("rapid = 6000", "rapid = 6000\ncable_joint_6 = [-30, 30]")];
+    let machine = crate::robot::changed("kuka-kr6-r900", &changes);
+    // Home has joint 5 at 45 degrees: a wrist that were turned over would swing the tool through the part on the way.
+    let text = proven(&source(LINE), &machine);
+    for line in text.lines().filter(|line| line.starts_with("PTP")) {
+        let (_, a5) = line.split_once("A5 ").unwrap();
+        assert!(!a5.starts_with('-'), "{text}");
+    }
+}
+
+#[test]
+fn a_cut_that_cannot_be_entered_again_is_not_offered_a_word_of_the_cell() {
+    // Behind line 1078 of the dome no turn of the M-20iA leads on but with the elbow below, to which no way above the cuts leads.
+    let dome =
+        source(&std::fs::read_to_string(crate::files::root().join("examples/dome.cls")).unwrap());
+    let machine = machine::load("fanuc-m20ia-mill").unwrap();
+    let found = &post::write(&dome, &machine).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 1078), "{found}");
+    assert!(found.help.contains("toolpost fit") && !found.help.contains("reentry_feed"), "{found}");
+}
+
+#[test]
+fn a_refusal_within_an_arc_says_that_a_cut_is_left_at_its_end_alone() {
+    // Round the KUKA's own foot, below it, from one side over its back: joint 1 turns by 170 degrees at the most.
+    let round = "PARTNO/ROUND\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,-600,50\nFEDRAT/MMPM,1200\nGOTO/0,-600,0\n\
+        GOTO/-200,-565.685425,0\nCIRCLE/0,0,0,0,0,-1,600\nGOTO/-200,565.685425,0\nRAPID\nGOTO/-200,565.685425,50\nFINI\n";
+    let part =
+        ("part = [450, 0, 150, 0, 0, 0]", "part = [0, 0, -350, 0, 0, 0]\nreentry_feed = 600");
+    let machine = crate::robot::changed("kuka-kr6-r900", &[part]);
+    let found = &post::write(&source(round), &machine).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 11), "{found}");
+    assert!(found.message.contains("joint 1"), "{found}");
+    assert!(found.help.contains("divide the arc there in the source"), "{found}");
+}

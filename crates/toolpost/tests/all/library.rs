@@ -1,0 +1,138 @@
+//! The machines of the library: the sample program of each, and what each makes of every file of
+//! cutter-location data.
+
+use crate::files::{mills, root, sources};
+use machine::Machine;
+use program::{Diagnostic, Program};
+use std::path::Path;
+
+fn read(path: &Path) -> Program {
+    let text = std::fs::read(path).unwrap();
+    let name = path.file_name().unwrap().to_string_lossy();
+    source::apt::read(&name, &text, &Default::default()).unwrap().program
+}
+
+/// The proven program, or why there is none.
+fn proven(program: &Program, machine: &Machine) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let first = |found: Vec<Diagnostic>| found.into_iter().next().map(Box::new);
+    let text = post::write(program, machine).map_err(|errors| first(errors).unwrap())?.text;
+    let report = proof::prove(program, machine, "program", &text, &Default::default());
+    first(report.mismatches).map_or(Ok(text), Err)
+}
+
+/// The samples were read by a person, against the programming manual of each control. Whoever changes
+/// one on purpose writes it anew (`make samples`) and reads what has changed.
+#[test]
+fn the_sample_program_of_each_machine_is_as_it_was_read() {
+    let samples = root().join("machines/samples");
+    for machine in mills() {
+        let name = &machine.name;
+        let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
+        let program = read(&samples.join(axes).with_extension("cls"));
+        let text = proven(&program, &machine).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let sample = samples.join(format!("{name}.{}", machine.extension));
+        let expected = std::fs::read_to_string(&sample).unwrap_or_default();
+        let written = String::from_utf8(text).unwrap();
+        let differs = written.lines().zip(expected.lines()).position(|(a, b)| a != b);
+        let at = differs.unwrap_or(written.lines().count().min(expected.lines().count()));
+        assert!(
+            written == expected,
+            "{}:{}: {:?}, but now {:?}",
+            sample.display(),
+            at + 1,
+            expected.lines().nth(at),
+            written.lines().nth(at)
+        );
+    }
+}
+
+/// The files whose tool axis turns, or points elsewhere than up.
+const TILTED: &[&str] =
+    &["dome.cls", "lean.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"];
+
+/// What a machine cannot make, and why: the rule by which it refuses. Everything else is proven.
+const REFUSED: &[(&str, &[&str], &str)] = &[
+    ("generic-3axis-", TILTED, "unreachable-orientation"),
+    ("linuxcnc-mill", TILTED, "unreachable-orientation"),
+    ("mach3-mill", TILTED, "unreachable-orientation"),
+    ("marlin-cnc", TILTED, "unreachable-orientation"),
+    // From below: no table of these turns that far.
+    ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("fanuc-table-bc", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("haas-umc-750", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("sinumerik-840d-traori", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
+    ("linuxcnc-xyz", &["Sacrifice-Board.apt"], "axis-limit"),
+    // Taps need a cycle, and that the kinematics of the axes.
+    ("linuxcnc-xyzbc-head", &["plate.cls"], "cycle-tap"),
+    // Nothing couples feed and spindle in a tap.
+    ("generic-3axis-iso", &["plate.cls"], "cycle-tap"),
+    ("generic-3axis-mach3", &["plate.cls"], "cycle-tap"),
+    ("mach3-mill", &["plate.cls"], "cycle-tap"),
+    // No tapping.
+    ("generic-3axis-grbl", &["plate.cls"], "cycle-tap"),
+    ("generic-3axis-marlin", &["plate.cls"], "cycle-tap"),
+    ("marlin-cnc", &["plate.cls"], "cycle-tap"),
+    // Too high, too long, too fast for the machines of a desk.
+    ("marlin-cnc", &["coremill.cls"], "axis-limit"),
+    ("linuxcnc-mill", &["Top-light-cover.apt", "coremill.cls"], "axis-limit"),
+    ("linuxcnc-mill", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),
+    ("mach3-mill", &["SupPetriLED.apt", "coremill.cls"], "axis-limit"),
+    // No coolant, 45 mm in Z, 10,000 1/min.
+    ("grbl-3018", &["coremill.cls", "plate.cls"], "axis-limit"),
+    ("grbl-3018", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),
+    ("grbl-3018", TILTED, "unreachable-orientation"),
+    (
+        "grbl-3018",
+        &[
+            "Interface-glue.apt",
+            "SupPetriLED.apt",
+            "Teflon-gasket.apt",
+            "Top-light-cover.apt",
+            "basemach.apt",
+        ],
+        "missing-block",
+    ),
+    // A small mill: 5000 1/min, ten tools, 150 mm in Y.
+    ("emco-", &["plate.cls"], "spindle-range"),
+    ("emco-", &["coremill.cls"], "axis-limit"),
+    ("emco-", TILTED, "unreachable-orientation"),
+    (
+        "emco-",
+        &[
+            "Plane_1.cldata",
+            "Plane_2.cldata",
+            "Dem-target1.apt",
+            "Dem-target2.apt",
+            "Interface-glue.apt",
+            "SupPetriLED.apt",
+            "Teflon-gasket.apt",
+            "Top-light-cover.apt",
+            "basemach.apt",
+        ],
+        "tool-range",
+    ),
+];
+
+#[test]
+fn every_file_is_proven_on_every_machine_that_can_make_it() {
+    for file in &sources() {
+        let (program, file) = (read(file), file.file_name().unwrap().to_string_lossy());
+        for machine in mills() {
+            let name = machine.name.as_str();
+            let rules: Vec<&str> = (REFUSED.iter())
+                .filter(|(machine, files, _)| {
+                    name.starts_with(machine) && files.contains(&file.as_ref())
+                })
+                .map(|(_, _, rule)| *rule)
+                .collect();
+            match proven(&program, &machine) {
+                Ok(_) => assert!(rules.is_empty(), "{file} on {name}: made, not {rules:?}"),
+                Err(why) => {
+                    assert!(rules.contains(&why.rule.name()), "{file} on {name}, {rules:?}: {why}");
+                    assert!(why.line > 0, "{file} on {name}: no line in {why}");
+                }
+            }
+        }
+    }
+}

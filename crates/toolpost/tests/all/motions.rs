@@ -1,0 +1,163 @@
+//! The motions that a proof hands out, against chains of axes that share no code with the project.
+
+use crate::files::{mills, root};
+use control::{Action, Event};
+use geom::Vec3;
+use machine::{Machine, Mount};
+use program::{Builder, Feed, Op, Program, Spindle, Tool};
+use proof::{AxisPositions, Motion, MotionKind, Tolerances};
+
+/// The proven program, and its motions.
+fn posted(source: &Program, machine: &Machine) -> (String, Vec<Motion>) {
+    let written =
+        post::write(source, machine).unwrap_or_else(|why| panic!("{}: {why:?}", machine.name));
+    let mut motions: Vec<Motion> = Vec::new();
+    let tolerances = Tolerances::default();
+    let report = proof::prove_for(source, machine, "p", &written.text, &tolerances, &mut motions);
+    assert!(report.proven, "{}: {:#?}", machine.name, report.mismatches);
+    (String::from_utf8(written.text).unwrap(), motions)
+}
+
+/// `v` turned about a unit vector by so many degrees (Rodrigues).
+fn turned(v: [f64; 3], about: [f64; 3], degrees: f64) -> [f64; 3] {
+    let (s, c) = degrees.to_radians().sin_cos();
+    let dot: f64 = (0..3).map(|i| v[i] * about[i]).sum();
+    let cross = [
+        about[1] * v[2] - about[2] * v[1],
+        about[2] * v[0] - about[0] * v[2],
+        about[0] * v[1] - about[1] * v[0],
+    ];
+    [0, 1, 2].map(|i| v[i] * c + cross[i] * s + about[i] * dot * (1.0 - c))
+}
+
+/// The tip on the part, from the axes, link by link: from the spindle's gauge line out to the tip, into the machine, into the
+/// table, and from there to the work zero.
+fn tip(machine: &Machine, linear: Vec3, rotary: [f64; 3], length: f64) -> [f64; 3] {
+    let angle = |letter: char| rotary[letter as usize - 'A' as usize];
+    let mut at = [0.0, 0.0, -length];
+    // The last axis of the head carries the spindle.
+    for axis in machine.rotary.iter().rev().filter(|axis| axis.on == Mount::Head) {
+        let point = axis.point.to_array();
+        let off = [0, 1, 2].map(|i| at[i] - point[i]);
+        let off = turned(off, axis.axis.to_array(), axis.sign * (angle(axis.letter) - axis.offset));
+        at = [0, 1, 2].map(|i| off[i] + point[i]);
+    }
+    let linear = linear.to_array();
+    at = [0, 1, 2].map(|i| at[i] + linear[i]);
+    // The first axis of the table stands on the machine, the last carries the part.
+    for axis in machine.rotary.iter().filter(|axis| axis.on == Mount::Table) {
+        let point = axis.point.to_array();
+        let off = [0, 1, 2].map(|i| at[i] - point[i]);
+        let off =
+            turned(off, axis.axis.to_array(), -axis.sign * (angle(axis.letter) - axis.offset));
+        at = [0, 1, 2].map(|i| off[i] + point[i]);
+    }
+    let zero = machine.work_zero.unwrap_or_default().to_array();
+    [0, 1, 2].map(|i| at[i] - zero[i])
+}
+
+#[test]
+fn the_axes_of_each_mill_bring_the_tip_to_where_the_motion_ends() {
+    let mut compared = 0;
+    for machine in mills().filter(|machine| !machine.rotary.is_empty()) {
+        let text = std::fs::read(root().join("machines/samples/five-axes.cls")).unwrap();
+        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let mut length = 0.0;
+        let lengths: Vec<f64> = source
+            .records
+            .iter()
+            .map(|record| {
+                if let Op::Tool(tool) = &record.op {
+                    length = tool.length.unwrap_or_default();
+                }
+                length
+            })
+            .collect();
+        for motion in posted(&source, &machine).1 {
+            let AxisPositions::Mill { linear, rotary } = motion.axes else { panic!("{motion:?}") };
+            let should = motion.tool[1].tip;
+            let Some(length) = lengths.get(motion.record).filter(|_| linear.is_finite()) else {
+                continue;
+            };
+            let is = tip(&machine, linear, rotary, *length);
+            let off = should.distance(Vec3::from_array(is));
+            assert!(off < 1e-9 || should.is_nan(), "{}: {off} mm, {motion:?}", machine.name);
+            compared += usize::from(should.is_finite());
+        }
+    }
+    assert!(compared > 150, "{compared}");
+}
+
+fn slot() -> Program {
+    let mut slot = Builder::new("slot");
+    slot.tool(Tool { number: 1, ..Tool::default() }).unwrap();
+    slot.spindle(Spindle::Clockwise(5000.0)).unwrap();
+    slot.feed(Feed::PerMinute(300.0)).unwrap();
+    slot.rapid([0.0, 0.0, 30.0], None).unwrap();
+    slot.rapid([0.0, 0.0, 5.0], None).unwrap();
+    slot.line([0.0, 0.0, -1.0], None).unwrap();
+    slot.arc([10.0, 0.0, -1.0], [5.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0).unwrap();
+    slot.rapid([10.0, 0.0, 30.0], None).unwrap();
+    slot.build()
+}
+
+#[test]
+fn an_arm_tells_its_joints_and_the_block_of_each_motion() {
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    let (text, found) = posted(&slot(), &machine);
+    let (arm, cell) = (machine.arm.as_ref().unwrap(), machine.cell.as_ref().unwrap());
+    let mut made = Vec::new();
+    for motion in &found {
+        let AxisPositions::Arm { joints, rail: None } = motion.axes else { panic!("{motion:?}") };
+        // The lengths of the arm have tests of their own, against two independent derivations.
+        let flange = arm.flange(&arm.model(&joints.map(f64::to_radians)).unwrap());
+        let tool = cell.part.inverse() * flange * cell.tool(None).unwrap();
+        assert!(tool.translation.distance(motion.tool[1].tip) < 1e-3, "{motion:?}");
+        let (word, way) = match motion.kind {
+            MotionKind::Joints => ("PTP", 'J'),
+            MotionKind::Rapid | MotionKind::Line => ("LIN", 'L'),
+            MotionKind::Arc(_) => ("CIRC", 'A'),
+        };
+        let line = text.lines().nth(motion.line as usize - 1).unwrap();
+        assert!(line.trim_start().starts_with(word), "{motion:?}: {line}");
+        made.push((motion.record, way));
+    }
+    // Records 5, 6 and 7 of the source; the half circle is one arc.
+    for should in [(5, 'L'), (6, 'A'), (7, 'J')] {
+        assert!(made.contains(&should), "{should:?} is not in {made:?}");
+    }
+    assert!(made.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{made:?}");
+}
+
+/// What the control reports is what is told: every event that moves, in its order.
+#[test]
+fn each_move_of_the_control_is_told_once() {
+    for name in ["three-axes", "five-axes"] {
+        let text = std::fs::read(root().join("machines/samples").join(name).with_extension("cls"));
+        let source =
+            source::apt::read("s.cls", &text.unwrap(), &Default::default()).unwrap().program;
+        let machine = match name {
+            "three-axes" => machine::load("generic-3axis-linuxcnc"),
+            _ => machine::load("sinumerik-840d-traori"),
+        };
+        let machine = machine.unwrap();
+        let (text, found) = posted(&source, &machine);
+        let settings = nc::settings(&machine, control::Setup::default()).unwrap();
+        let (mut lines, mut holes): (Vec<u32>, Vec<u32>) = Default::default();
+        let keep = &mut |event: Event| {
+            let moves = matches!(event.action, Action::Line(_) | Action::Arc(_));
+            lines.extend(moves.then_some(event.line));
+            holes.extend(matches!(event.action, Action::Hole(_)).then_some(event.line));
+            Ok(())
+        };
+        control::read(&settings, "p", text.as_bytes(), keep).unwrap();
+        let told: Vec<u32> = found
+            .iter()
+            .filter(|motion| !matches!(motion.kind, MotionKind::Rapid))
+            .map(|motion| motion.line)
+            .filter(|line| !holes.contains(line))
+            .collect();
+        assert_eq!(told, lines, "{name}");
+        assert!(told.len() > 5, "{name}: {told:?}");
+    }
+}
