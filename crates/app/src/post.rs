@@ -89,12 +89,12 @@ pub fn proven(
     );
     let output = output?;
     watch.begin("proving")?;
-    let mut go_on = || !watch.is_cancelled();
+    let mut follower = watch.followed(file, program, machine);
     let parts: BTreeMap<String, Vec<u8>> =
         output.parts.iter().map(|part| (part.file.clone(), part.text.clone())).collect();
     let folders = Folders::from(parts);
     let text = (file, &output.text[..], &folders);
-    let proof = proof::prove_files(program, machine, text, tolerances, &mut go_on);
+    let proof = proof::prove_files(program, machine, text, tolerances, &mut follower);
     watch.go_on()?;
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);

@@ -24,9 +24,9 @@ pub fn compare(
     watch.begin("proving")?;
     let program = &toolpath.program;
     // What is reported of the toolpath is found meanwhile.
-    let mut go_on = || !watch.is_cancelled();
+    let mut follower = watch.followed(file, program, machine);
     let text_and = (file, text, folders);
-    let prove = || proof::prove_files(program, machine, text_and, tolerances, &mut go_on);
+    let prove = || proof::prove_files(program, machine, text_and, tolerances, &mut follower);
     let (proof, shape) = parallel(prove, || Shape::of(program));
     watch.go_on()?;
     let mut warnings = toolpath.warnings.clone();

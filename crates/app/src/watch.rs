@@ -1,6 +1,9 @@
 //! Work that somebody watches, and may end.
 
 use crate::account::Stop;
+use machine::Machine;
+use program::Program;
+use proof::{Motion, Observer, Report};
 
 /// Who watches a piece of work. `()` watches nothing and never ends it.
 pub trait Watch: Sync {
@@ -12,11 +15,64 @@ pub trait Watch: Sync {
     fn is_cancelled(&self) -> bool {
         false
     }
+
+    /// Who follows the proof of the program that is called `file`, which is to make the motions of `source` on `machine`: it is
+    /// told each motion as the proof walks it, the first mismatch, and the end. `()` follows nothing. Of several programs, as
+    /// of a board, each proof is followed by somebody of its own, several at the same time.
+    fn follow<'a>(
+        &'a self,
+        _file: &str,
+        _source: &'a Program,
+        _machine: &'a Machine,
+    ) -> Box<dyn Observer + 'a> {
+        Box::new(())
+    }
 }
 
 impl Watch for () {}
 
-impl dyn Watch + '_ {
+/// Whoever follows a proof, which goes on for as long as the caller says so too.
+pub(crate) struct Followed<'a> {
+    watch: &'a dyn Watch,
+    observer: Box<dyn Observer + 'a>,
+}
+
+impl Observer for Followed<'_> {
+    fn goes_on(&mut self) -> bool {
+        !self.watch.is_cancelled() && self.observer.goes_on()
+    }
+
+    fn wants_motions(&self) -> bool {
+        self.observer.wants_motions()
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        self.observer.moved(motion);
+    }
+
+    fn mismatched(&mut self, found: &program::Diagnostic) {
+        self.observer.mismatched(found);
+    }
+
+    fn ended(&mut self, report: &Report) {
+        self.observer.ended(report);
+    }
+}
+
+impl<'w> dyn Watch + 'w {
+    /// Whoever follows the proof of a program: [`Watch::follow`].
+    pub(crate) fn followed<'a>(
+        &'a self,
+        file: &str,
+        source: &'a Program,
+        machine: &'a Machine,
+    ) -> Followed<'a>
+    where
+        'w: 'a,
+    {
+        Followed { watch: self, observer: self.follow(file, source, machine) }
+    }
+
     /// Begins a step.
     ///
     /// # Errors

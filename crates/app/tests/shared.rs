@@ -12,7 +12,9 @@ use source::apt::Csys;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use toolpost_app::{Origin, Source, Stop, Verdict, Watch, pcb as board, post, toolpath, wire};
+use toolpost_app::{
+    Origin, Source, Stop, Verdict, Watch, pcb as board, post, prove, toolpath, wire,
+};
 
 fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
@@ -324,4 +326,111 @@ fn settings_that_do_not_go_together_are_refused_whoever_gives_them() {
     job.surface = Some(Source::memory("z.txt", *b"0 0 0"));
     let Err(stop) = job.make(&[Source::File(example("lamp.toml"))], &()) else { panic!() };
     assert!(stop.findings[0].message.contains("heights"), "{:?}", stop.findings);
+}
+
+/// A follower of proofs: for each program that is proven its name, machine, motions and verdict.
+#[derive(Default)]
+struct Walks(Mutex<Vec<(String, Vec<proof::Motion>, bool)>>);
+
+struct WalkOf<'a> {
+    file: String,
+    motions: Vec<proof::Motion>,
+    walks: &'a Walks,
+}
+
+impl Watch for Walks {
+    fn follow<'a>(
+        &'a self,
+        file: &str,
+        source: &'a program::Program,
+        machine: &'a machine::Machine,
+    ) -> Box<dyn proof::Observer + 'a> {
+        assert!(!source.records.is_empty() && !machine.name.is_empty());
+        Box::new(WalkOf { file: file.to_owned(), motions: Vec::new(), walks: self })
+    }
+}
+
+impl proof::Observer for WalkOf<'_> {
+    fn wants_motions(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, motion: &proof::Motion) {
+        self.motions.push(motion.clone());
+    }
+
+    fn ended(&mut self, report: &proof::Report) {
+        let motions = std::mem::take(&mut self.motions);
+        self.walks.0.lock().unwrap().push((self.file.clone(), motions, report.proven));
+    }
+}
+
+#[test]
+fn who_watches_follows_each_proof_and_changes_nothing() {
+    let [source, _] = both("plate.cls");
+    let origin = Origin::default();
+    let walks = Walks::default();
+    let machine = "generic-3axis-linuxcnc";
+    let followed = posted(&source, &origin, machine, &walks).unwrap();
+    assert_eq!(followed, posted(&source, &origin, machine, &()).unwrap());
+    let walked = walks.0.into_inner().unwrap();
+    let [(file, motions, true)] = &walked[..] else { panic!("{walked:?}") };
+    assert_eq!(file, "p");
+    let text = String::from_utf8(followed.0).unwrap();
+    let lines = std::fs::read_to_string(example("plate.cls")).unwrap();
+    let cuts = motions.iter().filter(|motion| motion.kind == proof::MotionKind::Line);
+    let mut compared = 0;
+    for motion in cuts {
+        let block = text.lines().nth(motion.line as usize - 1).unwrap();
+        let record = lines.lines().nth(motion.source_line as usize - 1).unwrap();
+        assert!(record.starts_with("GOTO") && block.contains(['X', 'Y', 'Z']), "{record}: {block}");
+        compared += 1;
+    }
+    assert!(compared > 10, "{compared}");
+
+    // The same text, proven alone, and damaged.
+    let machine = toolpath::machine(machine).unwrap();
+    let toolpath =
+        toolpath::read(&source, false, &origin, Some(&machine), Purpose::Program).unwrap();
+    let compare = |text: &str| {
+        let (walks, tolerances) = (Walks::default(), Tolerances::default());
+        let program = ("q", text.as_bytes(), &control::Folders::default());
+        prove::compare(&toolpath, &machine, program, &tolerances, &walks).unwrap();
+        walks.0.into_inner().unwrap().pop().unwrap()
+    };
+    let whole = compare(&text);
+    assert!(whole.2 && whole.1.len() == motions.len());
+    let damaged = compare(&text.replacen("G3", "G2", 1));
+    assert!(!damaged.2 && !damaged.1.is_empty() && damaged.1.len() < motions.len());
+    // What is not known is NaN: shown, it is alike.
+    let before = &motions[..damaged.1.len()];
+    assert_eq!(format!("{:?}", damaged.1), format!("{before:?}"));
+}
+
+#[test]
+fn each_program_of_a_board_and_a_wire_has_a_follower_of_its_own() {
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let mut settings = Settings::default();
+    settings.isolation.tool = Some(0.3);
+    let tolerances = Tolerances::default();
+    let [source, _] = both("lamp.toml");
+    let walks = Walks::default();
+    let job = board::Job::new(&machine, &settings, &tolerances).unwrap();
+    let made = job.make(&[source], &walks).unwrap();
+    let mut walked = walks.0.into_inner().unwrap();
+    walked.sort_by(|a, b| a.0.cmp(&b.0));
+    let mut files: Vec<&str> = made.programs.iter().map(|program| &*program.file).collect();
+    files.sort_unstable();
+    assert_eq!(walked.iter().map(|(file, ..)| file).collect::<Vec<_>>(), files);
+    assert!(walked.iter().all(|(_, motions, proven)| *proven && !motions.is_empty()));
+
+    let [source, _] = both("sector.nc");
+    let origin = Origin { from: Some("fanuc-31i".into()), ..Origin::default() };
+    let machine = toolpath::machine("bp-95d").unwrap();
+    let settings = wire::Settings::default();
+    let walks = Walks::default();
+    wire::make(&source, false, &origin, machine, &settings, "w", &tolerances, &walks).unwrap();
+    let walked = walks.0.into_inner().unwrap();
+    let [(file, motions, true)] = &walked[..] else { panic!("{walked:?}") };
+    assert!(file == "w" && !motions.is_empty());
 }

@@ -99,7 +99,7 @@ pub use tolerance::{Applied, Tolerances};
 use compensation::resolved;
 use control::{Folders, Setup};
 use machine::Machine;
-use observer::Silent;
+use observer::{Mark, Silent};
 use program::{Diagnostic, Program, Rule};
 use surfaces::MappedSurface;
 
@@ -132,6 +132,18 @@ pub fn prove_for(
 
 /// The same of a program that may call those of `folders`.
 pub fn prove_files(
+    source: &Program,
+    machine: &Machine,
+    (file_name, text, folders): (&str, &[u8], &Folders),
+    tolerances: &Tolerances,
+    observer: &mut dyn Observer,
+) -> Report {
+    let report = compare(source, machine, (file_name, text, folders), tolerances, observer);
+    observer.ended(&report);
+    report
+}
+
+fn compare(
     source: &Program,
     machine: &Machine,
     (file_name, text, folders): (&str, &[u8], &Folders),
@@ -222,11 +234,13 @@ fn prove_on(
     if resolved == Ok(true) {
         prover.keep_trail();
     }
+    let mut mark = Mark::default();
     let run = nc::settings(machine, setup.clone()).and_then(|settings| {
         observer::run(&settings, (file_name, text), observer, |event, observer| {
             let outcome = prover.event(event);
             if wants_motions {
                 prover.take_motions(|motion| observer.moved(motion));
+                mark.tell(prover.mismatches(), observer);
             }
             outcome
         })
@@ -248,5 +262,8 @@ fn prove_on(
         }
     }
     report.quote(file_name, text);
+    if wants_motions {
+        mark.tell(&report.mismatches, observer);
+    }
     report
 }

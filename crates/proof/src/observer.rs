@@ -1,5 +1,6 @@
 //! Who follows a proof while it runs: it is asked whether the proof goes on, and told what the control does.
 
+use crate::report::Report;
 use crate::resolved_pose::PartialPose;
 use control::{Event, Settings};
 use geom::{Arc, Vec3};
@@ -20,6 +21,13 @@ pub trait Observer {
     /// The next motion of the program, in the order in which the control makes them. Of a program that the proof runs
     /// several times (with and without its optional blocks, on several surfaces) it is told the motions of the first run.
     fn moved(&mut self, _motion: &Motion) {}
+
+    /// The first mismatch, behind the last motion before it. What is compared along whole contours is found behind the last
+    /// motion of all: the line of the finding says which block it is about.
+    fn mismatched(&mut self, _found: &Diagnostic) {}
+
+    /// The proof is over: of a program that it runs several times, all of them.
+    fn ended(&mut self, _report: &Report) {}
 }
 
 impl Observer for () {}
@@ -44,6 +52,20 @@ impl Observer for Vec<Motion> {
 /// After so many events of the control the observer is asked whether the proof goes on: some milliseconds.
 const EVENTS_AT_ONCE: u32 = 4096;
 
+/// Whether an observer has been told of the first mismatch.
+#[derive(Default)]
+pub(crate) struct Mark(bool);
+
+impl Mark {
+    /// Tells the first of `mismatches`, once.
+    pub fn tell(&mut self, mismatches: &[Diagnostic], observer: &mut dyn Observer) {
+        if let (false, [first, ..]) = (self.0, mismatches) {
+            self.0 = true;
+            observer.mismatched(first);
+        }
+    }
+}
+
 /// Runs a program, for as long as the observer says so, and hands each event to `take`.
 ///
 /// # Errors
@@ -65,7 +87,7 @@ pub(crate) fn run(
     })
 }
 
-/// An observer that is only asked whether the proof goes on.
+/// An observer that is only asked whether a further run of the program goes on.
 pub(crate) struct Silent<'a>(pub &'a mut dyn Observer);
 
 impl Observer for Silent<'_> {
@@ -85,6 +107,8 @@ pub struct Motion {
     /// Which record of the source (place in [`program::Program::records`]) it makes, or on the way to which it is; the number of
     /// records behind the last one.
     pub record: usize,
+    /// Line of the source on which that record stands; 0 where it stands on none.
+    pub source_line: u32,
     /// How it goes.
     pub kind: MotionKind,
     /// Where the tool is before it and behind it, in the work frame.

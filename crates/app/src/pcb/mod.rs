@@ -24,7 +24,7 @@ use levelling::{Allowed, Grid, Probing, follow, level};
 use machine::{Machine, OptionValue};
 use program::heights::HeightMap;
 use program::{Diagnostic, Op, Record, Rule, not_both};
-use proof::Tolerances;
+use proof::{Observer, Tolerances};
 use rayon::prelude::*;
 use serde_json::json;
 use std::borrow::Cow;
@@ -320,6 +320,15 @@ struct Quiet<'a>(&'a dyn Watch);
 impl Watch for Quiet<'_> {
     fn is_cancelled(&self) -> bool {
         self.0.is_cancelled()
+    }
+
+    fn follow<'a>(
+        &'a self,
+        file: &str,
+        source: &'a ::program::Program,
+        machine: &'a Machine,
+    ) -> Box<dyn Observer + 'a> {
+        self.0.follow(file, source, machine)
     }
 }
 

@@ -171,8 +171,8 @@ pub fn make(
         // Chords may leave their arcs by what the conversion has made of them, and by no more.
         machine.capabilities.lowering_tolerance = cut.chord_error();
     }
-    let (name, mut go_on) = (&toolpath.program.name, || !watch.is_cancelled());
-    let proof = proof::of(&cut, &machine, name, file, &output.text, tolerances, &mut go_on)
+    let name = &toolpath.program.name;
+    let proof = proof::of(&cut, &machine, name, file, &output.text, tolerances, watch)
         .map_err(Box::<Diagnostic>::from)?;
     watch.go_on()?;
     let select = settings.select;

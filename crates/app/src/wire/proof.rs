@@ -2,14 +2,15 @@
 //! where it leans against its points, and each end of the wire against its own contour besides.
 
 use super::report::Cut;
+use crate::watch::Watch;
 use control::{Action, Position, Setup};
 use geom::Vec3;
 use machine::Machine;
 use program::{NoPose, Program};
-use proof::{Observer, Prover, Report, Tolerances};
+use proof::{Prover, Report, Tolerances};
 use wire::segment::{End, Segment};
 
-/// Runs `text` on the control of `machine` and compares it with what `cut` wants, for as long as `observer` says so.
+/// Runs `text` on the control of `machine` and compares it with what `cut` wants, for whoever watches.
 ///
 /// # Errors
 /// A contour with a point that is not finite.
@@ -20,14 +21,16 @@ pub fn of(
     file: &str,
     text: &[u8],
     tolerances: &Tolerances,
-    observer: &mut dyn Observer,
+    watch: &dyn Watch,
 ) -> Result<Report, NoPose> {
     if !cut.segments.iter().any(Segment::leans) {
         let contour = cut.end(name, End::Lower)?;
-        return Ok(proof::prove_for(&contour, machine, file, text, tolerances, observer));
+        let follower = &mut watch.followed(file, &contour, machine);
+        return Ok(proof::prove_for(&contour, machine, file, text, tolerances, follower));
     }
     let program = cut.program(name)?;
-    let mut report = proof::prove_for(&program, machine, file, text, tolerances, observer);
+    let follower = &mut watch.followed(file, &program, machine);
+    let mut report = proof::prove_for(&program, machine, file, text, tolerances, follower);
     for end in [End::Lower, End::Upper] {
         if report.proven {
             let contour = cut.end(name, end)?;
@@ -113,7 +116,7 @@ mod tests {
         let cut = Cut::of(vec![segment], Some(30.0), &machine);
         machine.capabilities.lowering_tolerance = 0.01;
         let written = post::write(&cut.program("cone").unwrap(), &machine).unwrap().text;
-        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default(), &mut ()).unwrap()
+        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default(), &()).unwrap()
     }
 
     #[test]

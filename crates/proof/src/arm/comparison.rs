@@ -65,6 +65,7 @@ struct Changes {
 }
 
 pub(super) struct Comparison<'a> {
+    source: &'a Program,
     machine: &'a Machine,
     arm: &'a Arm,
     cell: &'a Cell,
@@ -105,7 +106,7 @@ pub(super) struct Comparison<'a> {
 
 impl<'a> Comparison<'a> {
     pub(super) fn new(
-        source: &Program,
+        source: &'a Program,
         (machine, arm, cell): (&'a Machine, &'a Arm, &'a Cell),
         expected: Vec<Expected>,
         report: Report,
@@ -115,6 +116,7 @@ impl<'a> Comparison<'a> {
             word.map_or(otherwise, |word| 0.5 * word.resolution())
         };
         Comparison {
+            source,
             machine,
             arm,
             cell,

@@ -81,5 +81,9 @@ pub(crate) fn prove(
         .filter_map(|name| folders.open(&name).ok().map(|text| (name, text)))
         .collect();
     report.quote_files((file_name, text), &called);
+    // The first mismatch ends the run.
+    if let (true, [first, ..]) = (wants_motions, &report.mismatches[..]) {
+        observer.mismatched(first);
+    }
     report
 }

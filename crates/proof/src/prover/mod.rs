@@ -225,6 +225,11 @@ impl<'a> Prover<'a> {
         outcome
     }
 
+    /// What differs so far.
+    pub(crate) fn mismatches(&self) -> &[Diagnostic] {
+        &self.report.mismatches
+    }
+
     /// The report, after the last event.
     pub fn finish(mut self) -> Report {
         if !self.lost {

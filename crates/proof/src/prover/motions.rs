@@ -49,14 +49,22 @@ impl Prover<'_> {
         let Some(motions) = &mut self.motions else { return };
         let Some(start) = motions.start.take() else { return };
         let record = motions.made.unwrap_or_else(|| self.cursor.record());
+        let source_line = self.source.records.get(record).map_or(0, |record| record.line);
         let mut from = match motions.changed {
             true => ToolPose { tip: Vec3::NAN, ..start },
             false => start,
         };
         let mut moved = |prover: &mut Self, kind: Kind, to: &ResolvedPose| {
             let (axes, end) = (prover.axis_positions(&to.position), ToolPose::from(to.place));
-            let motion =
-                Motion { file: None, line: event.line, record, kind, tool: [from, end], axes };
+            let motion = Motion {
+                file: None,
+                line: event.line,
+                record,
+                source_line,
+                kind,
+                tool: [from, end],
+                axes,
+            };
             from = end;
             if let Some(motions) = &mut prover.motions {
                 motions.kept.push(motion);

@@ -1,8 +1,8 @@
 //! The motions that a proof hands out: line, record, way, and where the axes stand.
 
 use geom::Vec3;
-use program::{Builder, Cycle, CycleKind, Feed, Program, Spindle, Tool};
-use toolpost_proof::{AxisPositions, Motion, MotionKind, Tolerances, prove_for};
+use program::{Builder, Cycle, CycleKind, Diagnostic, Feed, Program, Spindle, Tool};
+use toolpost_proof::{AxisPositions, Motion, MotionKind, Observer, Report, Tolerances, prove_for};
 
 /// The motions of a program that is proven.
 fn motions(source: &Program, machine: &machine::Machine, text: &str) -> Vec<Motion> {
@@ -152,4 +152,61 @@ fn what_is_refused_is_not_told() {
     assert!(!report.proven);
     let last = motions.last().unwrap();
     assert_eq!((last.line, last.tool[1].tip), (8, Vec3::new(0.0, 0.0, 5.0)));
+}
+
+/// What a follower is told: motions, the first mismatch with the number of motions before it, and the end.
+#[derive(Default)]
+struct Told {
+    motions: Vec<Motion>,
+    mismatch: Option<(usize, &'static str, u32)>,
+    mismatches: usize,
+    ended: Option<bool>,
+}
+
+impl Observer for Told {
+    fn wants_motions(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        self.motions.push(motion.clone());
+    }
+
+    fn mismatched(&mut self, found: &Diagnostic) {
+        self.mismatches += 1;
+        self.mismatch = Some((self.motions.len(), found.rule.name(), found.line));
+    }
+
+    fn ended(&mut self, report: &Report) {
+        assert_eq!(self.ended, None, "told once");
+        self.ended = Some(report.proven);
+    }
+}
+
+#[test]
+fn the_first_mismatch_is_told_where_the_walk_comes_to_it() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.line([5.0, 0.0, -1.0], None).unwrap();
+    source.rapid([5.0, 0.0, 5.0], None).unwrap();
+    let source = source.build();
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let told = |cuts: &str, end: &str| {
+        let text = format!("{START}G0 X0 Y0\nZ5\n{cuts}G0 Z5\n{end}");
+        let (mut told, tolerances) = (Told::default(), Tolerances::default());
+        prove_for(&source, &machine, "p.ngc", text.as_bytes(), &tolerances, &mut told);
+        (told.motions.len(), told.mismatch, told.mismatches, told.ended)
+    };
+    assert_eq!(told("G1 Z-1 F300\nX5\n", END), (7, None, 0, Some(true)));
+    // Home, across, down; the cut with the wrong feed is told, since the comparison goes on behind it, and then what is wrong.
+    let wrong_feed = told("G1 Z-1 F200\nX5\n", END);
+    assert_eq!(wrong_feed, (7, Some((4, "feed", 9)), 1, Some(false)));
+    // A block beside the path ends it: the walk stops before it.
+    assert_eq!(told("G1 Z-1 F300\nX4 Y1\n", END), (4, Some((4, "path", 10)), 1, Some(false)));
+    // The control does not understand a block.
+    assert_eq!(told("G1 Z-1 F300\nX5 ?\n", END), (4, Some((4, "syntax", 10)), 1, Some(false)));
+    // What is missing is found behind the last motion.
+    let unended = told("G1 Z-1 F300\nX5\n", "M5\nG53 G0 Z0\n");
+    assert_eq!(unended, (7, Some((7, "no-end", 0)), 1, Some(false)));
 }

@@ -44,8 +44,9 @@ impl Comparison<'_> {
         let joints = shown.map(f64::to_degrees);
         let axes = AxisPositions::Arm { joints, rail: self.cell.rail.as_ref().map(|_| now.rail) };
         let record = self.made.unwrap_or_else(|| self.record());
+        let source_line = self.source.records.get(record).map_or(0, |record| record.line);
         let (file, line) = (self.file.clone(), event.line);
-        let motion = Motion { file, line, record, kind, tool: [start, end], axes };
+        let motion = Motion { file, line, record, source_line, kind, tool: [start, end], axes };
         self.motions.iter_mut().for_each(|motions| motions.push(motion.clone()));
     }
 
