@@ -25,8 +25,8 @@ QUICK := $(patsubst $(CURDIR)/%,%,$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/qui
 MAKEFLAGS += --keep-going
 
 .PHONY: demo install test test-rust test-python freecad tests bench judges judges-long images samples rust python
-.PHONY: deny notices
-.PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python
+.PHONY: deny notices studio test-studio
+.PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python lint-studio
 
 ## Post a part, prove it, draw it, and say what to do next.
 demo: rust
@@ -63,7 +63,7 @@ install: rust
 ## Every test; those that need an outside judge or real input say so where it is missing, and fail where
 ## CI=true. Property tests draw the same cases in every run; `make test SEED=2`, or any other whole number,
 ## draws others. What fails does not stop the rest.
-test: test-rust test-python freecad
+test: test-rust test-python freecad test-studio
 
 test-rust: rust
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
@@ -76,6 +76,20 @@ test-python: python
 freecad: python
 	cargo build --quiet --locked --bin toolpost
 	PATH="$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug:$$PATH" pytest --quiet integrations/freecad/tests
+
+## The page of `toolpost studio`, which cargo builds into the command from then on.
+studio: studio/dist/index.html
+
+PAGE := $(shell find studio/src studio/index.html studio/package-lock.json studio/vite.config.ts -type f)
+
+studio/dist/index.html: $(PAGE)
+	@scripts/setup page
+	npm --prefix studio run --silent build
+
+## The tests of the page: its parts, and the whole.
+test-studio:
+	@scripts/setup page
+	npm --prefix studio run --silent test
 
 ## The tests in Rust, compiled and not run.
 tests: rust
@@ -90,7 +104,7 @@ bench: rust
 		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
 ## Format, lints, documentation. The fuzz targets are a workspace of their own.
-lint: lint-format lint-rust lint-fuzz lint-docs lint-python
+lint: lint-format lint-rust lint-fuzz lint-docs lint-python lint-studio
 
 lint-format: rust
 	cargo fmt --all --check
@@ -112,6 +126,11 @@ lint-python: python
 	ruff format --check
 	mypy
 	stubtest toolpost
+
+lint-studio:
+	@scripts/setup page
+	npm --prefix studio run --silent types
+	npm --prefix studio run --silent lint
 
 ## The tests with the outside judges, which are installed first.
 judges:

@@ -1,0 +1,41 @@
+import { useSignal } from "@preact/signals";
+import { useEffect, useMemo } from "preact/hooks";
+import { commandOf, keyOf } from "./commands.ts";
+import { Bar } from "./panes/Bar.tsx";
+import { Dialogs } from "./panes/Dialogs.tsx";
+import { Low } from "./panes/Low.tsx";
+import { Split } from "./panes/Split.tsx";
+import { commandsOf } from "./screen/commands.ts";
+import { Screen } from "./screen/screen.ts";
+import type { Studio } from "./studio.ts";
+
+/** The whole window: its panes, and the keys. */
+export function Page({ studio }: { studio: Studio }) {
+    const screen = useMemo(() => new Screen(studio), [studio]);
+    const sizes = useSignal({ program: 300, source: 300, low: 200 });
+    const commands = useMemo(() => commandsOf(screen), [screen]);
+
+    useEffect(() => {
+        const press = (event: KeyboardEvent): void => {
+            const inView = event.target instanceof Element && event.target.closest("[data-view]") !== null;
+            const command = commandOf(commands, keyOf(event), inView);
+            if (command === undefined || document.querySelector("dialog[open]") !== null) return;
+            event.preventDefault();
+            command.run();
+        };
+        document.addEventListener("keydown", press);
+        return () => document.removeEventListener("keydown", press);
+    }, [commands]);
+
+    const { program, source, low } = sizes.value;
+    return (
+        <div class="studio" style={{ "--program": `${program}px`, "--source": `${source}px`, "--low": `${low}px` }}>
+            <Bar screen={screen} />
+            <Split name="s1" label="Width of the program" value={program} sign={1} set={(value) => (sizes.value = { ...sizes.value, program: value })} />
+            <Split name="s2" label="Width of the source" value={source} sign={-1} set={(value) => (sizes.value = { ...sizes.value, source: value })} />
+            <Split name="s3" label="Height of the findings" value={low} sign={-1} lying set={(value) => (sizes.value = { ...sizes.value, low: value })} />
+            <Low screen={screen} />
+            <Dialogs screen={screen} commands={commands} />
+        </div>
+    );
+}

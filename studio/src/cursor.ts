@@ -1,0 +1,94 @@
+/** The one cursor: where every pane is. A place is a time, a move, a block, a line of the source and a template at once. */
+
+import { effect, signal, untracked, type Signal } from "@preact/signals";
+import { Newest } from "./newest.ts";
+import type { Seam } from "./protocol/seam.ts";
+import type { By, Job, Place } from "./protocol/types.ts";
+
+/** Moves from the first to before the last. */
+export type Range = [number, number];
+
+export class Cursor {
+    readonly place: Signal<Place | null> = signal(null);
+    /** The moves that the block of the place makes: several where it stands in a loop or a cycle. */
+    readonly ofBlock: Signal<Range[]> = signal([]);
+    private readonly asked: Newest<By>;
+    private readonly askedMoves: Newest<number>;
+    private block = "";
+
+    constructor(
+        private readonly seam: Seam,
+        private readonly job: Signal<Job | null>,
+    ) {
+        this.asked = new Newest((by) => this.find(by));
+        this.askedMoves = new Newest((move) => this.findMoves(move));
+        effect(() => {
+            const now = this.job.value;
+            untracked(() => this.again(now));
+        });
+    }
+
+    to(by: By): Promise<void> {
+        return this.asked.ask(by);
+    }
+
+    toMove(move: number): Promise<void> {
+        const moves = this.job.value?.walk?.moves ?? 0;
+        return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) });
+    }
+
+    /** The next or the last move of the same block, in turn. */
+    turn(step: 1 | -1): Promise<void> {
+        const move = this.place.value?.move;
+        if (move === undefined) return Promise.resolve();
+        return this.toMove(neighbour(this.ofBlock.value, move, step));
+    }
+
+    private async find(by: By): Promise<void> {
+        const job = this.job.value;
+        if (job === null || !job.walk?.moves) return;
+        const { done } = await this.seam.ask("place", { ...by, revision: job.revision });
+        if (done === null || this.job.value?.revision !== job.revision) return;
+        this.place.value = done;
+        const block = `${job.revision} ${done.block?.file ?? ""} ${done.block?.line ?? ""}`;
+        if (block === this.block) return;
+        this.block = block;
+        void this.askedMoves.ask(job.revision);
+    }
+
+    private async findMoves(revision: number): Promise<void> {
+        const block = this.place.value?.block;
+        if (!block) {
+            this.ofBlock.value = [];
+            return;
+        }
+        const of = { revision, by: "block" as const, value: block.line, file: block.file ?? null };
+        this.ofBlock.value = (await this.seam.ask("moves", of)).done.ranges;
+    }
+
+    /** After a new posting: the same record of the source, or the same time where there is none. */
+    private again(job: Job | null): void {
+        const place = this.place.value;
+        this.block = "";
+        const walk = job?.walk ?? null;
+        if (walk === null || walk.moves === 0) {
+            this.place.value = null;
+            this.ofBlock.value = [];
+        } else if (place?.source) {
+            void this.to({ by: "source", value: place.source.line, file: place.source.file ?? null });
+        } else {
+            void this.toMove(place?.move ?? walk.mismatch ?? 0);
+        }
+    }
+}
+
+/** The move beside `move` in the ranges, round in a ring. */
+export function neighbour(ranges: Range[], move: number, step: 1 | -1): number {
+    const at = ranges.findIndex(([from, to]) => from <= move && move < to);
+    const range = ranges[at];
+    if (range === undefined) return ranges[0]?.[0] ?? move;
+    const next = move + step;
+    if (range[0] <= next && next < range[1]) return next;
+    const beside = ranges[(at + step + ranges.length) % ranges.length]!;
+    return step === 1 ? beside[0] : beside[1] - 1;
+}

@@ -1,0 +1,76 @@
+import type { Screen } from "../screen/screen.ts";
+import type { Job, Verdict } from "../protocol/types.ts";
+
+const verdicts: Record<Verdict, string> = {
+    done: "✓ PROVEN",
+    partly: "◐ PARTLY PROVEN",
+    failed: "✗ NOT PROVEN",
+    invalid: "✗ NOT POSTED",
+    cancelled: "■ CANCELLED",
+};
+
+const shown = (name: string): string => name.replace(/^.*\//, "");
+
+export function Bar({ screen }: { screen: Screen }) {
+    const { studio, dialog } = screen;
+    const { work, job, running, link, opened, stopped } = studio;
+    const source = work.value?.source;
+    const name = source === undefined ? "Open a source…" : shown("file" in source ? source.file : source.upload);
+    return (
+        <header class="bar">
+            <h1>Toolpost</h1>
+            <button type="button" title="Open a source (Ctrl O)" onClick={() => (dialog.value = "source")}>
+                {name}
+            </button>
+            <button type="button" title="Choose the machine (Ctrl M)" onClick={() => (dialog.value = "machine")}>
+                {work.value?.machine ?? opened.value?.machine ?? "Choose a machine…"}
+            </button>
+            <button type="button" onClick={() => (dialog.value = "options")}>
+                Options
+            </button>
+            <output class="grow" aria-live="polite">
+                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stopped={stopped.value.length > 0} />}
+            </output>
+            {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
+            <span class="soft">{studio.said.value}</span>
+            <button type="button" disabled={!canSave(job.value)} onClick={() => (dialog.value = "save")}>
+                Save…
+            </button>
+            <button type="button" onClick={() => (dialog.value = "commands")}>
+                Commands <kbd>Ctrl K</kbd>
+            </button>
+        </header>
+    );
+}
+
+const links = {
+    connecting: "connecting…",
+    lost: "connection lost; connecting again…",
+    refused: "the link is not of this server: use the link that `toolpost studio` printed last",
+    open: "",
+};
+
+export const canSave = (job: Job | null): boolean => job?.verdict === "done" || job?.verdict === "partly";
+
+function Running({ screen }: { screen: Screen }) {
+    const { running } = screen.studio;
+    const part = running.value?.part ?? null;
+    return (
+        <>
+            {running.value?.step}… <progress aria-label="Progress" {...(part === null ? {} : { value: part })} />{" "}
+            <button type="button" onClick={() => screen.studio.cancel()}>
+                Cancel
+            </button>
+        </>
+    );
+}
+
+function VerdictOf({ job, stopped }: { job: Job | null; stopped: boolean }) {
+    if (job === null) return stopped ? <strong class="invalid">✗ see the findings</strong> : <span class="soft">no program yet</span>;
+    const moves = job.walk === null ? "" : `${job.walk.moves.toLocaleString("en")} moves`;
+    return (
+        <>
+            <strong class={job.verdict}>{verdicts[job.verdict]}</strong> {moves}
+        </>
+    );
+}

@@ -1,0 +1,70 @@
+import type { ComponentChildren } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import type { Command } from "../commands.ts";
+import type { Dialog, Screen } from "../screen/screen.ts";
+import { Choose } from "./Choose.tsx";
+import { Folder } from "./Folder.tsx";
+import { Go } from "./Go.tsx";
+import { Keys } from "./Keys.tsx";
+import { Options } from "./Options.tsx";
+import { Save } from "./Save.tsx";
+
+const titles: Record<Dialog, string> = {
+    commands: "Commands",
+    keys: "Keys",
+    machine: "Machine",
+    source: "Source",
+    options: "Options",
+    save: "Save",
+    go: "Go to",
+};
+
+export function Dialogs({ screen, commands }: { screen: Screen; commands: Command[] }) {
+    const { dialog, studio } = screen;
+    const close = (): void => {
+        dialog.value = null;
+    };
+    const open = dialog.value;
+    if (open === null) return null;
+    return (
+        <Modal title={titles[open]} close={close}>
+            {open === "commands" && (
+                <Choose
+                    label="Search the commands"
+                    close={close}
+                    choices={commands.map(({ name, title, keys, run }) => ({ name, title, run, more: shownKey(keys?.[0]) }))}
+                />
+            )}
+            {open === "keys" && <Keys commands={commands} />}
+            {open === "machine" && (
+                <Choose
+                    label="Search the machines"
+                    close={close}
+                    choices={studio.machines.value.map((machine) => ({
+                        name: machine.name,
+                        title: `${machine.name}: ${machine.title}`,
+                        more: `${machine.control} ${machine.axes}`,
+                        run: () => void studio.choose(machine.name),
+                    }))}
+                />
+            )}
+            {open === "source" && <Folder screen={screen} close={close} />}
+            {open === "options" && <Options screen={screen} close={close} />}
+            {open === "save" && <Save screen={screen} close={close} />}
+            {open === "go" && <Go screen={screen} close={close} />}
+        </Modal>
+    );
+}
+
+export const shownKey = (key: string | undefined): string => (key ?? "").replaceAll("+", " ").replace(/ {2}$/, " +").replace(/^ $/, "+");
+
+/** The browser's own dialog: it keeps the focus within, and Escape closes it. */
+function Modal({ title, close, children }: { title: string; close(): void; children: ComponentChildren }) {
+    const dialog = useRef<HTMLDialogElement>(null);
+    useEffect(() => dialog.current?.showModal(), []);
+    return (
+        <dialog ref={dialog} aria-label={title} onClose={close} onClick={(event) => event.target === dialog.current && close()}>
+            {children}
+        </dialog>
+    );
+}

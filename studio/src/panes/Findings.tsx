@@ -1,0 +1,38 @@
+import type { Finding, Severity } from "../protocol/types.ts";
+import type { Screen } from "../screen/screen.ts";
+
+/** A shape beside the colour. */
+const marks: Record<Severity, string> = { error: "✗", warning: "▲", note: "●" };
+
+/** More than this nobody reads; the rest is counted. */
+const SHOWN = 1000;
+
+export function Findings({ screen }: { screen: Screen }) {
+    const { findings } = screen.studio;
+    if (findings.value.length === 0) return <p class="soft hint">No findings.</p>;
+    return (
+        <ol class="findings">
+            {findings.value.slice(0, SHOWN).map((finding, number) => (
+                <Row key={number} finding={finding} lit={number === screen.finding.value} lead={() => screen.toFinding(number)} />
+            ))}
+            {findings.value.length > SHOWN && <li class="soft">and {(findings.value.length - SHOWN).toLocaleString("en")} more</li>}
+        </ol>
+    );
+}
+
+function Row({ finding, lit, lead }: { finding: Finding; lit: boolean; lead(): void }) {
+    const place = [finding.file, finding.line, finding.column].filter((part) => part !== null && part !== undefined).join(":");
+    return (
+        <li aria-current={lit}>
+            <button type="button" onClick={lead}>
+                <strong class={finding.severity}>
+                    {marks[finding.severity]} {finding.severity}
+                </strong>{" "}
+                {finding.message} <span class="soft">[{finding.rule}]</span>
+                {place !== "" && <span class="code soft"> {place}</span>}
+            </button>
+            {finding.text && <div class="code">{finding.text}</div>}
+            {finding.help && <div class="soft">→ {finding.help}</div>}
+        </li>
+    );
+}

@@ -1,0 +1,30 @@
+import { useSignal } from "@preact/signals";
+import type { Screen } from "../screen/screen.ts";
+
+export function Save({ screen, close }: { screen: Screen; close(): void }) {
+    const { studio } = screen;
+    const path = useSignal(studio.job.value?.program?.file.replace(/^.*\//, "") ?? "");
+    const replace = useSignal(false);
+    const why = useSignal<string | null>(null);
+    const save = async (event: Event): Promise<void> => {
+        event.preventDefault();
+        if (await studio.save(path.value, replace.value)) close();
+        else why.value = studio.stopped.value[0]?.message ?? "not saved";
+    };
+    return (
+        <form onSubmit={(event) => void save(event)}>
+            <p>
+                <label for="save-path">File, in {studio.opened.value?.folder}</label>
+                <input id="save-path" type="text" value={path.value} onInput={(event) => (path.value = event.currentTarget.value)} />
+            </p>
+            <p>
+                <label>
+                    <input type="checkbox" checked={replace.value} onChange={(event) => (replace.value = event.currentTarget.checked)} />{" "}
+                    replace what is there
+                </label>
+            </p>
+            {why.value !== null && <p class="error">✗ {why.value}</p>}
+            <button type="submit">Save</button>
+        </form>
+    );
+}

@@ -1,0 +1,12 @@
+/** The token of the link: taken out of the address bar, kept for this tab so that a reload finds it. */
+
+const KEY = "toolpost-token";
+
+export function token(): string {
+    const given = new URLSearchParams(location.hash.slice(1)).get("token");
+    if (given !== null) {
+        sessionStorage.setItem(KEY, given);
+        history.replaceState(null, "", location.pathname);
+    }
+    return given ?? sessionStorage.getItem(KEY) ?? "";
+}

@@ -1,0 +1,147 @@
+/** What the page is at: the folder, the work, its job, and what runs. Panes read the signals and call the methods. */
+
+import { computed, signal, type Signal } from "@preact/signals";
+import { Cursor } from "./cursor.ts";
+import { Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
+import type { Draft, Finding, Job, MachineEntry, Opened, Option, SourceName, Work } from "./protocol/types.ts";
+
+export class Studio {
+    readonly link: Signal<State>;
+    readonly opened: Signal<Opened | null> = signal(null);
+    readonly machines: Signal<MachineEntry[]> = signal([]);
+    readonly form: Signal<Option[]> = signal([]);
+    readonly drafts: Signal<Draft[]> = signal([]);
+    readonly work: Signal<Work | null> = signal(null);
+    readonly job: Signal<Job | null> = signal(null);
+    readonly running: Signal<Progress | null> = signal(null);
+    /** Why there is no job, or why something else was not done. */
+    readonly stopped: Signal<Finding[]> = signal([]);
+    readonly said: Signal<string> = signal("");
+    /** The program as edited by hand; null while it is as posted. */
+    readonly edited: Signal<string | null> = signal(null);
+    readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
+    readonly cursor: Cursor;
+    private abort: AbortController | null = null;
+
+    constructor(
+        readonly seam: Seam,
+        link: Signal<State>,
+    ) {
+        this.link = link;
+        this.cursor = new Cursor(seam, this.job);
+    }
+
+    /** After the first connection and after each that was lost: revisions may be others now, so the work is posted again. */
+    async begin(): Promise<void> {
+        const { done: opened } = await this.seam.ask("open", {});
+        this.opened.value = opened;
+        this.drafts.value = opened.drafts;
+        const [machines, form] = await Promise.all([this.seam.ask("machines", {}), this.seam.ask("form", {})]);
+        this.machines.value = machines.done.machines;
+        this.form.value = form.done.options;
+        if (this.edited.value !== null) return this.prove(this.edited.value);
+        if (this.work.value !== null) return this.post(this.work.value);
+        if (opened.source !== null) await this.post({ source: { file: opened.source }, machine: opened.machine, options: {} });
+    }
+
+    open(source: SourceName): Promise<void> {
+        const machine = this.work.value?.machine ?? this.opened.value?.machine ?? null;
+        return this.post({ source, machine, options: {} });
+    }
+
+    async drop(file: File): Promise<void> {
+        const upload = await this.told(async (signal) => this.seam.upload(file, signal));
+        if (upload !== undefined) await this.open({ upload });
+    }
+
+    choose(machine: string): Promise<void> {
+        const work = this.work.value;
+        return work === null ? Promise.resolve() : this.post({ ...work, machine });
+    }
+
+    /** Posts and proves. Edits by hand are gone: who calls this has asked. */
+    async post(work: Work): Promise<void> {
+        this.work.value = work;
+        this.edited.value = null;
+        const { source, machine, options } = work;
+        const job = await this.told(async (signal, progress) =>
+            (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
+        this.job.value = job ?? null;
+    }
+
+    /** Proves the program as edited by hand, and keeps it as a draft. */
+    async prove(text: string): Promise<void> {
+        const work = this.work.value;
+        if (work === null) return;
+        this.edited.value = text;
+        const octets = new TextEncoder().encode(text);
+        void this.seam.ask("draft", { name: draftName(work), of: work }, { arrays: { text: octets } }).catch(() => {});
+        const job = await this.told(async (signal, progress) =>
+            (await this.seam.ask("prove", work, { arrays: { text: octets }, signal, progress })).done);
+        if (job !== undefined) this.job.value = job;
+    }
+
+    /** Back to the program as posted. */
+    async discard(): Promise<void> {
+        const work = this.work.value;
+        if (work === null) return;
+        await this.dropDraft(draftName(work));
+        await this.post(work);
+    }
+
+    async resume(draft: Draft, text: string): Promise<void> {
+        this.work.value = draft.of;
+        this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
+        await this.prove(text);
+    }
+
+    async dropDraft(name: string): Promise<void> {
+        this.drafts.value = this.drafts.value.filter((draft) => draft.name !== name);
+        await this.seam.ask("drop_draft", { name }).catch(() => {});
+    }
+
+    async save(path: string, replace: boolean): Promise<boolean> {
+        const job = this.job.value;
+        const work = this.work.value;
+        if (job === null || work === null) return false;
+        const saved = await this.told(async () => (await this.seam.ask("save", { revision: job.revision, path, replace })).done);
+        if (saved === undefined) return false;
+        this.said.value = `saved ${saved.files.join(", ")}`;
+        await this.dropDraft(draftName(work));
+        return true;
+    }
+
+    cancel(): void {
+        this.abort?.abort();
+    }
+
+    /** Runs one thing at a time: a newer one ends the older. What stops it is shown. */
+    private async told<T>(run: (signal: AbortSignal, progress: (now: Progress) => void) => Promise<T>): Promise<T | undefined> {
+        this.abort?.abort();
+        const abort = new AbortController();
+        this.abort = abort;
+        this.running.value = { step: "reading", part: null };
+        this.stopped.value = [];
+        try {
+            const done = await run(abort.signal, (now) => {
+                if (this.abort === abort) this.running.value = now;
+            });
+            return this.abort === abort ? done : undefined;
+        } catch (error) {
+            if (this.abort !== abort) return undefined;
+            if (!(error instanceof Stopped)) throw error;
+            this.stopped.value = error.findings;
+            return undefined;
+        } finally {
+            if (this.abort === abort) {
+                this.abort = null;
+                this.running.value = null;
+            }
+        }
+    }
+}
+
+export function draftName({ source, machine }: Work): string {
+    const name = "file" in source ? source.file : source.upload;
+    return `${name}.${machine ?? "no-machine"}`.replaceAll(/[^\w.-]+/g, "_");
+}

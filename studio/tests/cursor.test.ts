@@ -1,0 +1,52 @@
+import { signal } from "@preact/signals";
+import { expect, test } from "vitest";
+import { Cursor, neighbour } from "../src/cursor.ts";
+import { Newest } from "../src/newest.ts";
+import type { Seam } from "../src/protocol/seam.ts";
+import type { By, Job, Place } from "../src/protocol/types.ts";
+
+const settled = () => new Promise((resolve) => setTimeout(resolve));
+
+test("the moves of a block are stepped through in a ring", () => {
+    const ranges: [number, number][] = [[4, 6], [10, 11]];
+    expect([4, 5, 10].map((move) => neighbour(ranges, move, 1))).toEqual([5, 10, 4]);
+    expect([4, 5, 10].map((move) => neighbour(ranges, move, -1))).toEqual([10, 4, 5]);
+    expect(neighbour([], 7, 1)).toBe(7);
+});
+
+test("of asks that come while one runs, only the newest is asked", async () => {
+    const ran: number[] = [];
+    const newest = new Newest<number>(async (value) => {
+        ran.push(value);
+        await settled();
+    });
+    const first = newest.ask(1);
+    await newest.ask(2);
+    await newest.ask(3);
+    await first;
+    expect(ran).toEqual([1, 3]);
+});
+
+const job = (revision: number): Job =>
+    ({ revision, walk: { moves: 9, chunks: 1, levels: [], box: null, time_s: 9, tools: [], kinds: [] } }) as unknown as Job;
+
+test("the cursor is at the same record of the source after a new posting", async () => {
+    const asked: (By & { revision: number })[] = [];
+    const seam = {
+        async ask(ask: string, params: By & { revision: number }) {
+            if (ask === "moves") return { done: { ranges: [] }, arrays: {} };
+            asked.push(params);
+            return { done: { move: params.value, source: { file: "a.cls", line: 40, text: "" } } as unknown as Place, arrays: {} };
+        },
+    } as unknown as Seam;
+    const now = signal<Job | null>(job(1));
+    const cursor = new Cursor(seam, now);
+    await cursor.toMove(100);
+    await settled();
+    now.value = job(2);
+    await settled();
+    expect(asked.at(-1)).toEqual({ revision: 2, by: "source", value: 40, file: "a.cls" });
+    expect(asked.at(-2)).toEqual({ revision: 1, by: "move", value: 8 });
+    now.value = null;
+    expect(cursor.place.value).toBe(null);
+});
