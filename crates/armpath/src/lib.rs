@@ -84,9 +84,11 @@ pub struct Cell {
 pub struct Settings {
     /// Steps of the turn about the tool axis, 1 to 360.
     pub turns: u16,
-    /// Fastest turn of the tool while it cuts, of its axis and about it, radians/s: where the path turns it faster than that at
-    /// its feed the arm goes slower, as controllers do.
+    /// Fastest turn about the tool's axis that is chosen in a cut, radians/s.
     pub turn_rate: f64,
+    /// Fastest turn of the tool, its axis and about it together, that the controller makes, radians/s: where the path turns it faster at
+    /// its feed the arm goes slower. `None` where the controller keeps the feed.
+    pub slows_at: Option<f64>,
     /// Least distance of joint 5 from stretched or folded, radians.
     pub wrist: f64,
     /// Least distance of the wrist from axis 1, mm.
@@ -111,6 +113,7 @@ impl Default for Settings {
         Settings {
             turns: 36,
             turn_rate: 60_f64.to_radians(),
+            slows_at: None,
             wrist: 5_f64.to_radians(),
             shoulder: 20.0,
             elbow: 5_f64.to_radians(),
@@ -217,6 +220,13 @@ impl fmt::Display for Blocked {
             Why::Shoulder(mm) => write!(f, "the wrist would be {mm:.1} mm from axis 1"),
             Why::Elbow(angle) => {
                 write!(f, "the elbow would be {:.2} degrees from stretched", degrees(angle))
+            }
+            // It turns where the tip stays.
+            Why::Speed(joint, share) if share.is_infinite() => {
+                write!(
+                    f,
+                    "joint {joint} would have no time for its turn: the path is a point, and nothing states how fast the tool turns"
+                )
             }
             Why::Speed(joint, share) => {
                 write!(

@@ -60,6 +60,7 @@ impl<'a> Job<'a> {
     ) -> Result<Job<'a>, Blocked> {
         let good = (1..=360).contains(&settings.turns)
             && settings.turn_rate > 0.0
+            && settings.slows_at.is_none_or(|rate| rate > 0.0)
             && settings.speed > 0.0
             && settings.speed <= 1.0
             && [settings.wrist, settings.shoulder, settings.elbow, settings.limit]
@@ -122,8 +123,8 @@ impl<'a> Job<'a> {
         let (length, lean) = (last.tip.distance(end.tip), angle_between(last.out, end.out));
         let turned = if fixed { angle_between(last.side, end.side) } else { 0.0 };
         let count = (length / SPACING).max(lean / LEAN).max(turned / LEAN).ceil().max(1.0);
-        // Controllers go slower than the feed where the tool would turn too fast.
-        let time = (length / speed).max((lean + turned) / self.settings.turn_rate);
+        let turning = self.settings.slows_at.map_or(0.0, |rate| (lean + turned) / rate);
+        let time = (length / speed).max(turning);
         if count > MOST {
             return Err(Blocked { point: end.point, why: Why::Numbers });
         }

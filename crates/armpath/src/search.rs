@@ -68,9 +68,14 @@ pub(crate) fn search(job: &Job) -> Result<Choice, Blocked> {
     Ok(choice)
 }
 
+/// How long a step of the turn takes at least, s.
+fn step_time(job: &Job) -> f64 {
+    job.step_angle() / job.settings.turn_rate
+}
+
 /// Samples of a cut, from `start` on, at which the turn may have changed by a step: all of them points.
 fn knots(job: &Job, cut: &Cut, start: usize) -> Vec<usize> {
-    let least = if cut.fixed { 0.0 } else { job.step_angle() / job.settings.turn_rate };
+    let least = if cut.fixed { 0.0 } else { step_time(job) };
     let end = cut.samples.end;
     let (mut knots, mut time) = (vec![start], 0.0);
     for at in start + 1..end {
@@ -262,7 +267,7 @@ fn layer(
     let steps = row.len() / POSTURES;
     let mut next = vec![Label::DEAD; row.len()];
     let mut from = vec![0_i8; row.len()];
-    let turns = if steps < 3 { &TURNS[1..2] } else { &TURNS[..] };
+    let turns = if steps < 3 || time < step_time(job) { &TURNS[1..2] } else { &TURNS[..] };
     for (at, node) in row.iter().enumerate().filter(|(_, node)| !node.is_dead()) {
         let (step, posture) = (at / POSTURES, at % POSTURES);
         for turn in turns {

@@ -107,7 +107,8 @@ fn proven(arm: &Arm, cell: &Cell, points: &[Point], settings: &Settings, way: &C
             };
             let length = point.tip.distance(points[section.first + i - 1].tip);
             let turned = points[section.first + i - 1].axis.angle_between(point.axis);
-            let time = (length / (point.feed / 60.0)).max(turned / settings.turn_rate);
+            let time = (length / (point.feed / 60.0))
+                .max(settings.slows_at.map_or(0.0, |rate| turned / rate));
             for (k, joint) in arm.joints().iter().enumerate() {
                 let change = (stand.joints[k] - before[k]).abs();
                 assert!(
@@ -123,7 +124,8 @@ fn proven(arm: &Arm, cell: &Cell, points: &[Point], settings: &Settings, way: &C
 }
 
 fn way(cell: &Cell, points: &[Point]) -> Result<Choice, Blocked> {
-    let (arm, settings) = (kuka(), Settings::default());
+    let settings = Settings { slows_at: Some(60_f64.to_radians()), ..Settings::default() };
+    let arm = kuka();
     let way = choose(&arm, cell, points, &settings)?;
     proven(&arm, cell, points, &settings, &way);
     Ok(way)
@@ -276,7 +278,8 @@ fn a_tool_that_is_turned_round_and_round_by_its_source_is_divided_where_joint_6_
         let angle = i as f64 * 4.0 * TAU / 800.0;
         (point.side, point.feed) = (Some(Vec3::new(angle.cos(), angle.sin(), 0.0)), 100.0);
     }
-    let (arm, settings) = (kuka(), Settings::default());
+    let settings = Settings { slows_at: Some(60_f64.to_radians()), ..Settings::default() };
+    let arm = kuka();
     let way = choose(&arm, &cell(0.0), &points, &settings).unwrap();
     // 1440 degrees in spans of at most 698.
     assert!((3..=4).contains(&way.sections.len()), "{}", way.sections.len());
@@ -340,4 +343,30 @@ fn the_way_is_the_same_on_one_thread_and_on_many() {
         pool.install(|| choose(&arm, &cell, &points, &Settings::default()).unwrap())
     };
     assert_eq!(run(1), run(3));
+}
+
+#[test]
+fn an_arm_goes_slower_where_the_tool_turns_only_if_its_controller_does() {
+    // 40 degrees on 10 mm at 1800 mm/min: a third of a second, 120 degrees/s.
+    let points: Vec<Point> = (0..=10)
+        .map(|i| {
+            let lean = (4.0 * f64::from(i)).to_radians();
+            let (tip, axis) =
+                (Vec3::new(f64::from(i), 0.0, 100.0), Vec3::new(0.0, lean.sin(), lean.cos()));
+            Point { tip, axis, side: None, cut: i > 0, feed: 1800.0, inside: false }
+        })
+        .collect();
+    let arm = kuka();
+    let speed = |slows_at: Option<f64>| {
+        let settings = Settings { slows_at, ..Settings::default() };
+        choose(&arm, &cell(LEANING), &points, &settings).unwrap().worst.speed.0
+    };
+    let kept = speed(None);
+    // The same steps at a third of the speed need a third of the joints' speeds.
+    let slowed = speed(Some(40_f64.to_radians()));
+    // About: the choice of the turn differs a little.
+    assert!((kept / slowed - 3.0).abs() < 0.1, "{kept} {slowed}");
+    assert!((speed(Some(200_f64.to_radians())) - kept).abs() < 1e-12);
+    let never = Settings { slows_at: Some(0.0), ..Settings::default() };
+    assert_eq!(choose(&arm, &cell(LEANING), &points, &never).unwrap_err().why, Why::Numbers);
 }

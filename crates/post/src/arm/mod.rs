@@ -37,6 +37,9 @@ mod corner {
 /// By how much the word of a feed may round it, as a part of it.
 const ROUGH: f64 = 0.05;
 
+/// By how much of itself a cut may take longer than at its feed, because the tool turns.
+const SLOWER: f64 = 0.02;
+
 /// By how much a word may round a feed before a finer one is taken, as a part of it.
 const FAIR: f64 = 0.005;
 
@@ -221,6 +224,9 @@ impl<'a> Walk<'a> {
         let name = name_of(name);
         scope.program = named(machine, &name, "");
         let mut writer = Writer::new(machine);
+        if let Some(speed) = machine.turn_speed() {
+            writer.set_always(WordName::TurnSpeed, speed);
+        }
         if let Some(number) = cell.own_frame {
             writer.set_always(WordName::OwnFrame, f64::from(number));
         } else if templates.places(BlockName::Frames, WordName::OwnFrame) {
@@ -403,9 +409,6 @@ impl<'a> Walk<'a> {
         let part = self.cell.part;
         self.set(&POSE, &part);
         self.set(&MIDDLE, tool);
-        if let Some(speed) = self.machine.turn_speed() {
-            self.writer.set(WordName::TurnSpeed, speed);
-        }
         if let Some(load) = self.cell.load {
             self.say_load(load);
         }
@@ -621,6 +624,7 @@ impl<'a> Walk<'a> {
     fn cut(&mut self, motion: &Motion, next: Option<&Motion>) -> Outcome {
         let Motion { line, kind, feed, .. } = *motion;
         self.limits.feed(program::Feed::PerMinute(feed), self.spindle, line)?;
+        self.turns_in_time(motion)?;
         self.is_cutting = true;
         self.start_spindle()?;
         self.start_coolant()?;
@@ -651,6 +655,34 @@ impl<'a> Walk<'a> {
             }
             Kind::Line | Kind::Rapid => self.straight(&motion.end, distance),
         }
+    }
+
+    /// # Errors
+    /// The tool turns on the way so much that a controller whose program states how fast it may does not keep the feed.
+    fn turns_in_time(&self, motion: &Motion) -> Outcome {
+        let stated = self.machine.turn_speed();
+        let states = self.machine.words.contains_key(WordName::TurnSpeed.name());
+        let Some(speed) = stated.filter(|_| states) else { return Ok(()) };
+        let [from, to] =
+            [&self.here.tool, &motion.end.tool].map(|tool| Quat::from_mat3(&tool.matrix3));
+        let between = from.inverse() * to;
+        let shorter = if between.w < 0.0 { -between } else { between };
+        let about = shorter.to_scaled_axis().map(|angle| angle.to_degrees());
+        // Its axis, and about it.
+        let turn = about.x.hypot(about.y).max(about.z.abs());
+        let (length, feed) = (motion.length(&self.here), motion.feed);
+        let at_feed = turn * feed / 60.0 / length;
+        if length <= self.machine.resolution() || at_feed <= speed * (1.0 + SLOWER) {
+            return Ok(());
+        }
+        let message = format!(
+            "the tool turns by {turn:.2} degrees on {length:.3} mm: at {feed:.0} mm/min that is {at_feed:.0} degrees/s, and `turn_speed` of the options is {speed}"
+        );
+        let help = format!(
+            "a feed of {:.0} mm/min at the most here, or a larger `turn_speed` below [options] of the machine file",
+            (feed * speed / at_feed).floor()
+        );
+        Err(Diagnostic::error(Rule::Feed, message).help(help).into())
     }
 
     /// How far before its end a cut may leave its path, mm; 0 where it stops there.

@@ -139,6 +139,8 @@ pub(super) struct Stretch<'a> {
     pub(super) length: Option<f64>,
     pub(super) points: Vec<Point>,
     pub(super) lines: Vec<u32>,
+    /// How fast the tool may turn, degrees/s, its axis and about it each, where the control states that.
+    turn_speed: Option<f64>,
     steps: Vec<Planned<'a>>,
 }
 
@@ -182,7 +184,7 @@ pub(super) fn stretches<'a>(
     let mut walk = Walk {
         machine,
         cell,
-        stretches: vec![Stretch::new(None)],
+        stretches: vec![Stretch::new(None, machine.turn_speed())],
         here: None,
         feed: None,
         cycle: None,
@@ -197,8 +199,9 @@ pub(super) fn stretches<'a>(
 }
 
 impl<'a> Stretch<'a> {
-    fn new(length: Option<f64>) -> Stretch<'a> {
-        Stretch { length, points: Vec::new(), lines: Vec::new(), steps: Vec::new() }
+    fn new(length: Option<f64>, turn_speed: Option<f64>) -> Stretch<'a> {
+        let (points, lines, steps) = (Vec::new(), Vec::new(), Vec::new());
+        Stretch { length, points, lines, turn_speed, steps }
     }
 
     fn point(&mut self, line: u32, pose: &Pose, cut: Option<f64>) -> usize {
@@ -265,7 +268,7 @@ impl<'a> Stretch<'a> {
         // Where axis 1 turns by a revolution the arm reaches everything over its back as well: it does not leave the posture of home.
         let is_round = arm.joints()[0].max - arm.joints()[0].min > TAU;
         let home = arm.model(&cell.home.map(f64::to_radians));
-        let settings = Settings { home, keeps_posture: is_round, ..Settings::default() };
+        let settings = settings(self.turn_speed, (home, is_round));
         let at = |rail: f64| {
             let frames = Frames { tool, part: cell.part_from(rail) };
             choose(arm, &frames, points, &settings).map(|choice| (rail, choice))
@@ -308,6 +311,14 @@ impl<'a> Stretch<'a> {
     }
 }
 
+/// What is asked of a choice: `turn_speed` is how fast the tool may turn, degrees/s, its axis and about it each.
+fn settings(turn_speed: Option<f64>, (home, keeps_posture): (Option<Joints>, bool)) -> Settings {
+    let own = Settings::default();
+    let rate = turn_speed.map(f64::to_radians);
+    let turn_rate = rate.map_or(own.turn_rate, |rate| rate.min(own.turn_rate));
+    Settings { turn_rate, slows_at: rate.map(|rate| 2.0 * rate), home, keeps_posture, ..own }
+}
+
 /// What is chosen for the points of a stretch.
 #[derive(Default)]
 struct Chosen {
@@ -348,7 +359,7 @@ fn check_path(path: Option<CompensatedPath>) -> Outcome {
 impl<'a> Walk<'a, '_> {
     fn stretch(&mut self) -> &mut Stretch<'a> {
         if self.stretches.is_empty() {
-            self.stretches.push(Stretch::new(None));
+            self.stretches.push(Stretch::new(None, self.machine.turn_speed()));
         }
         let last = self.stretches.len() - 1;
         &mut self.stretches[last]
@@ -375,7 +386,7 @@ impl<'a> Walk<'a, '_> {
                 self.arc(record.line, &arc, &to.end)?;
             }
             Op::Tool(tool) => {
-                self.stretches.push(Stretch::new(tool.length));
+                self.stretches.push(Stretch::new(tool.length, self.machine.turn_speed()));
                 self.act(record, Act::Tool(tool));
                 self.here = None;
             }

@@ -5,7 +5,7 @@ use super::rail::{Stand, groups};
 use crate::arcs::arc_through;
 use crate::center;
 use ::arm::{Arm, Joints};
-use armpath::{Cell as Frames, Point, SPACING, Settings, Worst, ease_of, stand};
+use armpath::{Cell as Frames, Point, SPACING, Worst, ease_of, stand};
 use geom::{Frame, Mat3, Quat, Vec3, angle_between, wrap};
 use machine::{Cell, Machine};
 use program::{Diagnostic, Program};
@@ -49,7 +49,7 @@ pub struct ArmSample {
     pub cuts: bool,
     /// Whether the tool has left the cut here, and enters it again.
     pub enters_again: bool,
-    /// Seconds from the first sample, at the feeds of the source, slower where the tool turns by more than 60° a second, and the rapid of the cell; without acceleration.
+    /// Seconds from the first sample, at the feeds of the source, slower where the tool would turn faster than `turn_speed` of the options, and the rapid of the cell; without acceleration.
     pub time: f64,
     /// The tool tip in the frame of the part, mm.
     pub tip: Vec3,
@@ -106,8 +106,9 @@ pub fn arm_samples(
     let (arm, cell) = robot(machine)?;
     let (program, offsets) = followed(program, machine)?;
     let (steps, margins) = chosen(&program, machine, offsets)?;
+    let (tool, turn_speed) = (cell.tool(None), machine.turn_speed());
     let mut along =
-        Along { arm, cell, tool: cell.tool(None), here: None, time: 0.0, samples: Vec::new() };
+        Along { arm, cell, tool, turn_speed, here: None, time: 0.0, samples: Vec::new() };
     for step in &steps {
         match step {
             Step::Act(Act::Tool(tool), _) => {
@@ -159,6 +160,8 @@ struct Along<'a> {
     arm: &'a Arm,
     cell: &'a Cell,
     tool: Option<Frame>,
+    /// Degrees/s.
+    turn_speed: Option<f64>,
     here: Option<Position>,
     time: f64,
     samples: Vec<ArmSample>,
@@ -172,9 +175,9 @@ impl Along<'_> {
         let between = from.zip(self.tool).filter(|_| motion.kind != Kind::Rapid);
         if let Some((from, tool)) = between {
             let [a, b] = [&from.tool.matrix3, &motion.end.tool.matrix3].map(Quat::from_mat3);
-            // Controllers go slower than the feed where the tool would turn too fast.
             let lean = angle_between(from.tool.matrix3.z_axis, motion.end.tool.matrix3.z_axis);
-            let whole = whole.max(lean / Settings::default().turn_rate);
+            // Controllers go slower than the feed where the tool would turn too fast.
+            let whole = whole.max(self.turn_speed.map_or(0.0, |speed| lean.to_degrees() / speed));
             let parts = (length / SPACING).max(a.angle_between(b) / LEAN).ceil().clamp(1.0, MOST);
             let tip = path(motion.kind, from.tool.translation, motion.end.tool.translation);
             let posture = self.arm.posture(&motion.end.joints);

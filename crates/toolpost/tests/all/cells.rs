@@ -305,12 +305,61 @@ fn where_cables_leave_joint_6_little_the_cuts_are_made_in_the_posture_of_home() 
 #[test]
 fn a_cut_that_cannot_be_entered_again_is_not_offered_a_word_of_the_cell() {
     // Behind line 1078 of the dome no turn of the M-20iA leads on but with the elbow below, to which no way above the cuts leads.
-    let dome =
-        source(&std::fs::read_to_string(crate::files::root().join("examples/dome.cls")).unwrap());
+    let dome = dome().replace("MMPM,1500", "MMPM,1200");
+    let dome = source(&dome);
     let machine = machine::load("fanuc-m20ia-mill").unwrap();
     let found = &post::write(&dome, &machine).unwrap_err()[0];
     assert_eq!((found.rule.name(), found.line), ("arm-path", 1078), "{found}");
     assert!(found.help.contains("toolpost fit") && !found.help.contains("reentry_feed"), "{found}");
+}
+
+fn dome() -> String {
+    std::fs::read_to_string(crate::files::root().join("examples/dome.cls")).unwrap()
+}
+
+#[test]
+fn joints_are_chosen_for_the_feed_where_the_control_does_not_say_how_fast_the_tool_turns() {
+    // At line 225 the tool leans by 0.77 degrees on 0.096 mm: at 1500 mm/min by 195 degrees/s.
+    let cell = "rapid = 6000\ncable_joint_4 = [-120, 120]\nreentry_feed = 400";
+    let spindle = ("spindle = [0, 0, 100, 0, 0, 0]", "spindle = [0, 0, 100, 0, 30, 0]");
+    let machine = crate::robot::changed("fanuc-r2000ic-mill", &[("rapid = 6000", cell), spindle]);
+    proven(&source(&dome()), &machine);
+}
+
+/// A line along X in steps of so many mm, on each of which the tool leans by 0.2 degrees more away from the arm.
+fn leaning(step: f64, feed: u32) -> Program {
+    let goto = |x: f64, z: f64, lean: f64| {
+        let (i, k) = lean.to_radians().sin_cos();
+        format!("GOTO/{x:.5},0,{z},{i:.9},0,{k:.9}\n")
+    };
+    let cut: String = (1..=20).map(f64::from).map(|i| goto(i * step, 0.0, 0.2 * i)).collect();
+    let up = goto(20.0 * step, 60.0, 4.0);
+    source(&format!(
+        "PARTNO/LEAN\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
+         GOTO/0,0,0\nFEDRAT/MMPM,{feed}\n{cut}RAPID\n{up}FINI\n"
+    ))
+}
+
+#[test]
+fn a_feed_at_which_the_tool_would_turn_faster_than_the_program_states_is_refused_with_the_line() {
+    let [kuka, abb] = ["kuka-kr6-r900", "abb-irb120-mill"].map(|name| machine::load(name).unwrap());
+    // 0.2 degrees on 0.05 mm: 100 degrees/s at 1500 mm/min. $VEL.ORI1 is 60 degrees/s.
+    let found = &post::write(&leaning(0.05, 1500), &kuka).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("feed", 11), "{found}");
+    assert!(found.help.contains("900 mm/min") && found.help.contains("turn_speed"), "{found}");
+    proven(&leaning(0.05, 900), &kuka);
+    // RAPID states 500 degrees/s.
+    proven(&leaning(0.05, 1500), &abb);
+}
+
+#[test]
+fn a_tool_that_turns_where_its_tip_stays_is_refused_where_nothing_states_how_fast() {
+    let turning = leaning(0.0, 1500);
+    let fanuc = machine::load("fanuc-lrmate-200id-mill").unwrap();
+    let found = &post::write(&turning, &fanuc).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 11), "{found}");
+    assert!(found.message.contains("nothing states how fast the tool turns"), "{found}");
+    proven(&turning, &machine::load("kuka-kr6-r900").unwrap());
 }
 
 #[test]
