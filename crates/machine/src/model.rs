@@ -108,6 +108,9 @@ pub struct Cell {
     pub load_number: Option<u32>,
     /// What hangs on the flange with a tool in the spindle, where it is stated.
     pub load: Option<Load>,
+    /// Of each joint the range that cables and hoses leave to it, degrees, as the controller shows it, where one is stated; the limits of
+    /// the arm are no wider.
+    pub cables: [Option<[f64; 2]>; 6],
     /// The rail on which the arm stands, where there is one.
     pub rail: Option<Rail>,
 }
@@ -125,8 +128,6 @@ pub struct Rail {
     pub max: f64,
     /// Fastest, mm/min.
     pub speed: f64,
-    /// Acceleration, m/s², where it is stated.
-    pub acceleration: Option<f64>,
     /// Where it stands when programs begin and end, mm.
     pub home: f64,
 }
@@ -149,6 +150,14 @@ pub struct Load {
 }
 
 impl Cell {
+    /// Which key of the cell bounds a joint, number from 1, more than the arm does, and to what: to say behind what is beyond it.
+    pub fn cable(&self, joint: usize) -> Option<String> {
+        let [from, to] = (*self.cables.get(joint.checked_sub(1)?)?)?;
+        Some(format!(
+            "`cable_joint_{joint}` below [cell] keeps joint {joint} within {from} to {to} degrees"
+        ))
+    }
+
     /// The frame of a tool's tip in that of the flange. `length` is what the source states, mm; `None` where neither it nor the
     /// file does.
     pub fn tool(&self, length: Option<f64>) -> Option<Frame> {

@@ -274,7 +274,6 @@ sheet!(RailSheet "cell.rail" {
     min: Position, "mm", "Lowest position.";
     max: Position, "mm", "Highest position.";
     speed: Rate, "mm/min", "Fastest.";
-    acceleration: Acceleration, "m/s²", "Acceleration, where it is stated.";
     home: Position, "mm", "Where the rail stands when programs begin and end.";
 });
 

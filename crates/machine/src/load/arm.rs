@@ -103,6 +103,8 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
     if tool_change.len() > 24 || !tool_change.chars().all(named) {
         return Err(String::from("`tool_change` is a name of letters, digits and _, at most 24"));
     }
+    let [joint_4, joint_6] = [&sheet.cable_joint_4, &sheet.cable_joint_6]
+        .map(|range| range.as_ref().map(|range| range.0));
     Ok(Cell {
         spindle: Cell::frame(needed("spindle", sheet.spindle)?.0),
         tool_length: sheet.tool_length.map(|mm| mm.0),
@@ -118,6 +120,7 @@ pub(super) fn cell(sheet: CellSheet) -> Said<Cell> {
         own_frame: sheet.own_frame.map(|number| number.0),
         load_number: sheet.load_number.map(|number| number.0),
         load,
+        cables: [None, None, None, joint_4, None, joint_6],
         rail: sheet.rail.as_ref().map(|sheet| rail(sheet.get_ref())).transpose()?,
     })
 }
@@ -138,7 +141,6 @@ fn rail(sheet: &RailSheet) -> Said<Rail> {
         min: of("min", sheet.min)?.0,
         max: of("max", sheet.max)?.0,
         speed: of("speed", sheet.speed)?.0,
-        acceleration: sheet.acceleration.map(|rate| rate.0),
         home: of("home", sheet.home)?.0,
     };
     match rail.min < rail.max && rail.holds(rail.home) {

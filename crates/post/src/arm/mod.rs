@@ -187,6 +187,8 @@ struct Walk<'a> {
     points: u32,
     /// Whether the last motion has cut.
     is_cutting: bool,
+    /// The line of the last motion of the source.
+    last_line: u32,
     /// Whether the source calls tools of more than one number.
     changes: bool,
     /// Number of the tool that is in the spindle.
@@ -217,8 +219,16 @@ impl<'a> Walk<'a> {
             one(Diagnostic::error(Rule::ArmCoupling, message).help(help))
         })?;
         if !arm.allows(&home) {
-            let message = "`home` below [cell] is beyond a limit of a joint";
-            return Err(one(Diagnostic::error(Rule::AxisLimit, message)));
+            let beyond = (arm.joints().iter().zip(home)).position(|(joint, at)| !joint.holds(at));
+            // The limit that is left is that of joint 3 as the controller shows it.
+            let joint = beyond.map_or(3, |joint| joint + 1);
+            let message = format!(
+                "`home` below [cell] has joint {joint} at {} degrees, beyond its limit",
+                cell.home[joint - 1]
+            );
+            let own = "a `home` within the limits of all joints".to_owned();
+            let help = cell.cable(joint).map_or(own.clone(), |cable| format!("{own}: {cable}"));
+            return Err(one(Diagnostic::error(Rule::AxisLimit, message).help(help)));
         }
         let mut scope = Scope::new(machine);
         let name = name_of(name);
@@ -269,6 +279,7 @@ impl<'a> Walk<'a> {
             table: Vec::new(),
             points: 0,
             is_cutting: false,
+            last_line: 0,
             changes: program.calls_several_tools(),
             held: None,
             name,
@@ -302,6 +313,7 @@ impl<'a> Walk<'a> {
                     Some(Step::Move(next)) => Some(next),
                     Some(Step::Act(..) | Step::Reenter(_)) | None => None,
                 };
+                self.last_line = motion.line;
                 (motion.line, self.motion(motion, next))
             }
         };
@@ -309,10 +321,12 @@ impl<'a> Walk<'a> {
     }
 
     /// The arm goes home, and everything is switched off.
+    ///
+    /// # Errors
+    /// It cannot, with the line of the last motion.
     fn finish(&mut self) -> Outcome {
-        self.begin()?;
-        self.home()?;
-        self.switch_off()
+        let done = self.begin().and_then(|()| self.home()).and_then(|()| self.switch_off());
+        done.map_err(|found| Box::new(found.line(self.last_line)))
     }
 
     /// Whether the head of a file counts its lines: it is written last then.
@@ -573,7 +587,22 @@ impl<'a> Walk<'a> {
         let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, free) else {
             let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut, and straight the \
                            posture or a turn of a joint would not fit";
-            let help = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";
+            let own = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";
+            let [from, to] = [&self.here, &motion.end].map(|at| self.arm.posture(&at.joints));
+            let changes = [
+                (from.rear() != to.rear(), "the wrist on the other side of axis 1"),
+                (from.below() != to.below(), "the elbow on the other side"),
+                (from.flip() != to.flip(), "the wrist turned over (joint 5)"),
+            ];
+            let changes: Vec<_> =
+                changes.iter().filter(|(is, _)| *is).map(|(_, what)| *what).collect();
+            let help = match changes.is_empty() {
+                true => own.to_owned(),
+                false => format!(
+                    "what follows is cut in another posture, {}: `home` below [cell] in that posture, or {own}",
+                    changes.join(" and ")
+                ),
+            };
             return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
         };
         self.is_cutting = false;
@@ -591,7 +620,9 @@ impl<'a> Walk<'a> {
             true => None,
             false => self.rapids.reentry(&tool, [&self.here, &back, &home], most),
         };
-        let Some(feed) = feed else { return Err(reentry.refusal(route.is_some()).into()) };
+        let Some(feed) = feed else {
+            return Err(reentry.refusal(route.is_some(), self.cell).into());
+        };
         let blocked = armpath::Blocked { point: 0, why };
         let Some((route, height)) = route else {
             let (what, first) = match self.offsets {

@@ -55,7 +55,7 @@ pub(super) struct Reentry {
 
 impl Reentry {
     /// What is wrong where no cut may be left, and whether it would help to allow that.
-    pub(super) fn refusal(&self, helps: bool) -> Diagnostic {
+    pub(super) fn refusal(&self, helps: bool, cell: &Cell) -> Diagnostic {
         let blocked = Blocked { point: 0, why: self.why };
         let message = format!(
             "no turn about the tool and no posture passes the whole cut: behind this point {blocked}, and the arm would have to retract, turn \
@@ -69,7 +69,19 @@ impl Reentry {
                 "that cannot be written here: another place of the part (`toolpost fit` looks for one), or cut it in two operations"
             }
         };
+        let help = with_cable(help.to_owned(), self.why, cell);
         Diagnostic::error(Rule::ArmPath, message).help(help).line(self.line)
+    }
+}
+
+/// A way out, with the key of the cell that bounds the joint where it is that.
+fn with_cable(help: String, why: Why, cell: &Cell) -> String {
+    match why {
+        Why::Limit(joint, _) | Why::Range(joint) => match cell.cable(joint) {
+            Some(cable) => format!("{help}; {cable}"),
+            None => help,
+        },
+        _ => help,
     }
 }
 
@@ -280,12 +292,20 @@ impl<'a> Stretch<'a> {
         let (rail, choice): (f64, Choice) = found.map_err(|blocked| {
             let message = format!("the arm cannot go here: {blocked}");
             let place = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
-            let arc = "a cut is left and entered again at the ends of an arc alone: divide the arc there in the source, in case another posture passes its rest; or";
-            let within = points.get(blocked.point).is_some_and(|point| point.inside);
-            let help = match within && !matches!(blocked.why, Why::Reach(_) | Why::Numbers) {
-                true => format!("{arc} {place}"),
-                false => String::from(place),
-            };
+            let mut help = Vec::new();
+            let at = points.get(blocked.point);
+            let is_far = matches!(blocked.why, Why::Reach(_) | Why::Numbers);
+            if at.is_some_and(|point| point.inside) && !is_far {
+                help.push("a cut is left and entered again at the ends of an arc alone: divide the arc there in the source, in case another posture passes its rest");
+            }
+            let stand = Stand { arm, cell, tool };
+            let is_long = group.ease.is_none()
+                || matches!(blocked.why, Why::Reach(_) | Why::Limit(..) | Why::Elbow(_));
+            if is_long && at.is_some_and(|point| stand.reaches(point)) {
+                help.push("the rail stands still within a cut, and no place of it reaches the whole of this one: divide the cut in the source");
+            }
+            help.push(place);
+            let help = with_cable(help.join("; or "), blocked.why, cell);
             let line = lines[blocked.point.min(lines.len() - 1)];
             Diagnostic::error(Rule::ArmPath, message).help(help).line(line)
         })?;

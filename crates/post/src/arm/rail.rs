@@ -121,6 +121,12 @@ impl Stand<'_> {
         stand(self.arm, &frames, looks, TURNS)
     }
 
+    /// Whether the arm, which is on a rail, reaches a point from anywhere on it.
+    pub(super) fn reaches(&self, point: &Point) -> bool {
+        let places = self.cell.rail.as_ref().map(grid).unwrap_or_default();
+        places.into_iter().any(|place| self.ease(place, &[*point]).is_some())
+    }
+
     /// The place from which a point is straight across the rail, mm.
     fn nearest(&self, point: &Point) -> f64 {
         let Some(rail) = &self.cell.rail else { return 0.0 };
@@ -192,7 +198,6 @@ mod tests {
             min,
             max,
             speed: 1e5,
-            acceleration: None,
             home: min,
         };
         assert_eq!(grid(&rail(-100.0, 100.0)), [-100.0, -50.0, 0.0, 50.0, 100.0]);

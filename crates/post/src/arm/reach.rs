@@ -148,7 +148,7 @@ fn chosen<'a>(
     for step in &steps {
         let Step::Reenter(reentry) = step else { continue };
         if reentry.feed.is_none() || offsets {
-            return Err(vec![reentry.refusal(!offsets)]);
+            return Err(vec![reentry.refusal(!offsets, robot.1)]);
         }
         reentries += 1;
     }

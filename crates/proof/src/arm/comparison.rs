@@ -9,6 +9,7 @@ mod path;
 mod reentry;
 
 use super::expected::{Expected, Step};
+use super::follow::Lost;
 use crate::observer::Motion;
 use crate::report::{ArmChecked, Report, SourceLine};
 use ::arm::{Arm, Joints};
@@ -550,6 +551,23 @@ impl<'a> Comparison<'a> {
                 "a position within `min` and `max` of `rail` below [cell]",
             ),
         }
+    }
+
+    /// # Errors
+    /// Why the arm cannot be where it is led.
+    fn lost<T>(&self, rule: Rule, lost: Lost) -> Outcome<T> {
+        let cable = match lost {
+            Lost::Limit(joint, _) => self.cell.cable(joint),
+            Lost::Reach | Lost::Posture | Lost::Singular(_) | Lost::Speed(..) => None,
+        };
+        let found = Diagnostic::error(rule, lost.to_string());
+        let own = "another place of the part (`toolpost fit` looks for one), or a lower feed";
+        Err(match cable {
+            Some(cable) => found.help(cable),
+            None if rule == Rule::AxisLimit => found.help(own),
+            None => found,
+        }
+        .into())
     }
 
     fn arrives(&self, at: &Frame, to: &Pose, by_joints: bool) -> bool {

@@ -291,6 +291,79 @@ fn a_joint_that_goes_round_carries_the_whole_cut_until_cables_end_it() {
 }
 
 #[test]
+fn what_cables_do_not_allow_names_them() {
+    let with = |key: &str| {
+        let cables = format!("rapid = 6000\n{key}");
+        crate::robot::changed("kuka-kr6-r900", &[("rapid = 6000", &cables)])
+    };
+    let job = source(
+        &std::fs::read_to_string(crate::files::root().join("machines/samples/robot.cls")).unwrap(),
+    );
+    let found = &post::write(&job, &with("cable_joint_6 = [10, 90]")).unwrap_err()[0];
+    assert_eq!(found.rule.name(), "axis-limit", "{found}");
+    assert!(found.message.contains("joint 6 at 0 degrees"), "{found}");
+    assert!(
+        found.help.contains("`cable_joint_6` below [cell] keeps joint 6 within 10 to 90"),
+        "{found}"
+    );
+    let narrow = with("cable_joint_4 = [-3, 3]");
+    let found = &post::write(&job, &narrow).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 36), "{found}");
+    assert!(
+        found.help.contains("`cable_joint_4` below [cell] keeps joint 4 within -3 to 3"),
+        "{found}"
+    );
+    let text = proven(&job, &with(""));
+    let found = &proof_of(&job, &narrow, &text).mismatches[0];
+    assert_eq!(found.rule.name(), "axis-limit", "{found}");
+    assert!(found.help.contains("`cable_joint_4`"), "{found}");
+}
+
+#[test]
+fn another_posture_than_that_of_home_is_named_and_the_way_home_at_the_end_has_a_line() {
+    // A ring with the tool 15° off upright, which the wrist passes turned over alone.
+    let mut text =
+        String::from("PARTNO/C\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\n");
+    let (sin, cos) = 15_f64.to_radians().sin_cos();
+    let mut goto = |step: u32, height: f64| {
+        let (j, i) = (f64::from(step) * 10_f64.to_radians()).sin_cos();
+        let out = 40.0 + height * sin;
+        let axis = [i * sin, j * sin, cos];
+        text += &format!(
+            "GOTO/{:.4},{:.4},{:.4},{:.7},{:.7},{:.7}\n",
+            out * i,
+            out * j,
+            height * cos,
+            axis[0],
+            axis[1],
+            axis[2]
+        );
+        text += if height > 0.0 && step == 0 { "FEDRAT/MMPM,600\n" } else { "" };
+    };
+    goto(0, 60.0);
+    (0..=36).for_each(|step| goto(step, 0.0));
+    text += "RAPID\n";
+    let (i, k) = (sin, cos);
+    let ring = source(&format!(
+        "{text}GOTO/{:.4},0,{:.4},{i:.7},0,{k:.7}\nFINI\n",
+        40.0 + 60.0 * sin,
+        60.0 * cos
+    ));
+    let found = &post::write(&ring, &machine::load("kuka-kr6-r900").unwrap()).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("rapid-path", 6), "{found}");
+    assert!(
+        found.help.contains("the wrist turned over (joint 5)") && found.help.contains("`home`"),
+        "{found}"
+    );
+    // The ring begins from a home like that, and joint 4 comes back with a revolution that leads round.
+    let home = ("home = [0, -90, 90, 0, 45, 0]", "home = [0, -90, 90, -180, -45, 0]");
+    let found =
+        &post::write(&ring, &crate::robot::changed("kuka-kr6-r900", &[home])).unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("rapid-path", 46), "{found}");
+    assert!(found.message.contains("way home"), "{found}");
+}
+
+#[test]
 fn where_cables_leave_joint_6_little_the_cuts_are_made_in_the_posture_of_home() {
     let changes = [("rapid = 6000", "rapid = 6000\ncable_joint_6 = [-30, 30]")];
     let machine = crate::robot::changed("kuka-kr6-r900", &changes);

@@ -262,3 +262,23 @@ fn of_200_single_damages_to_programs_with_a_rail_each_is_refused_or_changes_noth
         assert!(refused > 100, "{refused}");
     }
 }
+
+#[test]
+fn a_cut_longer_than_the_arm_reaches_from_one_place_of_the_rail_is_refused_and_says_so() {
+    let machine = writing_rail();
+    let line = |from: [i32; 2], to: [i32; 2]| {
+        let [from, to] = [from, to].map(|[x, y]| format!("GOTO/{x},{y},"));
+        let line = LINE.replace("GOTO/0,0,", &from).replace("GOTO/60,0,", &to);
+        crate::robot::written(&source(&line), &machine).unwrap_err()
+    };
+    // 1.9 m, each end of which is reached from its own side.
+    let found = line([0, -950], [0, 950]);
+    assert!(
+        found.contains("arm-path") && found.contains("the rail stands still within a cut"),
+        "{found}"
+    );
+    assert!(found.contains("divide the cut"), "{found}");
+    // Out of reach from everywhere the rail is not blamed.
+    let found = line([0, 0], [1900, 0]);
+    assert!(found.contains("arm-path") && !found.contains("rail stands still"), "{found}");
+}

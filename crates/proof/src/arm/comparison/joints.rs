@@ -75,8 +75,7 @@ impl Comparison<'_> {
         let Some(joints) = self.arm.model(&shown.map(f64::to_radians)) else {
             return refused(Rule::ArmCoupling, "how the controller counts joint 3 is not known");
         };
-        let margin =
-            limit(self.arm, &joints).or_else(|lost| refused(Rule::AxisLimit, lost.to_string()))?;
+        let margin = limit(self.arm, &joints).or_else(|lost| self.lost(Rule::AxisLimit, lost))?;
         self.checked().note_limit(margin);
         self.frames()?;
         self.joint_speed()?;

@@ -288,8 +288,7 @@ impl Comparison<'_> {
         let Followed { joints, limit, wrist, speed } = match followed {
             Ok(followed) => followed,
             Err(lost) => {
-                let rule = if cuts { Rule::AxisLimit } else { Rule::RapidPath };
-                return refused(rule, lost.to_string());
+                return self.lost(if cuts { Rule::AxisLimit } else { Rule::RapidPath }, lost);
             }
         };
         self.posture(&joints, &motion.posture)?;
