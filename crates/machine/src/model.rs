@@ -1,6 +1,6 @@
 //! What a machine is, after its files are merged.
 
-use crate::sheet::wrong_option;
+use crate::sheet::{TOUCH_TRAVEL, wrong_option};
 use geom::{Euler, Frame, Vec2, Vec3};
 use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove, Rule};
 use serde::Deserialize;
@@ -672,6 +672,22 @@ pub struct TouchPlate {
     pub feed: f64,
 }
 
+/// Why further tools cannot be touched off; `None` where they can.
+pub(crate) fn no_touch_off(
+    blocks: &BTreeMap<String, Block>,
+    rotary: &[RotaryAxis],
+) -> Option<&'static str> {
+    let writes = |block: &Block| block.text.contains(TOUCH_TRAVEL);
+    match blocks.get("tool_change").is_some_and(writes) {
+        false => Some("the block `tool_change` of this control writes no touch-off"),
+        true => (!rotary.is_empty()).then_some("a machine with rotary axes has no touch-off"),
+    }
+}
+
+/// What to do on a machine without a touch-off.
+pub(crate) const NO_TOUCH_OFF_HELP: &str =
+    "leave it out: tools are touched off by GRBL and LinuxCNC, on machines without rotary axes";
+
 impl Machine {
     /// Whether programs are written for it: an arm of which the kinematics alone are known has no virtual control.
     pub fn has_control(&self) -> bool {
@@ -687,6 +703,8 @@ impl Machine {
         let refused = |message: String, help: String| {
             Box::new(Diagnostic::error(Rule::Option, message).help(help).file(file))
         };
+        let no_touch_off =
+            no_touch_off(&self.blocks, &self.rotary).filter(|_| name == TOUCH_TRAVEL);
         let names = self.options.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         let Some(option) = self.options.get_mut(name) else {
             let message = format!("the machine has no option `{name}`");
@@ -698,6 +716,10 @@ impl Machine {
                 let number = value.parse().ok().filter(|number: &f64| number.is_finite());
                 if let Some(wrong) = number.and_then(|number| wrong_option(name, number)) {
                     return Err(refused(format!("option `{name}`: {wrong}"), String::new()));
+                }
+                if let Some(why) = no_touch_off.filter(|_| number.is_some_and(|mm| mm > 0.0)) {
+                    let message = format!("option `{name}`: {why}");
+                    return Err(refused(message, NO_TOUCH_OFF_HELP.to_owned()));
                 }
                 (number.map(OptionValue::Number), "a number")
             }
@@ -837,7 +859,7 @@ impl Machine {
         let plate = TouchPlate {
             at: Vec2::new(number("touch_x"), number("touch_y")),
             height: number("touch_height"),
-            travel: number("touch_travel"),
+            travel: number(TOUCH_TRAVEL),
             feed: number("touch_feed"),
         };
         Some(plate).filter(|plate| plate.travel > 0.0 && self.rotary.is_empty())

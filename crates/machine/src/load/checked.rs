@@ -71,7 +71,7 @@ pub(super) struct CheckedSheet {
     auxiliary: Option<Vec<u32>>,
     operator_parameters: Option<Vec<OperatorParameter>>,
     approach: Option<Vec<String>>,
-    options: BTreeMap<String, OptionSheet>,
+    options: BTreeMap<String, Placed<OptionSheet>>,
 }
 
 impl CheckedSheet {
@@ -139,7 +139,7 @@ fn check_range(place: &Diagnostic, min: Option<f64>, max: Option<f64>, unit: &st
 fn check_options(
     file: &SheetFile,
     options: BTreeMap<String, Spanned<OptionSheet>>,
-) -> Outcome<BTreeMap<String, OptionSheet>> {
+) -> Outcome<BTreeMap<String, Placed<OptionSheet>>> {
     let checked = |(name, value): (String, Spanned<OptionSheet>)| {
         let wrong = match value.get_ref() {
             OptionSheet::Number(number) => wrong_option(&name, *number),
@@ -147,10 +147,28 @@ fn check_options(
         };
         match wrong {
             Some(message) => Err(file.at(&name, &value, &message).into()),
-            None => Ok((name, value.into_inner())),
+            None => {
+                let placed = Placed::new(file, &name, value);
+                Ok((name, placed))
+            }
         }
     };
     options.into_iter().map(checked).collect()
+}
+
+/// A touch-off is asked for only where there is one.
+fn check_touch_off(
+    options: &BTreeMap<String, Placed<OptionSheet>>,
+    blocks: &BTreeMap<String, Block>,
+    rotary: &[RotaryAxis],
+) -> Outcome {
+    match options.get(TOUCH_TRAVEL) {
+        Some(Placed { sheet: OptionSheet::Number(travel), place }) if *travel > 0.0 => {
+            let lacks = |why| Box::new(wrong(place, why).help(NO_TOUCH_OFF_HELP));
+            no_touch_off(blocks, rotary).map_or(Ok(()), |why| Err(lacks(why)))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Every linear axis comes once.
@@ -345,6 +363,7 @@ impl CheckedSheet {
             }
             (rotary, rotary_place) = (sheet, Some(place));
         }
+        check_touch_off(&self.options, &self.blocks, &rotary)?;
         if let (Some(letter), Some(place)) = (self.settings.swivel_direction, &rotary_place)
             && rotary.iter().all(|axis| axis.letter != letter)
         {
@@ -515,7 +534,7 @@ impl CheckedSheet {
                 .collect(),
             approach: self.approach.unwrap_or_else(|| vec!["XY".into(), "Z".into()]),
             options: (self.options.into_iter())
-                .map(|(name, value)| match value {
+                .map(|(name, value)| match value.sheet {
                     OptionSheet::Flag(flag) => (name, OptionValue::Flag(flag)),
                     OptionSheet::Number(number) => (name, OptionValue::Number(number)),
                     OptionSheet::Text(text) => (name, OptionValue::Text(text)),

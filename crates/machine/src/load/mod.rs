@@ -288,6 +288,39 @@ max = 200.5
     }
 
     #[test]
+    fn a_touch_off_is_refused_where_a_machine_has_none() {
+        let place = "[options]\ntouch_travel = 15\n";
+        for (parent, why) in [
+            (
+                "mach3-mill",
+                "touch_travel: the block `tool_change` of this control writes no touch-off",
+            ),
+            ("marlin-cnc", "writes no touch-off"),
+            ("generic-3axis-fanuc", "writes no touch-off"),
+            ("linuxcnc-xyzac", "touch_travel: a machine with rotary axes has no touch-off"),
+        ] {
+            let shown = refusal(&format!("extends = \"{parent}\"\n{place}"));
+            assert!(shown.starts_with("mill.toml:3:16: "), "{parent}: {shown}");
+            assert!(
+                shown.contains(why) && shown.contains("GRBL and LinuxCNC"),
+                "{parent}: {shown}"
+            );
+            load_text(
+                "mill.toml",
+                &format!("extends = \"{parent}\"\n{}", place.replace("15", "0")),
+            )
+            .unwrap();
+        }
+        for parent in ["grbl-3018", "linuxcnc-mill"] {
+            load_text("mill.toml", &format!("extends = \"{parent}\"\n{place}")).unwrap();
+        }
+        let mut five = load("linuxcnc-xyzac").unwrap();
+        let shown = five.set_option("touch_travel", "15").unwrap_err().to_string();
+        assert!(shown.contains("option `touch_travel`: a machine with rotary axes"), "{shown}");
+        five.set_option("touch_travel", "0").unwrap();
+    }
+
+    #[test]
     fn a_wire_leans_by_u_and_v_and_by_no_rotary_axis() {
         let wire = load_text("w.toml", "reader = \"g\"\n[wire]\nmemory = 900\n").unwrap().wire;
         let unlimited = Wire {
