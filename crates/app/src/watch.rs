@@ -3,7 +3,7 @@
 use crate::account::Stop;
 use machine::Machine;
 use program::Program;
-use proof::{Motion, Observer, Report};
+use proof::{MachineState, Motion, Observer, Report};
 
 /// Who watches a piece of work. `()` watches nothing and never ends it.
 pub trait Watch: Sync {
@@ -48,6 +48,10 @@ impl Observer for Followed<'_> {
 
     fn moved(&mut self, motion: &Motion) {
         self.observer.moved(motion);
+    }
+
+    fn stated(&mut self, state: &MachineState) {
+        self.observer.stated(state);
     }
 
     fn mismatched(&mut self, found: &program::Diagnostic) {

@@ -167,13 +167,7 @@ impl<'a> Clock<'a> {
 
     fn rapid(&mut self, to: TipPose) {
         let (way, turn) = self.go(to);
-        let linear = self.machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
-            from_rest_to_rest(way, rapid_of(axis) / 60.0, axis.acceleration * 1000.0)
-        });
-        let rotary = self.machine.rotary.iter().map(|axis| {
-            from_rest_to_rest(turn[axis.index()], axis.rapid / 60.0, axis.acceleration)
-        });
-        self.times.rapid += linear.chain(rotary).fold(0.0, f64::max);
+        self.times.rapid += rapid(self.machine, way, turn);
     }
 
     fn cut(&mut self, to: TipPose, length: f64) {
@@ -188,14 +182,8 @@ impl<'a> Clock<'a> {
                 length / lowering::feed_per_minute(feed, length, speed)
             }
         };
-        let linear = self.machine.linear.iter().zip(way.to_array());
-        let linear = linear.map(|(axis, way)| way.abs() / rapid_of(axis));
-        let rotary = self.machine.rotary.iter();
-        let rotary = rotary.map(|axis| turn[axis.index()].abs() / axis.rapid);
         let at_feed = self.counted(at_feed, length, way, turn);
-        // A feed that is missing makes no sensible time: what the axes need is left.
-        let at_feed = if at_feed.is_finite() { at_feed } else { 0.0 };
-        self.times.cutting += 60.0 * linear.chain(rotary).fold(at_feed, f64::max);
+        self.times.cutting += cut(self.machine, way, turn, 60.0 * at_feed);
     }
 
     /// The time of a cut at its feed, minutes, where the control does not follow the tip and F counts degrees.
@@ -270,7 +258,9 @@ impl<'a> Clock<'a> {
             true => self.degrees,
             false => self.nearest(to.axis),
         };
-        let way = self.here.map_or(Vec3::ZERO, |here| match degrees == self.degrees {
+        // A table that is turned carries the part with it: what is one way on the part is another one of the axes.
+        let is_upright = degrees == [0.0; 3] && self.degrees == [0.0; 3];
+        let way = self.here.map_or(Vec3::ZERO, |here| match is_upright {
             true => to.point - here.point,
             false => self.axes(to.point, degrees) - self.axes(here.point, self.degrees),
         });
@@ -319,6 +309,30 @@ impl From<&Pose> for TipPose {
 /// Rapid of an axis, mm/min.
 fn rapid_of(axis: &LinearAxis) -> f64 {
     axis.rapid.unwrap_or(UNKNOWN_RAPID)
+}
+
+/// Seconds that a rapid takes in which the linear axes go so far, mm, and A, B and C turn by so many degrees: as the slowest axis, each
+/// from rest to rest. What is not known (NaN) takes nothing.
+pub fn rapid(machine: &Machine, way: Vec3, turn: [f64; 3]) -> f64 {
+    let linear = machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
+        from_rest_to_rest(way, rapid_of(axis) / 60.0, axis.acceleration * 1000.0)
+    });
+    let rotary = machine
+        .rotary
+        .iter()
+        .map(|axis| from_rest_to_rest(turn[axis.index()], axis.rapid / 60.0, axis.acceleration));
+    linear.chain(rotary).fold(0.0, f64::max)
+}
+
+/// Seconds that a cut takes that takes so many at its feed: no less than each axis needs at its rapid. What is not known takes nothing.
+pub fn cut(machine: &Machine, way: Vec3, turn: [f64; 3], at_feed: f64) -> f64 {
+    let linear = machine.linear.iter().zip(way.to_array());
+    let linear = linear.map(|(axis, way)| 60.0 * way.abs() / rapid_of(axis));
+    let rotary = machine.rotary.iter();
+    let rotary = rotary.map(|axis| 60.0 * turn[axis.index()].abs() / axis.rapid);
+    // A feed that is missing makes no sensible time: what the axes need is left.
+    let at_feed = if at_feed.is_finite() { at_feed } else { 0.0 };
+    linear.chain(rotary).fold(at_feed, f64::max)
 }
 
 /// Seconds for the distance `way` with the speed (per s) and the acceleration (per s²) of an axis.

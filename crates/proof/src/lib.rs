@@ -88,7 +88,9 @@ mod tolerance;
 mod travel;
 
 pub use accepted::{ACCEPTABLE, Accepted};
-pub use observer::{AxisPositions, Motion, MotionKind, Observer, ToolPose};
+pub use observer::{
+    AxisPositions, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose,
+};
 pub use prover::Prover;
 pub use report::{
     ArmChecked, Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary,
@@ -239,7 +241,7 @@ fn prove_on(
         observer::run(&settings, (file_name, text), observer, |event, observer| {
             let outcome = prover.event(event);
             if wants_motions {
-                prover.take_motions(|motion| observer.moved(motion));
+                prover.tell_motions(observer);
                 mark.tell(prover.mismatches(), observer);
             }
             outcome

@@ -4,7 +4,10 @@ use crate::report::Report;
 use crate::resolved_pose::PartialPose;
 use control::{Event, Settings};
 use geom::{Arc, Vec3};
-use program::{Diagnostic, Outcome, Rule};
+use program::{
+    Compensation, Coolant, Cycle, Diagnostic, Feed, Outcome, PathMode, Rule, Spindle, Tool,
+    WorkOffset,
+};
 
 /// Who follows a proof. `()` follows nothing and never ends it; a closure is asked whether the proof goes on.
 pub trait Observer {
@@ -21,6 +24,9 @@ pub trait Observer {
     /// The next motion of the program, in the order in which the control makes them. Of a program that the proof runs
     /// several times (with and without its optional blocks, on several surfaces) it is told the motions of the first run.
     fn moved(&mut self, _motion: &Motion) {}
+
+    /// What holds from the next motion on, told before the first motion and wherever it has changed since: as the control has read it.
+    fn stated(&mut self, _state: &MachineState) {}
 
     /// The first mismatch, behind the last motion before it. What is compared along whole contours is found behind the last
     /// motion of all: the line of the finding says which block it is about.
@@ -115,6 +121,102 @@ pub struct Motion {
     pub tool: [ToolPose; 2],
     /// Where the axes of the machine stand behind it.
     pub axes: AxisPositions,
+    /// The feed that the control has read last; none where it has read none.
+    pub feed: Option<Feed>,
+    /// How long it takes, s, as [`machine::time`] estimates it of what the control has read: a rapid as its slowest axis, each from
+    /// rest to rest, a cut by its feed. A way that is not known, as to and from home, takes nothing.
+    pub seconds: f64,
+    /// How long the machine waits before it, s: dwells, and [`machine::time::TOOL_CHANGE`] for each tool change.
+    pub waited: f64,
+}
+
+/// What holds while the tool moves, as the control has read it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MachineState {
+    /// The spindle.
+    pub spindle: SpindleState,
+    /// Constant surface speed, m/min.
+    pub surface_speed: Option<f64>,
+    /// Coolant; on an arm, on which an output switches it, flood.
+    pub coolant: Coolant,
+    /// The tool that was changed to last, with what the block says of it.
+    pub tool: Option<Tool>,
+    /// Compensation of the tool's radius.
+    pub compensation: Compensation,
+    /// Register of the tool's length.
+    pub length_offset: Option<u32>,
+    /// Work offset.
+    pub work_offset: Option<WorkOffset>,
+    /// The hole cycle that is on.
+    pub cycle: Option<Cycle>,
+    /// What happens at corners.
+    pub path: PathMode,
+    /// By how much the control leans the wire, degrees, to the left.
+    pub taper: f64,
+    /// How fast an arm may turn its joints, percent; none where nobody has said it.
+    pub joint_speed: Option<f64>,
+}
+
+/// How a spindle turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpindleState {
+    /// It stands.
+    Off,
+    /// Clockwise, turns a minute.
+    Clockwise(f64),
+    /// Counter-clockwise, turns a minute.
+    CounterClockwise(f64),
+    /// An output of an arm's controller has switched it on; turns a minute, where another output says them.
+    On(Option<f64>),
+}
+
+impl From<Spindle> for SpindleState {
+    fn from(spindle: Spindle) -> SpindleState {
+        match spindle {
+            Spindle::Off => SpindleState::Off,
+            Spindle::Clockwise(speed) => SpindleState::Clockwise(speed),
+            Spindle::CounterClockwise(speed) => SpindleState::CounterClockwise(speed),
+        }
+    }
+}
+
+/// What an observer is told of an event, until it is taken.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Walk {
+    moved: Vec<Motion>,
+    /// What holds from the motion on that has this place among them.
+    stated: Vec<(usize, MachineState)>,
+    /// The state that has been told.
+    state: Option<MachineState>,
+    /// Waiting since the last motion, s.
+    pub waited: f64,
+}
+
+impl Walk {
+    /// Keeps what holds from here on, where it is something new.
+    pub fn state(&mut self, state: MachineState) {
+        if self.state.as_ref() != Some(&state) {
+            self.stated.push((self.moved.len(), state.clone()));
+            self.state = Some(state);
+        }
+    }
+
+    /// Keeps a motion, and before it the waiting.
+    pub fn moved(&mut self, motion: Motion) {
+        let waited = std::mem::take(&mut self.waited);
+        self.moved.push(Motion { waited, ..motion });
+    }
+
+    /// Tells what has been kept.
+    pub fn tell(&mut self, observer: &mut dyn Observer) {
+        let mut states = self.stated.drain(..).peekable();
+        for (place, motion) in self.moved.drain(..).enumerate() {
+            while let Some((_, state)) = states.next_if(|(from, _)| *from <= place) {
+                observer.stated(&state);
+            }
+            observer.moved(&motion);
+        }
+    }
 }
 
 /// How a motion goes.

@@ -1,6 +1,7 @@
 //! What holds while the tool moves: feed, spindle, coolant, tool, offsets.
 
 use crate::expected::ExpectedState;
+use crate::observer::MachineState;
 use crate::resolved_pose::Number;
 use crate::tolerance::Applied;
 use control::{Corners, Dialect, FeedPath};
@@ -73,6 +74,23 @@ impl Running {
             cycle: None,
             path: PathMode::AsSetUp,
             clamps: [None; 3],
+        }
+    }
+
+    /// What an observer is told of it.
+    pub fn state(&self) -> MachineState {
+        MachineState {
+            spindle: self.spindle.into(),
+            surface_speed: self.surface_speed,
+            coolant: self.coolant,
+            tool: self.tool.clone(),
+            compensation: self.compensation,
+            length_offset: self.length_offset,
+            work_offset: self.work_offset,
+            cycle: self.cycle,
+            path: self.path,
+            taper: self.taper,
+            joint_speed: None,
         }
     }
 

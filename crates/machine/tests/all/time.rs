@@ -146,3 +146,13 @@ fn f_counts_degrees_where_the_control_does_not_follow_the_tip() {
     assert_near(leaning(&by_angles(f64::INFINITY), Vec3::ZERO, to), 1.2);
     assert_near(leaning(&by_angles(2000.0), Vec3::ZERO, to), 8500f64.sqrt() * 0.03);
 }
+
+#[test]
+fn along_the_tool_above_a_turned_table_z_goes_alone() {
+    // A turns by 45°: from rest to rest, half of it at 500°/s², 0.6 s. Then 12.5 mm along the tool, half of it at 5 m/s².
+    let axis = Vec3::new(0.0, 1.0, 1.0).normalize();
+    let mut program = Program::new("t");
+    program.push(1, Op::Rapid(Pose::new(Vec3::ZERO, axis).unwrap()));
+    program.push(2, Op::Rapid(Pose::new(axis * 12.5, axis).unwrap()));
+    assert_near(Times::of(&program, &table_ac()).rapid, 0.7);
+}

@@ -10,7 +10,7 @@ mod reentry;
 
 use super::expected::{Expected, Step};
 use super::follow::Lost;
-use crate::observer::Motion;
+use crate::observer::Walk;
 use crate::report::{ArmChecked, Report, SourceLine};
 use ::arm::{Arm, Joints};
 use control::kernel::arc::through;
@@ -91,7 +91,7 @@ pub(super) struct Comparison<'a> {
     /// The called file in which the program is; none where it is in the one that is run.
     file: Option<Box<str>>,
     /// The motions since they were taken last, where they are wanted.
-    motions: Option<Vec<Motion>>,
+    motions: Option<Walk>,
     /// The record that the motion at hand has made.
     made: Option<usize>,
     /// The called files in which it has been.

@@ -67,7 +67,7 @@ pub(crate) fn prove(
         observer::run(&settings, (file_name, text), observer, |event, observer| {
             let outcome = comparison.event(event);
             if wants_motions {
-                comparison.take_motions(|motion| observer.moved(motion));
+                comparison.tell_motions(observer);
             }
             outcome
         })

@@ -1,16 +1,21 @@
 //! The motions of the program for whoever follows the proof.
 
 use super::*;
-use crate::observer::{AxisPositions, Motion, MotionKind as Kind, ToolPose};
-use program::Pose;
+use crate::observer::{AxisPositions, Motion, MotionKind as Kind, Observer, ToolPose, Walk};
+use machine::time;
 use program::lowering::{self, HoleMove};
+use program::{Cycle, CycleKind, Pose};
 
 /// Motions since they were taken last.
 #[derive(Default)]
 pub(super) struct Motions {
-    kept: Vec<Motion>,
+    walk: Walk,
+    /// Whether what holds may have changed since it was kept.
+    restated: bool,
+    /// Where the axes stand.
+    axes: Option<AxisPositions>,
     /// Where the event at hand begins.
-    start: Option<ToolPose>,
+    start: Option<ResolvedPose>,
     /// Whether the tool has been changed since the last motion: where the machine has gone for that is its own.
     changed: bool,
     /// The record that it has made.
@@ -20,20 +25,20 @@ pub(super) struct Motions {
 impl Prover<'_> {
     /// Keeps the motions of each event until they are taken.
     pub(crate) fn keep_motions(&mut self) {
-        self.motions = Some(Motions::default());
+        self.motions = Some(Motions { restated: true, ..Motions::default() });
     }
 
-    /// Takes the motions of the last event.
-    pub(crate) fn take_motions(&mut self, mut told: impl FnMut(&Motion)) {
+    /// Tells the motions of the last event.
+    pub(crate) fn tell_motions(&mut self, observer: &mut dyn Observer) {
         if let Some(motions) = &mut self.motions {
-            motions.kept.drain(..).for_each(|motion| told(&motion));
+            motions.walk.tell(observer);
         }
     }
 
     /// Before an event.
     pub(super) fn begin_motion(&mut self) {
         if let Some(motions) = &mut self.motions {
-            (motions.start, motions.made) = (Some(self.here.place.into()), None);
+            (motions.start, motions.made) = (Some(self.here), None);
         }
     }
 
@@ -50,12 +55,14 @@ impl Prover<'_> {
         let Some(start) = motions.start.take() else { return };
         let record = motions.made.unwrap_or_else(|| self.cursor.record());
         let source_line = self.source.records.get(record).map_or(0, |record| record.line);
-        let mut from = match motions.changed {
-            true => ToolPose { tip: Vec3::NAN, ..start },
-            false => start,
-        };
+        let mut from = ToolPose::from(start.place);
+        if motions.changed {
+            from.tip = Vec3::NAN;
+        }
+        let mut before = start.position;
         let mut moved = |prover: &mut Self, kind: Kind, to: &ResolvedPose| {
             let (axes, end) = (prover.axis_positions(&to.position), ToolPose::from(to.place));
+            let seconds = prover.seconds(event, &kind, [&before, &to.position], [from, end], &axes);
             let motion = Motion {
                 file: None,
                 line: event.line,
@@ -64,11 +71,17 @@ impl Prover<'_> {
                 kind,
                 tool: [from, end],
                 axes,
+                feed: prover.running.feed,
+                seconds,
+                waited: 0.0,
             };
-            from = end;
+            (from, before) = (end, to.position);
             if let Some(motions) = &mut prover.motions {
-                motions.kept.push(motion);
-                motions.changed = false;
+                if std::mem::take(&mut motions.restated) {
+                    motions.walk.state(prover.running.state());
+                }
+                motions.walk.moved(motion);
+                (motions.axes, motions.changed) = (Some(axes), false);
             }
         };
         let here = self.here;
@@ -82,19 +95,35 @@ impl Prover<'_> {
                 moved(self, Kind::Line, &here);
             }
             Action::Arc(to) => {
-                let before = ResolvedPose { place: start.into(), ..here };
-                let arc = arc::of_block(&self.gauge, &before, to);
+                let arc = arc::of_block(&self.gauge, &start, to);
                 moved(self, arc.map_or(Kind::Line, |arc| Kind::Arc(Box::new(arc))), &here);
             }
             Action::Hole(position) => {
-                for (kind, to) in self.in_hole(event.line, position, start) {
+                let (moves, waited) = self.in_hole(event.line, position, start.place.into());
+                for (kind, to) in moves {
                     moved(self, kind, &to);
                 }
+                if let Some(motions) = &mut self.motions {
+                    motions.walk.waited += waited;
+                }
             }
-            Action::Tool(_) => motions.changed = true,
+            Action::Tool(_) => {
+                (motions.changed, motions.restated) = (true, true);
+                motions.walk.waited += time::TOOL_CHANGE;
+            }
+            Action::Dwell(seconds) => motions.walk.waited += seconds,
+            Action::Spindle(_)
+            | Action::SurfaceSpeed(_)
+            | Action::Coolant(_)
+            | Action::LengthOffset(_)
+            | Action::Compensation(_)
+            | Action::WorkOffset(_)
+            | Action::PathMode(_)
+            | Action::Taper(_)
+            | Action::Cycle(_)
+            | Action::CycleOff => motions.restated = true,
             Action::TouchOff(_)
             | Action::Arm(_)
-            | Action::Dwell(_)
             | Action::Stop
             | Action::OptionalStop
             | Action::ThreadWire
@@ -106,17 +135,7 @@ impl Prover<'_> {
             | Action::Feed(_)
             | Action::FeedPath(_)
             | Action::RapidsTogether(_)
-            | Action::Spindle(_)
-            | Action::SurfaceSpeed(_)
-            | Action::Coolant(_)
             | Action::Preselect(_)
-            | Action::LengthOffset(_)
-            | Action::Compensation(_)
-            | Action::WorkOffset(_)
-            | Action::PathMode(_)
-            | Action::Taper(_)
-            | Action::Cycle(_)
-            | Action::CycleOff
             | Action::Risk(_)
             | Action::Comment(_)
             | Action::Message(_)
@@ -125,9 +144,15 @@ impl Prover<'_> {
     }
 
     /// The moves of a canned cycle in a hole at `position`: across where the tool is above the R plane, down to that, and the
-    /// moves of the cycle. Where the control draws the tool aside in the hole, the way is the one along the axis.
-    fn in_hole(&self, line: u32, position: &Position, from: ToolPose) -> Vec<(Kind, ResolvedPose)> {
-        let Some(cycle) = self.running.cycle else { return Vec::new() };
+    /// moves of the cycle; and how long it dwells, s. Where the control draws the tool aside in the hole, the way is the one along the
+    /// axis.
+    fn in_hole(
+        &self,
+        line: u32,
+        position: &Position,
+        from: ToolPose,
+    ) -> (Vec<(Kind, ResolvedPose)>, f64) {
+        let Some(cycle) = self.running.cycle else { return Default::default() };
         let along = Drilled::along(&self.gauge, position);
         let at = |height: f64| {
             self.gauge
@@ -147,14 +172,65 @@ impl Prover<'_> {
             moves.push((Kind::Line, at(-cycle.depth)));
             moves.push((Kind::Line, at(cycle.clearance)));
             moves.push((Kind::Rapid, at(cycle.retract)));
-            return moves;
+            return (moves, cycle.dwell);
         };
-        moves.extend(lowered.into_iter().filter_map(|part| match part {
-            HoleMove::Rapid(pose) => Some((Kind::Rapid, at(hole.above(pose.point()).0))),
-            HoleMove::Line(pose) => Some((Kind::Line, at(hole.above(pose.point()).0))),
-            HoleMove::Dwell(_) | HoleMove::Spindle(_) => None,
-        }));
-        moves
+        let mut waited = 0.0;
+        for part in lowered {
+            match part {
+                HoleMove::Rapid(pose) => moves.push((Kind::Rapid, at(hole.above(pose.point()).0))),
+                HoleMove::Line(pose) => moves.push((Kind::Line, at(hole.above(pose.point()).0))),
+                HoleMove::Dwell(seconds) => waited += seconds,
+                HoleMove::Spindle(_) => {}
+            }
+        }
+        (moves, waited)
+    }
+
+    /// How long a motion takes, s.
+    fn seconds(
+        &self,
+        event: &Event,
+        kind: &Kind,
+        [before, to]: [&Position; 2],
+        [from, end]: [ToolPose; 2],
+        axes: &AxisPositions,
+    ) -> f64 {
+        let (machine, running) = (self.gauge.machine, &self.running);
+        let stood = self.motions.as_ref().and_then(|motions| motions.axes);
+        let (way, turn) = match (stood, axes) {
+            (
+                Some(AxisPositions::Mill { linear: a, rotary: from }),
+                AxisPositions::Mill { linear: b, rotary: to },
+            ) => (*b - a, [0, 1, 2].map(|i| to[i] - from[i])),
+            _ => (Vec3::NAN, [0.0; 3]),
+        };
+        // Where nobody says how the rotary axes carry the tip, it goes its own way.
+        let tip = end.tip - from.tip;
+        let way = Vec3::select(way.is_nan_mask(), tip, way);
+        let length = match kind {
+            Kind::Rapid | Kind::Joints => return time::rapid(machine, way, turn),
+            Kind::Arc(arc) => arc.length(),
+            Kind::Line if matches!(event.action, Action::Hole(_)) => from.tip.distance(end.tip),
+            Kind::Line => {
+                let counted = running.feed_path.length(before, to);
+                counted.unwrap_or_else(|| from.tip.distance(end.tip))
+            }
+        };
+        let cycle = running.cycle.filter(|_| matches!(event.action, Action::Hole(_)));
+        let feed = match (&event.action, cycle) {
+            (Action::Thread(thread), _) => Some(Feed::PerTurn(thread.pitch)),
+            (_, Some(Cycle { kind: CycleKind::Tap { pitch, .. }, .. })) => {
+                Some(Feed::PerTurn(pitch))
+            }
+            (_, cycle) => cycle.and_then(|cycle| cycle.feed).or(running.feed),
+        };
+        let at_feed = match feed {
+            Some(Feed::PerMinute(feed)) => 60.0 * length / feed,
+            Some(Feed::PerTurn(feed)) => 60.0 * length / (feed * state::speed(running.spindle)),
+            Some(Feed::InverseTime(rate)) => 60.0 / rate,
+            None => 0.0,
+        };
+        time::cut(machine, way, turn, at_feed)
     }
 
     /// Where the axes stand at a position to which they have turned.

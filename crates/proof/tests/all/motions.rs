@@ -1,8 +1,11 @@
 //! The motions that a proof hands out: line, record, way, and where the axes stand.
 
 use geom::Vec3;
-use program::{Builder, Cycle, CycleKind, Diagnostic, Feed, Program, Spindle, Tool};
-use toolpost_proof::{AxisPositions, Motion, MotionKind, Observer, Report, Tolerances, prove_for};
+use program::{Builder, Coolant, Cycle, CycleKind, Diagnostic, Feed, Program, Spindle, Tool};
+use toolpost_proof::{
+    AxisPositions, MachineState, Motion, MotionKind, Observer, Report, SpindleState, Tolerances,
+    prove_for,
+};
 
 /// The motions of a program that is proven.
 fn motions(source: &Program, machine: &machine::Machine, text: &str) -> Vec<Motion> {
@@ -158,6 +161,8 @@ fn what_is_refused_is_not_told() {
 #[derive(Default)]
 struct Told {
     motions: Vec<Motion>,
+    /// Each with the number of motions before it.
+    states: Vec<(usize, MachineState)>,
     mismatch: Option<(usize, &'static str, u32)>,
     mismatches: usize,
     ended: Option<bool>,
@@ -170,6 +175,10 @@ impl Observer for Told {
 
     fn moved(&mut self, motion: &Motion) {
         self.motions.push(motion.clone());
+    }
+
+    fn stated(&mut self, state: &MachineState) {
+        self.states.push((self.motions.len(), state.clone()));
     }
 
     fn mismatched(&mut self, found: &Diagnostic) {
@@ -209,4 +218,70 @@ fn the_first_mismatch_is_told_where_the_walk_comes_to_it() {
     // What is missing is found behind the last motion.
     let unended = told("G1 Z-1 F300\nX5\n", "M5\nG53 G0 Z0\n");
     assert_eq!(unended, (7, Some((7, "no-end", 0)), 1, Some(false)));
+}
+
+#[test]
+fn what_holds_is_told_where_it_changes() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.coolant(Coolant::Flood);
+    source.line([5.0, 0.0, -1.0], None).unwrap();
+    source.feed(Feed::PerMinute(400.0)).unwrap();
+    source.line([9.0, 0.0, -1.0], None).unwrap();
+    source.coolant(Coolant::Off);
+    source.rapid([9.0, 0.0, 5.0], None).unwrap();
+    let text = format!("{START}G0 X0 Y0\nZ5\nG1 Z-1 F300\nM8\nX5\nX9 F400\nM9\nG0 Z5\n{END}");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let (mut told, tolerances) = (Told::default(), Tolerances::default());
+    let source = source.build();
+    let report = prove_for(&source, &machine, "p.ngc", text.as_bytes(), &tolerances, &mut told);
+    assert!(report.proven, "{:?}", report.mismatches);
+    let states: Vec<_> = told
+        .states
+        .iter()
+        .map(|(at, state)| {
+            let tool = state.tool.as_ref().map(|tool| tool.number);
+            (*at, tool, state.spindle, state.length_offset, state.coolant)
+        })
+        .collect();
+    let turns = SpindleState::Clockwise(5000.0);
+    let should = [
+        // Home; the first motion with the tool; the cut behind M8; up behind M9; home behind M5.
+        (0, None, SpindleState::Off, None, Coolant::Off),
+        (1, Some(1), turns, Some(1), Coolant::Off),
+        (4, Some(1), turns, Some(1), Coolant::Flood),
+        (6, Some(1), turns, Some(1), Coolant::Off),
+        (7, Some(1), SpindleState::Off, Some(1), Coolant::Off),
+    ];
+    assert_eq!(states, should);
+    let feeds: Vec<_> = told.motions.iter().map(|m| m.feed.map(Feed::value)).collect();
+    let (none, slow, fast) = (None, Some(300.0), Some(400.0));
+    assert_eq!(feeds, [none, none, none, slow, slow, fast, fast, fast]);
+}
+
+#[test]
+fn each_motion_takes_what_the_axes_and_the_feed_need() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 105.0], None).unwrap();
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.arc([10.0, 0.0, -1.0], [5.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0).unwrap();
+    source.dwell(1.5).unwrap();
+    source.rapid([10.0, 0.0, 5.0], None).unwrap();
+    let text =
+        format!("{START}G0 X0 Y0\nZ105\nZ5\nG1 Z-1 F300\nG3 X10 Y0 I5 J0\nG4 P1.5\nG0 Z5\n{END}");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let found = motions(&source.build(), &machine, &text);
+    // Rapids at 10 m/min and 2 m/s²: 100 mm at 1000/6 mm/s and 1/12 s for starting and stopping; 6 mm, half of it at 2 m/s².
+    let pi = std::f64::consts::PI;
+    let short = 2.0 * (6.0_f64 / 2000.0).sqrt();
+    let seconds = [0.0, 0.0, 0.0, 0.6 + 1.0 / 12.0, 1.2, pi, short, 0.0];
+    // The tool change is before the first motion with the tool.
+    let waited = [0.0, 6.0, 0.0, 0.0, 0.0, 0.0, 1.5, 0.0];
+    assert_eq!(found.len(), seconds.len());
+    for (motion, (seconds, waited)) in found.iter().zip(seconds.into_iter().zip(waited)) {
+        let off = (motion.seconds - seconds).abs();
+        assert!(off < 1e-9 && motion.waited == waited, "{seconds} {waited}: {motion:?}");
+    }
 }

@@ -3,6 +3,7 @@
 use crate::files::{mills, root};
 use control::{Action, Event};
 use geom::Vec3;
+use machine::time::{Clock, Times};
 use machine::{Machine, Mount};
 use program::{Builder, Feed, Op, Program, Spindle, Tool};
 use proof::{AxisPositions, Motion, MotionKind, Tolerances};
@@ -160,4 +161,53 @@ fn each_move_of_the_control_is_told_once() {
         assert_eq!(told, lines, "{name}");
         assert!(told.len() > 5, "{name}: {told:?}");
     }
+}
+
+/// What is cut and what is waited takes what the report says. Rapids take what they take as the program makes them: axis by axis, and by
+/// way of a retract; to and from home nothing, which the tool change counts.
+#[test]
+fn times_of_the_motions_are_those_of_the_report() {
+    let mut compared = 0;
+    for machine in mills() {
+        let name = &machine.name;
+        let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
+        let text = std::fs::read(root().join("machines/samples").join(axes).with_extension("cls"));
+        let source =
+            source::apt::read("s.cls", &text.unwrap(), &Default::default()).unwrap().program;
+        let times = Times::of(&source, &machine);
+        let found = posted(&source, &machine).1;
+        let cuts = found.iter().filter(|motion| motion.kind != MotionKind::Rapid);
+        let cutting: f64 = cuts.map(|motion| motion.seconds).sum();
+        // Words of positions and of inverse time are rounded.
+        let allowed = if machine.rotary.is_empty() { 1e-9 } else { 1e-4 };
+        let off = (cutting / times.cutting - 1.0).abs();
+        assert!(off < allowed, "{name}: cuts {cutting} s, {} s in the report", times.cutting);
+        let waited: f64 = found.iter().map(|motion| motion.waited).sum();
+        let waits = times.dwell + times.tool_change;
+        assert!((waited - waits).abs() < 1e-9, "{name}: waits {waited} s, {waits} s in the report");
+
+        // A rapid of the source that the program makes in one block, from where the source has it begin.
+        let mut clock = Clock::new(&machine);
+        let mut here: Option<Vec3> = None;
+        for (i, record) in source.records.iter().enumerate() {
+            let before = clock.times.rapid;
+            clock.run(&record.op);
+            let Op::Rapid(to) = &record.op else {
+                here = record.op.pose().map(program::Pose::point).or(here);
+                continue;
+            };
+            let made: Vec<&Motion> = found.iter().filter(|motion| motion.record == i).collect();
+            if let ([one], Some(here)) = (&made[..], here)
+                && one.tool[0].tip.distance(here) < 1e-3
+            {
+                let should = clock.times.rapid - before;
+                // Rounding of a way of some mm.
+                let off = (one.seconds - should).abs();
+                assert!(off < 1e-3 * should, "{name}: {should} s, {one:?}");
+                compared += 1;
+            }
+            here = Some(to.point());
+        }
+    }
+    assert!(compared > 50, "{compared}");
 }

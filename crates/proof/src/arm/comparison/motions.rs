@@ -1,20 +1,24 @@
 //! The motions of the program for whoever follows the proof.
 
-use super::{Comparison, Standing, arc_through};
-use crate::observer::{AxisPositions, Motion, MotionKind, ToolPose};
+use super::{Comparison, Running, Standing, arc_through};
+use crate::observer::{
+    AxisPositions, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose, Walk,
+};
 use control::{Action, ArmAction, ArmPath, Event};
 use geom::{Frame, Vec3};
+use machine::time;
+use program::{Compensation, Coolant, Feed, PathMode, Tool};
 
 impl Comparison<'_> {
     /// Keeps the motions of each event until they are taken.
     pub(in super::super) fn keep_motions(&mut self) {
-        self.motions = Some(Vec::new());
+        self.motions = Some(Walk::default());
     }
 
-    /// Takes the motions since the last time: several behind the last block of a contour.
-    pub(in super::super) fn take_motions(&mut self, mut told: impl FnMut(&Motion)) {
+    /// Tells the motions since the last time: several behind the last block of a contour.
+    pub(in super::super) fn tell_motions(&mut self, observer: &mut dyn Observer) {
         if let Some(motions) = &mut self.motions {
-            motions.drain(..).for_each(|motion| told(&motion));
+            motions.tell(observer);
         }
     }
 
@@ -26,6 +30,13 @@ impl Comparison<'_> {
 
     /// Behind an event that was accepted: the arm stood `before` it.
     pub(super) fn keep_motion(&mut self, event: &Event, before: Option<Standing>) {
+        if let Some(motions) = &mut self.motions {
+            if let Action::Dwell(seconds) = &event.action {
+                motions.waited += seconds;
+            } else if matches!(event.action, Action::Tool(_)) {
+                motions.waited += time::TOOL_CHANGE;
+            }
+        }
         let Action::Arm(ArmAction::Move(motion)) = &event.action else { return };
         let (Some(_), Some(now)) = (&self.motions, &self.standing) else { return };
         let unknown = ToolPose { tip: Vec3::NAN, axis: Vec3::NAN };
@@ -46,8 +57,57 @@ impl Comparison<'_> {
         let record = self.made.unwrap_or_else(|| self.record());
         let source_line = self.source.records.get(record).map_or(0, |record| record.line);
         let (file, line) = (self.file.clone(), event.line);
-        let motion = Motion { file, line, record, source_line, kind, tool: [start, end], axes };
-        self.motions.iter_mut().for_each(|motions| motions.push(motion.clone()));
+        let feed = self.running.feed.map(Feed::PerMinute);
+        let seconds = self.seconds(&kind, before.as_ref(), [start, end]);
+        let (tool, waited) = ([start, end], 0.0);
+        let motion =
+            Motion { file, line, record, source_line, kind, tool, axes, feed, seconds, waited };
+        let state = self.state();
+        if let Some(motions) = &mut self.motions {
+            motions.state(state);
+            motions.moved(motion);
+        }
+    }
+
+    /// How long a motion takes, s: of the joints as the slowest, at the part of its speed that the program has set.
+    fn seconds(&self, kind: &MotionKind, before: Option<&Standing>, tool: [ToolPose; 2]) -> f64 {
+        let length = match kind {
+            MotionKind::Rapid | MotionKind::Joints => {
+                let (Some(before), Some(now)) = (before, &self.standing) else { return 0.0 };
+                let part = self.running.joint_speed.unwrap_or(100.0) / 100.0;
+                let turns = before.joints.iter().zip(now.joints).zip(self.arm.joints());
+                let turns = turns.map(|((a, b), joint)| (b - a).abs() / (part * joint.speed));
+                let rail =
+                    self.running.rail_speed.map(|speed| (now.rail - before.rail).abs() / speed);
+                return turns.chain(rail).fold(0.0, f64::max);
+            }
+            MotionKind::Line => tool[0].tip.distance(tool[1].tip),
+            MotionKind::Arc(arc) => arc.length(),
+        };
+        // A way or a feed that is not known takes nothing.
+        self.running.feed.map_or(0.0, |feed| (60.0 * length / feed).max(0.0))
+    }
+
+    /// What holds while the arm moves.
+    fn state(&self) -> MachineState {
+        let Running { is_on, speed, coolant, joint_speed, .. } = self.running;
+        let tool = self.changes.held.map(|number| Tool { number, ..Tool::default() });
+        MachineState {
+            spindle: match is_on {
+                true => SpindleState::On(speed),
+                false => SpindleState::Off,
+            },
+            surface_speed: None,
+            coolant: if coolant { Coolant::Flood } else { Coolant::Off },
+            tool,
+            compensation: Compensation::Off,
+            length_offset: None,
+            work_offset: None,
+            cycle: None,
+            path: PathMode::AsSetUp,
+            taper: 0.0,
+            joint_speed,
+        }
     }
 
     /// The tool in the frame of the source.
