@@ -89,7 +89,7 @@ studio/dist/index.html: $(PAGE)
 ## The tests of the page: its parts, and the whole.
 test-studio:
 	@scripts/setup page
-	npm --prefix studio run --silent test
+	NO_COLOR=1 npm --prefix studio run --silent test
 
 ## The tests in Rust, compiled and not run.
 tests: rust

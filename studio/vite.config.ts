@@ -8,5 +8,5 @@ export default defineConfig({
     base: "./",
     build: { target: "es2023", assetsInlineLimit: 0, modulePreload: { polyfill: false }, reportCompressedSize: false },
     server: { proxy: { "/socket": { ...passed, ws: true }, "/geometry": passed, "/moves": passed, "/upload": passed } },
-    test: { include: ["tests/*.test.ts"] },
+    test: { include: ["tests/*.test.ts"], benchmark: { include: ["tests/*.bench.ts"] } },
 });

@@ -1,0 +1,170 @@
+/**
+ * Draws lines and triangles into three planes: colour, depth, and the number of the move (from 1; 0 is nothing).
+ * The planes are a window of the picture at `left`, `top`: the whole of it to be shown, or a few pixels to see what is there.
+ */
+
+import type { Projection } from "./camera.ts";
+import { Style, type Strip, type Triangles } from "./strip.ts";
+import { cross, unit, type Vector } from "./vector.ts";
+
+/** Beyond this a pixel's number is no longer exact, and what is not finite is beyond it. */
+const FAR = 1e7;
+
+export class Raster {
+    readonly colour: Uint32Array<ArrayBuffer>;
+    readonly depth: Float32Array;
+    readonly id: Uint32Array;
+
+    constructor(
+        readonly width: number,
+        readonly height: number,
+        private readonly left = 0,
+        private readonly top = 0,
+    ) {
+        this.colour = new Uint32Array(width * height);
+        this.depth = new Float32Array(width * height);
+        this.id = new Uint32Array(width * height);
+    }
+
+    clear(background: number): void {
+        this.colour.fill(background);
+        this.depth.fill(Number.POSITIVE_INFINITY);
+        this.id.fill(0);
+    }
+
+    strip(strip: Strip, { right, down, away, at }: Projection): void {
+        const { origin, paint, first } = strip;
+        const { palette, byMove, shift, mask, styles, dashed, width, lift } = paint;
+        const numbers = new Float32Array(strip.vertices);
+        const words = new Uint32Array(strip.vertices);
+        const [rx, ry, rz] = right;
+        const [dx, dy, dz] = down;
+        const [ax, ay, az] = away;
+        const [ox, oy, oz] = origin;
+        const cx = at[0] + rx * ox + ry * oy + rz * oz - this.left;
+        const cy = at[1] + dx * ox + dy * oy + dz * oz - this.top;
+        const cz = at[2] + ax * ox + ay * oy + az * oz - lift;
+
+        let [x0, y0, z0] = [0, 0, 0];
+        for (let vertex = strip.from - 1, i = vertex * 4; vertex < strip.to; vertex++, i += 4) {
+            const [x, y, z] = [numbers[i]!, numbers[i + 1]!, numbers[i + 2]!];
+            const x1 = rx * x + ry * y + rz * z + cx;
+            const y1 = dx * x + dy * y + dz * z + cy;
+            const z1 = ax * x + ay * y + az * z + cz;
+            if (vertex >= strip.from) {
+                const word = words[i + 3]!;
+                const style = styles[(word >>> 12) & 15];
+                if (style !== Style.hidden) {
+                    const dash = style === Style.dashed;
+                    const index = dash && dashed >= 0 ? dashed : byMove === null ? (word >>> shift) & mask : byMove[word & 4095]!;
+                    this.line(x0, y0, z0, x1, y1, z1, palette[index]!, first + (word & 4095) + 1, width, dash);
+                }
+            }
+            x0 = x1;
+            y0 = y1;
+            z0 = z1;
+        }
+    }
+
+    /** A line of `width` pixels; dashes of four pixels, counted from its beginning. */
+    line(
+        x0: number, y0: number, z0: number,
+        x1: number, y1: number, z1: number,
+        colour: number, id: number, width: number, dashed: boolean,
+    ): void {
+        const w = this.width + width;
+        const h = this.height + width;
+        if ((x0 < -width && x1 < -width) || (x0 > w && x1 > w) || (y0 < -width && y1 < -width) || (y0 > h && y1 > h)) return;
+        if (!(Math.abs(x0) < FAR && Math.abs(y0) < FAR && Math.abs(x1) < FAR && Math.abs(y1) < FAR)) return;
+        const dx = x1 - x0;
+        const dy = y1 - y0;
+        const [wide, high] = [Math.abs(dx), Math.abs(dy)];
+        const steps = Math.ceil(Math.max(wide, high));
+        if (steps <= 1 && width === 1) {
+            this.dot(x1, y1, z1, colour, id);
+            return;
+        }
+
+        // The part of the line that is within the window, in steps.
+        let [begin, end] = [0, steps];
+        if (x0 < -width || x1 < -width || x0 > w || x1 > w || y0 < -width || y1 < -width || y0 > h || y1 > h) {
+            const across = [dx > 0 ? (-width - x0) / dx : dx < 0 ? (w - x0) / dx : 0, dy > 0 ? (-width - y0) / dy : dy < 0 ? (h - y0) / dy : 0];
+            const out = [dx > 0 ? (w - x0) / dx : dx < 0 ? (-width - x0) / dx : 1, dy > 0 ? (h - y0) / dy : dy < 0 ? (-width - y0) / dy : 1];
+            begin = Math.max(0, Math.floor(Math.max(across[0]!, across[1]!) * steps));
+            end = Math.min(steps, Math.ceil(Math.min(out[0]!, out[1]!) * steps));
+        }
+        const [sx, sy, sz] = steps === 0 ? [0, 0, 0] : [dx / steps, dy / steps, (z1 - z0) / steps];
+        let [x, y, z] = [x0 + begin * sx, y0 + begin * sy, z0 + begin * sz];
+        const half = (width - 1) / 2;
+        for (let step = begin; step <= end; step++) {
+            if (!dashed || (step & 7) < 5) {
+                if (width === 1) this.dot(x, y, z, colour, id);
+                else if (wide >= high) for (let side = 0; side < width; side++) this.dot(x, y - half + side, z, colour, id);
+                else for (let side = 0; side < width; side++) this.dot(x - half + side, y, z, colour, id);
+            }
+            x += sx;
+            y += sy;
+            z += sz;
+        }
+    }
+
+    private dot(x: number, y: number, z: number, colour: number, id: number): void {
+        if (x < 0 || y < 0 || x >= this.width || y >= this.height) return;
+        const at = (y | 0) * this.width + (x | 0);
+        if (z > this.depth[at]!) return;
+        this.depth[at] = z;
+        this.colour[at] = colour;
+        this.id[at] = id;
+    }
+
+    /** Flat faces, lit from the eye. They are no move. */
+    triangles({ corners, colour }: Triangles, { right, down, away, at, scale }: Projection): void {
+        const eye: Vector = [away[0] / scale, away[1] / scale, away[2] / scale];
+        for (let i = 0; i + 8 < corners.length; i += 9) {
+            const points = [0, 3, 6].map((k): Vector => {
+                const [x, y, z] = [corners[i + k]!, corners[i + k + 1]!, corners[i + k + 2]!];
+                return [
+                    right[0] * x + right[1] * y + right[2] * z + at[0] - this.left,
+                    down[0] * x + down[1] * y + down[2] * z + at[1] - this.top,
+                    away[0] * x + away[1] * y + away[2] * z + at[2],
+                ];
+            });
+            const edge = (k: number): Vector => [
+                corners[i + k]! - corners[i]!,
+                corners[i + k + 1]! - corners[i + 1]!,
+                corners[i + k + 2]! - corners[i + 2]!,
+            ];
+            const normal = unit(cross(edge(3), edge(6)));
+            const light = 0.35 + 0.65 * Math.abs(normal[0] * eye[0] + normal[1] * eye[1] + normal[2] * eye[2]);
+            this.face(points as [Vector, Vector, Vector], rgb(colour[0] * light, colour[1] * light, colour[2] * light));
+        }
+    }
+
+    private face([a, b, c]: [Vector, Vector, Vector], colour: number): void {
+        const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if (!(Math.abs(area) > 1e-9 && Math.abs(area) < FAR * FAR)) return;
+        const low = Math.max(0, Math.floor(Math.min(a[1], b[1], c[1])));
+        const high = Math.min(this.height - 1, Math.floor(Math.max(a[1], b[1], c[1])));
+        const near = Math.max(0, Math.floor(Math.min(a[0], b[0], c[0])));
+        const far = Math.min(this.width - 1, Math.floor(Math.max(a[0], b[0], c[0])));
+        for (let y = low; y <= high; y++) {
+            for (let x = near; x <= far; x++) {
+                const [px, py] = [x + 0.5, y + 0.5];
+                const u = ((b[0] - px) * (c[1] - py) - (b[1] - py) * (c[0] - px)) / area;
+                const v = ((c[0] - px) * (a[1] - py) - (c[1] - py) * (a[0] - px)) / area;
+                if (u < 0 || v < 0 || u + v > 1) continue;
+                const z = u * a[2] + v * b[2] + (1 - u - v) * c[2];
+                const at = y * this.width + x;
+                if (z > this.depth[at]!) continue;
+                this.depth[at] = z;
+                this.colour[at] = colour;
+                this.id[at] = 0;
+            }
+        }
+    }
+}
+
+/** A colour as its four bytes are stored. */
+export function rgb(red: number, green: number, blue: number): number {
+    return ((255 << 24) | (Math.round(blue) << 16) | (Math.round(green) << 8) | Math.round(red)) >>> 0;
+}

@@ -1,0 +1,138 @@
+/** What is drawn: the walk's lines as far as they are in sight, those that are picked out, the tool. The same for every renderer. */
+
+import type { Range } from "../cursor.ts";
+import type { Walk } from "../protocol/types.ts";
+import type { Projection, Size } from "./camera.ts";
+import { inSight, levelFor, type Chunk, type Chunks } from "./chunks.ts";
+import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
+import { Raster } from "./raster.ts";
+import { CHUNK_MOVES, Style, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
+
+export interface Looks {
+    mode: Mode;
+    width: number;
+    rapids: boolean;
+    theme: Theme;
+}
+
+/** Where the cursor is, and what belongs to it. */
+export interface Marks {
+    /** The moves after this one are still ahead; null: nothing is. */
+    now: number | null;
+    ofBlock: Range[];
+    mismatch: number | null;
+    tool: Triangles | null;
+}
+
+export interface Picture {
+    strips: Strip[];
+    bodies: Triangles[];
+}
+
+/** Pixels round the pointer in which a line is looked for. */
+const REACH = 6;
+
+export class Scene {
+    /** By chunk: the place in the palette of each of its moves, for the colours that vertices do not tell. */
+    byMove: ((chunk: Chunk) => Uint8Array | null) | null = null;
+
+    constructor(
+        readonly walk: Walk,
+        readonly chunks: Chunks,
+    ) {}
+
+    picture(projection: Projection, size: Size, looks: Looks, marks: Marks): Picture {
+        const strips: Strip[] = [];
+        const level = levelFor(this.walk.levels, projection.scale);
+        for (const chunk of this.chunks.chunks) {
+            if (!inSight(chunk, projection, size)) continue;
+            const vertices = this.chunks.best(level, chunk.number);
+            if (vertices === null) continue;
+            this.lines(strips, chunk, vertices, looks, marks);
+        }
+        return { strips, bodies: marks.tool === null ? [] : [marks.tool] };
+    }
+
+    private lines(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, marks: Marks): void {
+        const { origin, first } = chunk;
+        const count = vertices.byteLength / 16;
+        const part = (from: number, to: number, paint: Paint): void => {
+            if (from < to) strips.push({ vertices, origin, first, from, to, paint });
+        };
+        const { done, ahead } = looks.theme;
+        const now = marks.now === null || marks.now >= first + CHUNK_MOVES ? count : marks.now < first ? 1 : vertexOf(vertices, marks.now - first + 1);
+        part(1, now, this.paint(chunk, looks, done));
+        part(now, count, this.paint(chunk, looks, ahead));
+
+        const { mismatch } = marks;
+        if (mismatch !== null) this.marked(part, chunk, vertices, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
+        for (const range of marks.ofBlock) this.marked(part, chunk, vertices, range, this.plain(MARKED, looks, 2, 2));
+        if (marks.now !== null) this.marked(part, chunk, vertices, [marks.now, marks.now + 1], this.plain(MARKED, looks, 3, 3));
+    }
+
+    private marked(part: (from: number, to: number, paint: Paint) => void, chunk: Chunk, vertices: ArrayBuffer, [from, to]: Range, paint: Paint): void {
+        const [low, high] = [Math.max(from - chunk.first, 0), Math.min(to - chunk.first, CHUNK_MOVES)];
+        if (low >= high) return;
+        const begin = vertexOf(vertices, low);
+        // At a coarse level a move may have no vertex of its own: the one that it is in is marked.
+        part(begin, Math.max(vertexOf(vertices, high), Math.min(begin + 1, vertices.byteLength / 16)), paint);
+    }
+
+    private paint(chunk: Chunk, { mode, width, rapids }: Looks, palette: Uint32Array): Paint {
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, rapids));
+        const byMove = this.byMove?.(chunk) ?? null;
+        const paint = { palette, styles, dashed: RAPID, width, lift: 0 };
+        if (byMove !== null) return { ...paint, byMove, shift: 0, mask: 0 };
+        if (mode === "tool") return { ...paint, byMove, shift: 16, mask: 63 };
+        if (mode === "kind") return { ...paint, byMove, shift: 12, mask: 15 };
+        return { ...paint, byMove: new Uint8Array(CHUNK_MOVES).fill(UNKNOWN), shift: 0, mask: 0 };
+    }
+
+    private plain(place: number, looks: Looks, wider: number, lift: number): Paint {
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => (this.walk.kinds[kind] === "gap" ? Style.hidden : Style.line));
+        const palette = new Uint32Array([looks.theme.done[place]!]);
+        return { palette, byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: looks.width + wider, lift };
+    }
+
+    private styleOf(kind: number, rapids: boolean): number {
+        const name = this.walk.kinds[kind];
+        if (name === "gap") return Style.hidden;
+        if (name !== "rapid") return Style.line;
+        return rapids ? Style.dashed : Style.hidden;
+    }
+
+    /** The move under the pixel: found in what is drawn, then among the exact lines of that chunk. */
+    async pick(camera: Projection, size: Size, looks: Looks, x: number, y: number): Promise<number | null> {
+        const none: Marks = { now: null, ofBlock: [], mismatch: null, tool: null };
+        const { strips } = this.picture(camera, size, { ...looks, width: 1 }, none);
+        const rough = nearest(strips, camera, x, y);
+        if (rough === null) return null;
+        const chunk = this.chunks.chunks[Math.floor(rough / CHUNK_MOVES)];
+        if (chunk === undefined) return rough;
+        const vertices = await this.chunks.exact(0, chunk.number);
+        if (vertices === null) return rough;
+        const exact: Strip[] = [];
+        this.lines(exact, chunk, vertices, { ...looks, width: 1 }, none);
+        return nearest(exact, camera, x, y) ?? rough;
+    }
+}
+
+/** The move whose line is nearest to the pixel, and of those the one that is seen. */
+export function nearest(strips: Strip[], projection: Projection, x: number, y: number): number | null {
+    const side = REACH * 2 + 1;
+    const [left, top] = [Math.floor(x) - REACH, Math.floor(y) - REACH];
+    const raster = new Raster(side, side, left, top);
+    raster.clear(0);
+    for (const strip of strips) raster.strip(strip, projection);
+    let best: number | null = null;
+    let least = (REACH + 0.5) ** 2;
+    raster.id.forEach((id, at) => {
+        if (id === 0) return;
+        const distance = ((at % side) - REACH) ** 2 + (Math.floor(at / side) - REACH) ** 2;
+        if (distance >= least) return;
+        least = distance;
+        best = id - 1;
+    });
+    return best;
+}
+

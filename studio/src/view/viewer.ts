@@ -1,0 +1,183 @@
+/** One view: its camera, what the pointer does in it, and when it is drawn. */
+
+import { fit, orbit, pan, project, VIEWS, zoom, zoomTo, alongTool, type Box, type Camera, type Projection, type Size } from "./camera.ts";
+import { overlay, type Over } from "./overlay.ts";
+import { Plain, type Renderer } from "./renderer.ts";
+import type { Looks, Marks, Scene } from "./scene.ts";
+import type { Vector } from "./vector.ts";
+
+export interface Shown {
+    scene: Scene | null;
+    looks: Looks;
+    marks: Marks;
+    tip: Over["tip"];
+    box: Box | null;
+}
+
+interface Drag {
+    kind: "orbit" | "pan" | "zoom" | "ruler";
+    from: [number, number];
+    last: [number, number];
+    moved: boolean;
+}
+
+export class Viewer {
+    camera: Camera;
+    /** Dragging measures. */
+    ruler = false;
+    private readonly renderer: Renderer;
+    private readonly over = document.createElement("canvas");
+    private readonly context = this.over.getContext("2d")!;
+    private drag: Drag | null = null;
+    private measured: Over["drag"] = null;
+    private frame = 0;
+    private readonly sizes = new ResizeObserver(() => this.redraw());
+
+    constructor(
+        readonly host: HTMLElement,
+        view: number,
+        private readonly shown: () => Shown,
+        private readonly picked: (move: number) => void,
+        private readonly pointed: (at: Vector | null) => void,
+        renderer: Renderer = new Plain(),
+    ) {
+        this.camera = { ...VIEWS[view]!, middle: [0, 0, 0], scale: 1 };
+        this.renderer = renderer;
+        host.append(renderer.canvas, this.over);
+        this.sizes.observe(host);
+        host.addEventListener("pointerdown", (event) => this.down(event));
+        host.addEventListener("pointermove", (event) => this.move(event));
+        host.addEventListener("pointerup", (event) => this.up(event));
+        host.addEventListener("pointerleave", () => pointed(null));
+        host.addEventListener("contextmenu", (event) => event.preventDefault());
+        host.addEventListener("dblclick", () => this.fit());
+        host.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    }
+
+    close(): void {
+        cancelAnimationFrame(this.frame);
+        this.sizes.disconnect();
+        this.host.replaceChildren();
+    }
+
+    private get ratio(): number {
+        return Math.min(2, devicePixelRatio);
+    }
+
+    private get size(): Size {
+        const { clientWidth, clientHeight } = this.host;
+        return { width: Math.max(1, Math.round(clientWidth * this.ratio)), height: Math.max(1, Math.round(clientHeight * this.ratio)) };
+    }
+
+    private get projection(): Projection {
+        return project(this.camera, this.size);
+    }
+
+    redraw(): void {
+        if (this.frame === 0) {
+            this.frame = requestAnimationFrame(() => {
+                this.frame = 0;
+                this.draw();
+            });
+        }
+    }
+
+    private draw(): void {
+        const { size, projection } = this;
+        const { scene, looks, marks, tip, box } = this.shown();
+        const picture = scene?.picture(projection, size, looks, marks) ?? { strips: [], bodies: [] };
+        this.renderer.draw(picture, projection, size, looks.theme);
+        if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
+        overlay(this.context, { box, tip, drag: this.measured }, projection, size, looks.theme, this.ratio);
+    }
+
+    look(camera: Camera): void {
+        this.camera = camera;
+        this.redraw();
+    }
+
+    fit(box: Box | null = this.shown().box): void {
+        if (box !== null) this.look(fit(this.camera, box, this.size));
+    }
+
+    /** A standard view, numbered as in `VIEWS`. */
+    view(number: number): void {
+        this.camera = { ...this.camera, ...VIEWS[number]! };
+        this.fit();
+    }
+
+    along(axis: Vector): void {
+        this.look(alongTool(this.camera, axis));
+    }
+
+    turn(dx: number, dy: number): void {
+        this.look(orbit(this.camera, dx, dy));
+    }
+
+    shift(dx: number, dy: number): void {
+        this.look(pan(this.camera, dx, dy));
+    }
+
+    zoom(by: number): void {
+        const { size } = this;
+        this.look(zoom(this.camera, by, size.width / 2, size.height / 2, size));
+    }
+
+    private at(event: MouseEvent): [number, number] {
+        const { left, top } = this.host.getBoundingClientRect();
+        return [(event.clientX - left) * this.ratio, (event.clientY - top) * this.ratio];
+    }
+
+    private down(event: PointerEvent): void {
+        const from = this.at(event);
+        const kind = this.ruler ? "ruler" : event.ctrlKey ? "zoom" : event.button !== 0 || event.shiftKey ? "pan" : "orbit";
+        this.drag = { kind, from, last: from, moved: false };
+        this.measured = null;
+        this.host.setPointerCapture(event.pointerId);
+    }
+
+    private move(event: PointerEvent): void {
+        const to = this.at(event);
+        const { drag } = this;
+        if (drag === null) return this.pointed(this.pointOf(to));
+        const [dx, dy] = [to[0] - drag.last[0], to[1] - drag.last[1]];
+        drag.moved ||= Math.hypot(to[0] - drag.from[0], to[1] - drag.from[1]) > 3;
+        if (!drag.moved) return;
+        drag.last = to;
+        if (drag.kind === "orbit") this.turn(dx / this.ratio, dy / this.ratio);
+        else if (drag.kind === "pan") this.shift(dx, dy);
+        else {
+            this.measured = { kind: drag.kind, from: drag.from, to };
+            this.redraw();
+        }
+    }
+
+    private up(event: PointerEvent): void {
+        const { drag } = this;
+        this.drag = null;
+        if (drag === null) return;
+        if (!drag.moved) void this.pick(...this.at(event));
+        else if (drag.kind === "zoom") {
+            this.measured = null;
+            this.look(zoomTo(this.camera, drag.from, this.at(event), this.size));
+        }
+    }
+
+    private wheel(event: WheelEvent): void {
+        event.preventDefault();
+        const [x, y] = this.at(event);
+        this.look(zoom(this.camera, Math.exp(-event.deltaY * 0.0015), x, y, this.size));
+    }
+
+    private async pick(x: number, y: number): Promise<void> {
+        const { scene, looks } = this.shown();
+        const move = await scene?.pick(this.projection, this.size, looks, x, y);
+        if (move !== null && move !== undefined) this.picked(move);
+    }
+
+    /** The point under the pixel, in the plane of the view through the camera's middle. */
+    private pointOf([x, y]: [number, number]): Vector {
+        const { size } = this;
+        return pan(this.camera, size.width / 2 - x, size.height / 2 - y).middle;
+    }
+}

@@ -1,0 +1,132 @@
+import { expect, test } from "vitest";
+import type { Projection } from "../src/view/camera.ts";
+import { Raster, rgb } from "../src/view/raster.ts";
+import { Style, vertexOf, wordOf, type Paint, type Strip } from "../src/view/strip.ts";
+
+/** One pixel a millimetre, X right, Y down, Z away. */
+const flat: Projection = { right: [1, 0, 0], down: [0, 1, 0], away: [0, 0, 1], at: [0, 0, 0], scale: 1 };
+
+const letters = ".abcdefgh";
+const shown = (raster: Raster): string[] =>
+    Array.from({ length: raster.height }, (_, y) =>
+        Array.from(raster.id.slice(y * raster.width, (y + 1) * raster.width), (id) => letters[id]).join(""));
+
+const paint = (more: Partial<Paint> = {}): Paint => ({
+    palette: Uint32Array.from({ length: 256 }, (_, index) => index),
+    byMove: null,
+    shift: 12,
+    mask: 15,
+    styles: new Uint8Array(16),
+    dashed: -1,
+    width: 1,
+    lift: 0,
+    ...more,
+});
+
+function strip(points: number[][], more: Partial<Strip> = {}): Strip {
+    const vertices = new ArrayBuffer(points.length * 16);
+    const numbers = new Float32Array(vertices);
+    const words = new Uint32Array(vertices);
+    points.forEach(([x, y, z, kind = 0, tool = 0], i) => {
+        numbers.set([x!, y!, z ?? 0], i * 4);
+        words[i * 4 + 3] = wordOf(Math.max(0, i - 1), kind, tool);
+    });
+    return { vertices, origin: [0, 0, 0], first: 0, from: 1, to: points.length, paint: paint(), ...more };
+}
+
+function drawn(width: number, height: number, ...strips: Strip[]): Raster {
+    const raster = new Raster(width, height);
+    raster.clear(99);
+    for (const one of strips) raster.strip(one, flat);
+    return raster;
+}
+
+test("a polyline: each segment has its move's number", () => {
+    expect(shown(drawn(6, 4, strip([[0.5, 0.5], [4.5, 0.5], [4.5, 3.5]])))).toEqual([
+        "aaaab.",
+        "....b.",
+        "....b.",
+        "....b.",
+    ]);
+});
+
+test("a slope has one pixel in each column", () => {
+    expect(shown(drawn(8, 3, strip([[0.5, 0.5], [7.5, 2.5]])))).toEqual([
+        "aa......",
+        "..aaaa..",
+        "......aa",
+    ]);
+});
+
+test("what is near covers what is far, in whatever order they come", () => {
+    const far = strip([[0.5, 1.5, 5], [4.5, 1.5, 5]], { first: 0 });
+    const near = strip([[2.5, 0.5, 1], [2.5, 2.5, 1]], { first: 1 });
+    const picture = ["..b..", "aabaa", "..b.."];
+    expect(shown(drawn(5, 3, far, near))).toEqual(picture);
+    expect(shown(drawn(5, 3, near, far))).toEqual(picture);
+});
+
+test("lifted lines lie on the same lines", () => {
+    const line = [[0.5, 0.5, 2], [3.5, 0.5, 2]];
+    const lifted = strip(line, { first: 1, paint: paint({ lift: 1 }) });
+    expect(shown(drawn(4, 1, lifted, strip(line)))).toEqual(["bbbb"]);
+});
+
+test("wide lines", () => {
+    expect(shown(drawn(5, 5, strip([[1.5, 2.5], [3.5, 2.5]], { paint: paint({ width: 3 }) })))).toEqual([
+        ".....",
+        ".aaa.",
+        ".aaa.",
+        ".aaa.",
+        ".....",
+    ]);
+});
+
+test("rapids are dashed, and can be hidden", () => {
+    const styles = new Uint8Array(16);
+    styles[3] = Style.dashed;
+    const rapid = strip([[0.5, 0.5], [11.5, 0.5, 0, 3]], { paint: paint({ styles }) });
+    expect(shown(drawn(12, 1, rapid))).toEqual(["aaaaa...aaaa"]);
+    styles[3] = Style.hidden;
+    expect(shown(drawn(12, 1, rapid))).toEqual(["............"]);
+});
+
+test("lines that leave the window are cut off at its edge, and keep their dashes", () => {
+    expect(shown(drawn(4, 4, strip([[-1e6, -1e6], [1e6, 1e6]])))).toEqual(["a...", ".a..", "..a.", "...a"]);
+    expect(shown(drawn(4, 2, strip([[-5, 5], [-1, 9]])))).toEqual(["....", "...."]);
+    const whole = strip([[0.5, 0.5], [15.5, 0.5, 0, 1]], { paint: paint({ styles: new Uint8Array(16).fill(Style.dashed) }) });
+    const part = new Raster(8, 1, 4, 0);
+    part.clear(0);
+    part.strip(whole, flat);
+    expect(shown(part)[0]).toBe(shown(drawn(16, 1, whole))[0]!.slice(4, 12));
+});
+
+test.each([Number.NaN, Number.POSITIVE_INFINITY, 1e30])("a vertex at %f draws nothing and hurts nothing", (x) => {
+    expect(shown(drawn(3, 1, strip([[x, 0.5], [x, 0.5], [0.5, 0.5], [2.5, 0.5]])))).toEqual(["ccc"]);
+});
+
+test("colours: by kind, by tool, by a table of moves", () => {
+    const points = [[0.5, 0.5], [0.5, 0.5, 0, 2, 7], [1.5, 0.5, 0, 4, 9]];
+    const byKind = drawn(2, 1, strip(points));
+    expect([...byKind.colour]).toEqual([2, 4]);
+    const byTool = drawn(2, 1, strip(points, { paint: paint({ shift: 16, mask: 255 }) }));
+    expect([...byTool.colour]).toEqual([7, 9]);
+    const byMove = drawn(2, 1, strip(points.slice(0, 2), { paint: paint({ byMove: new Uint8Array([33, 44]) }) }));
+    expect([...byMove.colour]).toEqual([33, 99]);
+});
+
+test("a part of a strip, found by its moves", () => {
+    const whole = strip([[0.5, 0.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 0.5]]);
+    expect(vertexOf(whole.vertices, 0)).toBe(1);
+    expect(vertexOf(whole.vertices, 2)).toBe(3);
+    expect(vertexOf(whole.vertices, 9)).toBe(5);
+    expect(shown(drawn(5, 1, { ...whole, from: 3, to: 4 }))).toEqual(["...c."]);
+});
+
+test("a face covers the pixels whose middles are in it, and hides what is behind", () => {
+    const raster = drawn(4, 4, strip([[0.5, 1.5, 5], [3.5, 1.5, 5]]));
+    raster.triangles({ corners: Float32Array.from([0, 0, 1, 4, 0, 1, 0, 4, 1]), colour: [200, 100, 50] }, flat);
+    const face = rgb(200, 100, 50);
+    const picture = Array.from(raster.colour, (colour) => (colour === face ? "#" : colour === 99 ? "." : "a")).join("");
+    expect(picture.match(/.{4}/g)).toEqual(["####", "###a", "##..", "#..."]);
+});
