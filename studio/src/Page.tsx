@@ -5,6 +5,9 @@ import { Bar } from "./panes/Bar.tsx";
 import { Dialogs } from "./panes/Dialogs.tsx";
 import { Low } from "./panes/Low.tsx";
 import { Split } from "./panes/Split.tsx";
+import { TextPane } from "./panes/TextPane.tsx";
+import { Timeline } from "./panes/Timeline.tsx";
+import { View } from "./panes/View.tsx";
 import { commandsOf } from "./screen/commands.ts";
 import { Screen } from "./screen/screen.ts";
 import type { Studio } from "./studio.ts";
@@ -34,6 +37,10 @@ export function Page({ studio }: { studio: Studio }) {
             <Split name="s1" label="Width of the program" value={program} sign={1} set={(value) => (sizes.value = { ...sizes.value, program: value })} />
             <Split name="s2" label="Width of the source" value={source} sign={-1} set={(value) => (sizes.value = { ...sizes.value, source: value })} />
             <Split name="s3" label="Height of the findings" value={low} sign={-1} lying set={(value) => (sizes.value = { ...sizes.value, low: value })} />
+            <TextPane screen={screen} of="program" />
+            <View screen={screen} />
+            <TextPane screen={screen} of="source" />
+            <Timeline screen={screen} />
             <Low screen={screen} />
             <Dialogs screen={screen} commands={commands} />
         </div>

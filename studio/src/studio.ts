@@ -19,6 +19,10 @@ export class Studio {
     readonly said: Signal<string> = signal("");
     /** The program as edited by hand; null while it is as posted. */
     readonly edited: Signal<string | null> = signal(null);
+    /** The job is of the program as it stands now. */
+    readonly isCurrent: Signal<boolean> = signal(false);
+    readonly canSave = computed(() => this.isCurrent.value && (this.job.value?.verdict === "done" || this.job.value?.verdict === "partly"));
+    private typing: ReturnType<typeof setTimeout> | undefined;
     readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
     readonly cursor: Cursor;
     private abort: AbortController | null = null;
@@ -61,12 +65,23 @@ export class Studio {
 
     /** Posts and proves. Edits by hand are gone: who calls this has asked. */
     async post(work: Work): Promise<void> {
+        clearTimeout(this.typing);
         this.work.value = work;
         this.edited.value = null;
+        this.isCurrent.value = false;
         const { source, machine, options } = work;
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
         this.job.value = job ?? null;
+        this.isCurrent.value = job !== undefined;
+    }
+
+    /** The program is being edited: it is proven when the typing rests. */
+    typed(text: string): void {
+        this.edited.value = text;
+        this.isCurrent.value = false;
+        clearTimeout(this.typing);
+        this.typing = setTimeout(() => void this.prove(text), 400);
     }
 
     /** Proves the program as edited by hand, and keeps it as a draft. */
@@ -78,7 +93,9 @@ export class Studio {
         void this.seam.ask("draft", { name: draftName(work), of: work }, { arrays: { text: octets } }).catch(() => {});
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("prove", work, { arrays: { text: octets }, signal, progress })).done);
-        if (job !== undefined) this.job.value = job;
+        if (job === undefined) return;
+        this.job.value = job;
+        this.isCurrent.value = true;
     }
 
     /** Back to the program as posted. */

@@ -33,7 +33,7 @@ export function Bar({ screen }: { screen: Screen }) {
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
             <span class="soft">{studio.said.value}</span>
-            <button type="button" disabled={!canSave(job.value)} onClick={() => (dialog.value = "save")}>
+            <button type="button" disabled={!studio.canSave.value} onClick={() => (dialog.value = "save")}>
                 Save…
             </button>
             <button type="button" onClick={() => (dialog.value = "commands")}>
@@ -49,8 +49,6 @@ const links = {
     refused: "the link is not of this server: use the link that `toolpost studio` printed last",
     open: "",
 };
-
-export const canSave = (job: Job | null): boolean => job?.verdict === "done" || job?.verdict === "partly";
 
 function Running({ screen }: { screen: Screen }) {
     const { running } = screen.studio;

@@ -3,6 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Command } from "../commands.ts";
 import type { Dialog, Screen } from "../screen/screen.ts";
 import { Choose } from "./Choose.tsx";
+import { Find } from "./Find.tsx";
 import { Folder } from "./Folder.tsx";
 import { Go } from "./Go.tsx";
 import { Keys } from "./Keys.tsx";
@@ -17,6 +18,7 @@ const titles: Record<Dialog, string> = {
     options: "Options",
     save: "Save",
     go: "Go to",
+    find: "Find",
 };
 
 export function Dialogs({ screen, commands }: { screen: Screen; commands: Command[] }) {
@@ -51,6 +53,7 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
             {open === "source" && <Folder screen={screen} close={close} />}
             {open === "options" && <Options screen={screen} close={close} />}
             {open === "save" && <Save screen={screen} close={close} />}
+            {open === "find" && <Find screen={screen} close={close} />}
             {open === "go" && <Go screen={screen} close={close} />}
         </Modal>
     );

@@ -1,5 +1,6 @@
 import type { Screen, Tab } from "../screen/screen.ts";
 import { Findings } from "./Findings.tsx";
+import { Plots } from "./Plots.tsx";
 import { Verdict } from "./Verdict.tsx";
 
 /** The panes below: one of them is shown. */
@@ -8,6 +9,7 @@ export function Low({ screen }: { screen: Screen }) {
     const tabs: [Tab, string][] = [
         ["findings", `Findings ${studio.findings.value.length}`],
         ["verdict", "Verdict"],
+        ["plots", "Axes over time"],
     ];
     const press = (event: KeyboardEvent): void => {
         const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
@@ -38,6 +40,7 @@ export function Low({ screen }: { screen: Screen }) {
             <div class="body" id="low" role="tabpanel" aria-labelledby={`tab-${tab.value}`} tabIndex={0} data-pane>
                 {tab.value === "findings" && <Findings screen={screen} />}
                 {tab.value === "verdict" && <Verdict screen={screen} />}
+                {tab.value === "plots" && <Plots screen={screen} />}
             </div>
         </section>
     );

@@ -1,19 +1,100 @@
-/** What is on the screen and not in the work: dialogs, tabs, the selected finding. */
+/** What is on the screen and not in the work: dialogs, tabs, the views and how they look. */
 
-import { signal, type Signal } from "@preact/signals";
+import { computed, effect, signal, type Signal } from "@preact/signals";
+import { Player } from "../player.ts";
 import type { Finding } from "../protocol/types.ts";
 import type { Studio } from "../studio.ts";
+import type { Editor } from "../text/editor.ts";
+import { Chunks } from "../view/chunks.ts";
+import { theme, type Mode } from "../view/colours.ts";
+import { painted } from "../view/painted.ts";
+import { Scene, type Looks, type Marks } from "../view/scene.ts";
+import { toolBody } from "../view/solids.ts";
+import type { Vector } from "../view/vector.ts";
+import type { Viewer } from "../view/viewer.ts";
 
-export type Dialog = "commands" | "keys" | "machine" | "source" | "options" | "save" | "go";
-export type Tab = "findings" | "verdict" | "axes";
+export type Dialog = "commands" | "keys" | "machine" | "source" | "options" | "save" | "go" | "find";
+export type Tab = "findings" | "verdict" | "plots";
+
+export const vector = ([x = 0, y = 0, z = 0]: number[]): Vector => [x, y, z];
 
 export class Screen {
     readonly dialog: Signal<Dialog | null> = signal(null);
     readonly tab: Signal<Tab> = signal("findings");
+    /** Pane that is searched, and its editors. */
+    readonly searched: Signal<"program" | "source"> = signal("program");
+    readonly editors: Partial<Record<"program" | "source", Editor>> = {};
     /** Number of the finding that was led to last. */
     readonly finding: Signal<number> = signal(-1);
+    readonly player: Player;
 
-    constructor(readonly studio: Studio) {}
+    readonly mode: Signal<Mode> = signal("kind");
+    readonly width: Signal<number> = signal(1);
+    readonly rapids: Signal<boolean> = signal(true);
+    /** What is ahead of the cursor is pale. */
+    readonly pale: Signal<boolean> = signal(true);
+    readonly four: Signal<boolean> = signal(false);
+    readonly ruler: Signal<boolean> = signal(false);
+    readonly box: Signal<boolean> = signal(false);
+    readonly pointer: Signal<Vector | null> = signal(null);
+    private readonly dark: Signal<boolean> = signal(false);
+    readonly looks = computed((): Looks => ({
+        mode: this.mode.value,
+        width: this.width.value,
+        rapids: this.rapids.value,
+        theme: theme(this.dark.value),
+    }));
+    readonly scene: Signal<Scene | null> = signal(null);
+    /** Grows with each chunk that comes. */
+    readonly news: Signal<number> = signal(0);
+    readonly viewers: Viewer[] = [];
+    /** The view that had the focus last. */
+    viewer: Viewer | null = null;
+
+    constructor(readonly studio: Studio) {
+        this.player = new Player(studio.cursor, studio.job);
+        const dark = matchMedia("(prefers-color-scheme: dark)");
+        this.dark.value = dark.matches;
+        dark.addEventListener("change", () => (this.dark.value = dark.matches));
+        effect(() => this.begin());
+        effect(() => {
+            const { mode, scene } = this;
+            if (scene.value !== null) scene.value.byMove = painted(mode.value, scene.value, studio.seam, studio.job.peek()?.revision ?? 0, () => this.news.value++);
+        });
+    }
+
+    /** The scene of a job that is new. */
+    private begin(): void {
+        const job = this.studio.job.value;
+        const before = this.scene.peek()?.walk ?? null;
+        if (job === null || !job.walk?.moves) {
+            this.scene.value = null;
+            return;
+        }
+        const { walk, revision } = job;
+        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++);
+        this.scene.value = new Scene(walk, chunks);
+        void chunks.load().catch(() => {});
+        if (before === null || JSON.stringify(before.box) !== JSON.stringify(walk.box)) for (const viewer of this.viewers) viewer.fit();
+    }
+
+    marks(): Marks {
+        const { cursor, job } = this.studio;
+        const place = cursor.place.value;
+        const size = 40 / Math.max(this.viewer?.camera.scale ?? 1, 1e-3);
+        return {
+            now: place === null ? null : place.move,
+            pale: this.pale.value,
+            ofBlock: cursor.ofBlock.value,
+            mismatch: job.value?.walk?.mismatch ?? null,
+            tool: place === null ? null : toolBody(place.tool, vector(place.tip), vector(place.axis ?? [0, 0, 1]), size),
+        };
+    }
+
+    get all(): { low: Vector; high: Vector } | null {
+        const box = this.studio.job.value?.walk?.box ?? null;
+        return box === null ? null : { low: vector(box.low), high: vector(box.high) };
+    }
 
     /** Leads to the finding's place, in every pane. */
     toFinding(number: number): void {
@@ -26,6 +107,25 @@ export class Screen {
         if (place === null || job.value === null) return;
         const by = place.file === job.value.source?.file ? "source" : "block";
         void cursor.to({ by, value: place.line, file: place.file });
+    }
+
+    toText(of: "program" | "source"): void {
+        const place = this.studio.cursor.place.value;
+        const line = of === "program" ? place?.block : place?.source;
+        if (line) void this.editors[of]?.go(line.line);
+    }
+
+    zoomToCursor(): void {
+        const tip = this.studio.cursor.place.value?.tip;
+        if (tip === undefined || this.viewer === null) return;
+        const { camera } = this.viewer;
+        this.viewer.look({ ...camera, middle: vector(tip), scale: Math.max(camera.scale, 20) });
+    }
+
+    /** The text that has the focus, else the program, is searched. */
+    find(): void {
+        this.searched.value = document.activeElement?.closest(".source") ? "source" : "program";
+        this.dialog.value = "find";
     }
 
     /** The panes in turn (F6). */

@@ -19,6 +19,8 @@ export interface Looks {
 export interface Marks {
     /** The moves after this one are still ahead; null: nothing is. */
     now: number | null;
+    /** What is ahead is pale. */
+    pale: boolean;
     ofBlock: Range[];
     mismatch: number | null;
     tool: Triangles | null;
@@ -62,7 +64,7 @@ export class Scene {
         const { done, ahead } = looks.theme;
         const now = marks.now === null || marks.now >= first + CHUNK_MOVES ? count : marks.now < first ? 1 : vertexOf(vertices, marks.now - first + 1);
         part(1, now, this.paint(chunk, looks, done));
-        part(now, count, this.paint(chunk, looks, ahead));
+        part(now, count, this.paint(chunk, looks, marks.pale ? ahead : done));
 
         const { mismatch } = marks;
         if (mismatch !== null) this.marked(part, chunk, vertices, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
@@ -103,7 +105,7 @@ export class Scene {
 
     /** The move under the pixel: found in what is drawn, then among the exact lines of that chunk. */
     async pick(camera: Projection, size: Size, looks: Looks, x: number, y: number): Promise<number | null> {
-        const none: Marks = { now: null, ofBlock: [], mismatch: null, tool: null };
+        const none: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null };
         const { strips } = this.picture(camera, size, { ...looks, width: 1 }, none);
         const rough = nearest(strips, camera, x, y);
         if (rough === null) return null;

@@ -12,6 +12,7 @@ export interface Shown {
     marks: Marks;
     tip: Over["tip"];
     box: Box | null;
+    isBoxShown: boolean;
 }
 
 interface Drag {
@@ -73,6 +74,12 @@ export class Viewer {
         return project(this.camera, this.size);
     }
 
+    /** Reads all that a picture depends on, so that an effect runs again when it changes, and draws. */
+    touch(): void {
+        this.shown();
+        this.redraw();
+    }
+
     redraw(): void {
         if (this.frame === 0) {
             this.frame = requestAnimationFrame(() => {
@@ -84,11 +91,12 @@ export class Viewer {
 
     private draw(): void {
         const { size, projection } = this;
-        const { scene, looks, marks, tip, box } = this.shown();
+        const { scene, looks, marks, tip, box, isBoxShown } = this.shown();
+        scene?.chunks.begin();
         const picture = scene?.picture(projection, size, looks, marks) ?? { strips: [], bodies: [] };
         this.renderer.draw(picture, projection, size, looks.theme);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
-        overlay(this.context, { box, tip, drag: this.measured }, projection, size, looks.theme, this.ratio);
+        overlay(this.context, { box: isBoxShown ? box : null, tip, drag: this.measured }, projection, size, looks.theme, this.ratio);
     }
 
     look(camera: Camera): void {

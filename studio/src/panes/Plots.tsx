@@ -1,0 +1,147 @@
+import { effect, useSignal, type Signal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { Newest } from "../newest.ts";
+import type { Axis } from "../protocol/types.ts";
+import type { Screen } from "../screen/screen.ts";
+import { clock } from "./Timeline.tsx";
+
+type Span = [from: number, to: number];
+
+/** Axes, feed and deviation over the machine's time, with the limits of the axes. */
+export function Plots({ screen }: { screen: Screen }) {
+    const job = screen.studio.job.value;
+    const length = job?.walk?.time_s ?? 0;
+    const span = useSignal<Span>([0, length]);
+    useEffect(() => {
+        span.value = [0, length];
+    }, [length]);
+    if (job === null || length === 0) return <p class="soft hint">No times yet.</p>;
+    const zoom = (by: number): void => {
+        const middle = screen.studio.cursor.place.value?.time_s ?? length / 2;
+        const half = Math.min(length, (span.value[1] - span.value[0]) * by) / 2;
+        const from = Math.max(0, Math.min(length - 2 * half, middle - half));
+        span.value = [from, from + 2 * half];
+    };
+    const axes: Axis[] = [...(job.machine?.axes ?? []), { name: "feed", unit: "mm/min", kind: "linear" }, { name: "deviation", unit: "mm", kind: "linear" }];
+    return (
+        <div class="plots">
+            <p>
+                <button type="button" onClick={() => zoom(0.25)}>
+                    Zoom to the cursor
+                </button>{" "}
+                <button type="button" onClick={() => (span.value = [0, length])}>
+                    All
+                </button>{" "}
+                <span class="soft">
+                    {clock(span.value[0])} to {clock(span.value[1])}; dashed lines are limits
+                </span>
+            </p>
+            {axes.map((axis) => (
+                <Plot key={axis.name} screen={screen} axis={axis} span={span} />
+            ))}
+        </div>
+    );
+}
+
+interface Band {
+    least: Float32Array;
+    most: Float32Array;
+}
+
+function Plot({ screen, axis, span }: { screen: Screen; axis: Axis; span: Signal<Span> }) {
+    const canvas = useRef<HTMLCanvasElement>(null);
+    const band = useSignal<Band | null>(null);
+    const { studio } = screen;
+
+    useEffect(() => {
+        const asked = new Newest<{ revision: number; span: Span }>(async ({ revision, span: [from, to] }) => {
+            const pixels = Math.max(1, Math.min(4000, canvas.current?.clientWidth ?? 600));
+            try {
+                const { arrays } = await studio.seam.ask("plot", { revision, what: axis.name, from, to, pixels });
+                band.value = { least: arrays.least as Float32Array, most: arrays.most as Float32Array };
+            } catch {
+                band.value = null;
+            }
+        });
+        const stops = [
+            effect(() => {
+                const revision = studio.job.value?.revision;
+                if (revision !== undefined) void asked.ask({ revision, span: span.value });
+            }),
+            effect(() => {
+                const time = studio.cursor.place.value?.time_s ?? null;
+                if (canvas.current !== null) draw(canvas.current, axis, band.value, span.value, time, screen.looks.value.theme);
+            }),
+        ];
+        return () => {
+            for (const stop of stops) stop();
+        };
+    }, []);
+
+    const known = band.value === null ? [] : extent(band.value);
+    return (
+        <figure class="plot">
+            <figcaption>
+                {axis.name} <span class="soft">{known.length === 2 ? `${round(known[0]!)} … ${round(known[1]!)} ${axis.unit}` : "–"}</span>
+            </figcaption>
+            <canvas
+                ref={canvas}
+                role="img"
+                aria-label={`${axis.name} over time`}
+                onClick={(event) => {
+                    const { left, width } = event.currentTarget.getBoundingClientRect();
+                    const [from, to] = span.value;
+                    void studio.cursor.to({ by: "time", value: from + ((event.clientX - left) / width) * (to - from) });
+                }}
+            />
+        </figure>
+    );
+}
+
+const round = (value: number): string => value.toLocaleString("en", { maximumFractionDigits: 4 });
+
+/** Least and most of what is known. */
+function extent({ least, most }: Band): number[] {
+    let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
+    for (const value of least) if (value < low) low = value;
+    for (const value of most) if (value > high) high = value;
+    return low <= high ? [low, high] : [];
+}
+
+function draw(canvas: HTMLCanvasElement, axis: Axis, band: Band | null, [from, to]: Span, time: number | null, { ink, soft }: { ink: string; soft: string }): void {
+    const { clientWidth: width, clientHeight: height } = canvas;
+    const ratio = Math.min(2, devicePixelRatio);
+    canvas.width = width * ratio;
+    canvas.height = height * ratio;
+    const context = canvas.getContext("2d")!;
+    context.scale(ratio, ratio);
+    const [low, high] = band === null ? [] : extent(band);
+    if (band === null || low === undefined || high === undefined) return;
+    const limits = [axis.low, axis.high].filter((limit) => typeof limit === "number");
+    // Limits far away would flatten the curve: they are drawn where they are near.
+    const spread = Math.max(high - low, 1e-6);
+    const near = limits.filter((limit) => limit > low - spread && limit < high + spread);
+    const [bottom, top] = [Math.min(low, ...near) - spread * 0.05, Math.max(high, ...near) + spread * 0.05];
+    const y = (value: number): number => height - ((value - bottom) / (top - bottom)) * height;
+
+    context.fillStyle = ink;
+    const step = width / band.least.length;
+    band.least.forEach((least, pixel) => {
+        const [high, low] = [y(band.most[pixel]!), y(least)];
+        if (Number.isFinite(high)) context.fillRect(pixel * step, high, Math.max(1, step), Math.max(1, low - high));
+    });
+    context.strokeStyle = soft;
+    context.setLineDash([6, 4]);
+    for (const limit of near) {
+        context.beginPath();
+        context.moveTo(0, y(limit));
+        context.lineTo(width, y(limit));
+        context.stroke();
+    }
+    if (time !== null && time >= from && time <= to) {
+        context.setLineDash([]);
+        context.strokeStyle = "#d9480f";
+        const x = ((time - from) / (to - from)) * width;
+        context.strokeRect(x, -1, 0.5, height + 2);
+    }
+}

@@ -1,0 +1,38 @@
+import type { Screen } from "../screen/screen.ts";
+
+/** What nobody knows is a dash. */
+const number = (value: number | null | undefined, digits = 3): string => (value === null || value === undefined ? "–" : value.toFixed(digits));
+
+/** Axes, feed, spindle and the rest at the cursor. */
+export function Readout({ screen }: { screen: Screen }) {
+    const place = screen.studio.cursor.place.value;
+    const axes = screen.studio.job.value?.machine?.axes ?? [];
+    const pointer = screen.pointer.value;
+    const parts: [string, string, string][] = place === null ? [] : [
+        ...axes.map(({ name, unit }, i): [string, string, string] => [name, number(place.axes[i]), unit]),
+        ["Feed", number(place.feed, 0), "mm/min"],
+        ["Spindle", place.spindle ?? "–", ""],
+        ["Coolant", place.coolant ?? "–", ""],
+        ["Comp.", place.compensation ?? "–", ""],
+        ["Tool", place.tool === null ? "–" : `${place.tool.number ?? ""} ${place.tool.name ?? ""}`.trim(), ""],
+        ["Move", `${(place.move + 1).toLocaleString("en")} ${place.kind}`, ""],
+    ];
+    return (
+        <dl class="readout" aria-label="At the cursor">
+            {parts.map(([name, value, unit]) => (
+                <div key={name}>
+                    <dt>{name}</dt>
+                    <dd>
+                        {value} <small>{unit}</small>
+                    </dd>
+                </div>
+            ))}
+            {pointer !== null && (
+                <div class="soft">
+                    <dt>Pointer</dt>
+                    <dd>{pointer.map((value) => value.toFixed(3)).join(" ")}</dd>
+                </div>
+            )}
+        </dl>
+    );
+}

@@ -1,0 +1,98 @@
+import { effect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { vector, type Screen } from "../screen/screen.ts";
+import { VIEWS } from "../view/camera.ts";
+import { MODES } from "../view/colours.ts";
+import { Viewer } from "../view/viewer.ts";
+import { Readout } from "./Readout.tsx";
+
+/** The picture of the walk: one view, or four. */
+export function View({ screen }: { screen: Screen }) {
+    const { four, mode, rapids, ruler, box } = screen;
+    return (
+        <section class="pane view" aria-label="View">
+            <header>
+                <h2>View</h2>
+                {VIEWS.map(({ name }, number) => (
+                    <button key={name} type="button" title={`${name} (${number + 1})`} aria-label={name} onClick={() => screen.viewer?.view(number)}>
+                        {number + 1}
+                    </button>
+                ))}
+                <button type="button" title="Fit (F)" onClick={() => screen.viewer?.fit()}>
+                    Fit
+                </button>
+                <Toggle on={four} title="Four views (Q)" text="4" />
+                <Toggle on={rapids} title="Rapids (R)" text="Rapids" />
+                <Toggle on={box} title="Box of all moves (B)" text="Box" />
+                <Toggle on={ruler} title="Ruler (L)" text="Ruler" />
+                <label>
+                    <span class="unseen">Colour by</span>
+                    <select title="Colours by (C)" value={mode.value} onChange={(event) => (mode.value = event.currentTarget.value as typeof mode.value)}>
+                        {MODES.map(({ name, title }) => (
+                            <option key={name} value={name}>
+                                {title}
+                            </option>
+                        ))}
+                    </select>
+                </label>
+            </header>
+            <div class={four.value ? "body views four" : "body views"} onDragOver={(event) => event.preventDefault()}>
+                {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
+                    <One key={view} screen={screen} view={view} first={number === 0} />
+                ))}
+            </div>
+            <Readout screen={screen} />
+        </section>
+    );
+}
+
+function Toggle({ on, title, text }: { on: { value: boolean }; title: string; text: string }) {
+    return (
+        <button type="button" title={title} aria-pressed={on.value} onClick={() => (on.value = !on.value)}>
+            {text}
+        </button>
+    );
+}
+
+function One({ screen, view, first }: { screen: Screen; view: number; first: boolean }) {
+    const host = useRef<HTMLDivElement>(null);
+    useEffect(() => {
+        const { studio } = screen;
+        const viewer = new Viewer(
+            host.current!,
+            view,
+            () => {
+                const place = studio.cursor.place.value;
+                const tip = place === null ? null : { at: vector(place.tip), axis: vector(place.axis ?? [0, 0, 1]) };
+                return { scene: screen.scene.value, looks: screen.looks.value, marks: screen.marks(), tip, box: screen.all, isBoxShown: screen.box.value };
+            },
+            (move) => void studio.cursor.toMove(move),
+            (at) => (screen.pointer.value = at),
+        );
+        screen.viewers.push(viewer);
+        if (first) screen.viewer = viewer;
+        viewer.fit();
+        const stop = effect(() => {
+            viewer.ruler = screen.ruler.value;
+            void screen.news.value;
+            viewer.touch();
+        });
+        return () => {
+            stop();
+            screen.viewers.splice(screen.viewers.indexOf(viewer), 1);
+            viewer.close();
+        };
+    }, []);
+    return (
+        <div
+            ref={host}
+            class="canvas"
+            role="application"
+            aria-label={`Toolpath, ${VIEWS[view]!.name.toLowerCase()}. Arrows turn, Shift and arrows move, Page Up and Page Down zoom, comma and period step by block; ? lists all keys.`}
+            tabIndex={0}
+            data-view
+            data-pane
+            onFocus={() => (screen.viewer = screen.viewers.find((viewer) => viewer.host === host.current) ?? screen.viewer)}
+        />
+    );
+}

@@ -1,0 +1,201 @@
+/**
+ * One text: CodeMirror in a shadow root, whose style sheets are constructed, so that the content policy needs no exception.
+ * Of a long text it keeps a window of lines, numbered as in the file.
+ */
+
+import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
+import { Compartment, EditorState, StateEffect, StateField, type Extension, type Text } from "@codemirror/state";
+import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
+import { coloured, type Family } from "./dialects.ts";
+import { isNearEnd, isWithin, windowAround, type Window } from "./window.ts";
+
+/** A text that is somewhere else. */
+export interface Origin {
+    lines: number;
+    family: Family;
+    isEditable: boolean;
+    read(from: number, to: number): Promise<string>;
+}
+
+export interface Listener {
+    picked(line: number): void;
+    edited(text: string): void;
+}
+
+interface Marked {
+    /** Lines in the editor, from 1. */
+    at: number | null;
+    wrong: number[];
+}
+
+const setMarked = StateEffect.define<Marked>();
+const atLine = Decoration.line({ class: "at", attributes: { "aria-current": "true" } });
+const wrongLine = Decoration.line({ class: "wrong" });
+
+function decorations(text: Text, { at, wrong }: Marked): DecorationSet {
+    const lines = [...wrong.map((line) => ({ line, mark: wrongLine })), ...(at === null ? [] : [{ line: at, mark: atLine }])];
+    const within = lines.filter(({ line }) => line >= 1 && line <= text.lines);
+    return Decoration.set(within.map(({ line, mark }) => mark.range(text.line(line).from)), true);
+}
+
+const marks = StateField.define<DecorationSet>({
+    create: () => Decoration.none,
+    update(value, change) {
+        const set = change.effects.find((effect) => effect.is(setMarked));
+        if (set !== undefined) return decorations(change.state.doc, set.value as Marked);
+        return value.map(change.changes);
+    },
+    provide: (field) => EditorView.decorations.from(field),
+});
+
+const look = EditorView.theme({
+    "&": { height: "100%", color: "var(--ink)", backgroundColor: "var(--paper)", font: "var(--code)" },
+    ".cm-scroller": { font: "var(--code)" },
+    ".cm-gutters": { color: "var(--soft)", backgroundColor: "var(--panel)", border: "none" },
+    ".cm-content": { caretColor: "var(--ink)" },
+    "&.cm-focused": { outline: "none" },
+    ".cm-cursor": { borderLeftColor: "var(--ink)" },
+    "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground": { backgroundColor: "var(--selected)" },
+    ".cm-selectionBackground": { backgroundColor: "var(--selected)" },
+    ".at": { backgroundColor: "var(--lit)", boxShadow: "inset 3px 0 var(--accent)" },
+    ".wrong": { textDecoration: "underline wavy var(--bad)" },
+});
+
+export class Editor {
+    private readonly view: EditorView;
+    private readonly extensions: Extension;
+    readonly more = new Compartment();
+    private window: Window = { from: 1, to: 1 };
+    private origin: Origin | null = null;
+    private marked: { at: number | null; wrong: number[] } = { at: null, wrong: [] };
+    private reading = 0;
+    private isSetting = false;
+
+    constructor(host: HTMLElement, label: string, private readonly listener: Listener) {
+        const root = host.attachShadow({ mode: "open", delegatesFocus: true });
+        this.extensions = [
+            look,
+            marks,
+            history(),
+            drawSelection(),
+            keymap.of([...defaultKeymap, ...historyKeymap]),
+            lineNumbers({ formatNumber: (line) => String(line + this.window.from - 1) }),
+            EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false", autocapitalize: "off" }),
+            EditorView.updateListener.of((update) => this.updated(update)),
+        ];
+        this.view = new EditorView({ root, parent: root, state: EditorState.create({ extensions: this.extensions }) });
+    }
+
+    close(): void {
+        this.view.destroy();
+    }
+
+    get text(): string {
+        return this.view.state.doc.toString();
+    }
+
+    /** Whether all lines are here: only then it can be edited. */
+    get isWhole(): boolean {
+        return this.origin !== null && this.window.from === 1 && this.window.to > this.origin.lines;
+    }
+
+    async show(origin: Origin | null): Promise<void> {
+        this.origin = origin;
+        if (origin === null) return this.set("", { from: 1, to: 1 });
+        await this.fetch(this.marked.at ?? 1);
+    }
+
+    /** The text as somebody has edited it. */
+    replace(text: string, origin: Origin): void {
+        this.origin = origin;
+        if (this.text !== text) this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
+    }
+
+    private async fetch(line: number): Promise<void> {
+        const { origin } = this;
+        if (origin === null) return;
+        const reading = ++this.reading;
+        const window = windowAround(line, origin.lines);
+        const text = await origin.read(window.from, window.to);
+        if (reading === this.reading) this.set(text, window);
+    }
+
+    private set(text: string, window: Window): void {
+        this.window = window;
+        const { origin } = this;
+        const isEditable = origin?.isEditable === true && this.isWhole;
+        this.isSetting = true;
+        this.view.setState(
+            EditorState.create({
+                doc: text,
+                extensions: [this.extensions, coloured(origin?.family ?? "iso"), EditorState.readOnly.of(!isEditable), this.more.of([])],
+            }),
+        );
+        this.isSetting = false;
+        this.draw(true);
+    }
+
+    /** The line of the cursor, which comes into sight, and the lines with findings; numbered as in the file. */
+    mark(at: number | null, wrong: number[]): void {
+        const isNew = at !== this.marked.at;
+        this.marked = { at, wrong };
+        if (at !== null && this.origin !== null && isNew && !isWithin(this.window, at) && at <= this.origin.lines) void this.fetch(at);
+        else this.draw(isNew);
+    }
+
+    private draw(isNew: boolean): void {
+        const { at, wrong } = this.marked;
+        const shift = (line: number): number => line - this.window.from + 1;
+        const line = at === null || !isWithin(this.window, at) ? null : shift(at);
+        const effects: StateEffect<unknown>[] = [setMarked.of({ at: line, wrong: wrong.filter((one) => isWithin(this.window, one)).map(shift) })];
+        const { doc } = this.view.state;
+        if (isNew && line !== null && line <= doc.lines) effects.push(EditorView.scrollIntoView(doc.line(line).from, { y: "nearest", yMargin: 60 }));
+        this.view.dispatch({ effects });
+    }
+
+    private updated(update: ViewUpdate): void {
+        if (this.isSetting) return;
+        if (update.docChanged) {
+            this.listener.edited(this.text);
+            return;
+        }
+        const { state, viewport } = update.view;
+        if (update.selectionSet && update.transactions.some((change) => change.isUserEvent("select"))) {
+            const line = state.doc.lineAt(state.selection.main.head).number + this.window.from - 1;
+            if (line !== this.marked.at) this.listener.picked(line);
+        }
+        if (update.viewportChanged && this.origin !== null && !this.isWhole) {
+            const line = (position: number): number => state.doc.lineAt(position).number + this.window.from - 1;
+            const [first, last] = [line(viewport.from), line(viewport.to)];
+            if (isNearEnd(this.window, first, last, this.origin.lines)) void this.slide(Math.round((first + last) / 2));
+        }
+    }
+
+    /** Another window, with the same lines in sight. */
+    private async slide(line: number): Promise<void> {
+        await this.fetch(line);
+        const { doc } = this.view.state;
+        const at = Math.max(1, Math.min(doc.lines, line - this.window.from + 1));
+        this.view.dispatch({ effects: EditorView.scrollIntoView(doc.line(at).from, { y: "center" }) });
+    }
+
+    /** Puts the selection on a line of the file, as if it were clicked. */
+    async go(line: number): Promise<void> {
+        if (!isWithin(this.window, line)) await this.fetch(line);
+        const { doc } = this.view.state;
+        const at = Math.max(1, Math.min(doc.lines, line - this.window.from + 1));
+        this.view.dispatch({ selection: { anchor: doc.line(at).from }, scrollIntoView: true, userEvent: "select" });
+        this.view.focus();
+    }
+
+    /** Differences to another text, by an extension that is loaded when it is wanted. */
+    async compare(original: string | null): Promise<void> {
+        const more = original === null ? [] : await differences(original);
+        this.view.dispatch({ effects: this.more.reconfigure(more) });
+    }
+}
+
+async function differences(original: string): Promise<Extension> {
+    const { unifiedMergeView } = await import("@codemirror/merge");
+    return unifiedMergeView({ original, mergeControls: false });
+}

@@ -1,0 +1,23 @@
+/** Which lines of a long text the editor keeps. */
+
+/** Lines from the first to before the last, counted from 1 as in the file. */
+export interface Window {
+    from: number;
+    to: number;
+}
+
+export const KEPT = 200_000;
+
+/** All of a text, or as many lines as are kept, with `line` in the middle. */
+export function windowAround(line: number, lines: number, kept = KEPT): Window {
+    if (lines <= kept) return { from: 1, to: lines + 1 };
+    const from = Math.max(1, Math.min(lines - kept + 1, line - Math.floor(kept / 2)));
+    return { from, to: from + kept };
+}
+
+export const isWithin = ({ from, to }: Window, line: number): boolean => from <= line && line < to;
+
+/** Whether the lines in sight come so near to an end of the window that more has to be fetched. */
+export function isNearEnd(window: Window, first: number, last: number, lines: number, margin = 1000): boolean {
+    return (window.from > 1 && first - window.from < margin) || (window.to <= lines && window.to - last < margin);
+}
