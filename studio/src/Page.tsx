@@ -30,9 +30,24 @@ export function Page({ studio }: { studio: Studio }) {
         return () => document.removeEventListener("keydown", press);
     }, [commands]);
 
+    /** A file dropped on the program is a program for the source that is open; any other is a source. */
+    const drop = async (event: DragEvent): Promise<void> => {
+        event.preventDefault();
+        const file = event.dataTransfer?.files[0];
+        if (file === undefined) return;
+        const onProgram = event.target instanceof Element && event.target.closest(".program") !== null;
+        if (onProgram && studio.work.value !== null) await studio.prove(await file.text());
+        else await studio.drop(file);
+    };
+
     const { program, source, low } = sizes.value;
     return (
-        <div class="studio" style={{ "--program": `${program}px`, "--source": `${source}px`, "--low": `${low}px` }}>
+        <div
+            class="studio"
+            onDragOver={(event) => event.preventDefault()}
+            onDrop={(event) => void drop(event)}
+            style={{ "--program": `${program}px`, "--source": `${source}px`, "--low": `${low}px` }}
+        >
             <Bar screen={screen} />
             <Split name="s1" label="Width of the program" value={program} sign={1} set={(value) => (sizes.value = { ...sizes.value, program: value })} />
             <Split name="s2" label="Width of the source" value={source} sign={-1} set={(value) => (sizes.value = { ...sizes.value, source: value })} />

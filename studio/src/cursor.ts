@@ -12,6 +12,8 @@ export class Cursor {
     readonly place: Signal<Place | null> = signal(null);
     /** The moves that the block of the place makes: several where it stands in a loop or a cycle. */
     readonly ofBlock: Signal<Range[]> = signal([]);
+    /** What the place was asked by. */
+    readonly by: Signal<By["by"]> = signal("move");
     private readonly asked: Newest<By>;
     private readonly askedMoves: Newest<number>;
     private block = "";
@@ -29,6 +31,7 @@ export class Cursor {
     }
 
     to(by: By): Promise<void> {
+        this.by.value = by.by;
         return this.asked.ask(by);
     }
 

@@ -106,7 +106,10 @@ export class Studio {
         await this.post(work);
     }
 
-    async resume(draft: Draft, text: string): Promise<void> {
+    /** Goes on with an edit that was kept. */
+    async resume(draft: Draft): Promise<void> {
+        const { arrays } = await this.seam.ask("draft_text", { name: draft.name });
+        const text = new TextDecoder().decode(arrays.text as Uint8Array | undefined);
         this.work.value = draft.of;
         this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
         await this.prove(text);

@@ -1,5 +1,5 @@
 import type { Screen } from "../screen/screen.ts";
-import type { Job, Verdict } from "../protocol/types.ts";
+import type { Job, Verdict, Work } from "../protocol/types.ts";
 
 const verdicts: Record<Verdict, string> = {
     done: "✓ PROVEN",
@@ -9,13 +9,12 @@ const verdicts: Record<Verdict, string> = {
     cancelled: "■ CANCELLED",
 };
 
-const shown = (name: string): string => name.replace(/^.*\//, "");
+const nameOf = ({ source }: Work): string => ("file" in source ? source.file : source.upload).replace(/^.*\//, "");
 
 export function Bar({ screen }: { screen: Screen }) {
     const { studio, dialog } = screen;
     const { work, job, running, link, opened, stopped } = studio;
-    const source = work.value?.source;
-    const name = source === undefined ? "Open a source…" : shown("file" in source ? source.file : source.upload);
+    const name = work.value === null ? "Open a source…" : nameOf(work.value);
     return (
         <header class="bar">
             <h1>Toolpost</h1>
@@ -33,6 +32,17 @@ export function Bar({ screen }: { screen: Screen }) {
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
             <span class="soft">{studio.said.value}</span>
+            {studio.drafts.value.slice(0, 1).map((draft) => (
+                <span key={draft.name}>
+                    ▲ an edit of {nameOf(draft.of)} is kept{" "}
+                    <button type="button" onClick={() => void studio.resume(draft)}>
+                        Continue
+                    </button>{" "}
+                    <button type="button" onClick={() => void studio.dropDraft(draft.name)}>
+                        Drop it
+                    </button>
+                </span>
+            ))}
             <button type="button" disabled={!studio.canSave.value} onClick={() => (dialog.value = "save")}>
                 Save…
             </button>

@@ -1,4 +1,4 @@
-import { effect, useSignal, type Signal } from "@preact/signals";
+import { effect, useComputed, useSignal, type ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Newest } from "../newest.ts";
 import type { Axis } from "../protocol/types.ts";
@@ -11,16 +11,14 @@ type Span = [from: number, to: number];
 export function Plots({ screen }: { screen: Screen }) {
     const job = screen.studio.job.value;
     const length = job?.walk?.time_s ?? 0;
-    const span = useSignal<Span>([0, length]);
-    useEffect(() => {
-        span.value = [0, length];
-    }, [length]);
+    const zoomed = useSignal<Span | null>(null);
+    const span = useComputed((): Span => zoomed.value ?? [0, screen.studio.job.value?.walk?.time_s ?? 0]);
     if (job === null || length === 0) return <p class="soft hint">No times yet.</p>;
     const zoom = (by: number): void => {
         const middle = screen.studio.cursor.place.value?.time_s ?? length / 2;
         const half = Math.min(length, (span.value[1] - span.value[0]) * by) / 2;
         const from = Math.max(0, Math.min(length - 2 * half, middle - half));
-        span.value = [from, from + 2 * half];
+        zoomed.value = [from, from + 2 * half];
     };
     const axes: Axis[] = [...(job.machine?.axes ?? []), { name: "feed", unit: "mm/min", kind: "linear" }, { name: "deviation", unit: "mm", kind: "linear" }];
     return (
@@ -29,7 +27,7 @@ export function Plots({ screen }: { screen: Screen }) {
                 <button type="button" onClick={() => zoom(0.25)}>
                     Zoom to the cursor
                 </button>{" "}
-                <button type="button" onClick={() => (span.value = [0, length])}>
+                <button type="button" onClick={() => (zoomed.value = null)}>
                     All
                 </button>{" "}
                 <span class="soft">
@@ -48,7 +46,7 @@ interface Band {
     most: Float32Array;
 }
 
-function Plot({ screen, axis, span }: { screen: Screen; axis: Axis; span: Signal<Span> }) {
+function Plot({ screen, axis, span }: { screen: Screen; axis: Axis; span: ReadonlySignal<Span> }) {
     const canvas = useRef<HTMLCanvasElement>(null);
     const band = useSignal<Band | null>(null);
     const { studio } = screen;

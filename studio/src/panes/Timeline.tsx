@@ -11,7 +11,7 @@ export function clock(seconds: number): string {
 }
 
 const STEPS = [
-    { of: "tool", back: "⏮", on: "⏭", title: "tool" },
+    { of: "tool", back: "«", on: "»", title: "tool" },
     { of: "block", back: "‹", on: "›", title: "block" },
 ] as const;
 

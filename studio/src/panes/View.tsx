@@ -36,10 +36,11 @@ export function View({ screen }: { screen: Screen }) {
                     </select>
                 </label>
             </header>
-            <div class={four.value ? "body views four" : "body views"} onDragOver={(event) => event.preventDefault()}>
+            <div class={four.value ? "body views four" : "body views"}>
                 {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
                     <One key={view} screen={screen} view={view} first={number === 0} />
                 ))}
+                {screen.studio.job.value === null && screen.studio.running.value === null && <Empty screen={screen} />}
             </div>
             <Readout screen={screen} />
         </section>
@@ -94,5 +95,22 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             data-pane
             onFocus={() => (screen.viewer = screen.viewers.find((viewer) => viewer.host === host.current) ?? screen.viewer)}
         />
+    );
+}
+
+function Empty({ screen }: { screen: Screen }) {
+    return (
+        <div class="empty">
+            <p>Drop a toolpath here: CL data, a program, a board, a contour.</p>
+            <p>
+                <button type="button" onClick={() => (screen.dialog.value = "source")}>
+                    Open a file…
+                </button>{" "}
+                <button type="button" onClick={() => (screen.dialog.value = "machine")}>
+                    Choose a machine…
+                </button>
+            </p>
+            <p class="soft">A program dropped on the left pane is proven against the toolpath that is open.</p>
+        </div>
     );
 }

@@ -173,5 +173,6 @@ export interface Asks {
     save: [{ revision: number; path: string; replace: boolean }, { files: string[] }];
     draft: [{ name: string; of: Work }, object];
     drafts: [Record<string, never>, { drafts: Draft[] }];
+    draft_text: [{ name: string }, object];
     drop_draft: [{ name: string }, object];
 }

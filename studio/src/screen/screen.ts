@@ -31,7 +31,7 @@ export class Screen {
     readonly mode: Signal<Mode> = signal("kind");
     readonly width: Signal<number> = signal(1);
     readonly rapids: Signal<boolean> = signal(true);
-    /** What is ahead of the cursor is pale. */
+    /** While one replays, what is ahead of the cursor is pale. */
     readonly pale: Signal<boolean> = signal(true);
     readonly four: Signal<boolean> = signal(false);
     readonly ruler: Signal<boolean> = signal(false);
@@ -84,7 +84,7 @@ export class Screen {
         const size = 40 / Math.max(this.viewer?.camera.scale ?? 1, 1e-3);
         return {
             now: place === null ? null : place.move,
-            pale: this.pale.value,
+            pale: this.pale.value && cursor.by.value === "time",
             ofBlock: cursor.ofBlock.value,
             mismatch: job.value?.walk?.mismatch ?? null,
             tool: place === null ? null : toolBody(place.tool, vector(place.tip), vector(place.axis ?? [0, 0, 1]), size),

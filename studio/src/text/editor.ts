@@ -69,6 +69,8 @@ export class Editor {
     private origin: Origin | null = null;
     private marked: { at: number | null; wrong: number[] } = { at: null, wrong: [] };
     private reading = 0;
+    /** The window that is on its way. */
+    private coming: Window | null = null;
     private isSetting = false;
 
     constructor(host: HTMLElement, label: string, private readonly listener: Listener) {
@@ -116,8 +118,13 @@ export class Editor {
         if (origin === null) return;
         const reading = ++this.reading;
         const window = windowAround(line, origin.lines);
-        const text = await origin.read(window.from, window.to);
-        if (reading === this.reading) this.set(text, window);
+        this.coming = window;
+        try {
+            const text = await origin.read(window.from, window.to);
+            if (reading === this.reading) this.set(text, window);
+        } finally {
+            if (reading === this.reading) this.coming = null;
+        }
     }
 
     private set(text: string, window: Window): void {
@@ -139,7 +146,7 @@ export class Editor {
     mark(at: number | null, wrong: number[]): void {
         const isNew = at !== this.marked.at;
         this.marked = { at, wrong };
-        if (at !== null && this.origin !== null && isNew && !isWithin(this.window, at) && at <= this.origin.lines) void this.fetch(at);
+        if (at !== null && this.origin !== null && isNew && !isWithin(this.coming ?? this.window, at) && at <= this.origin.lines) void this.fetch(at);
         else this.draw(isNew);
     }
 
