@@ -84,6 +84,7 @@ PAGE := $(shell find studio/src studio/index.html studio/package-lock.json studi
 
 studio/dist/index.html: $(PAGE)
 	@scripts/setup page
+	@rm -rf studio/dist/assets studio/dist/index.html
 	npm --prefix studio run --silent build
 
 ## The tests of the page: its parts, and the whole.

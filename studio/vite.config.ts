@@ -6,7 +6,7 @@ const passed = { target: server, changeOrigin: true, headers: { origin: server }
 
 export default defineConfig({
     base: "./",
-    build: { target: "es2023", assetsInlineLimit: 0, modulePreload: { polyfill: false }, reportCompressedSize: false },
+    build: { target: "es2023", emptyOutDir: false, assetsInlineLimit: 0, modulePreload: { polyfill: false }, reportCompressedSize: false },
     server: { proxy: { "/socket": { ...passed, ws: true }, "/geometry": passed, "/moves": passed, "/upload": passed } },
     test: { include: ["tests/*.test.ts"], benchmark: { include: ["tests/*.bench.ts"] } },
 });

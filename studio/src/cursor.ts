@@ -3,7 +3,7 @@
 import { effect, signal, untracked, type Signal } from "@preact/signals";
 import { Newest } from "./newest.ts";
 import type { Seam } from "./protocol/seam.ts";
-import type { By, Job, Place } from "./protocol/types.ts";
+import type { By, Job, Place } from "./protocol/asks.ts";
 
 /** Moves from the first to before the last. */
 export type Range = [number, number];

@@ -2,7 +2,7 @@
 
 import { signal, type Signal } from "@preact/signals";
 import type { Cursor } from "./cursor.ts";
-import type { Job, Place } from "./protocol/types.ts";
+import type { Job, Place } from "./protocol/asks.ts";
 
 export type Pace = { factor: number } | { metres: number };
 

@@ -3,7 +3,7 @@
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import { Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { Draft, Finding, Job, MachineEntry, Opened, Option, SourceName, Work } from "./protocol/types.ts";
+import type { Draft, Finding, Job, MachineEntry, Opened, Option, SourceName, Work } from "./protocol/asks.ts";
 
 export class Studio {
     readonly link: Signal<State>;

@@ -3,7 +3,7 @@ import { expect, test } from "vitest";
 import { Cursor, neighbour } from "../src/cursor.ts";
 import { Newest } from "../src/newest.ts";
 import type { Seam } from "../src/protocol/seam.ts";
-import type { By, Job, Place } from "../src/protocol/types.ts";
+import type { By, Job, Place } from "../src/protocol/asks.ts";
 
 const settled = () => new Promise((resolve) => setTimeout(resolve));
 

@@ -1,5 +1,5 @@
 import type { Screen } from "../screen/screen.ts";
-import type { Job, Verdict, Work } from "../protocol/types.ts";
+import type { Job, Verdict, Work } from "../protocol/asks.ts";
 
 const verdicts: Record<Verdict, string> = {
     done: "✓ PROVEN",

@@ -1,4 +1,4 @@
-import type { Finding, Severity } from "../protocol/types.ts";
+import type { Finding, Severity } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** A shape beside the colour. */

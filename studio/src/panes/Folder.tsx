@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import type { Entry } from "../protocol/types.ts";
+import type { Entry } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { Choose, type Choice } from "./Choose.tsx";
 

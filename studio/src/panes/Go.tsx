@@ -1,5 +1,5 @@
 import { useSignal } from "@preact/signals";
-import type { By } from "../protocol/types.ts";
+import type { By } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** `120` is a line of the program, `s120` one of the source, `m5000` a move, `3:12` or `12.5 s` a time. */

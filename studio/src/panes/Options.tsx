@@ -1,6 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { matching } from "../commands.ts";
-import type { Option } from "../protocol/types.ts";
+import type { Option } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** The options of the command, as it describes them itself. */

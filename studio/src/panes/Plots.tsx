@@ -1,7 +1,7 @@
 import { effect, useComputed, useSignal, type ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Newest } from "../newest.ts";
-import type { Axis } from "../protocol/types.ts";
+import type { Axis } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { clock } from "./Timeline.tsx";
 

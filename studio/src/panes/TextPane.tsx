@@ -1,6 +1,6 @@
 import { effect, untracked, useSignal, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import type { Job, Text } from "../protocol/types.ts";
+import type { Job, Text } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { familyOf } from "../text/dialects.ts";
 import { Editor, type Origin } from "../text/editor.ts";

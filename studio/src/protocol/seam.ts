@@ -1,7 +1,7 @@
 /** The one file of the page that knows how the server is reached: everything else asks. */
 
 import { read, write, type Arrays, type Frame } from "./frames.ts";
-import type { Asks, Finding, Verdict } from "./types.ts";
+import type { Asks, Finding, Verdict } from "./asks.ts";
 
 export interface Progress {
     step: string;

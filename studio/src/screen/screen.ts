@@ -2,7 +2,7 @@
 
 import { computed, effect, signal, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { Finding } from "../protocol/types.ts";
+import type { Finding } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";

@@ -1,6 +1,6 @@
 /** The chunks of a walk: where each is, which are seen, and the vertices of those that have come. */
 
-import type { Walk } from "../protocol/types.ts";
+import type { Walk } from "../protocol/asks.ts";
 import type { Projection, Size } from "./camera.ts";
 import { VERTEX_BYTES } from "./strip.ts";
 import type { Vector } from "./vector.ts";

@@ -1,6 +1,6 @@
 /** Triangles of the tool and of boxes. */
 
-import type { Tool } from "../protocol/types.ts";
+import type { Tool } from "../protocol/asks.ts";
 import type { Triangles } from "./strip.ts";
 import { along, cross, unit, type Vector } from "./vector.ts";
 
