@@ -246,16 +246,26 @@ impl Prover<'_> {
     }
 
     /// A machine without switches waits for the operator before it first moves: its Z is where it was switched on until a tool has
-    /// set it.
+    /// set it. One with a touch plate waits before it first leaves home: no table knows how long its first tool is.
     pub(super) fn awaits_set_up(&mut self, event: &Event) {
-        let moves =
-            matches!(event.action, Action::Home(_) | Action::MachineMove(_) | Action::Probe(_))
-                || event.action.position().is_some();
-        if !self.is_set_up && moves && self.gauge.machine.retract_height().is_some() {
-            let message = "moves before it has stopped for the operator to fit the tool and set Z 0 with it: the machine has no switches";
-            self.differs(event.line, (Rule::Stop, message.into()));
+        let machine = self.gauge.machine;
+        let homes = matches!(event.action, Action::Home(_) | Action::MachineMove(_));
+        let moves = matches!(event.action, Action::Probe(_)) || event.action.position().is_some();
+        let why = if machine.retract_height().is_some() && (homes || moves) {
+            "the machine has no switches"
+        } else if machine.touch_plate().is_some() && moves {
+            "the machine has a touch plate, and no table of tools that are measured"
+        } else {
+            self.is_set_up |= event.action == Action::Stop;
+            return;
+        };
+        if !self.is_set_up {
+            let message = format!(
+                "moves before it has stopped for the operator to fit the tool and set Z 0 with it: {why}"
+            );
+            self.differs(event.line, (Rule::Stop, message));
         }
-        self.is_set_up |= moves || event.action == Action::Stop;
+        self.is_set_up = true;
     }
 
     /// A retract to the `retract_height`, which is home on a machine without switches: above all that the source cuts.

@@ -548,14 +548,21 @@ fn tools_get_their_lengths_on_a_plate() {
         let said = prove(&text.replacen(from, to, 1));
         assert!(said.code == 1 && said.err.contains(why), "{from} {to} {said:?}");
     }
+    // The first tool is not touched off: the program stops for the operator to know that Z 0 is to be set with it.
+    let set_up = "T1 M6\n(MSG, Z 0 counts from T1: go on if it was set with T1 and its length on, by G43)\nM0\n";
+    assert_eq!(text.matches(set_up).count(), 1, "{text}");
+    for (wrong, code) in [("T1 M6\n", 1), ("T1 M6\nM1\n", 1), ("M0\nT1 M6\n", 0)] {
+        let said = prove(&text.replacen(set_up, wrong, 1));
+        assert_eq!(said.code, code, "{wrong:?} {said:?}");
+        assert_eq!(said.err.contains("stopped for the operator"), code == 1, "{said:?}");
+    }
     judged_by_linuxcnc(&folder, &text);
     // A machine without a plate takes none of it, nor does one whose table could be turned below it.
-    for other in ["linuxcnc-mill", "xyzac.toml"] {
-        folder.write("out/drill.ngc", &text);
-        let file = folder.read("mill.toml").replace("linuxcnc-mill", "linuxcnc-xyzac");
-        folder.write("xyzac.toml", file);
+    folder.write("out/drill.ngc", &text);
+    folder.write("xyzac.toml", folder.read("mill.toml").replace("linuxcnc-mill", "linuxcnc-xyzac"));
+    for (other, code) in [("linuxcnc-mill", 1), ("linuxcnc-xyzac", 1), ("xyzac.toml", 2)] {
         let said = folder.run(&["prove", "out/drill.ngc", "--against", "board", "-m", other]);
-        assert_eq!(said.code, 1, "{other} {said:?}");
+        assert_eq!(said.code, code, "{other} {said:?}");
     }
     let said = folder.run(&[&call[..], &["-m", "linuxcnc-mill"]].concat());
     assert!(said.code == 0 && !folder.read("out/drill.ngc").contains("G38.2"), "{said:?}");
@@ -597,13 +604,19 @@ fn judged_by_linuxcnc(folder: &Folder, text: &str) {
 #[test]
 fn a_machine_without_switches_stops_before_its_first_move() {
     let folder = small();
-    folder.write("own.toml", "extends = \"generic-3axis-grbl\"\n[options]\nretract_height = 20\n");
-    for machine in ["grbl-3018", "own.toml"] {
+    let own = |option: &str| format!("extends = \"generic-3axis-grbl\"\n[options]\n{option}\n");
+    folder.write("own.toml", own("retract_height = 20"));
+    // One with switches whose tools nobody has measured stops before it leaves home.
+    folder.write("plate.toml", own("touch_travel = 15"));
+    for machine in ["grbl-3018", "own.toml", "plate.toml"] {
         let call = ["pcb", "board", "--tool", "0.4", "--only", "front", "-o", "out", "-m", machine];
         let said = folder.run(&call);
         assert_eq!(said.code, 0, "{said:?}");
         let text = folder.read("out/front.gcode");
-        let stop = "(Z goes up next: see that there is room)\nM0\n";
+        let stop = match machine {
+            "plate.toml" => "(fit the tool, and set Z 0 with it)\nM0\n",
+            _ => "(Z goes up next: see that there is room)\nM0\n",
+        };
         assert_eq!(text.matches(stop).count(), 1, "{text}");
         for wrong in ["", "M5\n", "M1\n", "G4 P1\n", "G0 Z20\nM0\n"] {
             folder.write("out/front.gcode", text.replacen(stop, wrong, 1));
