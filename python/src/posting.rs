@@ -66,7 +66,7 @@ pub fn post<'py>(
         format!("{name}.{}", machine.extension)
     });
     let tolerances = tolerances(py, tolerance)?;
-    let Posted { text, parts, account } =
+    let Posted { text, parts, account, .. } =
         released(py, || proven(toolpath, machine, &file, &tolerances, &()))?;
     let report = report(py, &account)?;
     if account.verdict != Verdict::Done {

@@ -7,7 +7,7 @@ use crate::report::{self, Digests};
 use crate::summary::{Shape, time};
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
-use ::post::{Output, Part};
+use ::post::{Origins, Output, Part};
 use control::Folders;
 use machine::Machine;
 use machine::time::Times;
@@ -49,6 +49,9 @@ const MACHINE_CANNOT: [Rule; 23] = [
 pub struct Posted {
     /// The program. Nobody should have it whose account does not say that it is proven.
     pub text: Vec<u8>,
+    /// Which template wrote each line of it, for which record of the program that its proof compares it with, which whoever watches
+    /// is given ([`Watch::follow`]).
+    pub origins: Origins,
     /// The files that it calls, which lie beside it; none where it is whole.
     pub parts: Vec<Part>,
     /// What is reported of it.
@@ -87,7 +90,15 @@ pub fn proven(
         || write((headed.as_ref().unwrap_or(program), file), machine, toolpath, &mut warnings),
         || (Shape::of(program), Times::of(program, machine)),
     );
-    let output = output?;
+    let mut output = output?;
+    if headed.is_some() {
+        // The records of the toolpath stand behind the one that its head has more.
+        let place = |record: usize| record.checked_sub(1);
+        output.origins = output.origins.moved(place);
+        for part in &mut output.parts {
+            part.origins = std::mem::take(&mut part.origins).moved(place);
+        }
+    }
     watch.begin("proving")?;
     let mut follower = watch.followed(file, program, machine);
     let parts: BTreeMap<String, Vec<u8>> =
@@ -99,7 +110,8 @@ pub fn proven(
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);
         account.findings.extend(warnings);
-        return Ok(Posted { text: output.text, parts: output.parts, account });
+        let Output { text, origins, parts, .. } = output;
+        return Ok(Posted { text, origins, parts, account });
     }
 
     warnings.extend(proof.warnings.iter().chain(&proof.accepted).cloned());
@@ -119,7 +131,8 @@ pub fn proven(
     rows.extend(prove::rows(&proof, machine));
     rows.extend(files(&output).map(|text| ("files", text)));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
-    Ok(Posted { text: output.text, parts: output.parts, account })
+    let Output { text, origins, parts, .. } = output;
+    Ok(Posted { text, origins, parts, account })
 }
 
 /// The texts of parts, in the order of the names of their files.

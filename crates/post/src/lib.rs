@@ -53,6 +53,7 @@ mod guard;
 mod leads;
 mod motion;
 mod number;
+mod origins;
 mod position;
 mod promises;
 mod rapid;
@@ -74,6 +75,7 @@ mod writer;
 
 pub use arm::reach::{ArmLooks, ArmMargins, ArmSample, arm_margins, arm_samples};
 pub use catalogue::{Kind, Parameter, catalogue};
+pub use origins::{Origin, Origins, places};
 pub use template::number_of;
 
 use machine::Machine;
@@ -84,6 +86,8 @@ use program::{Diagnostic, Program, Rule, Severity};
 pub struct Output {
     /// The text, ready to be saved.
     pub text: Vec<u8>,
+    /// Which template wrote each line of it, for which record.
+    pub origins: Origins,
     /// Blocks (lines) written.
     pub blocks: usize,
     /// What was lowered or is worth knowing, with source lines.
@@ -99,6 +103,8 @@ pub struct Part {
     pub file: String,
     /// Its text, ready to be saved.
     pub text: Vec<u8>,
+    /// Which template wrote each line of it, for which record.
+    pub origins: Origins,
 }
 
 /// Writes `program` for `machine`.
@@ -155,22 +161,29 @@ fn write_arm(
     name: &str,
 ) -> Result<Output, Vec<Diagnostic>> {
     let centered = center::centered(program, machine.resolution());
-    let (centered, warning) = centered.map_err(|found| vec![*found])?.unzip();
-    let offsets = centered.is_some();
-    let program = centered.as_ref().unwrap_or(program);
-    let mut output = arm::write(program, machine, robot, (name, offsets))?;
-    output.warnings.extend(warning);
+    let Some((offset, warning)) = centered.map_err(|found| vec![*found])? else {
+        return arm::write(program, machine, robot, (name, false));
+    };
+    let mut output = arm::write(&offset, machine, robot, (name, true))?;
+    output.warnings.push(warning);
+    let places = places(program, &offset);
+    output.origins = output.origins.moved(|record| places.get(record).copied());
+    for part in &mut output.parts {
+        part.origins =
+            std::mem::take(&mut part.origins).moved(|record| places.get(record).copied());
+    }
     Ok(output)
 }
 
 fn write_moves(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
-    let Some((records, lines)) = sweep::split(program, machine) else {
+    let Some(sweep::Split { records, places, lines }) = sweep::split(program, machine) else {
         let walk = walk::Walk::new(program, machine)?;
         return upright::check(program, machine)
             .map_err(|found| vec![*found])
             .and_then(|()| walk.run());
     };
     let mut output = walk::Walk::new(&program.with_records(records), machine)?.run()?;
+    output.origins = output.origins.moved(|record| places.get(record).map(|place| *place as usize));
     let message = format!(
         "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",
         lines.len()

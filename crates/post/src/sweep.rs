@@ -22,14 +22,23 @@ const HALVINGS: u32 = 8;
 /// So many times the records of the source may be added: what would need more is left as it is.
 const MOST: usize = 4;
 
-/// The records of `program` with such cuts split, and the lines of the source that were; `None` where
-/// there are none.
-pub(crate) fn split(program: &Program, machine: &Machine) -> Option<(Vec<Record>, Vec<u32>)> {
+/// A program with such cuts split.
+pub(crate) struct Split {
+    pub(crate) records: Vec<Record>,
+    /// The place of each in the source.
+    pub(crate) places: Vec<u32>,
+    /// The lines of the source that were split.
+    pub(crate) lines: Vec<u32>,
+}
+
+/// `program` with such cuts split; `None` where there are none.
+pub(crate) fn split(program: &Program, machine: &Machine) -> Option<Split> {
     let turned = [OrientationMode::ToolCenterAngles, OrientationMode::MachineAngles];
     if machine.rotary.len() < 2 || !turned.contains(&machine.orientation.simultaneous) {
         return None;
     }
     let mut split: Vec<Record> = Vec::new();
+    let mut places: Vec<u32> = Vec::new();
     let mut lines = Vec::new();
     let (mut here, mut feed) = (None, None);
     // The last tool axis that was another than that of `here`.
@@ -51,6 +60,7 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<(Vec<Record>
             if let Some(parts) = parts {
                 if lines.is_empty() {
                     split.extend_from_slice(&program.records[..index]);
+                    places.extend(0..index as u32);
                 }
                 room = room.saturating_sub(parts.poses.len() + 2);
                 lines.push(record.line);
@@ -61,14 +71,16 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<(Vec<Record>
                 let length = from.point().distance(to.point());
                 let timed = machine.capabilities.inverse_time;
                 put(&mut split, record, &parts, inverse.map(|rate| Timed { rate, length, timed }));
+                places.resize(split.len(), index as u32);
                 continue;
             }
         }
         if !lines.is_empty() {
             split.push(record.clone());
+            places.push(index as u32);
         }
     }
-    (!lines.is_empty()).then_some((split, lines))
+    (!lines.is_empty()).then_some(Split { records: split, places, lines })
 }
 
 /// The poses before the end of a cut, and in how many parts of the same turn it is split: in a singular pose the tool

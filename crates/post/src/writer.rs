@@ -1,7 +1,8 @@
 //! The text as it grows: words with their modality, block numbers, line lengths.
 
-use crate::catalogue::WordName;
+use crate::catalogue::{BlockName, WordName};
 use crate::number::Number;
+use crate::origins::{self, Origins};
 use crate::surface::{DECIMALS, Part};
 use crate::template::{Lines, ORIENTATION, POSITION, Step, words_of};
 use crate::words::{Words, bit};
@@ -48,7 +49,26 @@ pub(crate) struct Writer {
     refused: Option<(WordName, f64)>,
     next_number: u64,
     text: Vec<u8>,
+    /// Where each line of it comes from.
+    origins: Origins,
+    /// The record for which it is written, as [`origins::number`] has it.
+    record: u32,
     lines: usize,
+}
+
+/// Text that has been taken out, with where its lines come from.
+#[derive(Debug, Default)]
+pub(crate) struct Cutting {
+    pub(crate) text: Vec<u8>,
+    pub(crate) origins: Origins,
+}
+
+impl Cutting {
+    /// Puts another one behind it.
+    pub(crate) fn append(&mut self, other: Cutting) {
+        self.text.extend_from_slice(&other.text);
+        self.origins.insert(self.origins.lines(), other.origins);
+    }
 }
 
 impl Writer {
@@ -84,6 +104,8 @@ impl Writer {
             refused: None,
             next_number: first.into(),
             text: Vec::new(),
+            origins: Origins::default(),
+            record: origins::number(None),
             lines: 0,
         };
         if let Some(height) = machine.safe_height {
@@ -149,14 +171,30 @@ impl Writer {
         self.text.len()
     }
 
-    /// Takes what has been written since the text ended there.
-    pub(crate) fn cut(&mut self, from: usize) -> Vec<u8> {
-        self.text.split_off(from)
+    /// What is written from here on is for this record of the source.
+    #[inline]
+    pub(crate) fn is_for(&mut self, record: Option<usize>) {
+        self.record = origins::number(record);
     }
 
-    /// Puts text that has been cut at a place.
-    pub(crate) fn paste(&mut self, at: usize, text: Vec<u8>) {
-        self.text.splice(at..at, text);
+    /// Takes what has been written since the text ended there.
+    pub(crate) fn cut(&mut self, from: usize) -> Cutting {
+        let text = self.text.split_off(from);
+        let lines = text.iter().filter(|byte| **byte == b'\n').count();
+        let origins = self.origins.split_off(self.origins.lines() - lines);
+        Cutting { text, origins }
+    }
+
+    /// Puts text that has been cut at the beginning.
+    pub(crate) fn paste_before(&mut self, cutting: Cutting) {
+        self.text.splice(..0, cutting.text);
+        self.origins.insert(0, cutting.origins);
+    }
+
+    /// Puts text that has been cut at the end.
+    pub(crate) fn paste(&mut self, cutting: Cutting) {
+        self.text.extend_from_slice(&cutting.text);
+        self.origins.insert(self.origins.lines(), cutting.origins);
     }
 
     /// Another file begins: its lines are counted from the first number on.
@@ -282,11 +320,11 @@ impl Writer {
         if word == WordName::F { self.feed_form } else { word }
     }
 
-    /// Writes a block. A line on which nothing but a number would stand is left out.
+    /// Writes the block of this name. A line on which nothing but a number would stand is left out.
     ///
     /// # Errors
     /// A value that its word cannot take, a line longer than the control reads.
-    pub(crate) fn block(&mut self, block: &Lines) -> Result<(), Box<Diagnostic>> {
+    pub(crate) fn block(&mut self, name: BlockName, block: &Lines) -> Result<(), Box<Diagnostic>> {
         if let Some((word, value)) = self.refused.take() {
             let message = format!("{value} cannot be written as the word `{}`", word.name());
             return Err(Diagnostic::error(Rule::NumberRange, message).into());
@@ -324,6 +362,7 @@ impl Writer {
                 Step::End => {
                     if full {
                         self.end_line(start)?;
+                        self.origins.push(name, self.record);
                         self.next_number += if numbered { u64::from(self.step) } else { 0 };
                     } else {
                         self.text.truncate(start);
@@ -443,8 +482,8 @@ impl Writer {
         self.lines
     }
 
-    /// The text and the number of its lines.
-    pub(crate) fn finish(self) -> (Vec<u8>, usize) {
-        (self.text, self.lines)
+    /// The text, where its lines come from, and the number of all lines that were written.
+    pub(crate) fn finish(self) -> (Vec<u8>, Origins, usize) {
+        (self.text, self.origins, self.lines)
     }
 }

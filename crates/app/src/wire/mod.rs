@@ -174,13 +174,17 @@ pub fn make(
     let name = &toolpath.program.name;
     let proof = proof::of(&cut, &machine, name, file, &output.text, tolerances, watch)
         .map_err(Box::<Diagnostic>::from)?;
+    let proven = proof::source(&cut, name).map_err(Box::<Diagnostic>::from)?;
+    // An arc of the contour is made by several points of the path.
+    let places = ::post::places(&proven, &program);
+    let origins = output.origins.moved(|record| places.get(record).copied());
     watch.go_on()?;
     let select = settings.select;
     if !proof.proven {
         let mut account = prove::failed(&proof, &toolpath, file);
         account.findings.extend(warnings);
         let report = account.report();
-        let posted = Posted { text: output.text, parts: Vec::new(), account };
+        let posted = Posted { text: output.text, origins, parts: Vec::new(), account };
         return Ok(Made { posted, report, toolpath, cut, select });
     }
 
@@ -204,7 +208,7 @@ pub fn make(
     rows.extend(cut.rows(select));
     rows.extend(prove::rows(&proof, &machine));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
-    let posted = Posted { text: output.text, parts: Vec::new(), account };
+    let posted = Posted { text: output.text, origins, parts: Vec::new(), account };
     Ok(Made { posted, report, toolpath, cut, select })
 }
 

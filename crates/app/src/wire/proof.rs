@@ -23,16 +23,12 @@ pub fn of(
     tolerances: &Tolerances,
     watch: &dyn Watch,
 ) -> Result<Report, NoPose> {
-    if !cut.segments.iter().any(Segment::leans) {
-        let contour = cut.end(name, End::Lower)?;
-        let follower = &mut watch.followed(file, &contour, machine);
-        return Ok(proof::prove_for(&contour, machine, file, text, tolerances, follower));
-    }
-    let program = cut.program(name)?;
+    let program = source(cut, name)?;
     let follower = &mut watch.followed(file, &program, machine);
     let mut report = proof::prove_for(&program, machine, file, text, tolerances, follower);
+    let leans = cut.segments.iter().any(Segment::leans);
     for end in [End::Lower, End::Upper] {
-        if report.proven {
+        if leans && report.proven {
             let contour = cut.end(name, end)?;
             let found = one_end(&contour, (end, cut.height()), machine, file, text, tolerances);
             report.proven = found.proven;
@@ -48,6 +44,17 @@ pub fn of(
         }
     }
     Ok(report)
+}
+
+/// What the program is compared with as a whole: the contour with its arcs where the wire is upright, where it leans its points.
+///
+/// # Errors
+/// A contour with a point that is not finite.
+pub fn source(cut: &Cut, name: &str) -> Result<Program, NoPose> {
+    match cut.segments.iter().any(Segment::leans) {
+        true => cut.program(name),
+        false => cut.end(name, End::Lower),
+    }
 }
 
 /// Compares the path of one end of the wire, the upper one at this height in mm, with the contour that it follows.

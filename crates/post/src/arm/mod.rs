@@ -13,7 +13,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::template::{Scope, Templates, file_name, map, program_value};
 use crate::text::printed;
-use crate::writer::Writer;
+use crate::writer::{Cutting, Writer};
 use crate::{Output, Part, promises};
 use ::arm::{Arm, Joints};
 use geom::{Euler, Frame, Mat3, Quat, Vec3, wrap};
@@ -135,8 +135,8 @@ pub(crate) fn write(
     }
     let warnings = walk.findings.finish(machine.capabilities.lowering_tolerance)?;
     let parts = std::mem::take(&mut walk.parts);
-    let (text, blocks) = walk.writer.finish();
-    Ok(Output { text, blocks, warnings, parts })
+    let (text, origins, blocks) = walk.writer.finish();
+    Ok(Output { text, origins, blocks, warnings, parts })
 }
 
 /// Compiles the templates of an arm's machine and compares them with what its control promises.
@@ -183,7 +183,7 @@ struct Walk<'a> {
     /// The orientation that was written last as a vector along its axis of rotation, radians.
     vector: Vec3,
     /// Positions that stand behind the instructions, and how many they are.
-    table: Vec<u8>,
+    table: Cutting,
     points: u32,
     /// Whether the last motion has cut.
     is_cutting: bool,
@@ -276,7 +276,7 @@ impl<'a> Walk<'a> {
             is_exact: false,
             feed_unit: 0,
             vector: Vec3::ZERO,
-            table: Vec::new(),
+            table: Cutting::default(),
             points: 0,
             is_cutting: false,
             last_line: 0,
@@ -306,9 +306,13 @@ impl<'a> Walk<'a> {
     /// One step of it.
     fn step(&mut self, steps: &[Step], index: usize) -> Outcome {
         let (line, done) = match &steps[index] {
-            Step::Act(act, line) => (*line, self.act(*act, *line)),
+            Step::Act(act, line, record) => {
+                self.writer.is_for(Some(*record));
+                (*line, self.act(*act, *line))
+            }
             Step::Reenter(reentry) => (reentry.line, self.reenter(reentry)),
             Step::Move(motion) => {
+                self.writer.is_for(Some(motion.record));
                 let next = match steps.get(index + 1) {
                     Some(Step::Move(next)) => Some(next),
                     Some(Step::Act(..) | Step::Reenter(_)) | None => None,
@@ -325,6 +329,7 @@ impl<'a> Walk<'a> {
     /// # Errors
     /// It cannot, with the line of the last motion.
     fn finish(&mut self) -> Outcome {
+        self.writer.is_for(None);
         let done = self.begin().and_then(|()| self.home()).and_then(|()| self.switch_off());
         done.map_err(|found| Box::new(found.line(self.last_line)))
     }
@@ -343,14 +348,14 @@ impl<'a> Walk<'a> {
     fn end(&mut self, start: BlockName, end: BlockName) -> Outcome<Size> {
         self.block(BlockName::PositionsStart)?;
         let table = std::mem::take(&mut self.table);
-        self.writer.paste(self.writer.end(), table);
+        self.writer.paste(table);
         self.block(end)?;
         if self.counts(start) {
             let at = self.writer.end();
             self.writer.set(WordName::Lines, self.writer.numbered() as f64);
             self.block(start)?;
             let head = self.writer.cut(at);
-            self.writer.paste(0, head);
+            self.writer.paste_before(head);
         }
         Ok(self.size())
     }
@@ -777,7 +782,7 @@ impl<'a> Walk<'a> {
         let from = self.writer.end();
         self.block(block)?;
         let entry = self.writer.cut(from);
-        self.table.extend_from_slice(&entry);
+        self.table.append(entry);
         Ok(number)
     }
 
@@ -1018,10 +1023,10 @@ impl<'a> Walk<'a> {
     /// Writes a block, where the control has it.
     fn block(&mut self, name: BlockName) -> Outcome {
         match self.templates.lines(name) {
-            Some(lines) => self.writer.block(lines),
+            Some(lines) => self.writer.block(name, lines),
             None => {
                 let scope = Scope { set: self.writer.set_words(), ..self.scope.clone() };
-                self.writer.block(&self.templates.render(name, scope)?)
+                self.writer.block(name, &self.templates.render(name, scope)?)
             }
         }
     }

@@ -5,6 +5,7 @@
 
 use super::{BlockName, Step, Walk, WordName, named};
 use crate::Part;
+use crate::writer::Cutting;
 use machine::Machine;
 use program::{Diagnostic, Outcome, Rule};
 
@@ -62,7 +63,11 @@ impl Walk<'_> {
             true => self.writer.numbered() as usize,
             false => self.writer.lines() - self.earlier_lines,
         };
-        Size { bytes: self.writer.end() + self.table.len(), lines, points: self.points as usize }
+        Size {
+            bytes: self.writer.end() + self.table.text.len(),
+            lines,
+            points: self.points as usize,
+        }
     }
 
     /// Whether a file may end here: nothing is cut, and the tool is beyond all cuts.
@@ -147,7 +152,8 @@ impl Walk<'_> {
         }
         let name = names.last().map_or("", |name| name).to_ascii_lowercase();
         let file = format!("{name}.{}", self.machine.extension);
-        self.parts.push(Part { file, text: self.writer.cut(0) });
+        let Cutting { text, origins } = self.writer.cut(0);
+        self.parts.push(Part { file, text, origins });
         self.writer.count_anew();
         self.points = 0;
         self.earlier_lines = self.writer.lines();

@@ -36,8 +36,8 @@ pub(super) enum Step<'a> {
     Move(Motion),
     /// The tool leaves the cut, and enters it again at the same place.
     Reenter(Reentry),
-    /// What happens between motions, and its line.
-    Act(Act<'a>, u32),
+    /// What happens between motions, and its line and record of the source.
+    Act(Act<'a>, u32, usize),
 }
 
 /// A cut that is left and entered again.
@@ -105,6 +105,8 @@ pub(super) enum Act<'a> {
 pub(super) struct Motion {
     /// Line of the source.
     pub(super) line: u32,
+    /// Which record of the source it is.
+    pub(super) record: usize,
     pub(super) kind: Kind,
     /// mm/min; of a rapid that of the cell.
     pub(super) feed: f64,
@@ -160,12 +162,13 @@ enum Planned<'a> {
     /// A motion, and the number of the point at which it ends.
     Move {
         line: u32,
+        record: usize,
         kind: Kind,
         feed: f64,
         corner: f64,
         point: usize,
     },
-    Act(Act<'a>, u32),
+    Act(Act<'a>, u32, usize),
 }
 
 /// The motions of a program, with joints.
@@ -196,6 +199,7 @@ pub(super) fn stretches<'a>(
     let mut walk = Walk {
         machine,
         cell,
+        index: 0,
         stretches: vec![Stretch::new(None, machine.turn_speed())],
         here: None,
         feed: None,
@@ -204,7 +208,8 @@ pub(super) fn stretches<'a>(
         corner: machine.path_tolerance(),
         path: source.compensated_path,
     };
-    for record in &source.records {
+    for (index, record) in source.records.iter().enumerate() {
+        walk.index = index;
         walk.record(record).map_err(|found| Box::new(found.line(record.line)))?;
     }
     Ok(walk.stretches)
@@ -241,10 +246,10 @@ impl<'a> Stretch<'a> {
         };
         for step in self.steps {
             match step {
-                Planned::Act(act, line) => steps.push(Step::Act(act, line)),
-                Planned::Move { line, kind, feed, corner, point } => {
+                Planned::Act(act, line, record) => steps.push(Step::Act(act, line, record)),
+                Planned::Move { line, record, kind, feed, corner, point } => {
                     let end = chosen.positions[point];
-                    steps.push(Step::Move(Motion { line, kind, feed, corner, end }));
+                    steps.push(Step::Move(Motion { line, record, kind, feed, corner, end }));
                     steps.extend(chosen.reentries.get(&point).copied().map(Step::Reenter));
                 }
             }
@@ -351,6 +356,8 @@ struct Chosen {
 }
 
 struct Walk<'a, 'm> {
+    /// The place of the record at hand.
+    index: usize,
     machine: &'m Machine,
     cell: &'m Cell,
     stretches: Vec<Stretch<'a>>,
@@ -473,7 +480,8 @@ impl<'a> Walk<'a, '_> {
     }
 
     fn act(&mut self, record: &Record, act: Act<'a>) {
-        self.stretch().steps.push(Planned::Act(act, record.line));
+        let index = self.index;
+        self.stretch().steps.push(Planned::Act(act, record.line, index));
     }
 
     /// Where a cut begins.
@@ -498,9 +506,10 @@ impl<'a> Walk<'a, '_> {
 
     fn go(&mut self, line: u32, to: &Pose, kind: Kind, (feed, corner): (f64, f64)) {
         let cut = (kind != Kind::Rapid).then_some(feed);
+        let record = self.index;
         let stretch = self.stretch();
         let point = stretch.point(line, to, cut);
-        stretch.steps.push(Planned::Move { line, kind, feed, corner, point });
+        stretch.steps.push(Planned::Move { line, record, kind, feed, corner, point });
         self.here = Some(*to);
     }
 
@@ -528,7 +537,8 @@ impl<'a> Walk<'a, '_> {
                 HoleMove::Rapid(to) => self.go(line, &to, Kind::Rapid, rapid),
                 HoleMove::Line(to) => self.go(line, &to, Kind::Line, (feed, 0.0)),
                 HoleMove::Dwell(seconds) => {
-                    self.stretch().steps.push(Planned::Act(Act::Dwell(seconds), line))
+                    let index = self.index;
+                    self.stretch().steps.push(Planned::Act(Act::Dwell(seconds), line, index))
                 }
                 HoleMove::Spindle(_) => {
                     let message = "a boring cycle, which stops the spindle in the hole, is not written for robots";

@@ -111,10 +111,10 @@ pub fn arm_samples(
         Along { arm, cell, tool, turn_speed, here: None, time: 0.0, samples: Vec::new() };
     for step in &steps {
         match step {
-            Step::Act(Act::Tool(tool), _) => {
+            Step::Act(Act::Tool(tool), ..) => {
                 (along.tool, along.here) = (cell.tool(tool.length), None);
             }
-            Step::Act(Act::Home, _) => along.here = None,
+            Step::Act(Act::Home, ..) => along.here = None,
             Step::Act(..) => {}
             Step::Move(motion) => along.go(motion),
             Step::Reenter(reentry) => along.reenter(reentry, cell.joint_speed),

@@ -203,9 +203,9 @@ impl<'a> Walk<'a> {
             self.findings.error(error);
         }
         let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
-        let (text, blocks) = self.writer.finish();
+        let (text, origins, blocks) = self.writer.finish();
         self.limits.memory(blocks).map_err(|found| vec![*found])?;
-        Ok(crate::Output { text, blocks, warnings, parts: Vec::new() })
+        Ok(crate::Output { text, origins, blocks, warnings, parts: Vec::new() })
     }
 
     fn records(&mut self) -> Outcome {
@@ -228,6 +228,7 @@ impl<'a> Walk<'a> {
             let mut stops = route.stops();
             for record in &rest[..route.records] {
                 self.line = record.line;
+                self.writer.is_for(Some(self.index));
                 let stop = record.op.pose().and_then(|_| stops.next());
                 if let Err(error) = self.record(record, stop) {
                     let error = if error.line == 0 { error.line(self.line) } else { *error };
@@ -238,6 +239,7 @@ impl<'a> Walk<'a> {
                 self.index += 1;
             }
         }
+        self.writer.is_for(None);
         if self.ended { Ok(()) } else { self.end() }
     }
 
@@ -511,7 +513,7 @@ impl<'a> Walk<'a> {
         self.writer.code(WordName::WorkOffset, self.sent.work_offset());
         let lines = self.writer.lines();
         match self.templates.lines(name) {
-            Some(lines) => self.writer.block(lines)?,
+            Some(lines) => self.writer.block(name, lines)?,
             None => {
                 // What runs before the first tool change, nobody knows.
                 let known = self.wanted.tool().is_some();
@@ -529,7 +531,7 @@ impl<'a> Walk<'a> {
                     cut: self.cut_value(),
                     ..self.scope.clone()
                 };
-                self.writer.block(&self.templates.render(name, scope)?)?;
+                self.writer.block(name, &self.templates.render(name, scope)?)?;
             }
         }
         self.note_home(name);
