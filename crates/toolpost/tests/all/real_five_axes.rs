@@ -213,7 +213,7 @@ fn run(
     write("limits", &limits.collect::<String>());
     let pins = mill.pins.iter().map(|(name, value)| format!("{name} {value}\n"));
     write("pins", &pins.collect::<String>());
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/linuxcnc/five-axes-run");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/all/linuxcnc/five-axes-run");
     let output = Command::new(script)
         .arg(ui)
         .arg(mill.kinematics)
