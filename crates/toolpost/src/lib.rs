@@ -22,6 +22,7 @@ mod progress;
 mod prove;
 mod settings;
 mod show;
+mod studio;
 mod wire;
 
 use answer::Answer;
@@ -77,6 +78,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),
         Command::Fit(args) => fit::run(&args, silent),
+        Command::Studio(args) => studio::run(&args, json),
         Command::Explain { topic } => explain::run(topic.as_deref()),
         Command::Completions { shell } => Ok(completions(shell)),
     };

@@ -647,6 +647,10 @@ rules! {
         "A folder cannot be read."
         "check the name of the folder and the right to read it"
         "`toolpost pcb no-such-folder`";
+    FolderReach "folder-reach" []
+        "A path leads out of the folder that the studio was started in."
+        "copy the file into that folder, or start `toolpost studio` in a folder that holds both"
+        "`../part.cls`, or a link to a file elsewhere";
     Form "form" []
         "A file has no form of bodies, pictures or points that is read, or a body is made of more than triangles."
         "give .stl, .obj, .ply or .3mf with triangles, a .png, .jpg or .bmp, or a list of points"
@@ -1719,6 +1723,22 @@ rules! {
         "A pulse lies in the crack of no point."
         "write the program again"
         "A glass program with a changed coordinate";
+    StudioAsk "studio-ask" []
+        "The studio is asked for something that it does not know, or with values that it does not take."
+        "reload the page: it may be of another version than the command"
+        "a message of the page that names no ask";
+    StudioLimit "studio-limit" []
+        "A file, a message or all open programs together are larger than the studio takes."
+        "close what is no longer needed; the other commands take files of any size"
+        "a file of 300 MB that is dropped on the page";
+    StudioPage "studio-page" []
+        "The command was built without the page of the studio."
+        "install Node 20.19 or newer, run `make studio` in the source of Toolpost, and build the command again"
+        "`toolpost studio` of a command that was built without Node";
+    StudioPort "studio-port" []
+        "The studio cannot listen on 127.0.0.1."
+        "leave --port out, or give another one"
+        "`toolpost studio --port 80`, where the port belongs to somebody else";
     Surface "surface" []
         "What follows a measured surface is not possible here."
         "level the program with measured heights (`--heights`) instead"

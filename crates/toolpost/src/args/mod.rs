@@ -62,6 +62,9 @@ pub enum Command {
     Show(Show),
     /// Look for places of the part at which a robot can make a toolpath, and print each with its margins.
     Fit(Fit),
+    /// Open the studio in the browser: source, program, machine and proof in one window. The server listens on this computer alone
+    /// and reads and writes one folder alone.
+    Studio(Studio),
     /// Say what a name of machine and control files, or a rule of a finding, means.
     Explain {
         /// A key, a word, a block, a variable, or a rule; without one, all of them.
@@ -529,6 +532,26 @@ pub struct Fit {
     pub within: f64,
     #[command(flatten)]
     pub source: Source,
+}
+
+/// Arguments of `studio`.
+#[derive(Debug, Args)]
+pub struct Studio {
+    /// File with the toolpath, in the folder; it is posted at once where --machine is given too.
+    #[arg(value_name = "SOURCE")]
+    pub source: Option<PathBuf>,
+    /// Name in the library, or a file of the folder ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: Option<String>,
+    /// Folder in which files are read and saved, and none outside it [default: that of the source, or this folder].
+    #[arg(long, value_name = "FOLDER")]
+    pub folder: Option<PathBuf>,
+    /// Port of 127.0.0.1 on which the studio listens [default: a free one].
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
+    pub port: Option<u16>,
+    /// Print the link and open no browser.
+    #[arg(long)]
+    pub no_open: bool,
 }
 
 /// Commands of `machines`.

@@ -1,0 +1,412 @@
+//! The named folder: nothing outside it is read or written, by whatever path or link.
+//!
+//! Paths are those of the page: relative to the folder, with `/` between names. Every file is opened below a handle of the
+//! folder (`cap-std`), so a link that is put in place meanwhile leads nowhere else. Hidden names (`.toolpost`) are not listed.
+
+use crate::ask::{Draft, Entry, EntryKind};
+use cap_std::ambient_authority;
+use cap_std::fs::{Dir, OpenOptions};
+use program::{Diagnostic, Rule};
+use std::io::{self, Read, Write};
+use std::path::{Component, Path, PathBuf};
+
+/// The most entries of a folder that are listed.
+const MOST_ENTRIES: usize = 10_000;
+
+/// The largest file that is opened, bytes.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Where drafts are kept, in the named folder.
+const DRAFTS: &str = ".toolpost/drafts";
+
+/// The most drafts that are kept, and the largest, bytes.
+const MOST_DRAFTS: usize = 100;
+const LARGEST_DRAFT: usize = 64 << 20;
+
+/// What the system answers where a path leads out.
+const ESCAPES: &str = "a path led outside of the filesystem";
+
+/// The folder in which the studio reads and writes.
+#[derive(Debug)]
+pub struct Folder {
+    dir: Dir,
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Opens the folder `path`.
+    ///
+    /// # Errors
+    /// It is none, or may not be read.
+    pub fn open(path: &Path) -> Result<Folder, Box<Diagnostic>> {
+        let open = || {
+            let path = path.canonicalize()?;
+            Ok((Dir::open_ambient_dir(&path, ambient_authority())?, path))
+        };
+        let (dir, path) = open().map_err(|error: io::Error| {
+            let message = format!("the folder cannot be opened: {error}");
+            let found = Diagnostic::error(Rule::Folder, message).file(path.display().to_string());
+            Box::new(found.help("give the name of a folder that is there and may be read"))
+        })?;
+        Ok(Folder { dir, path })
+    }
+
+    /// Where it lies, without links.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> String {
+        self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// What is in one of its folders, folders first, and whether that is all.
+    ///
+    /// # Errors
+    /// It leads out, or is no folder that may be read.
+    pub fn list(&self, path: &str) -> Result<(Vec<Entry>, bool), Box<Diagnostic>> {
+        let inner = inner(path)?;
+        let unreadable = |error: io::Error| unreadable(path, &error);
+        let mut entries = Vec::new();
+        let mut is_whole = true;
+        for entry in self.dir.read_dir(&inner).map_err(unreadable)? {
+            let Ok(entry) = entry else { continue };
+            // A name that is no UTF-8 cannot be asked for by the page.
+            let Ok(name) = entry.file_name().into_string() else { continue };
+            if name.starts_with('.') {
+                continue;
+            }
+            if entries.len() == MOST_ENTRIES {
+                is_whole = false;
+                break;
+            }
+            // What a link that leads out, a pipe or a device has in it is nobody's to open here.
+            let at = inner.join(&name);
+            let Ok(metadata) = self.dir.metadata(&at) else { continue };
+            let (kind, bytes) = match (metadata.is_dir(), metadata.is_file()) {
+                (true, _) => (EntryKind::Folder, None),
+                (_, true) => (EntryKind::File, Some(metadata.len())),
+                _ => continue,
+            };
+            let path = spelled(&at);
+            entries.push(Entry { name, path, kind, bytes });
+        }
+        entries.sort_by(|a, b| (a.kind, &a.name).cmp(&(b.kind, &b.name)));
+        Ok((entries, is_whole))
+    }
+
+    /// The bytes of a file.
+    ///
+    /// # Errors
+    /// It leads out, is no file, is too large, or may not be read.
+    pub fn read(&self, path: &str) -> Result<Vec<u8>, Box<Diagnostic>> {
+        self.bytes(&inner(path)?, MOST_BYTES).map_err(|error| unreadable(path, &error))
+    }
+
+    /// The whole path of a file of the folder that is to be written, or of one that is there.
+    ///
+    /// # Errors
+    /// It leads out, also by a link.
+    pub fn target(&self, path: &str) -> Result<PathBuf, Box<Diagnostic>> {
+        let inner = inner(path)?;
+        let parent = inner.parent().unwrap_or(Path::new(""));
+        let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
+        let there = |at: &Path| match self.dir.metadata(at) {
+            Err(error) if is_escape(&error) => Err(leads_out(path)),
+            _ => Ok(()),
+        };
+        there(parent)?;
+        there(&inner)?;
+        Ok(self.path.join(inner))
+    }
+
+    /// The drafts that are kept, by their names.
+    pub fn drafts(&self) -> Vec<Draft> {
+        let Ok(folder) = self.dir.open_dir(DRAFTS) else { return Vec::new() };
+        let Ok(entries) = folder.entries() else { return Vec::new() };
+        let mut names: Vec<String> = entries
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .filter_map(|name| name.strip_suffix(".json").map(str::to_owned))
+            .take(MOST_DRAFTS)
+            .collect();
+        names.sort_unstable();
+        let draft = |name: String| {
+            let (of, bytes) = (self.of_draft(&name)?, self.text_of_draft(&name).ok()?.len());
+            Some(Draft { name, of, bytes: bytes as u64 })
+        };
+        names.into_iter().filter_map(draft).collect()
+    }
+
+    fn of_draft(&self, name: &str) -> Option<serde_json::Value> {
+        let bytes = self.bytes(&draft(name, "json").ok()?, LARGEST_DRAFT as u64).ok()?;
+        serde_json::from_slice(&bytes).ok()
+    }
+
+    /// The text of a draft.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn text_of_draft(&self, name: &str) -> Result<Vec<u8>, Box<Diagnostic>> {
+        let path = draft(name, "text")?;
+        self.bytes(&path, LARGEST_DRAFT as u64).map_err(|error| unreadable(name, &error))
+    }
+
+    /// Keeps a draft: whole, or as it was before.
+    ///
+    /// # Errors
+    /// Its name is none, it is too large, or the folder cannot be written.
+    pub fn keep_draft(
+        &self,
+        name: &str,
+        of: &serde_json::Value,
+        text: &[u8],
+    ) -> Result<(), Box<Diagnostic>> {
+        let (json, path) = (draft(name, "json")?, draft(name, "text")?);
+        let of = of.to_string();
+        if text.len() + of.len() > LARGEST_DRAFT {
+            let message = "this edit is larger than 64 MB: it is not kept as a draft";
+            return Err(Diagnostic::error(Rule::StudioLimit, message).help("save it often").into());
+        }
+        let count = || self.dir.read_dir(DRAFTS).map_or(0, Iterator::count) / 2;
+        if !self.dir.exists(&json) && count() >= MOST_DRAFTS {
+            let message = format!("{MOST_DRAFTS} drafts are kept already in {DRAFTS}");
+            return Err(Diagnostic::error(Rule::StudioLimit, message).help("drop some").into());
+        }
+        let keep = || {
+            self.dir.create_dir_all(DRAFTS)?;
+            // The text goes first: a draft is there once its JSON is.
+            self.replace(&path, text)?;
+            self.replace(&json, of.as_bytes())
+        };
+        keep().map_err(|error: io::Error| {
+            let message = format!("the edit cannot be kept as a draft: {error}");
+            let help = "save it elsewhere, or make the folder writable: a reload would lose it";
+            Box::new(Diagnostic::error(Rule::OutputFile, message).help(help).file(DRAFTS))
+        })
+    }
+
+    /// Drops a draft, where it is there.
+    ///
+    /// # Errors
+    /// Its name is none, or the folder cannot be written.
+    pub fn drop_draft(&self, name: &str) -> Result<(), Box<Diagnostic>> {
+        for ending in ["json", "text"] {
+            let path = draft(name, ending)?;
+            match self.dir.remove_file(&path) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                    let message = format!("the draft cannot be removed: {error}");
+                    let found = Diagnostic::error(Rule::OutputFile, message);
+                    return Err(found.help("remove it by hand").file(spelled(&path)).into());
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes a file under another name, and puts it in the place of the one that was there.
+    fn replace(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let new = path.with_extension("new");
+        let written = || {
+            let mut file = self.dir.create(&new)?;
+            file.write_all(bytes)?;
+            file.sync_all()?;
+            self.dir.rename(&new, &self.dir, path)
+        };
+        written().inspect_err(|_| drop(self.dir.remove_file(&new)))
+    }
+
+    fn bytes(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
+        // Looked at before it is opened: opening a pipe would wait for ever. One that takes the place of the file after
+        // that is opened without waiting.
+        let no_file = || io::Error::other("it is not a file");
+        if !self.dir.metadata(path)?.is_file() {
+            return Err(no_file());
+        }
+        let mut options = OpenOptions::new();
+        options.read(true);
+        #[cfg(unix)]
+        {
+            use cap_std::fs::OpenOptionsExt;
+            options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits() as i32);
+        }
+        let file = self.dir.open_with(path, &options)?;
+        let metadata = file.metadata()?;
+        if !metadata.is_file() {
+            return Err(no_file());
+        }
+        if metadata.len() > most {
+            return Err(io::Error::other(format!("it is larger than {} MB", most >> 20)));
+        }
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(metadata.len() as usize).map_err(io::Error::other)?;
+        // A file that grows while it is read ends where it ended.
+        file.take(metadata.len()).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+/// A path of the page as one below the folder.
+///
+/// # Errors
+/// It is absolute, or goes up.
+fn inner(path: &str) -> Result<PathBuf, Box<Diagnostic>> {
+    let mut inner = PathBuf::new();
+    for part in Path::new(path).components() {
+        match part {
+            Component::Normal(name) => inner.push(name),
+            Component::CurDir => {}
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => {
+                return Err(leads_out(path));
+            }
+        }
+    }
+    Ok(if inner.as_os_str().is_empty() { PathBuf::from(".") } else { inner })
+}
+
+/// The path as the page has it.
+fn spelled(path: &Path) -> String {
+    let parts = path.components().filter(|part| *part != Component::CurDir);
+    parts.map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
+}
+
+/// The file of a draft: its name is one of letters, digits, `-`, `_` and `.`.
+fn draft(name: &str, ending: &str) -> Result<PathBuf, Box<Diagnostic>> {
+    let is_good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if name.is_empty() || name.len() > 100 || name.starts_with('.') || !name.chars().all(is_good) {
+        let message = "a draft is named by up to 100 letters, digits, `-`, `_` and `.`";
+        return Err(Diagnostic::error(Rule::StudioAsk, message).into());
+    }
+    Ok(Path::new(DRAFTS).join(format!("{name}.{ending}")))
+}
+
+fn is_escape(error: &io::Error) -> bool {
+    error.to_string().contains(ESCAPES)
+}
+
+fn leads_out(path: &str) -> Box<Diagnostic> {
+    let message = "the path leads out of the folder that the studio was started in";
+    Diagnostic::error(Rule::FolderReach, message).file(path).into()
+}
+
+fn unreadable(path: &str, error: &io::Error) -> Box<Diagnostic> {
+    if is_escape(error) {
+        return leads_out(path);
+    }
+    let message = format!("cannot be read: {error}");
+    let help = "give the name of a file that is there and may be read";
+    Diagnostic::error(Rule::Unreadable, message).help(help).file(path).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+    use std::fs;
+
+    fn folder() -> (tempfile::TempDir, Folder) {
+        let all = tempfile::tempdir().unwrap();
+        let own = all.path().join("own");
+        fs::create_dir_all(own.join("parts")).unwrap();
+        fs::write(own.join("a.cls"), "GOTO/1,2,3\n").unwrap();
+        fs::write(own.join("parts/b.cls"), "GOTO/4,5,6\n").unwrap();
+        fs::write(own.join(".hidden"), "x").unwrap();
+        fs::write(all.path().join("secret"), "secret").unwrap();
+        let folder = Folder::open(&own).unwrap();
+        (all, folder)
+    }
+
+    #[test]
+    fn what_is_in_it_is_listed_folders_first_and_hidden_names_are_not() {
+        let (_all, folder) = folder();
+        let (entries, is_whole) = folder.list("").unwrap();
+        let names: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
+        assert_eq!((names, is_whole), (vec!["parts", "a.cls"], true));
+        assert_eq!(entries[1].bytes, Some(11));
+        assert_eq!(folder.list("parts/").unwrap().0[0].path, "parts/b.cls");
+        assert_eq!(folder.read("./parts/b.cls").unwrap(), b"GOTO/4,5,6\n");
+    }
+
+    #[test]
+    fn no_path_leads_out() {
+        let (all, folder) = folder();
+        for path in ["../secret", "/etc/passwd", "parts/../../secret", "..", "parts/.."] {
+            assert!(folder.read(path).unwrap_err().rule == "folder-reach", "{path}");
+            assert!(folder.list(path).unwrap_err().rule == "folder-reach", "{path}");
+            assert!(folder.target(path).unwrap_err().rule == "folder-reach", "{path}");
+        }
+        assert!(all.path().join("secret").is_file());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn no_link_leads_out_and_one_within_is_followed() {
+        use std::os::unix::fs::symlink;
+        let (all, folder) = folder();
+        let own = all.path().join("own");
+        symlink("../secret", own.join("up")).unwrap();
+        symlink(all.path().join("secret"), own.join("whole")).unwrap();
+        symlink(all.path(), own.join("above")).unwrap();
+        symlink("parts/b.cls", own.join("within")).unwrap();
+        symlink("loop", own.join("loop")).unwrap();
+        for path in ["up", "whole", "above/secret"] {
+            assert!(folder.read(path).unwrap_err().rule == "folder-reach", "{path}");
+            assert!(folder.target(path).unwrap_err().rule == "folder-reach", "{path}");
+        }
+        assert!(folder.list("above").is_err());
+        assert!(folder.read("loop").is_err());
+        assert_eq!(folder.read("within").unwrap(), b"GOTO/4,5,6\n");
+        let names: Vec<_> =
+            folder.list("").unwrap().0.into_iter().map(|entry| entry.name).collect();
+        assert_eq!(names, ["parts", "a.cls", "within"]);
+        // A hard link is a file of the folder; drafts behind a link out are not written.
+        fs::create_dir(all.path().join("elsewhere")).unwrap();
+        symlink("../elsewhere", own.join(".toolpost")).unwrap();
+        assert!(folder.keep_draft("a", &json!({}), b"x").is_err());
+        assert!(folder.drafts().is_empty());
+        assert_eq!(fs::read_dir(all.path().join("elsewhere")).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_a_device_and_a_folder_are_no_files_and_nobody_waits_for_them() {
+        let (all, folder) = folder();
+        let pipe = all.path().join("own/pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+        assert!(made.success());
+        for path in ["pipe", "parts"] {
+            let found = folder.read(path).unwrap_err();
+            assert!(found.message.contains("not a file"), "{found}");
+        }
+        assert!(folder.list("").unwrap().0.iter().all(|entry| entry.name != "pipe"));
+    }
+
+    #[test]
+    fn drafts_are_kept_and_dropped() {
+        let (all, folder) = folder();
+        assert!(folder.drafts().is_empty());
+        let of = json!({ "source": { "file": "a.cls" } });
+        folder.keep_draft("a.nc-1", &of, b"G0 X1\n").unwrap();
+        folder.keep_draft("a.nc-1", &of, b"G0 X2\n").unwrap();
+        let drafts = folder.drafts();
+        assert_eq!((drafts.len(), &drafts[0].of, drafts[0].bytes), (1, &of, 6));
+        assert_eq!(folder.text_of_draft("a.nc-1").unwrap(), b"G0 X2\n");
+        let kept = fs::read_dir(all.path().join("own/.toolpost/drafts")).unwrap().count();
+        assert_eq!(kept, 2, "nothing but text and JSON");
+        for name in ["", "../a", "a/b", ".a", "ä", &"a".repeat(101)] {
+            assert!(folder.keep_draft(name, &of, b"").unwrap_err().rule == "studio-ask", "{name}");
+        }
+        folder.drop_draft("a.nc-1").unwrap();
+        folder.drop_draft("a.nc-1").unwrap();
+        assert!(folder.drafts().is_empty());
+    }
+
+    #[test]
+    fn a_draft_that_is_too_large_is_refused() {
+        let (_all, folder) = folder();
+        let found = folder.keep_draft("a", &json!({}), &vec![b' '; LARGEST_DRAFT + 1]).unwrap_err();
+        assert!(found.rule == "studio-limit");
+        assert!(folder.drafts().is_empty());
+    }
+}

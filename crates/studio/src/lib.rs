@@ -1,0 +1,33 @@
+//! The studio: a server on this computer, and a page in the browser that shows source, program, machine and proof in one window.
+//!
+//! The server listens on 127.0.0.1 alone, reads and writes one folder alone, and answers whoever has the token of its link. It parses
+//! no NC, no TOML and no board: what it shows is what the crate [`app`] reads, writes and proves, and the motions are those that the
+//! proof has walked. Lengths are mm, feeds mm/min, times s, angles of axes degrees.
+//!
+//! ```no_run
+//! use toolpost_studio::{Server, Settings};
+//!
+//! let server = Server::bind(&Settings { folder: ".".into(), ..Settings::default() }).unwrap();
+//! println!("{}", server.link());
+//! server.run();
+//! ```
+//!
+//! # What goes over the socket
+//!
+//! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]. What is large goes by HTTP:
+//! geometry comes, uploads go ([`server`]).
+//!
+//! # What it never does
+//!
+//! It never listens on another address, never opens a file outside its folder, never saves a program that is not proven, and never sends
+//! what a file says as markup.
+
+pub mod ask;
+pub mod folder;
+pub mod machines;
+pub mod message;
+mod page;
+pub mod server;
+
+pub use page::is_built as has_page;
+pub use server::{Server, Settings};

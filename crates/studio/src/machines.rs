@@ -1,0 +1,143 @@
+//! The machines that can be picked: those of the library, and the folder's own.
+
+use crate::ask::{Finding, MachineEntry, MachineKind};
+use crate::folder::Folder;
+use app::{Stop, toolpath};
+use machine::{Machine, Reach, is_path, library};
+use program::{Diagnostic, Rule};
+use std::sync::OnceLock;
+
+/// Opens the machine of a name in the library, or of a file of the folder; what it extends lies there too.
+///
+/// # Errors
+/// Where there is none, its file has a mistake, or leads out of the folder.
+pub fn open(name: &str, folder: &Folder) -> Result<Machine, Stop> {
+    let reach = Reach::Folder(folder.path().to_owned());
+    if !is_path(name) {
+        return toolpath::machine_within(name, &reach);
+    }
+    let text = String::from_utf8(folder.read(name)?).map_err(|_| {
+        let found = Diagnostic::error(Rule::MachineFile, "this is no text in UTF-8").file(name);
+        found.help("save it in UTF-8")
+    })?;
+    let path = folder.target(name)?;
+    toolpath::machine_of(&path.to_string_lossy(), &text, &reach)
+}
+
+/// All that can be picked: the library's in the order of their names, then the folder's own.
+pub fn list(folder: &Folder) -> Vec<MachineEntry> {
+    static LIBRARY: OnceLock<Vec<MachineEntry>> = OnceLock::new();
+    let library = LIBRARY.get_or_init(|| {
+        let names = library::names(library::CONTROLLED);
+        names.filter_map(|name| Some(entry(&toolpath::machine(name).ok()?, name))).collect()
+    });
+    let mut all = library.clone();
+    let (entries, _) = folder.list("").unwrap_or_default();
+    let own = entries.iter().map(|entry| entry.path.as_str());
+    for name in own.filter(|name| name.ends_with(".toml")) {
+        match open(name, folder) {
+            Ok(machine) => all.push(MachineEntry { is_own: true, ..entry(&machine, name) }),
+            Err(stop) if is_meant(name, folder) => {
+                let findings = stop.findings.into_iter().map(Finding::from).collect();
+                let (title, control) = (String::new(), String::new());
+                let (kind, axes) = (MachineKind::Mill, Vec::new());
+                let name = name.to_owned();
+                all.push(MachineEntry { name, title, kind, control, axes, is_own: true, findings });
+            }
+            // Settings, boards and whatever else is written in TOML.
+            Err(_) => {}
+        }
+    }
+    all
+}
+
+/// Whether a file that has a mistake is meant as a machine.
+fn is_meant(name: &str, folder: &Folder) -> bool {
+    let text = folder.read(name).unwrap_or_default();
+    text.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"extends"))
+}
+
+fn entry(machine: &Machine, name: &str) -> MachineEntry {
+    let kind = match (&machine.wire, &machine.arm) {
+        (Some(_), _) => MachineKind::Wire,
+        (_, Some(_)) => MachineKind::Robot,
+        _ => MachineKind::Mill,
+    };
+    let axes = match kind {
+        MachineKind::Wire => ["X", "Y", "U", "V"].map(str::to_owned).to_vec(),
+        MachineKind::Robot => {
+            let rail = machine.cell.as_ref().and_then(|cell| cell.rail.as_ref());
+            let rail = rail.map(|_| String::from("E1"));
+            (1..=6).map(|joint| format!("J{joint}")).chain(rail).collect()
+        }
+        MachineKind::Mill => {
+            let rotary = machine.rotary.iter().map(|axis| axis.letter.to_string());
+            ["X", "Y", "Z"].map(str::to_owned).into_iter().chain(rotary).collect()
+        }
+    };
+    MachineEntry {
+        name: name.to_owned(),
+        title: machine.title.clone(),
+        kind,
+        control: machine.control.clone(),
+        axes,
+        is_own: false,
+        findings: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_machine_of_the_folder_may_extend_what_is_in_it_and_in_the_library() {
+        let all = tempfile::tempdir().unwrap();
+        let own = all.path().join("own");
+        fs::create_dir(&own).unwrap();
+        fs::write(all.path().join("out.toml"), "extends = \"iso\"\n").unwrap();
+        fs::write(own.join("good.toml"), "extends = \"generic-3axis-linuxcnc\"\n").unwrap();
+        fs::write(own.join("better.toml"), "extends = \"good.toml\"\ntitle = \"Better\"\n")
+            .unwrap();
+        fs::write(own.join("leads-out.toml"), "extends = \"../out.toml\"\n").unwrap();
+        fs::write(own.join("whole.toml"), format!("extends = {:?}\n", all.path().join("out.toml")))
+            .unwrap();
+        fs::write(own.join("board.toml"), "[board]\nsize = [1, 2]\n").unwrap();
+        let folder = Folder::open(&own).unwrap();
+        assert_eq!(open("better.toml", &folder).unwrap().title, "Better");
+        for name in ["leads-out.toml", "whole.toml"] {
+            let stop = open(name, &folder).unwrap_err();
+            assert!(
+                stop.findings[0].message.contains("may not be read here"),
+                "{:?}",
+                stop.findings
+            );
+        }
+        let stop = open("../out.toml", &folder).unwrap_err();
+        assert!(stop.findings[0].rule == "folder-reach", "{:?}", stop.findings);
+        let listed = list(&folder);
+        let own: Vec<_> = listed.iter().filter(|entry| entry.is_own).collect();
+        let names: Vec<_> = own.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(names, ["better.toml", "good.toml", "leads-out.toml", "whole.toml"]);
+        assert_eq!((own[0].findings.len(), own[2].findings.len()), (0, 1));
+        let named = |name: &str| listed.iter().find(|entry| entry.name == name).unwrap();
+        assert_eq!(named("fanuc-table-bc").axes, ["X", "Y", "Z", "B", "C"]);
+        assert_eq!(named("bp-95d").kind, MachineKind::Wire);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_machine_that_is_a_link_out_or_extends_one_is_not_read() {
+        let all = tempfile::tempdir().unwrap();
+        let own = all.path().join("own");
+        fs::create_dir(&own).unwrap();
+        fs::write(all.path().join("out.toml"), "extends = \"generic-3axis-linuxcnc\"\n").unwrap();
+        std::os::unix::fs::symlink("../out.toml", own.join("link.toml")).unwrap();
+        fs::write(own.join("by-link.toml"), "extends = \"link.toml\"\n").unwrap();
+        let folder = Folder::open(&own).unwrap();
+        let found = |name| open(name, &folder).unwrap_err().findings.remove(0);
+        assert_eq!(found("link.toml").rule, Rule::FolderReach);
+        assert!(found("by-link.toml").message.contains("may not be read here"));
+    }
+}

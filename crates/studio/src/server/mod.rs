@@ -1,0 +1,223 @@
+//! The server: who is answered ([`closed`]), the socket, and files by HTTP.
+
+pub mod closed;
+mod files;
+mod socket;
+
+use crate::ask::{FileOrUpload, Limits};
+use crate::folder::Folder;
+use crate::message;
+use crate::page;
+use app::Stop;
+use axum::body::Body;
+use axum::extract::Request;
+use axum::http::{Method, Response, StatusCode};
+use closed::{Names, Token, brings, guarded, say};
+use hyper::body::Incoming;
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use program::{Diagnostic, Rule};
+use std::convert::Infallible;
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::Semaphore;
+
+/// How many connections are open at the same time; others wait until one is over.
+const CONNECTIONS: usize = 128;
+
+/// How many sockets are open at the same time.
+const SOCKETS: usize = 16;
+
+/// The largest upload, bytes.
+const UPLOAD: usize = 256 << 20;
+
+/// How many jobs are open at the same time; the oldest goes when another comes.
+const JOBS: u32 = 8;
+
+/// How long a connection may take to say what it wants, and a request to be answered.
+const PATIENCE: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
+
+/// What the server takes.
+const LIMITS: Limits = Limits {
+    upload: UPLOAD as u64,
+    frame: message::MOST_BYTES as u64,
+    jobs: JOBS,
+    sockets: SOCKETS as u32,
+};
+
+/// What a server is started with.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The folder in which it reads and writes.
+    pub folder: PathBuf,
+    /// A toolpath that is opened at once: its path in the folder.
+    pub source: Option<String>,
+    /// The machine that is picked for it.
+    pub machine: Option<String>,
+    /// The port that it listens on; `None` for one that is free.
+    pub port: Option<u16>,
+}
+
+/// A server that listens.
+#[derive(Debug)]
+pub struct Server {
+    runtime: Runtime,
+    listener: TcpListener,
+    port: u16,
+    studio: Arc<Studio>,
+}
+
+/// What all its connections share.
+#[derive(Debug)]
+pub(crate) struct Studio {
+    folder: Folder,
+    source: Option<FileOrUpload>,
+    machine: Option<String>,
+    token: Token,
+    names: Names,
+    sockets: Arc<Semaphore>,
+    uploads: files::Uploads,
+}
+
+impl Server {
+    /// Opens the folder and the port.
+    ///
+    /// # Errors
+    /// One of them cannot be opened.
+    pub fn bind(settings: &Settings) -> Result<Server, Stop> {
+        let folder = Folder::open(&settings.folder)?;
+        let refused = |what: &str, error: &dyn std::fmt::Display| {
+            let message = format!("{what}: {error}");
+            Diagnostic::error(Rule::StudioPort, message)
+        };
+        let address = (Ipv4Addr::LOCALHOST, settings.port.unwrap_or(0));
+        let listen = || {
+            let listener = TcpListener::bind(address)?;
+            listener.set_nonblocking(true)?;
+            let port = listener.local_addr()?.port();
+            Ok((listener, port))
+        };
+        let (listener, port) = listen().map_err(|error: std::io::Error| {
+            refused(&format!("port {} of 127.0.0.1 cannot be opened", address.1), &error)
+        })?;
+        let token = Token::new().map_err(|error| refused("the system gives no token", &error))?;
+        let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(64).build();
+        let runtime = runtime.map_err(|error| refused("the server cannot start", &error))?;
+        let studio = Arc::new(Studio {
+            folder,
+            source: settings.source.clone().map(FileOrUpload::File),
+            machine: settings.machine.clone(),
+            token,
+            names: Names::of(port),
+            sockets: Arc::new(Semaphore::new(SOCKETS)),
+            uploads: files::Uploads::default(),
+        });
+        Ok(Server { runtime, listener, port, studio })
+    }
+
+    /// The port that it listens on.
+    pub fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// The link that the browser opens. What is behind `#` is sent to nobody; the page brings it with every request.
+    pub fn link(&self) -> String {
+        format!("http://127.0.0.1:{}/#{}", self.port, self.studio.token.as_str())
+    }
+
+    /// Opens the link in the browser of the system, where it has one.
+    ///
+    /// # Errors
+    /// Why it was not opened.
+    pub fn show(&self) -> Result<(), String> {
+        open::that_detached(self.link()).map_err(|error| error.to_string())
+    }
+
+    /// Answers until the process ends.
+    pub fn run(self) -> ! {
+        let Server { runtime, listener, studio, .. } = self;
+        runtime.block_on(async move {
+            let listener = tokio::net::TcpListener::from_std(listener);
+            serve(listener.expect("a socket that listens and does not block"), studio).await
+        })
+    }
+}
+
+/// Takes connections, so many at the same time.
+async fn serve(listener: tokio::net::TcpListener, studio: Arc<Studio>) -> ! {
+    let connections = Arc::new(Semaphore::new(CONNECTIONS));
+    loop {
+        let Ok(permit) = Arc::clone(&connections).acquire_owned().await else { continue };
+        let stream = match listener.accept().await {
+            Ok((stream, _)) => stream,
+            Err(_) => {
+                // Too many open files, or a connection that is gone already.
+                tokio::time::sleep(Duration::from_millis(20)).await;
+                continue;
+            }
+        };
+        let _ = stream.set_nodelay(true);
+        let studio = Arc::clone(&studio);
+        tokio::spawn(async move {
+            let service = service_fn(move |request| answer(Arc::clone(&studio), request));
+            let connection = http1::Builder::new()
+                .timer(TokioTimer::new())
+                .header_read_timeout(PATIENCE.0)
+                .max_headers(64)
+                .max_buf_size(64 << 10)
+                .serve_connection(TokioIo::new(stream), service)
+                .with_upgrades();
+            let _ = connection.await;
+            drop(permit);
+        });
+    }
+}
+
+/// Answers a request.
+async fn answer(
+    studio: Arc<Studio>,
+    request: hyper::Request<Incoming>,
+) -> Result<Response<Body>, Infallible> {
+    let request = request.map(Body::new);
+    let response = match studio.names.refuses(request.headers()) {
+        Some((status, why)) => say(status, why),
+        None => match tokio::time::timeout(PATIENCE.1, route(studio, request)).await {
+            Ok(response) => response,
+            Err(_) => say(StatusCode::REQUEST_TIMEOUT, "the request took longer than a minute"),
+        },
+    };
+    Ok(guarded(response))
+}
+
+/// Who answers a request.
+async fn route(studio: Arc<Studio>, request: Request) -> Response<Body> {
+    let path = request.uri().path().to_owned();
+    let path = path.trim_start_matches('/');
+    let is_get = request.method() == Method::GET;
+    if path == "socket" && is_get {
+        return socket::upgrade(studio, request).await;
+    }
+    if let Some((kind, bytes)) = page::file(path).filter(|_| is_get) {
+        let mut response = Response::new(Body::from(bytes));
+        let kind = axum::http::HeaderValue::from_static(kind);
+        response.headers_mut().insert("content-type", kind);
+        return response;
+    }
+    if path.is_empty() && is_get {
+        return say(StatusCode::NOT_FOUND, Rule::StudioPage.meaning());
+    }
+    if !brings(&studio.token, &request) {
+        return say(StatusCode::UNAUTHORIZED, "the token of the link is missing or wrong");
+    }
+    match path.strip_prefix("upload/") {
+        Some(name) if request.method() == Method::PUT => {
+            files::upload(&studio, name, request.into_body()).await
+        }
+        Some(_) => say(StatusCode::METHOD_NOT_ALLOWED, "uploads are sent by PUT"),
+        None => say(StatusCode::NOT_FOUND, "there is nothing of this name"),
+    }
+}
