@@ -15,7 +15,7 @@ import type { Studio } from "./studio.ts";
 /** The whole window: its panes, and the keys. */
 export function Page({ studio }: { studio: Studio }) {
     const screen = useMemo(() => new Screen(studio), [studio]);
-    const sizes = useSignal({ program: 300, source: 300, low: 200 });
+    const sizes = useSignal({ program: Math.min(300, innerWidth * 0.24), source: Math.min(300, innerWidth * 0.22), low: Math.min(200, innerHeight * 0.28) });
     const commands = useMemo(() => commandsOf(screen), [screen]);
 
     useEffect(() => {
@@ -42,7 +42,7 @@ export function Page({ studio }: { studio: Studio }) {
 
     const { program, source, low } = sizes.value;
     return (
-        <div
+        <main
             class="studio"
             onDragOver={(event) => event.preventDefault()}
             onDrop={(event) => void drop(event)}
@@ -58,6 +58,6 @@ export function Page({ studio }: { studio: Studio }) {
             <Timeline screen={screen} />
             <Low screen={screen} />
             <Dialogs screen={screen} commands={commands} />
-        </div>
+        </main>
     );
 }

@@ -34,6 +34,7 @@ export function Choose({ label, choices, close }: { label: string; choices: Choi
                 type="text"
                 role="combobox"
                 list={undefined}
+                autofocus
                 aria-label={label}
                 aria-expanded="true"
                 aria-controls="choices"

@@ -59,7 +59,9 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
     );
 }
 
-export const shownKey = (key: string | undefined): string => (key ?? "").replaceAll("+", " ").replace(/ {2}$/, " +").replace(/^ $/, "+");
+/** `Ctrl+k` is shown as `Ctrl K`, `+` as itself. */
+export const shownKey = (key: string | undefined): string =>
+    (key ?? "").split(/(?<=.)\+/).map((part) => (part.length === 1 ? part.toUpperCase() : part)).join(" ");
 
 /** The browser's own dialog: it keeps the focus within, and Escape closes it. */
 function Modal({ title, close, children }: { title: string; close(): void; children: ComponentChildren }) {
@@ -67,6 +69,7 @@ function Modal({ title, close, children }: { title: string; close(): void; child
     useEffect(() => dialog.current?.showModal(), []);
     return (
         <dialog ref={dialog} aria-label={title} onClose={close} onClick={(event) => event.target === dialog.current && close()}>
+            <h2>{title}</h2>
             {children}
         </dialog>
     );

@@ -5,7 +5,8 @@ export function Keys({ commands }: { commands: Command[] }) {
     return (
         <>
             <p>Keys without Ctrl or a function key work while the view has the focus (F6 goes there).</p>
-            <table>
+            <div class="choices" role="region" aria-label="List of keys" tabIndex={0}>
+                <table>
                 <tbody>
                     {commands
                         .filter(({ keys }) => keys !== undefined)
@@ -20,7 +21,8 @@ export function Keys({ commands }: { commands: Command[] }) {
                             </tr>
                         ))}
                 </tbody>
-            </table>
+                </table>
+            </div>
         </>
     );
 }

@@ -22,7 +22,7 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
             }}
         >
             <input type="search" aria-label="Search the options" placeholder="Search the options" onInput={(event) => (search.value = event.currentTarget.value)} />
-            <div class="choices">
+            <div class="choices" role="group" aria-label="Options" tabIndex={0}>
                 {matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`).map((option) => (
                     <Field key={option.name} option={option} value={given.value[option.name] ?? ""} set={(value) => set(option.name, value)} />
                 ))}

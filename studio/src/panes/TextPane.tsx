@@ -99,6 +99,7 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
         edited: (text) => studio.typed(text),
     });
     screen.editors[of] = editor;
+    host.focus = () => editor.focus();
     let posted: string | null = null;
 
     const origin = (job: Job, text: Text): Origin => ({

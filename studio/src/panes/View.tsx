@@ -14,7 +14,7 @@ export function View({ screen }: { screen: Screen }) {
             <header>
                 <h2>View</h2>
                 {VIEWS.map(({ name }, number) => (
-                    <button key={name} type="button" title={`${name} (${number + 1})`} aria-label={name} onClick={() => screen.viewer?.view(number)}>
+                    <button key={name} type="button" title={`${name} (${number + 1})`} aria-label={`${number + 1} ${name}`} onClick={() => screen.viewer?.view(number)}>
                         {number + 1}
                     </button>
                 ))}
@@ -69,6 +69,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             },
             (move) => void studio.cursor.toMove(move),
             (at) => (screen.pointer.value = at),
+            screen.drawing.peek(),
         );
         screen.viewers.push(viewer);
         if (first) screen.viewer = viewer;
@@ -78,8 +79,14 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             void screen.news.value;
             viewer.touch();
         });
+        let drawing = screen.drawing.peek();
+        const stopDrawing = effect(() => {
+            if (screen.drawing.value !== drawing) viewer.drawBy(screen.drawing.value);
+            drawing = screen.drawing.value;
+        });
         return () => {
             stop();
+            stopDrawing();
             screen.viewers.splice(screen.viewers.indexOf(viewer), 1);
             viewer.close();
         };

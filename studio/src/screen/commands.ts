@@ -2,6 +2,7 @@ import type { Signal } from "@preact/signals";
 import type { Command } from "../commands.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
+import type { Drawing } from "../view/viewer.ts";
 import { vector, type Screen } from "./screen.ts";
 
 const flip = (on: Signal<boolean>) => (): void => {
@@ -45,6 +46,9 @@ function looking(screen: Screen): Command[] {
         const place = studio.cursor.place.value;
         if (place !== null) screen.viewer?.along(vector(place.axis ?? [0, 0, 1]));
     };
+    const drawBy = (how: Drawing): void => {
+        screen.drawing.value = how;
+    };
     const wider = (): void => {
         screen.width.value = (screen.width.value % 4) + 1;
     };
@@ -73,6 +77,8 @@ function looking(screen: Screen): Command[] {
         { name: "box", title: "Box of all moves", keys: ["b"], view: true, run: flip(screen.box) },
         { name: "ruler", title: "Ruler: dragging measures", keys: ["l"], view: true, run: flip(screen.ruler) },
         { name: "colours", title: "Colours by the next thing", keys: ["c"], view: true, run: colours },
+        { name: "draw-plain", title: "Draw without the graphics processor", run: () => drawBy("plain") },
+        { name: "draw-webgl", title: "Draw by WebGL", run: () => drawBy("webgl") },
         { name: "wider", title: "Wider lines", keys: ["w"], view: true, run: wider },
     ];
 }

@@ -11,7 +11,7 @@ import { painted } from "../view/painted.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
 import { toolBody } from "../view/solids.ts";
 import type { Vector } from "../view/vector.ts";
-import type { Viewer } from "../view/viewer.ts";
+import type { Drawing, Viewer } from "../view/viewer.ts";
 
 export type Dialog = "commands" | "keys" | "machine" | "source" | "options" | "save" | "go" | "find";
 export type Tab = "findings" | "verdict" | "plots";
@@ -35,6 +35,7 @@ export class Screen {
     readonly pale: Signal<boolean> = signal(true);
     readonly four: Signal<boolean> = signal(false);
     readonly ruler: Signal<boolean> = signal(false);
+    readonly drawing: Signal<Drawing> = signal("auto");
     readonly box: Signal<boolean> = signal(false);
     readonly pointer: Signal<Vector | null> = signal(null);
     private readonly dark: Signal<boolean> = signal(false);

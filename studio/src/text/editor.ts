@@ -74,7 +74,7 @@ export class Editor {
     private isSetting = false;
 
     constructor(host: HTMLElement, label: string, private readonly listener: Listener) {
-        const root = host.attachShadow({ mode: "open", delegatesFocus: true });
+        const root = host.attachShadow({ mode: "open" });
         this.extensions = [
             look,
             marks,
@@ -82,7 +82,7 @@ export class Editor {
             drawSelection(),
             keymap.of([...defaultKeymap, ...historyKeymap]),
             lineNumbers({ formatNumber: (line) => String(line + this.window.from - 1) }),
-            EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false", autocapitalize: "off" }),
+            EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
             EditorView.updateListener.of((update) => this.updated(update)),
         ];
         this.view = new EditorView({ root, parent: root, state: EditorState.create({ extensions: this.extensions }) });
@@ -90,6 +90,10 @@ export class Editor {
 
     close(): void {
         this.view.destroy();
+    }
+
+    focus(): void {
+        this.view.focus();
     }
 
     get text(): string {

@@ -5,7 +5,7 @@
 
 import type { Projection } from "./camera.ts";
 import { Style, type Strip, type Triangles } from "./strip.ts";
-import { cross, unit, type Vector } from "./vector.ts";
+import { cross, dot, unit, type Vector } from "./vector.ts";
 
 /** Beyond this a pixel's number is no longer exact, and what is not finite is beyond it. */
 const FAR = 1e7;
@@ -119,7 +119,7 @@ export class Raster {
 
     /** Flat faces, lit from the eye. They are no move. */
     triangles({ corners, colour }: Triangles, { right, down, away, at, scale }: Projection): void {
-        const eye: Vector = [away[0] / scale, away[1] / scale, away[2] / scale];
+        const colours = shaded({ corners, colour }, { away, scale });
         for (let i = 0; i + 8 < corners.length; i += 9) {
             const points = [0, 3, 6].map((k): Vector => {
                 const [x, y, z] = [corners[i + k]!, corners[i + k + 1]!, corners[i + k + 2]!];
@@ -129,14 +129,7 @@ export class Raster {
                     away[0] * x + away[1] * y + away[2] * z + at[2],
                 ];
             });
-            const edge = (k: number): Vector => [
-                corners[i + k]! - corners[i]!,
-                corners[i + k + 1]! - corners[i + 1]!,
-                corners[i + k + 2]! - corners[i + 2]!,
-            ];
-            const normal = unit(cross(edge(3), edge(6)));
-            const light = 0.35 + 0.65 * Math.abs(normal[0] * eye[0] + normal[1] * eye[1] + normal[2] * eye[2]);
-            this.face(points as [Vector, Vector, Vector], rgb(colour[0] * light, colour[1] * light, colour[2] * light));
+            this.face(points as [Vector, Vector, Vector], rgb(colours[i]! * 255, colours[i + 1]! * 255, colours[i + 2]! * 255));
         }
     }
 
@@ -167,4 +160,16 @@ export class Raster {
 /** A colour as its four bytes are stored. */
 export function rgb(red: number, green: number, blue: number): number {
     return ((255 << 24) | (Math.round(blue) << 16) | (Math.round(green) << 8) | Math.round(red)) >>> 0;
+}
+
+/** Colours of the corners, from 0 to 1: flat faces, lit from the eye. */
+export function shaded({ corners, colour }: Triangles, { away, scale }: Pick<Projection, "away" | "scale">): Float32Array {
+    const colours = new Float32Array(corners.length);
+    for (let i = 0; i + 8 < corners.length; i += 9) {
+        const edge = (k: number): Vector => [corners[i + k]! - corners[i]!, corners[i + k + 1]! - corners[i + 1]!, corners[i + k + 2]! - corners[i + 2]!];
+        const normal = unit(cross(edge(3), edge(6)));
+        const light = 0.35 + (0.65 * Math.abs(dot(normal, away))) / scale;
+        for (let k = 0; k < 9; k++) colours[i + k] = Math.min(1, (colour[k % 3]! * light) / 255);
+    }
+    return colours;
 }

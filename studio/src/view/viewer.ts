@@ -5,6 +5,7 @@ import { overlay, type Over } from "./overlay.ts";
 import { Plain, type Renderer } from "./renderer.ts";
 import type { Looks, Marks, Scene } from "./scene.ts";
 import type { Vector } from "./vector.ts";
+import { Gl } from "./webgl.ts";
 
 export interface Shown {
     scene: Scene | null;
@@ -14,6 +15,9 @@ export interface Shown {
     box: Box | null;
     isBoxShown: boolean;
 }
+
+/** `auto`: by the graphics processor where there is one that is not played by the processor. */
+export type Drawing = "auto" | "plain" | "webgl";
 
 interface Drag {
     kind: "orbit" | "pan" | "zoom" | "ruler";
@@ -26,7 +30,7 @@ export class Viewer {
     camera: Camera;
     /** Dragging measures. */
     ruler = false;
-    private readonly renderer: Renderer;
+    private renderer: Renderer;
     private readonly over = document.createElement("canvas");
     private readonly context = this.over.getContext("2d")!;
     private drag: Drag | null = null;
@@ -40,11 +44,11 @@ export class Viewer {
         private readonly shown: () => Shown,
         private readonly picked: (move: number) => void,
         private readonly pointed: (at: Vector | null) => void,
-        renderer: Renderer = new Plain(),
+        how: Drawing,
     ) {
         this.camera = { ...VIEWS[view]!, middle: [0, 0, 0], scale: 1 };
-        this.renderer = renderer;
-        host.append(renderer.canvas, this.over);
+        this.renderer = this.rendererFor(how);
+        host.append(this.renderer.canvas, this.over);
         this.sizes.observe(host);
         host.addEventListener("pointerdown", (event) => this.down(event));
         host.addEventListener("pointermove", (event) => this.move(event));
@@ -53,6 +57,23 @@ export class Viewer {
         host.addEventListener("contextmenu", (event) => event.preventDefault());
         host.addEventListener("dblclick", () => this.fit());
         host.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
+    }
+
+    /** Without WebGL, and where it is lost, by the rasteriser. */
+    private rendererFor(how: Drawing): Renderer {
+        if (how === "plain") return new Plain();
+        try {
+            return new Gl(() => this.drawBy("plain"), { evenSlow: how === "webgl" });
+        } catch {
+            return new Plain();
+        }
+    }
+
+    drawBy(how: Drawing): void {
+        this.renderer.canvas.remove();
+        this.renderer = this.rendererFor(how);
+        this.host.prepend(this.renderer.canvas);
+        this.redraw();
     }
 
     close(): void {
