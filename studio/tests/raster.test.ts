@@ -9,7 +9,7 @@ const flat: Projection = { right: [1, 0, 0], down: [0, 1, 0], away: [0, 0, 1], a
 const letters = ".abcdefgh";
 const shown = (raster: Raster): string[] =>
     Array.from({ length: raster.height }, (_, y) =>
-        Array.from(raster.id.slice(y * raster.width, (y + 1) * raster.width), (id) => letters[id]).join(""));
+        Array.from(raster.seen.slice(y * raster.width, (y + 1) * raster.width), (id) => letters[id]).join(""));
 
 const paint = (more: Partial<Paint> = {}): Paint => ({
     palette: Uint32Array.from({ length: 256 }, (_, index) => index),
@@ -34,9 +34,17 @@ function strip(points: number[][], more: Partial<Strip> = {}): Strip {
     return { vertices, origin: [0, 0, 0], first: 0, from: 1, to: points.length, paint: paint(), ...more };
 }
 
+/** The moves that are seen. */
 function drawn(width: number, height: number, ...strips: Strip[]): Raster {
-    const raster = new Raster(width, height);
-    raster.clear(99);
+    return fill(new Raster(width, height, { sees: "moves", left: 0, top: 0 }), 0, strips);
+}
+
+function coloured(width: number, height: number, ...strips: Strip[]): Raster {
+    return fill(new Raster(width, height), 99, strips);
+}
+
+function fill(raster: Raster, background: number, strips: Strip[]): Raster {
+    raster.clear(background);
     for (const one of strips) raster.strip(one, flat);
     return raster;
 }
@@ -95,9 +103,7 @@ test("lines that leave the window are cut off at its edge, and keep their dashes
     expect(shown(drawn(4, 4, strip([[-1e6, -1e6], [1e6, 1e6]])))).toEqual(["a...", ".a..", "..a.", "...a"]);
     expect(shown(drawn(4, 2, strip([[-5, 5], [-1, 9]])))).toEqual(["....", "...."]);
     const whole = strip([[0.5, 0.5], [15.5, 0.5, 0, 1]], { paint: paint({ styles: new Uint8Array(16).fill(Style.dashed) }) });
-    const part = new Raster(8, 1, 4, 0);
-    part.clear(0);
-    part.strip(whole, flat);
+    const part = fill(new Raster(8, 1, { sees: "moves", left: 4, top: 0 }), 0, [whole]);
     expect(shown(part)[0]).toBe(shown(drawn(16, 1, whole))[0]!.slice(4, 12));
 });
 
@@ -107,12 +113,12 @@ test.each([Number.NaN, Number.POSITIVE_INFINITY, 1e30])("a vertex at %f draws no
 
 test("colours: by kind, by tool, by a table of moves", () => {
     const points = [[0.5, 0.5], [0.5, 0.5, 0, 2, 7], [1.5, 0.5, 0, 4, 9]];
-    const byKind = drawn(2, 1, strip(points));
-    expect([...byKind.colour]).toEqual([2, 4]);
-    const byTool = drawn(2, 1, strip(points, { paint: paint({ shift: 16, mask: 255 }) }));
-    expect([...byTool.colour]).toEqual([7, 9]);
-    const byMove = drawn(2, 1, strip(points.slice(0, 2), { paint: paint({ byMove: new Uint8Array([33, 44]) }) }));
-    expect([...byMove.colour]).toEqual([33, 99]);
+    const byKind = coloured(2, 1, strip(points));
+    expect([...byKind.seen]).toEqual([2, 4]);
+    const byTool = coloured(2, 1, strip(points, { paint: paint({ shift: 16, mask: 255 }) }));
+    expect([...byTool.seen]).toEqual([7, 9]);
+    const byMove = coloured(2, 1, strip(points.slice(0, 2), { paint: paint({ byMove: new Uint8Array([33, 44]) }) }));
+    expect([...byMove.seen]).toEqual([33, 99]);
 });
 
 test("a part of a strip, found by its moves", () => {
@@ -124,9 +130,9 @@ test("a part of a strip, found by its moves", () => {
 });
 
 test("a face covers the pixels whose middles are in it, and hides what is behind", () => {
-    const raster = drawn(4, 4, strip([[0.5, 1.5, 5], [3.5, 1.5, 5]]));
+    const raster = coloured(4, 4, strip([[0.5, 1.5, 5], [3.5, 1.5, 5]]));
     raster.triangles({ corners: Float32Array.from([0, 0, 1, 4, 0, 1, 0, 4, 1]), colour: [200, 100, 50] }, flat);
     const face = rgb(200, 100, 50);
-    const picture = Array.from(raster.colour, (colour) => (colour === face ? "#" : colour === 99 ? "." : "a")).join("");
+    const picture = Array.from(raster.seen, (colour) => (colour === face ? "#" : colour === 99 ? "." : "a")).join("");
     expect(picture.match(/.{4}/g)).toEqual(["####", "###a", "##..", "#..."]);
 });

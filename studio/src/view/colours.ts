@@ -26,6 +26,8 @@ export interface Theme {
     paper: Colour;
     ink: string;
     soft: string;
+    warn: string;
+    bad: string;
     /** What has been run, what is ahead of the cursor, and what is picked out. */
     done: Uint32Array;
     ahead: Uint32Array;
@@ -68,6 +70,8 @@ export function theme(isDark: boolean): Theme {
         paper,
         ink: isDark ? "#e6e9ed" : "#1a1d21",
         soft: isDark ? "#a9b3bf" : "#4f5863",
+        warn: isDark ? "#f0bd4f" : "#815200",
+        bad: isDark ? "#ff8f8f" : "#b3141d",
         done: words(0),
         ahead: words(0.72),
     };

@@ -2,12 +2,14 @@
 
 import { toScreen, type Box, type Projection, type Size } from "./camera.ts";
 import type { Theme } from "./colours.ts";
+import { Mark, type Symbol } from "./symbols.ts";
 import type { Vector } from "./vector.ts";
 
 export interface Over {
     box: Box | null;
     /** Two pixels: a rectangle to zoom to, or what is measured. */
     drag: { kind: "zoom" | "ruler"; from: [number, number]; to: [number, number] } | null;
+    symbols: Symbol[];
     /** The tool's axis at the tip. */
     tip: { at: Vector; axis: Vector } | null;
 }
@@ -18,6 +20,7 @@ export function overlay(context: CanvasRenderingContext2D, over: Over, projectio
     context.lineWidth = ratio;
     if (over.box !== null) lengths(context, over.box, projection, theme);
     triad(context, projection, size, theme, ratio);
+    for (const symbol of over.symbols) shape(context, symbol, theme, ratio);
     if (over.tip !== null) cross(context, toScreen(projection, over.tip.at), theme, ratio);
     if (over.drag !== null) dragged(context, over.drag, projection, theme);
 }
@@ -69,6 +72,24 @@ function lengths(context: CanvasRenderingContext2D, { low, high }: Box, projecti
         const [a, b] = [toScreen(projection, corner(0)), toScreen(projection, corner(bit))];
         if (Math.hypot(a[0] - b[0], a[1] - b[1]) > 60) context.fillText(millimetres(high[axis]! - low[axis]!), (a[0] + b[0]) / 2, (a[1] + b[1]) / 2 + 14);
     });
+}
+
+/** A cross for findings, a triangle for excursions, a diamond where the radius compensation changes. */
+function shape(context: CanvasRenderingContext2D, { x, y, marks }: Symbol, theme: Theme, ratio: number): void {
+    const r = 5 * ratio;
+    context.strokeStyle = marks & Mark.finding ? theme.bad : marks & Mark.excursion ? theme.warn : theme.ink;
+    context.lineWidth = 2 * ratio;
+    if (marks & Mark.finding) {
+        line(context, [x - r, y - r], [x + r, y + r]);
+        line(context, [x - r, y + r], [x + r, y - r]);
+    } else {
+        const corners = marks & Mark.excursion ? [[0, -r], [r, r], [-r, r]] : [[0, -r], [r, 0], [0, r], [-r, 0]];
+        context.beginPath();
+        for (const [dx, dy] of corners) context.lineTo(x + dx!, y + dy!);
+        context.closePath();
+        context.stroke();
+    }
+    context.lineWidth = ratio;
 }
 
 function cross(context: CanvasRenderingContext2D, [x, y]: Vector, theme: Theme, ratio: number): void {

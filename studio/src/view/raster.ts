@@ -1,6 +1,7 @@
 /**
- * Draws lines and triangles into three planes: colour, depth, and the number of the move (from 1; 0 is nothing).
- * The planes are a window of the picture at `left`, `top`: the whole of it to be shown, or a few pixels to see what is there.
+ * Draws lines and triangles into two planes: depth, and what is seen there, a colour or the number of a move (from 1; 0 is
+ * nothing). The planes are a window of the picture at `left`, `top`: the whole of it to be shown, or a few pixels to see
+ * what is there.
  */
 
 import type { Projection } from "./camera.ts";
@@ -11,38 +12,35 @@ import { cross, dot, unit, type Vector } from "./vector.ts";
 const FAR = 1e7;
 
 export class Raster {
-    readonly colour: Uint32Array<ArrayBuffer>;
+    readonly seen: Uint32Array<ArrayBuffer>;
     readonly depth: Float32Array;
-    readonly id: Uint32Array;
 
     constructor(
         readonly width: number,
         readonly height: number,
-        private readonly left = 0,
-        private readonly top = 0,
+        private readonly planes: { sees: "colours" | "moves"; left: number; top: number } = { sees: "colours", left: 0, top: 0 },
     ) {
-        this.colour = new Uint32Array(width * height);
+        this.seen = new Uint32Array(width * height);
         this.depth = new Float32Array(width * height);
-        this.id = new Uint32Array(width * height);
     }
 
     clear(background: number): void {
-        this.colour.fill(background);
+        this.seen.fill(background);
         this.depth.fill(Number.POSITIVE_INFINITY);
-        this.id.fill(0);
     }
 
     strip(strip: Strip, { right, down, away, at }: Projection): void {
         const { origin, paint, first } = strip;
         const { palette, byMove, shift, mask, styles, dashed, width, lift } = paint;
+        const isMoves = this.planes.sees === "moves";
         const numbers = new Float32Array(strip.vertices);
         const words = new Uint32Array(strip.vertices);
         const [rx, ry, rz] = right;
         const [dx, dy, dz] = down;
         const [ax, ay, az] = away;
         const [ox, oy, oz] = origin;
-        const cx = at[0] + rx * ox + ry * oy + rz * oz - this.left;
-        const cy = at[1] + dx * ox + dy * oy + dz * oz - this.top;
+        const cx = at[0] + rx * ox + ry * oy + rz * oz - this.planes.left;
+        const cy = at[1] + dx * ox + dy * oy + dz * oz - this.planes.top;
         const cz = at[2] + ax * ox + ay * oy + az * oz - lift;
 
         let [x0, y0, z0] = [0, 0, 0];
@@ -57,7 +55,8 @@ export class Raster {
                 if (style !== Style.hidden) {
                     const dash = style === Style.dashed;
                     const index = dash && dashed >= 0 ? dashed : byMove === null ? (word >>> shift) & mask : byMove[word & 4095]!;
-                    this.line(x0, y0, z0, x1, y1, z1, palette[index]!, first + (word & 4095) + 1, width, dash);
+                    const seen = isMoves ? first + (word & 4095) + 1 : palette[index]!;
+                    this.line(x0, y0, z0, x1, y1, z1, seen, width, dash);
                 }
             }
             x0 = x1;
@@ -66,55 +65,73 @@ export class Raster {
         }
     }
 
-    /** A line of `width` pixels; dashes of four pixels, counted from its beginning. */
-    line(
-        x0: number, y0: number, z0: number,
-        x1: number, y1: number, z1: number,
-        colour: number, id: number, width: number, dashed: boolean,
-    ): void {
-        const w = this.width + width;
-        const h = this.height + width;
-        if ((x0 < -width && x1 < -width) || (x0 > w && x1 > w) || (y0 < -width && y1 < -width) || (y0 > h && y1 > h)) return;
-        if (!(Math.abs(x0) < FAR && Math.abs(y0) < FAR && Math.abs(x1) < FAR && Math.abs(y1) < FAR)) return;
+    /** A line of `width` pixels; dashes of five pixels in eight, counted from its beginning. */
+    line(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, seen: number, width: number, dashed: boolean): void {
+        const [w, h] = [this.width, this.height];
+        const inside = x0 >= 0 && x1 >= 0 && y0 >= 0 && y1 >= 0 && x0 < w && x1 < w && y0 < h && y1 < h;
+        if (inside && width === 1 && !dashed) this.thin(x0, y0, z0, x1, y1, z1, seen);
+        else this.any(x0, y0, z0, x1, y1, z1, seen, width, dashed);
+    }
+
+    /** Nearly all lines: a pixel wide and within the window. The longer way is stepped through pixel by pixel. */
+    private thin(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, seen: number): void {
+        const { width, depth, seen: plane } = this;
         const dx = x1 - x0;
         const dy = y1 - y0;
-        const [wide, high] = [Math.abs(dx), Math.abs(dy)];
-        const steps = Math.ceil(Math.max(wide, high));
-        if (steps <= 1 && width === 1) {
-            this.dot(x1, y1, z1, colour, id);
-            return;
-        }
-
-        // The part of the line that is within the window, in steps.
-        let [begin, end] = [0, steps];
-        if (x0 < -width || x1 < -width || x0 > w || x1 > w || y0 < -width || y1 < -width || y0 > h || y1 > h) {
-            const across = [dx > 0 ? (-width - x0) / dx : dx < 0 ? (w - x0) / dx : 0, dy > 0 ? (-width - y0) / dy : dy < 0 ? (h - y0) / dy : 0];
-            const out = [dx > 0 ? (w - x0) / dx : dx < 0 ? (-width - x0) / dx : 1, dy > 0 ? (h - y0) / dy : dy < 0 ? (-width - y0) / dy : 1];
-            begin = Math.max(0, Math.floor(Math.max(across[0]!, across[1]!) * steps));
-            end = Math.min(steps, Math.ceil(Math.min(out[0]!, out[1]!) * steps));
-        }
-        const [sx, sy, sz] = steps === 0 ? [0, 0, 0] : [dx / steps, dy / steps, (z1 - z0) / steps];
-        let [x, y, z] = [x0 + begin * sx, y0 + begin * sy, z0 + begin * sz];
-        const half = (width - 1) / 2;
-        for (let step = begin; step <= end; step++) {
-            if (!dashed || (step & 7) < 5) {
-                if (width === 1) this.dot(x, y, z, colour, id);
-                else if (wide >= high) for (let side = 0; side < width; side++) this.dot(x, y - half + side, z, colour, id);
-                else for (let side = 0; side < width; side++) this.dot(x - half + side, y, z, colour, id);
+        const steps = Math.ceil(Math.max(Math.abs(dx), Math.abs(dy)));
+        if (steps > 1) {
+            const part = 1 / steps;
+            const [sx, sy, sz] = [dx * part, dy * part, (z1 - z0) * part];
+            for (let step = 0; step < steps; step++) {
+                const at = (y0 | 0) * width + (x0 | 0);
+                if (z0 <= depth[at]!) {
+                    depth[at] = z0;
+                    plane[at] = seen;
+                }
+                x0 += sx;
+                y0 += sy;
+                z0 += sz;
             }
-            x += sx;
-            y += sy;
-            z += sz;
+        }
+        const at = (y1 | 0) * width + (x1 | 0);
+        if (z1 > depth[at]!) return;
+        depth[at] = z1;
+        plane[at] = seen;
+    }
+
+    private any(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, seen: number, width: number, dashed: boolean): void {
+        const [w, h] = [this.width + width, this.height + width];
+        if ((x0 < -width && x1 < -width) || (x0 > w && x1 > w) || (y0 < -width && y1 < -width) || (y0 > h && y1 > h)) return;
+        if (!(Math.abs(x0) < FAR && Math.abs(y0) < FAR && Math.abs(x1) < FAR && Math.abs(y1) < FAR)) return;
+        const [dx, dy] = [x1 - x0, y1 - y0];
+        const steps = Math.ceil(Math.max(Math.abs(dx), Math.abs(dy), 1));
+        const [begin, end] = this.within(x0, dx, -width, w, steps, this.within(y0, dy, -width, h, steps, [0, steps]));
+        const [sx, sy, sz] = [dx / steps, dy / steps, (z1 - z0) / steps];
+        const half = (width - 1) / 2;
+        const isWide = Math.abs(dx) >= Math.abs(dy);
+        for (let step = begin; step <= end; step++) {
+            if (dashed && (step & 7) >= 5) continue;
+            const [x, y, z] = [x0 + step * sx, y0 + step * sy, z0 + step * sz];
+            for (let side = -half; side <= half; side++) this.dot(isWide ? x : x + side, isWide ? y + side : y, z, seen);
         }
     }
 
-    private dot(x: number, y: number, z: number, colour: number, id: number): void {
+    /** Of the steps, those that are between `low` and `high`. */
+    private within(from: number, way: number, low: number, high: number, steps: number, [begin, end]: [number, number]): [number, number] {
+        if (way === 0) return [begin, end];
+        const [enter, leave] = way > 0 ? [low, high] : [high, low];
+        return [
+            Math.max(begin, Math.floor(((enter - from) / way) * steps)),
+            Math.min(end, Math.ceil(((leave - from) / way) * steps)),
+        ];
+    }
+
+    private dot(x: number, y: number, z: number, seen: number): void {
         if (x < 0 || y < 0 || x >= this.width || y >= this.height) return;
         const at = (y | 0) * this.width + (x | 0);
         if (z > this.depth[at]!) return;
         this.depth[at] = z;
-        this.colour[at] = colour;
-        this.id[at] = id;
+        this.seen[at] = seen;
     }
 
     /** Flat faces, lit from the eye. They are no move. */
@@ -124,8 +141,8 @@ export class Raster {
             const points = [0, 3, 6].map((k): Vector => {
                 const [x, y, z] = [corners[i + k]!, corners[i + k + 1]!, corners[i + k + 2]!];
                 return [
-                    right[0] * x + right[1] * y + right[2] * z + at[0] - this.left,
-                    down[0] * x + down[1] * y + down[2] * z + at[1] - this.top,
+                    right[0] * x + right[1] * y + right[2] * z + at[0] - this.planes.left,
+                    down[0] * x + down[1] * y + down[2] * z + at[1] - this.planes.top,
                     away[0] * x + away[1] * y + away[2] * z + at[2],
                 ];
             });
@@ -150,8 +167,7 @@ export class Raster {
                 const at = y * this.width + x;
                 if (z > this.depth[at]!) continue;
                 this.depth[at] = z;
-                this.colour[at] = colour;
-                this.id[at] = 0;
+                this.seen[at] = this.planes.sees === "moves" ? 0 : colour;
             }
         }
     }

@@ -25,7 +25,7 @@ export class Plain implements Renderer {
         raster.clear(rgb(...paper));
         for (const strip of strips) raster.strip(strip, projection);
         for (const body of bodies) raster.triangles(body, projection);
-        const octets = new Uint8ClampedArray(raster.colour.buffer);
+        const octets = new Uint8ClampedArray(raster.seen.buffer);
         this.context.putImageData(new ImageData(octets, width, height), 0, 0);
     }
 }

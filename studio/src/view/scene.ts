@@ -6,6 +6,7 @@ import type { Projection, Size } from "./camera.ts";
 import { inSight, levelFor, type Chunk, type Chunks } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
 import { Raster } from "./raster.ts";
+import { symbolsOf, type Symbol } from "./symbols.ts";
 import { CHUNK_MOVES, Style, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
 
 export interface Looks {
@@ -29,6 +30,7 @@ export interface Marks {
 export interface Picture {
     strips: Strip[];
     bodies: Triangles[];
+    symbols: Symbol[];
 }
 
 /** Pixels round the pointer in which a line is looked for. */
@@ -45,14 +47,16 @@ export class Scene {
 
     picture(projection: Projection, size: Size, looks: Looks, marks: Marks): Picture {
         const strips: Strip[] = [];
+        const symbols: Symbol[] = [];
         const level = levelFor(this.walk.levels, projection.scale);
         for (const chunk of this.chunks.chunks) {
             if (!inSight(chunk, projection, size)) continue;
             const vertices = this.chunks.best(level, chunk.number);
             if (vertices === null) continue;
             this.lines(strips, chunk, vertices, looks, marks);
+            symbolsOf(symbols, chunk, vertices, projection, size);
         }
-        return { strips, bodies: marks.tool === null ? [] : [marks.tool] };
+        return { strips, symbols, bodies: marks.tool === null ? [] : [marks.tool] };
     }
 
     private lines(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, marks: Marks): void {
@@ -123,12 +127,12 @@ export class Scene {
 export function nearest(strips: Strip[], projection: Projection, x: number, y: number): number | null {
     const side = REACH * 2 + 1;
     const [left, top] = [Math.floor(x) - REACH, Math.floor(y) - REACH];
-    const raster = new Raster(side, side, left, top);
+    const raster = new Raster(side, side, { sees: "moves", left, top });
     raster.clear(0);
     for (const strip of strips) raster.strip(strip, projection);
     let best: number | null = null;
     let least = (REACH + 0.5) ** 2;
-    raster.id.forEach((id, at) => {
+    raster.seen.forEach((id, at) => {
         if (id === 0) return;
         const distance = ((at % side) - REACH) ** 2 + (Math.floor(at / side) - REACH) ** 2;
         if (distance >= least) return;

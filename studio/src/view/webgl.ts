@@ -106,6 +106,7 @@ export class Gl implements Renderer {
     constructor(lost: () => void, { evenSlow = false } = {}) {
         const gl = this.canvas.getContext("webgl2", { alpha: false, antialias: false, failIfMajorPerformanceCaveat: !evenSlow });
         if (gl === null) throw new Error("no WebGL 2");
+        if (!evenSlow && isPlayed(gl)) throw new Error("WebGL 2 by the processor");
         this.gl = gl;
         this.canvas.addEventListener("webglcontextlost", lost, { once: true });
         this.lines = this.program(LINES);
@@ -255,6 +256,13 @@ export class Gl implements Renderer {
             this.kept.delete(key);
         }
     }
+}
+
+/** Browsers do not always tell that the processor plays the graphics processor; its name does. */
+function isPlayed(gl: WebGL2RenderingContext): boolean {
+    const more = gl.getExtension("WEBGL_debug_renderer_info");
+    const name: unknown = gl.getParameter(more?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER);
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(String(name));
 }
 
 const NO_MOVES = new Uint8Array(1);
