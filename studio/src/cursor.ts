@@ -3,7 +3,10 @@
 import { effect, signal, untracked, type Signal } from "@preact/signals";
 import { Newest } from "./newest.ts";
 import type { Seam } from "./protocol/seam.ts";
-import type { By, Job, Place } from "./protocol/asks.ts";
+import type { Job, Place, PlaceParams } from "./protocol/asks.ts";
+
+/** What a place is asked by. */
+export type Where = Omit<PlaceParams, "revision">;
 
 /** Moves from the first to before the last. */
 export type Range = [number, number];
@@ -13,8 +16,8 @@ export class Cursor {
     /** The moves that the block of the place makes: several where it stands in a loop or a cycle. */
     readonly ofBlock: Signal<Range[]> = signal([]);
     /** What the place was asked by. */
-    readonly by: Signal<By["by"]> = signal("move");
-    private readonly asked: Newest<By>;
+    readonly by: Signal<Where["by"]> = signal("move");
+    private readonly asked: Newest<Where>;
     private readonly askedMoves: Newest<number>;
     private block = "";
 
@@ -30,13 +33,13 @@ export class Cursor {
         });
     }
 
-    to(by: By): Promise<void> {
+    to(by: Where): Promise<void> {
         this.by.value = by.by;
         return this.asked.ask(by);
     }
 
     toMove(move: number): Promise<void> {
-        const moves = this.job.value?.walk?.moves ?? 0;
+        const moves = this.job.value?.walk.moves ?? 0;
         return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) });
     }
 
@@ -47,13 +50,13 @@ export class Cursor {
         return this.toMove(neighbour(this.ofBlock.value, move, step));
     }
 
-    private async find(by: By): Promise<void> {
+    private async find(by: Where): Promise<void> {
         const job = this.job.value;
-        if (job === null || !job.walk?.moves) return;
+        if (job === null || job.walk.moves === 0) return;
         const { done } = await this.seam.ask("place", { ...by, revision: job.revision });
         if (done === null || this.job.value?.revision !== job.revision) return;
         this.place.value = done;
-        const block = `${job.revision} ${done.block?.file ?? ""} ${done.block?.line ?? ""}`;
+        const block = `${job.revision} ${done.block.file ?? ""} ${done.block.line}`;
         if (block === this.block) return;
         this.block = block;
         void this.askedMoves.ask(job.revision);
@@ -65,7 +68,7 @@ export class Cursor {
             this.ofBlock.value = [];
             return;
         }
-        const of = { revision, by: "block" as const, value: block.line, file: block.file ?? null };
+        const of = { revision, by: "block" as const, value: block.line, file: block.file };
         this.ofBlock.value = (await this.seam.ask("moves", of)).done.ranges;
     }
 
@@ -78,7 +81,7 @@ export class Cursor {
             this.place.value = null;
             this.ofBlock.value = [];
         } else if (place?.source) {
-            void this.to({ by: "source", value: place.source.line, file: place.source.file ?? null });
+            void this.to({ by: "source", value: place.source.line });
         } else {
             void this.toMove(place?.move ?? walk.mismatch ?? 0);
         }

@@ -11,7 +11,7 @@ export const FACTORS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 25, 50, 100, 250, 1000];
 /** Seconds of the machine for one of ours. What has no feed (a rapid, a dwell) goes by `last`: it never stops the replay. */
 export function rate(pace: Pace, place: Pick<Place, "feed"> | null, last: number): number {
     if ("factor" in pace) return pace.factor;
-    const feed = place?.feed ?? 0;
+    const feed = place?.feed?.unit === "mm/min" ? place.feed.value : 0;
     return feed > 0 ? (pace.metres * 60_000) / feed : last;
 }
 
@@ -28,7 +28,7 @@ export class Player {
     ) {}
 
     get length(): number {
-        return this.job.value?.walk?.time_s ?? 0;
+        return this.job.value?.walk.time_s ?? 0;
     }
 
     toggle(): void {
@@ -77,8 +77,8 @@ export class Player {
             const range = ofBlock.value.find(([from, to]) => from <= move && move < to) ?? [move, move + 1];
             return void this.cursor.toMove(step === 1 ? range[1] : range[0] - 1);
         }
-        const starts = (of === "tool" ? walk.tools.map((tool) => tool.move) : walk.operations?.map((one) => one.move)) ?? [];
-        void this.cursor.toMove(nextStart(starts.filter((start) => typeof start === "number"), move, step, walk.moves));
+        const starts = (of === "tool" ? walk.tools : walk.operations).map((one) => one.move);
+        void this.cursor.toMove(nextStart(starts, move, step, walk.moves));
     }
 
     end(step: 1 | -1): void {

@@ -3,13 +3,13 @@
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import { Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { Draft, Finding, Job, MachineEntry, Opened, Option, SourceName, Work } from "./protocol/asks.ts";
+import type { Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Work } from "./protocol/asks.ts";
 
 export class Studio {
     readonly link: Signal<State>;
     readonly opened: Signal<Opened | null> = signal(null);
     readonly machines: Signal<MachineEntry[]> = signal([]);
-    readonly form: Signal<Option[]> = signal([]);
+    readonly form: Signal<Field[]> = signal([]);
     readonly drafts: Signal<Draft[]> = signal([]);
     readonly work: Signal<Work | null> = signal(null);
     readonly job: Signal<Job | null> = signal(null);
@@ -25,6 +25,8 @@ export class Studio {
     private typing: ReturnType<typeof setTimeout> | undefined;
     readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
     readonly cursor: Cursor;
+    /** A machine has to be chosen before anything can be posted. */
+    asksMachine: () => void = () => {};
     private abort: AbortController | null = null;
 
     constructor(
@@ -41,16 +43,16 @@ export class Studio {
         this.opened.value = opened;
         this.drafts.value = opened.drafts;
         const [machines, form] = await Promise.all([this.seam.ask("machines", {}), this.seam.ask("form", {})]);
-        this.machines.value = machines.done.machines;
-        this.form.value = form.done.options;
+        this.machines.value = machines.done;
+        this.form.value = form.done;
         if (this.edited.value !== null) return this.prove(this.edited.value);
         if (this.work.value !== null) return this.post(this.work.value);
-        if (opened.source !== null) await this.post({ source: { file: opened.source }, machine: opened.machine, options: {} });
+        if (opened.source !== null) await this.post({ source: opened.source, machine: opened.machine, options: [] });
     }
 
-    open(source: SourceName): Promise<void> {
+    open(source: FileOrUpload): Promise<void> {
         const machine = this.work.value?.machine ?? this.opened.value?.machine ?? null;
-        return this.post({ source, machine, options: {} });
+        return this.post({ source, machine, options: [] });
     }
 
     async drop(file: File): Promise<void> {
@@ -70,6 +72,10 @@ export class Studio {
         this.edited.value = null;
         this.isCurrent.value = false;
         const { source, machine, options } = work;
+        if (machine === null) {
+            this.job.value = null;
+            return this.asksMachine();
+        }
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
         this.job.value = job ?? null;
@@ -87,12 +93,13 @@ export class Studio {
     /** Proves the program as edited by hand, and keeps it as a draft. */
     async prove(text: string): Promise<void> {
         const work = this.work.value;
-        if (work === null) return;
+        if (work === null || work.machine === null) return;
+        const { source, machine, options } = work;
         this.edited.value = text;
-        const octets = new TextEncoder().encode(text);
+        const octets = new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
         void this.seam.ask("draft", { name: draftName(work), of: work }, { arrays: { text: octets } }).catch(() => {});
         const job = await this.told(async (signal, progress) =>
-            (await this.seam.ask("prove", work, { arrays: { text: octets }, signal, progress })).done);
+            (await this.seam.ask("prove", { source, machine, options }, { arrays: { text: octets }, signal, progress })).done);
         if (job === undefined) return;
         this.job.value = job;
         this.isCurrent.value = true;
@@ -110,7 +117,7 @@ export class Studio {
     async resume(draft: Draft): Promise<void> {
         const { arrays } = await this.seam.ask("draft_text", { name: draft.name });
         const text = new TextDecoder().decode(arrays.text as Uint8Array | undefined);
-        this.work.value = draft.of;
+        this.work.value = draft.of as Work;
         this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
         await this.prove(text);
     }

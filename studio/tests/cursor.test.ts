@@ -3,7 +3,7 @@ import { expect, test } from "vitest";
 import { Cursor, neighbour } from "../src/cursor.ts";
 import { Newest } from "../src/newest.ts";
 import type { Seam } from "../src/protocol/seam.ts";
-import type { By, Job, Place } from "../src/protocol/asks.ts";
+import type { Job, Place, PlaceParams } from "../src/protocol/asks.ts";
 
 const settled = () => new Promise((resolve) => setTimeout(resolve));
 
@@ -31,12 +31,12 @@ const job = (revision: number): Job =>
     ({ revision, walk: { moves: 9, chunks: 1, levels: [], box: null, time_s: 9, tools: [], kinds: [] } }) as unknown as Job;
 
 test("the cursor is at the same record of the source after a new posting", async () => {
-    const asked: (By & { revision: number })[] = [];
+    const asked: PlaceParams[] = [];
     const seam = {
-        async ask(ask: string, params: By & { revision: number }) {
+        async ask(ask: string, params: PlaceParams) {
             if (ask === "moves") return { done: { ranges: [] }, arrays: {} };
             asked.push(params);
-            return { done: { move: params.value, source: { file: "a.cls", line: 40, text: "" } } as unknown as Place, arrays: {} };
+            return { done: { move: params.value, block: { file: null, line: 1, text: "" }, source: { file: null, line: 40, text: "" } } as unknown as Place, arrays: {} };
         },
     } as unknown as Seam;
     const now = signal<Job | null>(job(1));
@@ -45,7 +45,7 @@ test("the cursor is at the same record of the source after a new posting", async
     await settled();
     now.value = job(2);
     await settled();
-    expect(asked.at(-1)).toEqual({ revision: 2, by: "source", value: 40, file: "a.cls" });
+    expect(asked.at(-1)).toEqual({ revision: 2, by: "source", value: 40 });
     expect(asked.at(-2)).toEqual({ revision: 1, by: "move", value: 8 });
     now.value = null;
     expect(cursor.place.value).toBe(null);

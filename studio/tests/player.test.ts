@@ -4,12 +4,12 @@ import { whereOf } from "../src/panes/Go.tsx";
 
 test("a cutting speed in m/s: 0.05 m/s at 1500 mm/min runs twice as fast as the machine", () => {
     // 1500 mm/min are 25 mm/s; 0.05 m/s are 50 mm/s.
-    expect(rate({ metres: 0.05 }, { feed: 1500 }, 1)).toBe(2);
+    expect(rate({ metres: 0.05 }, { feed: { value: 1500, unit: "mm/min" } }, 1)).toBe(2);
 });
 
 test("what has no feed goes on at the rate before", () => {
     expect(rate({ metres: 0.05 }, { feed: null }, 3)).toBe(3);
-    expect(rate({ metres: 0.05 }, { feed: 0 }, 3)).toBe(3);
+    expect(rate({ metres: 0.05 }, { feed: { value: 0.1, unit: "mm/turn" } }, 3)).toBe(3);
     expect(rate({ factor: 10 }, null, 3)).toBe(10);
 });
 

@@ -34,7 +34,7 @@ export function Bar({ screen }: { screen: Screen }) {
             <span class="soft">{studio.said.value}</span>
             {studio.drafts.value.slice(0, 1).map((draft) => (
                 <span key={draft.name}>
-                    ▲ an edit of {nameOf(draft.of)} is kept{" "}
+                    ▲ an edit of {nameOf(draft.of as Work)} is kept{" "}
                     <button type="button" onClick={() => void studio.resume(draft)}>
                         Continue
                     </button>{" "}
@@ -75,7 +75,7 @@ function Running({ screen }: { screen: Screen }) {
 
 function VerdictOf({ job, stopped }: { job: Job | null; stopped: boolean }) {
     if (job === null) return stopped ? <strong class="invalid">✗ see the findings</strong> : <span class="soft">no program yet</span>;
-    const moves = job.walk === null ? "" : `${job.walk.moves.toLocaleString("en")} moves`;
+    const moves = `${job.walk.moves.toLocaleString("en")} moves`;
     return (
         <>
             <strong class={job.verdict}>{verdicts[job.verdict]}</strong> {moves}

@@ -45,7 +45,7 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
                     choices={studio.machines.value.map((machine) => ({
                         name: machine.name,
                         title: `${machine.name}: ${machine.title}`,
-                        more: `${machine.control} ${machine.axes}`,
+                        more: `${machine.control}, ${machine.axes.join(" ")}`,
                         run: () => void studio.choose(machine.name),
                     }))}
                 />

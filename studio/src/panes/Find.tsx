@@ -12,7 +12,7 @@ export function Find({ screen, close }: { screen: Screen; close(): void }) {
         if (job === null || text.value === "") return;
         const of = searched.value;
         const { done } = await studio.seam.ask("search", { revision: job.revision, of, text: text.value, from: from.value });
-        if (done === null) {
+        if (done.line === null) {
             said.value = from.value > 1 ? "No more; Enter begins at the top." : "Nothing is found.";
             from.value = 1;
             return;

@@ -2,7 +2,7 @@ import type { Finding, Severity } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** A shape beside the colour. */
-const marks: Record<Severity, string> = { error: "✗", warning: "▲", note: "●" };
+const marks: Record<Severity, string> = { error: "✗", warning: "▲" };
 
 /** More than this nobody reads; the rest is counted. */
 const SHOWN = 1000;
@@ -21,17 +21,17 @@ export function Findings({ screen }: { screen: Screen }) {
 }
 
 function Row({ finding, lit, lead }: { finding: Finding; lit: boolean; lead(): void }) {
-    const place = [finding.file, finding.line, finding.column].filter((part) => part !== null && part !== undefined).join(":");
+    const place = [finding.file, finding.line, finding.column].filter(Boolean).join(":");
     return (
         <li aria-current={lit}>
             <button type="button" onClick={lead}>
                 <strong class={finding.severity}>
                     {marks[finding.severity]} {finding.severity}
                 </strong>{" "}
-                {finding.message} <span class="soft">[{finding.rule}]</span>
+                {finding.message} {finding.count > 1 && <b>({finding.count.toLocaleString("en")} times)</b>} <span class="soft">[{finding.rule}]</span>
                 {place !== "" && <span class="code soft"> {place}</span>}
             </button>
-            {finding.text && <div class="code">{finding.text}</div>}
+            {finding.excerpt && <div class="code">{finding.excerpt}</div>}
             {finding.help && <div class="soft">→ {finding.help}</div>}
         </li>
     );

@@ -19,7 +19,7 @@ export function Folder({ screen, close }: { screen: Screen; close(): void }) {
     const choices = entries.value.map(({ name, path: to, kind, bytes }) => ({
         name: to,
         title: kind === "folder" ? `${name}/` : name,
-        more: kind === "folder" ? "" : size(bytes),
+        more: bytes === null ? "" : size(bytes),
         run: () => {
             if (kind === "folder") path.value = to;
             else {

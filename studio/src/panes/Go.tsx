@@ -1,9 +1,9 @@
 import { useSignal } from "@preact/signals";
-import type { By } from "../protocol/asks.ts";
+import type { Where } from "../cursor.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** `120` is a line of the program, `s120` one of the source, `m5000` a move, `3:12` or `12.5 s` a time. */
-export function whereOf(text: string): By | null {
+export function whereOf(text: string): Where | null {
     const trimmed = text.trim().toLowerCase();
     const time = /^(?:(\d+):)?(?:(\d+):)?(\d+(?:\.\d+)?)\s*s?$/.exec(trimmed);
     const line = /^([nsm]?)\s*(\d+)$/.exec(trimmed);

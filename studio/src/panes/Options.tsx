@@ -1,16 +1,17 @@
 import { useSignal } from "@preact/signals";
 import { matching } from "../commands.ts";
-import type { Option } from "../protocol/asks.ts";
+import type { Field } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
+
+type Given = [name: string, value: string][];
 
 /** The options of the command, as it describes them itself. */
 export function Options({ screen, close }: { screen: Screen; close(): void }) {
     const { studio } = screen;
     const search = useSignal("");
-    const given = useSignal(studio.work.value?.options ?? {});
-    const set = (name: string, value: string): void => {
-        const { [name]: _, ...rest } = given.value;
-        given.value = value === "" ? rest : { ...rest, [name]: value };
+    const given = useSignal<Given>(studio.work.value?.options ?? []);
+    const set = (name: string, values: string[]): void => {
+        given.value = [...given.value.filter(([one]) => one !== name), ...values.map((value): Given[number] => [name, value])];
     };
     const work = studio.work.value;
     return (
@@ -21,10 +22,15 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
                 if (work !== null) void studio.post({ ...work, options: given.value });
             }}
         >
-            <input type="search" aria-label="Search the options" placeholder="Search the options" onInput={(event) => (search.value = event.currentTarget.value)} />
+            <input type="search" aria-label="Search the options" placeholder="Search the options" autofocus onInput={(event) => (search.value = event.currentTarget.value)} />
             <div class="choices" role="group" aria-label="Options" tabIndex={0}>
-                {matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`).map((option) => (
-                    <Field key={option.name} option={option} value={given.value[option.name] ?? ""} set={(value) => set(option.name, value)} />
+                {matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`).map((field) => (
+                    <Row
+                        key={field.name}
+                        field={field}
+                        values={given.value.filter(([name]) => name === field.name).map(([, value]) => value)}
+                        set={(values) => set(field.name, values)}
+                    />
                 ))}
             </div>
             <p>
@@ -36,24 +42,50 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
     );
 }
 
-function Field({ option, value, set }: { option: Option; value: string; set(value: string): void }) {
-    const id = `option-${option.name}`;
+interface Props {
+    field: Field;
+    values: string[];
+    set(values: string[]): void;
+}
+
+function Row({ field, values, set }: Props) {
+    const id = `option-${field.name}`;
     return (
         <div class="field">
-            <label for={id}>{option.name}</label>
-            {option.values === null ? (
-                <input id={id} type="text" value={value} placeholder={option.default ?? ""} aria-describedby={`${id}-help`} onInput={(event) => set(event.currentTarget.value)} />
-            ) : (
-                <select id={id} value={value} aria-describedby={`${id}-help`} onChange={(event) => set(event.currentTarget.value)}>
-                    <option value="">{option.default ?? ""}</option>
-                    {option.values.map((one) => (
-                        <option key={one}>{one}</option>
-                    ))}
-                </select>
-            )}
+            <label for={id}>
+                {field.name} <span class="soft">{field.value}</span>
+            </label>
+            <Input id={id} field={field} values={values} set={set} />
             <div class="soft" id={`${id}-help`}>
-                {option.help}
+                {field.help}
+                {field.repeats && " One a line."}
             </div>
         </div>
+    );
+}
+
+const linesOf = (text: string): string[] => text.split("\n").filter((line) => line.trim() !== "");
+
+function Input({ id, field, values, set }: Props & { id: string }) {
+    const help = `${id}-help`;
+    if (field.value === null) {
+        return <input id={id} type="checkbox" aria-describedby={help} checked={values.length > 0} onChange={(event) => set(event.currentTarget.checked ? [""] : [])} />;
+    }
+    if (field.repeats) {
+        return <textarea id={id} rows={2} aria-describedby={help} value={values.join("\n")} onChange={(event) => set(linesOf(event.currentTarget.value))} />;
+    }
+    const put = (value: string): void => set(value === "" ? [] : [value]);
+    if (field.values.length === 0) {
+        return <input id={id} type="text" aria-describedby={help} value={values[0] ?? ""} placeholder={field.default ?? ""} onInput={(event) => put(event.currentTarget.value)} />;
+    }
+    return (
+        <select id={id} aria-describedby={help} value={values[0] ?? ""} onChange={(event) => put(event.currentTarget.value)}>
+            <option value="">{field.default ?? ""}</option>
+            {field.values.map(([value, meaning]) => (
+                <option key={value} value={value} title={meaning}>
+                    {value}
+                </option>
+            ))}
+        </select>
     );
 }

@@ -10,9 +10,9 @@ type Span = [from: number, to: number];
 /** Axes, feed and deviation over the machine's time, with the limits of the axes. */
 export function Plots({ screen }: { screen: Screen }) {
     const job = screen.studio.job.value;
-    const length = job?.walk?.time_s ?? 0;
+    const length = job?.walk.time_s ?? 0;
     const zoomed = useSignal<Span | null>(null);
-    const span = useComputed((): Span => zoomed.value ?? [0, screen.studio.job.value?.walk?.time_s ?? 0]);
+    const span = useComputed((): Span => zoomed.value ?? [0, screen.studio.job.value?.walk.time_s ?? 0]);
     if (job === null || length === 0) return <p class="soft hint">No times yet.</p>;
     const zoom = (by: number): void => {
         const middle = screen.studio.cursor.place.value?.time_s ?? length / 2;
@@ -20,7 +20,7 @@ export function Plots({ screen }: { screen: Screen }) {
         const from = Math.max(0, Math.min(length - 2 * half, middle - half));
         zoomed.value = [from, from + 2 * half];
     };
-    const axes: Axis[] = [...(job.machine?.axes ?? []), { name: "feed", unit: "mm/min", kind: "linear" }, { name: "deviation", unit: "mm", kind: "linear" }];
+    const axes: Axis[] = [...job.machine.axes, { name: "feed", unit: "mm/min", kind: "linear", low: null, high: null }];
     return (
         <div class="plots">
             <p>

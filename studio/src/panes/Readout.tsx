@@ -7,14 +7,16 @@ const number = (value: number | null | undefined, digits = 3): string => (value 
 export function Readout({ screen }: { screen: Screen }) {
     const place = screen.studio.cursor.place.value;
     const axes = screen.studio.job.value?.machine?.axes ?? [];
+    const tool = screen.toolOf(place?.tool ?? null);
     const pointer = screen.pointer.value;
     const parts: [string, string, string][] = place === null ? [] : [
         ...axes.map(({ name, unit }, i): [string, string, string] => [name, number(place.axes[i]), unit]),
-        ["Feed", number(place.feed, 0), "mm/min"],
-        ["Spindle", place.spindle ?? "–", ""],
+        ["Feed", number(place.feed?.value, 0), place.feed?.unit ?? ""],
+        ["Spindle", place.spindle === null ? "–" : `${place.spindle.turns} ${place.spindle.speed ?? ""}`, "1/min"],
         ["Coolant", place.coolant ?? "–", ""],
         ["Comp.", place.compensation ?? "–", ""],
-        ["Tool", place.tool === null ? "–" : `${place.tool.number ?? ""} ${place.tool.name ?? ""}`.trim(), ""],
+        ["Cycle", place.cycle ?? "–", ""],
+        ["Tool", tool === null ? "–" : `${tool.number} ${tool.name}`, ""],
         ["Move", `${(place.move + 1).toLocaleString("en")} ${place.kind}`, ""],
     ];
     return (
@@ -23,7 +25,7 @@ export function Readout({ screen }: { screen: Screen }) {
                 <div key={name}>
                     <dt>{name}</dt>
                     <dd>
-                        {value} <small>{unit}</small>
+                        {value} <small>{unit === "degrees" ? "°" : unit}</small>
                     </dd>
                 </div>
             ))}

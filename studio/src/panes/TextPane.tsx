@@ -1,5 +1,6 @@
 import { effect, untracked, useSignal, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { readText } from "../protocol/text.ts";
 import type { Job, Text } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { familyOf } from "../text/dialects.ts";
@@ -11,10 +12,11 @@ type Of = "program" | "source";
 export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
     const { studio } = screen;
     const host = useRef<HTMLDivElement>(null);
-    /** Of a program in several files, the one that is shown. */
+    /** Of a program in several files, the called one that is shown; null: the program itself. */
     const file = useSignal<string | null>(null);
     const compared = useSignal(false);
     const text = studio.job.value?.[of] ?? null;
+    const parts = of === "program" ? (studio.job.value?.parts ?? []) : [];
     const title = of === "program" ? "Program" : "Source";
 
     useEffect(() => keepUp(screen, of, host.current!, file, compared), []);
@@ -26,10 +28,13 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
                 <h2>
                     {title} <span class="soft">{text?.file}</span>
                 </h2>
-                {text?.parts && text.parts.length > 1 && (
-                    <select aria-label="File of the program" value={file.value ?? text.file} onChange={(event) => (file.value = event.currentTarget.value)}>
-                        {text.parts.map((part) => (
-                            <option key={part.file}>{part.file}</option>
+                {parts.length > 0 && (
+                    <select aria-label="File of the program" value={file.value ?? ""} onChange={(event) => (file.value = event.currentTarget.value || null)}>
+                        <option value="">{text?.file}</option>
+                        {parts.map((part) => (
+                            <option key={part.file} value={part.file}>
+                                {part.file}
+                            </option>
                         ))}
                     </select>
                 )}
@@ -80,7 +85,8 @@ function Template({ screen }: { screen: Screen }) {
     return (
         <footer class="template">
             <span class="soft">
-                written by <b>{template.name}</b>, {template.file} line {template.line}
+                written by <b>{template.name}</b>
+                {template.file === null ? ", built in" : `, ${template.file} line ${template.line}`}
             </span>
             <div class="code">{template.text}</div>
         </footer>
@@ -103,20 +109,16 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
     let posted: string | null = null;
 
     const origin = (job: Job, text: Text): Origin => ({
-        lines: text.parts?.find((part) => part.file === file.value)?.lines ?? text.lines,
-        family: familyOf(text.dialect, file.value ?? text.file),
-        isEditable: of === "program" && (text.parts?.length ?? 1) < 2,
-        read: async (from, to) => {
-            const { arrays } = await seam.ask("text", { revision: job.revision, of, file: file.value, from, to });
-            return new TextDecoder().decode(arrays.text as Uint8Array | undefined);
-        },
+        lines: job.parts.find((part) => part.file === file.value)?.lines ?? text.lines,
+        family: of === "source" ? familyOf(null, text.file) : familyOf(job.machine.dialect, text.file),
+        isEditable: of === "program" && job.parts.length === 0,
+        read: (from, to) => readText(seam, { revision: job.revision, of, file: file.value, from, to }),
     });
 
     const stops = [
         effect(() => {
             const job = studio.job.value;
             const text = job?.[of] ?? null;
-            void file.value;
             const edited = of === "program" ? untracked(() => studio.edited.value) : null;
             if (job === null || text === null) {
                 if (edited === null) void editor.show(null);
@@ -127,11 +129,10 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
         }),
         effect(() => {
             const place = cursor.place.value;
-            const line = of === "program" ? place?.block : place?.source;
-            const name = studio.job.value?.[of]?.file;
-            if (line?.file && line.file !== (file.peek() ?? name)) file.value = line.file;
-            const shown = file.value ?? name;
-            const wrong = studio.findings.value.filter((finding) => finding.line && finding.file === shown).map((finding) => finding.line!);
+            const line = (of === "program" ? place?.block : place?.source) ?? null;
+            if (line !== null) file.value = line.file;
+            const name = file.value ?? studio.job.value?.[of]?.file;
+            const wrong = studio.findings.value.filter((finding) => finding.of === of && finding.line > 0 && finding.file === name).flatMap(({ line, lines }) => [line, ...lines]);
             editor.mark(line?.line ?? null, wrong.slice(0, 1000));
         }),
         effect(() => {

@@ -51,6 +51,19 @@ export function Timeline({ screen }: { screen: Screen }) {
                             void studio.cursor.to({ by: "time", value: event.currentTarget.valueAsNumber });
                         }}
                     />
+                    <span class="tools">
+                        {(walk?.tools ?? []).slice(0, 50).map((tool) => (
+                            <button
+                                key={tool.move}
+                                type="button"
+                                style={{ left: `${(100 * tool.time_s) / (length || 1)}%` }}
+                                title={`Tool ${tool.number} ${tool.name}`}
+                                onClick={() => void studio.cursor.toMove(tool.move)}
+                            >
+                                T{tool.number}
+                            </button>
+                        ))}
+                    </span>
                 </span>
                 <span class="clock">
                     {clock(time)} / {clock(length)}

@@ -1,6 +1,6 @@
 import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { vector, type Screen } from "../screen/screen.ts";
+import { axisOf, vector, type Screen } from "../screen/screen.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
 import { Viewer } from "../view/viewer.ts";
@@ -64,7 +64,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             view,
             () => {
                 const place = studio.cursor.place.value;
-                const tip = place === null ? null : { at: vector(place.tip), axis: vector(place.axis ?? [0, 0, 1]) };
+                const tip = place === null ? null : { at: vector(place.tip), axis: axisOf(place.axis) };
                 return { scene: screen.scene.value, looks: screen.looks.value, marks: screen.marks(), tip, box: screen.all, isBoxShown: screen.box.value };
             },
             (move) => void studio.cursor.toMove(move),

@@ -45,9 +45,12 @@ interface Pending {
 }
 
 const lost = (): Stopped =>
-    new Stopped("cancelled", [
-        { severity: "error", rule: "connection", message: "the connection was lost", help: "the page connects again by itself" },
-    ]);
+    new Stopped("cancelled", [said("the connection was lost", "the page connects again by itself")]);
+
+/** A finding of the page's own. */
+const said = (message: string, help: string): Finding => ({
+    severity: "error", rule: "connection", message, help, file: "", of: null, line: 0, column: 0, width: 0, excerpt: "", count: 1, lines: [],
+});
 
 /** The server's code for a token that is none of its own: no use in trying again. */
 const WRONG_TOKEN = 4401;
@@ -118,7 +121,7 @@ export class Socket implements Seam {
         const response = await fetch(path, { ...request, headers: { "x-toolpost-token": this.token } });
         if (response.ok) return response;
         const message = (await response.text()).slice(0, 500) || `the server answers ${response.status}`;
-        throw new Stopped("invalid", [{ severity: "error", rule: "request", message }]);
+        throw new Stopped("invalid", [said(message, "")]);
     }
 
     async octets(path: string, signal?: AbortSignal): Promise<ArrayBuffer> {

@@ -3,7 +3,7 @@ import type { Command } from "../commands.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
 import type { Drawing } from "../view/viewer.ts";
-import { vector, type Screen } from "./screen.ts";
+import { axisOf, type Screen } from "./screen.ts";
 
 const flip = (on: Signal<boolean>) => (): void => {
     on.value = !on.value;
@@ -44,7 +44,7 @@ function looking(screen: Screen): Command[] {
     const shift = (dx: number, dy: number) => () => screen.viewer?.shift(dx, dy);
     const axis = (): void => {
         const place = studio.cursor.place.value;
-        if (place !== null) screen.viewer?.along(vector(place.axis ?? [0, 0, 1]));
+        if (place !== null) screen.viewer?.along(axisOf(place.axis));
     };
     const drawBy = (how: Drawing): void => {
         screen.drawing.value = how;

@@ -2,7 +2,7 @@
 
 import { computed, effect, signal, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { Finding } from "../protocol/asks.ts";
+import type { ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";
@@ -16,7 +16,10 @@ import type { Drawing, Viewer } from "../view/viewer.ts";
 export type Dialog = "commands" | "keys" | "machine" | "source" | "options" | "save" | "go" | "find";
 export type Tab = "findings" | "verdict" | "plots";
 
-export const vector = ([x = 0, y = 0, z = 0]: number[]): Vector => [x, y, z];
+/** What is not known of a point counts as 0, where it has to be drawn somewhere. */
+export const vector = ([x, y, z]: (number | null)[]): Vector => [x ?? 0, y ?? 0, z ?? 0];
+
+export const axisOf = (axis: (number | null)[]): Vector => (axis.every((part) => part === null) ? [0, 0, 1] : vector(axis));
 
 export class Screen {
     readonly dialog: Signal<Dialog | null> = signal(null);
@@ -53,6 +56,7 @@ export class Screen {
     viewer: Viewer | null = null;
 
     constructor(readonly studio: Studio) {
+        studio.asksMachine = () => (this.dialog.value = "machine");
         this.player = new Player(studio.cursor, studio.job);
         const dark = matchMedia("(prefers-color-scheme: dark)");
         this.dark.value = dark.matches;
@@ -68,7 +72,7 @@ export class Screen {
     private begin(): void {
         const job = this.studio.job.value;
         const before = this.scene.peek()?.walk ?? null;
-        if (job === null || !job.walk?.moves) {
+        if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
             return;
         }
@@ -87,14 +91,18 @@ export class Screen {
             now: place === null ? null : place.move,
             pale: this.pale.value && cursor.by.value === "time",
             ofBlock: cursor.ofBlock.value,
-            mismatch: job.value?.walk?.mismatch ?? null,
-            tool: place === null ? null : toolBody(place.tool, vector(place.tip), vector(place.axis ?? [0, 0, 1]), size),
+            mismatch: job.value?.walk.mismatch ?? null,
+            tool: place === null ? null : toolBody(this.toolOf(place.tool), vector(place.tip), axisOf(place.axis), size),
         };
     }
 
+    toolOf(place: number | null): ToolUse | null {
+        return (place === null ? null : this.studio.job.value?.walk.tools[place]) ?? null;
+    }
+
     get all(): { low: Vector; high: Vector } | null {
-        const box = this.studio.job.value?.walk?.box ?? null;
-        return box === null ? null : { low: vector(box.low), high: vector(box.high) };
+        const [low, high] = this.studio.job.value?.walk.box ?? [];
+        return low === undefined || high === undefined ? null : { low, high };
     }
 
     /** Leads to the finding's place, in every pane. */
@@ -104,10 +112,10 @@ export class Screen {
         if (count === 0) return;
         this.finding.value = (number + count) % count;
         this.tab.value = "findings";
-        const place = placeOf(findings.value[this.finding.value]!);
-        if (place === null || job.value === null) return;
-        const by = place.file === job.value.source?.file ? "source" : "block";
-        void cursor.to({ by, value: place.line, file: place.file });
+        const { of, line, file } = findings.value[this.finding.value]!;
+        if (line === 0 || job.value === null) return;
+        if (of === "source") void cursor.to({ by: "source", value: line });
+        else if (of === "program") void cursor.to({ by: "block", value: line, file: file === job.value.program?.file ? null : file });
     }
 
     toText(of: "program" | "source"): void {
@@ -135,11 +143,4 @@ export class Screen {
         const at = panes.findIndex((pane) => pane.contains(document.activeElement));
         panes[(at + step + panes.length) % panes.length]?.focus();
     }
-}
-
-function placeOf(finding: Finding): { file: string; line: number } | null {
-    for (const { file, line } of [finding, ...(finding.places ?? [])]) {
-        if (file && line) return { file, line };
-    }
-    return null;
 }

@@ -1,6 +1,6 @@
 /** The chunks of a walk: where each is, which are seen, and the vertices of those that have come. */
 
-import type { Walk } from "../protocol/asks.ts";
+import type { WalkAbout } from "../protocol/asks.ts";
 import type { Projection, Size } from "./camera.ts";
 import { VERTEX_BYTES } from "./strip.ts";
 import type { Vector } from "./vector.ts";
@@ -46,7 +46,7 @@ export function inSight({ origin, half }: Chunk, { right, down, at }: Projection
 }
 
 /** The coarsest level whose error is not seen at this scale (pixels a millimetre). */
-export function levelFor(levels: Walk["levels"], scale: number): number {
+export function levelFor(levels: WalkAbout["levels"], scale: number): number {
     for (let level = levels.length - 1; level > 0; level--) {
         if (levels[level]!.error * scale <= SEEN) return level;
     }
@@ -67,7 +67,7 @@ export class Chunks {
     private frame = 0;
 
     constructor(
-        readonly walk: Walk,
+        readonly walk: WalkAbout,
         private readonly octets: (path: string) => Promise<ArrayBuffer>,
         private readonly changed: () => void,
     ) {}

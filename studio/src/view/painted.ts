@@ -15,7 +15,7 @@ export function painted(mode: Mode, scene: Scene, seam: Seam, revision: number, 
 }
 
 function byOperation({ walk }: Scene): Painter {
-    const starts = (walk.operations ?? []).map(({ move }) => move);
+    const starts = walk.operations.map(({ move }) => move);
     return ({ first }) => {
         const places = new Uint8Array(CHUNK_MOVES).fill(UNKNOWN);
         starts.forEach((start, operation) => {
@@ -31,7 +31,7 @@ function byFeed({ walk }: Scene, seam: Seam, revision: number, changed: () => vo
     const feeds = new Map<number, Float32Array | null>();
     const places = new Map<number, Uint8Array>();
     let [least, most] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-    const row = (walk.row ?? 16) / 4;
+    const row = walk.row / 4;
 
     const fetch = async (chunk: number): Promise<void> => {
         const rows = new Float32Array(await seam.octets(`/moves/${revision}/${chunk}`));

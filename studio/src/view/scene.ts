@@ -1,7 +1,7 @@
 /** What is drawn: the walk's lines as far as they are in sight, those that are picked out, the tool. The same for every renderer. */
 
 import type { Range } from "../cursor.ts";
-import type { Walk } from "../protocol/asks.ts";
+import type { WalkAbout } from "../protocol/asks.ts";
 import type { Projection, Size } from "./camera.ts";
 import { inSight, levelFor, type Chunk, type Chunks } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
@@ -41,7 +41,7 @@ export class Scene {
     byMove: ((chunk: Chunk) => Uint8Array | null) | null = null;
 
     constructor(
-        readonly walk: Walk,
+        readonly walk: WalkAbout,
         readonly chunks: Chunks,
     ) {}
 

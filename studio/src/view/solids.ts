@@ -1,6 +1,6 @@
 /** Triangles of the tool and of boxes. */
 
-import type { Tool } from "../protocol/asks.ts";
+import type { ToolUse } from "../protocol/asks.ts";
 import type { Triangles } from "./strip.ts";
 import { along, cross, unit, type Vector } from "./vector.ts";
 
@@ -27,7 +27,7 @@ function turned(tip: Vector, axis: Vector, outline: [radius: number, height: num
 }
 
 /** The tool at its tip: its own shape where it is known, else a pointer of `size` mm. */
-export function toolBody(tool: Tool | null, tip: Vector, axis: Vector, size: number): Triangles {
+export function toolBody(tool: ToolUse | null, tip: Vector, axis: Vector, size: number): Triangles {
     const radius = (tool?.diameter ?? 0) / 2;
     if (radius <= 0) return turned(tip, axis, [[0, 0], [size / 6, size / 2], [size / 6, size]], [230, 120, 0]);
     const corner = Math.min(tool?.corner ?? 0, radius);
