@@ -21,6 +21,8 @@ pub struct Arm {
     pub(crate) coupling: Option<Coupling>,
     pub(crate) world_height: f64,
     pub(crate) coupling_limit: Option<CouplingLimit>,
+    /// Of seven lengths: how far the wrist centre is from axis 3, mm, and the angle there from the upper arm at joint 3 0, radians.
+    pub(crate) forearm: [f64; 2],
 }
 
 /// How its links are put together.
@@ -160,7 +162,13 @@ impl Arm {
             joint.check(number)?;
         }
         match world_height.is_finite() {
-            true => Ok(Arm { structure, joints, coupling, world_height, coupling_limit: None }),
+            true => {
+                let forearm = match &structure {
+                    Structure::Spherical(arm) => [arm.a2.hypot(arm.c3), arm.a2.atan2(arm.c3)],
+                    Structure::Ur(..) => [0.0; 2],
+                };
+                Ok(Arm { structure, joints, coupling, world_height, coupling_limit: None, forearm })
+            }
             false => Err(Misfit(String::from("the height of the world is no number"))),
         }
     }

@@ -42,6 +42,7 @@ mod posture;
 pub use arm::{
     Arm, Calibration, Coupling, CouplingLimit, Dh, Joint, Joints, Misfit, Spherical, Structure,
 };
+pub use forward::Axis;
 pub use geom::{Frame, Mat3, Vec3};
 pub use inverse::Solutions;
 pub use posture::{Margins, Posture};

@@ -83,7 +83,7 @@ impl Arm {
         match &self.structure {
             Structure::Spherical(arm) => {
                 let [_, t2, t3, _, t5, _] = arm.angles(joints);
-                let (forearm, bend) = (arm.a2.hypot(arm.c3), arm.a2.atan2(arm.c3));
+                let [forearm, bend] = self.forearm;
                 let front = arm.a1 + arm.c2 * t2.sin() + forearm * (t2 + t3 + bend).sin();
                 Signed { front, elbow: t3 + bend, wrist: t5 }
             }

@@ -89,10 +89,9 @@ pub(crate) fn follow(
 
 /// The joints of a sample, where the settings allow them.
 fn solve(job: &Job, sample: &Sample, turn: f64, posture: Posture) -> Option<Joints> {
-    let solutions = job.arm.inverse(&job.frame(sample, turn), 0.0);
-    let joints = solutions.get(posture)?;
-    cost_at(job.arm, joints, job.settings).ok()?;
-    Some(*joints)
+    let joints = job.arm.inverse_in(posture, &job.frame(sample, turn), 0.0)?;
+    cost_at(job.arm, &joints, job.settings).ok()?;
+    Some(joints)
 }
 
 /// Whole turns for each joint, that bring the whole section within the limits; those nearest to where the section before ended.

@@ -91,6 +91,10 @@ pub fn rotate(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
 
 /// `angle` (radians) brought into (−π, π].
 pub fn wrap(angle: f64) -> f64 {
+    // Most angles are in it.
+    if angle.abs() < std::f64::consts::PI {
+        return angle;
+    }
     let turn = std::f64::consts::TAU;
     let wrapped = angle - turn * (angle / turn).round();
     if wrapped <= -std::f64::consts::PI { wrapped + turn } else { wrapped }

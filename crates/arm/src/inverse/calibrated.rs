@@ -1,7 +1,8 @@
 //! A calibrated arm has no closed form: the joints of the nominal one, corrected until the measured links reach the frame.
 
 use super::Solutions;
-use crate::arm::{Arm, Joints, Structure};
+use crate::arm::{Arm, Joints};
+use crate::forward::Axis;
 use geom::{Frame, Mat3, Vec3, linear, wrap};
 
 /// Steps at most: each squares what is left.
@@ -24,7 +25,7 @@ pub(super) fn refine(arm: &Arm, flange: &Frame, near: &Solutions) -> Solutions {
 
 fn corrected(arm: &Arm, flange: &Frame, mut joints: Joints) -> Option<Joints> {
     for _ in 0..MOST_STEPS {
-        let (axes, reached) = axes(arm, &joints)?;
+        let (reached, axes) = arm.flange_and_axes(&joints);
         let gap = flange.translation - reached.translation;
         let turn = turn(&(flange.matrix3 * reached.matrix3.transpose()));
         if gap.length() < CLOSE && turn.length() < CLOSE {
@@ -40,19 +41,6 @@ fn corrected(arm: &Arm, flange: &Frame, mut joints: Joints) -> Option<Joints> {
     None
 }
 
-/// A point and the direction of each axis, and the flange.
-fn axes(arm: &Arm, joints: &Joints) -> Option<([(Vec3, Vec3); 6], Frame)> {
-    let Structure::Ur(_, Some(calibration)) = &arm.structure else { return None };
-    let mut here = Frame::from_translation(Vec3::new(0.0, 0.0, -arm.world_height));
-    let axes = std::array::from_fn(|i| {
-        here *= calibration.0[i];
-        let axis = (here.translation, here.matrix3.z_axis);
-        here *= Frame::from_mat3(Mat3::from_rotation_z(joints[i]));
-        axis
-    });
-    Some((axes, here))
-}
-
 /// The rotation vector of a rotation by less than half a revolution.
 fn turn(rotation: &Mat3) -> Vec3 {
     let (x, y, z) = (rotation.x_axis, rotation.y_axis, rotation.z_axis);
@@ -63,13 +51,14 @@ fn turn(rotation: &Mat3) -> Vec3 {
 }
 
 /// The changes of the joints that move the flange by `gap` and `turn`.
-fn solve(axes: &[(Vec3, Vec3); 6], flange: &Vec3, gap: Vec3, turn: Vec3) -> Option<Joints> {
+fn solve(axes: &[Axis; 6], flange: &Vec3, gap: Vec3, turn: Vec3) -> Option<Joints> {
     // Turns count as much as a metre, so that rows are of one size.
     const METRE: f64 = 1000.0;
     let six = |moved: Vec3, turned: Vec3| {
         let Vec3 { x, y, z } = turned * METRE;
         [moved.x, moved.y, moved.z, x, y, z]
     };
-    let columns = axes.map(|(point, axis)| six(axis.cross(*flange - point), axis));
+    let columns =
+        axes.map(|Axis { point, direction }| six(direction.cross(*flange - point), direction));
     linear::solve(&columns, six(gap, turn), FLATTEST)
 }

@@ -38,12 +38,22 @@ impl Arm {
     /// The joints that put the flange into a frame of the controller's world, whether they are within the limits or not.
     /// Where the wrist is stretched its first free joint (4; on Universal Robots 6) takes the position `free`, radians.
     pub fn inverse(&self, flange: &Frame, free: f64) -> Solutions {
+        self.solutions(flange, free, None)
+    }
+
+    /// Those of [`Arm::inverse`] in one posture, where it reaches the frame.
+    pub fn inverse_in(&self, posture: Posture, flange: &Frame, free: f64) -> Option<Joints> {
+        self.solutions(flange, free, Some(posture)).get(posture).copied()
+    }
+
+    /// The solutions, of one posture or of all.
+    fn solutions(&self, flange: &Frame, free: f64, of: Option<Posture>) -> Solutions {
         let foot = flange.translation + Vec3::new(0.0, 0.0, self.world_height);
         match &self.structure {
-            Structure::Spherical(arm) => spherical::inverse(arm, &flange.matrix3, foot, free),
-            Structure::Ur(dh, None) => ur::inverse(dh, &flange.matrix3, foot, free),
+            Structure::Spherical(arm) => spherical::inverse(arm, &flange.matrix3, foot, (free, of)),
+            Structure::Ur(dh, None) => ur::inverse(dh, &flange.matrix3, foot, (free, of)),
             Structure::Ur(dh, Some(_)) => {
-                let near = ur::inverse(dh, &flange.matrix3, foot, free);
+                let near = ur::inverse(dh, &flange.matrix3, foot, (free, of));
                 calibrated::refine(self, flange, &near)
             }
         }

@@ -27,13 +27,20 @@ impl Direction {
     }
 }
 
-pub(super) fn inverse(arm: &Spherical, axes: &Mat3, flange: Vec3, free: f64) -> Solutions {
+/// The solutions in posture `of`, or all, and those that differ from it by the wrist; joint 4 is `free` where it may stand anywhere.
+pub(super) fn inverse(
+    arm: &Spherical,
+    axes: &Mat3,
+    flange: Vec3,
+    (free, of): (f64, Option<Posture>),
+) -> Solutions {
     let mut solutions = Solutions::NONE;
     let centre = flange - axes.z_axis * arm.c4 - Vec3::new(0.0, 0.0, arm.c1);
     // The plane of the arm passes axis 1 at the distance b.
     let square = centre.x * centre.x + centre.y * centre.y;
     let Some(front) = root(square - arm.b * arm.b, square) else { return solutions };
-    for rear in [false, true] {
+    let rears = [false, true].into_iter().filter(|rear| of.is_none_or(|of| of.rear() == *rear));
+    for rear in rears {
         let front = if rear { -front } else { front };
         let first = match square > 0.0 {
             true => Direction {
@@ -43,7 +50,7 @@ pub(super) fn inverse(arm: &Spherical, axes: &Mat3, flange: Vec3, free: f64) -> 
             // The wrist centre is on axis 1, which may stand anywhere.
             false => Direction { sin: 0.0, cos: 1.0 },
         };
-        bent(arm, axes, first, [front - arm.a1, centre.z], free, rear, &mut solutions);
+        bent(arm, axes, first, [front - arm.a1, centre.z], (free, of), rear, &mut solutions);
     }
     solutions
 }
@@ -54,7 +61,7 @@ fn bent(
     axes: &Mat3,
     first: Direction,
     [ahead, up]: [f64; 2],
-    free: f64,
+    (free, of): (f64, Option<Posture>),
     rear: bool,
     solutions: &mut Solutions,
 ) {
@@ -64,7 +71,8 @@ fn bent(
     let cos = (distance - arm.c2 * arm.c2 - forearm * forearm) / (2.0 * arm.c2 * forearm);
     let Some(sin) = root(1.0 - cos * cos, 1.0) else { return };
     let cos = cos.clamp(-1.0, 1.0);
-    for below in [false, true] {
+    let belows = [false, true].into_iter().filter(|below| of.is_none_or(|of| of.below() == *below));
+    for below in belows {
         let elbow = Direction { sin: if below { -sin } else { sin }, cos };
         // Forearm and upper arm as seen along the upper arm.
         let (along, across) = (arm.c2 + forearm * elbow.cos, forearm * elbow.sin);

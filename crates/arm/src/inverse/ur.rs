@@ -5,7 +5,13 @@ use crate::arm::Dh;
 use crate::posture::Posture;
 use geom::{Mat3, Vec3, wrap};
 
-pub(super) fn inverse(dh: &Dh, axes: &Mat3, flange: Vec3, free: f64) -> Solutions {
+/// The solutions in posture `of`, or all, and those that differ from it by the elbow; joint 6 is `free` where it may stand anywhere.
+pub(super) fn inverse(
+    dh: &Dh,
+    axes: &Mat3,
+    flange: Vec3,
+    (free, of): (f64, Option<Posture>),
+) -> Solutions {
     let mut solutions = Solutions::NONE;
     // The end of the wrist lies at the distance d4 from the plane through axis 1 in which the links bend.
     let end = flange - axes.z_axis * dh.d6;
@@ -14,14 +20,16 @@ pub(super) fn inverse(dh: &Dh, axes: &Mat3, flange: Vec3, free: f64) -> Solution
     if square == 0.0 {
         return solutions;
     }
-    for rear in [false, true] {
+    let rears = [false, true].into_iter().filter(|rear| of.is_none_or(|of| of.rear() == *rear));
+    for rear in rears {
         let front = if rear { -front } else { front };
         // Unit vectors in the bending plane, and along axes 2, 3 and 4.
         let ahead =
             Vec3::new(end.x * front - end.y * dh.d4, end.y * front + end.x * dh.d4, 0.0) / square;
         let across = Vec3::new(ahead.y, -ahead.x, 0.0);
         let shoulder = Shoulder { ahead, across, rear };
-        for flip in [false, true] {
+        let flips = [false, true].into_iter().filter(|flip| of.is_none_or(|of| of.flip() == *flip));
+        for flip in flips {
             wrist(dh, axes, end, &shoulder, flip, free, &mut solutions);
         }
     }

@@ -5,7 +5,7 @@ use geom::{Euler, wrap};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use toolpost_arm::{
-    Arm, Calibration, Coupling, CouplingLimit, Dh, Frame, Joint, Joints, Posture, Spherical,
+    Arm, Calibration, Coupling, CouplingLimit, Dh, Frame, Joint, Joints, Mat3, Posture, Spherical,
     Structure, Vec3,
 };
 
@@ -51,11 +51,31 @@ fn measured(off: [f64; 6]) -> Arm {
     arm(Structure::Ur(UR5E, Some(Box::new(Calibration(frames)))))
 }
 
+/// A joint that turns a little moves the flange about its axis.
+fn turns_about_its_axes(arm: &Arm, joints: &Joints) -> Result<(), TestCaseError> {
+    let (flange, axes) = arm.flange_and_axes(joints);
+    prop_assert_eq!(flange, arm.flange(joints));
+    for (i, axis) in axes.iter().enumerate() {
+        let mut moved = *joints;
+        moved[i] += 1e-3;
+        let turn = Mat3::from_axis_angle(axis.direction, 1e-3);
+        let at = axis.point + turn * (flange.translation - axis.point);
+        let off =
+            apart(&Frame::from_mat3_translation(turn * flange.matrix3, at), &arm.flange(&moved));
+        prop_assert!(off.0 < 1e-9 && off.1 < 1e-9, "joint {}: {off:?}", i + 1);
+    }
+    Ok(())
+}
+
 /// Every way leads back to the frame, and one of them is where the frame came from.
 fn returns(arm: &Arm, joints: &Joints, mm: f64, turned: f64) -> Result<(), TestCaseError> {
     let margins = arm.margins(joints);
     let flange = arm.flange(joints);
     let solutions = arm.inverse(&flange, joints[3]);
+    for posture in Posture::ALL {
+        let one = arm.inverse_in(posture, &flange, joints[3]);
+        prop_assert_eq!(one, solutions.get(posture).copied(), "{:?}", posture);
+    }
     for (posture, found) in solutions.iter() {
         let off = apart(&arm.flange(found), &flange);
         prop_assert!(off.0 < mm && off.1 < turned, "{posture:?} {found:?}: {off:?}");
@@ -86,6 +106,13 @@ proptest! {
     #[test]
     fn the_inverse_of_an_arm_of_universal_robots_leads_back(joints in any_joints()) {
         returns(&arm(Structure::Ur(UR5E, None)), &joints, 1e-9, 1e-9)?;
+    }
+
+    #[test]
+    fn each_joint_turns_the_flange_about_its_axis(lengths in any_spherical(), off in prop::array::uniform6(-1.0..1.0f64), joints in any_joints()) {
+        for arm in [lengths, arm(Structure::Ur(UR5E, None)), measured(off)] {
+            turns_about_its_axes(&arm, &joints)?;
+        }
     }
 
     #[test]

@@ -48,6 +48,11 @@ impl Name {
         Some(Name { letters, length: text.len() as u8 })
     }
 
+    /// Whether it is `text`, which is in capitals.
+    pub fn is(&self, text: &str) -> bool {
+        usize::from(self.length) == text.len() && self.letters.starts_with(text.as_bytes())
+    }
+
     /// Its letters.
     pub fn as_str(&self) -> &str {
         let letters = self.letters.get(..usize::from(self.length)).unwrap_or_default();

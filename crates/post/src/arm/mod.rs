@@ -852,8 +852,7 @@ impl<'a> Walk<'a> {
     fn near(&self, tool: &Frame, before: &Joints) -> Option<Position> {
         let off = self.tool.unwrap_or(Frame::IDENTITY).inverse();
         let flange = self.cell.part_from(self.here.rail) * *tool * off;
-        let found = self.arm.inverse(&flange, before[3]);
-        let joints = found.get(self.arm.posture(before))?;
+        let joints = self.arm.inverse_in(self.arm.posture(before), &flange, before[3])?;
         let joints = std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
         Some(Position { tool: *tool, joints, ..self.here })
     }

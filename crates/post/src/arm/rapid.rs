@@ -137,8 +137,8 @@ impl RapidPlanner<'_> {
         let tip = at.tool.translation - at.tool.matrix3.z_axis * height;
         let raised = Frame::from_mat3_translation(at.tool.matrix3, tip);
         let flange = self.cell.part_from(at.rail) * raised * tool.inverse();
-        let found = self.arm.inverse(&flange, at.joints[3]);
-        let joints = found.get(self.arm.posture(&at.joints))?;
+        let posture = self.arm.posture(&at.joints);
+        let joints = self.arm.inverse_in(posture, &flange, at.joints[3])?;
         let joints = std::array::from_fn(|i| at.joints[i] + wrap(joints[i] - at.joints[i]));
         let raised = Position { tool: raised, joints, ..*at };
         self.straight(tool, at, &raised).map(|feed| (raised, feed))
@@ -210,8 +210,7 @@ impl RapidPlanner<'_> {
 
     /// The joints that put the flange there, near where they stand.
     fn next(&self, flange: &Frame, posture: Posture, before: &Joints) -> Option<Joints> {
-        let solutions = self.arm.inverse(flange, before[3]);
-        let found = solutions.get(posture)?;
+        let found = self.arm.inverse_in(posture, flange, before[3])?;
         let joints: Joints = std::array::from_fn(|i| before[i] + wrap(found[i] - before[i]));
         let leaps = joints.iter().zip(before).any(|(a, b)| (a - b).abs() > LEAP);
         (!leaps && self.arm.allows(&joints)).then_some(joints)

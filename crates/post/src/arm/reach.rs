@@ -187,8 +187,10 @@ impl Along<'_> {
                 let part = k as f64 / parts;
                 let turned = Mat3::from_quat(a.slerp(b, part));
                 let at = Frame::from_mat3_translation(turned, tip(part));
-                let found = self.arm.inverse(&(part_frame * at * tool.inverse()), before[3]);
-                let Some(joints) = found.get(posture) else { continue };
+                let flange = part_frame * at * tool.inverse();
+                let Some(joints) = self.arm.inverse_in(posture, &flange, before[3]) else {
+                    continue;
+                };
                 let joints: Joints =
                     std::array::from_fn(|i| before[i] + wrap(joints[i] - before[i]));
                 self.sample(motion, (at.translation, joints), (before, whole / parts));

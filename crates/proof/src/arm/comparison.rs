@@ -37,6 +37,8 @@ struct Running {
     runs_up: f64,
     coolant: bool,
     base: Option<Frame>,
+    /// The same in the frame of the source.
+    base_in_part: Option<Frame>,
     tool: Option<Frame>,
     on_flange: Option<bool>,
 }
@@ -135,6 +137,7 @@ impl<'a> Comparison<'a> {
                 runs_up: 0.0,
                 coolant: false,
                 base: None,
+                base_in_part: None,
                 tool: None,
                 on_flange: None,
             },
@@ -316,6 +319,8 @@ impl<'a> Comparison<'a> {
             ArmAction::Tool(frame) => self.running.tool = frame.as_deref().copied(),
             ArmAction::Base(frame) => {
                 self.running.base = frame.as_deref().copied();
+                self.running.base_in_part =
+                    self.running.base.map(|base| self.cell.part.inverse() * base);
                 if frame.is_none() {
                     // Another program, or the configuration of the machine, has set the speed.
                     self.running.feed = None;
@@ -453,8 +458,8 @@ impl<'a> Comparison<'a> {
 
     /// The tool of the program in the frame of the source.
     fn in_part(&self, tool: &Frame) -> Frame {
-        match self.running.base {
-            Some(base) => self.cell.part.inverse() * base * *tool,
+        match self.running.base_in_part {
+            Some(base) => base * *tool,
             None => Frame::from_translation(Vec3::NAN),
         }
     }

@@ -177,19 +177,18 @@ fn passed(
 fn solve(arm: &Arm, flange: &Frame, guess: &Joints) -> Option<Joints> {
     let mut joints = *guess;
     for _ in 0..16 {
-        let here = arm.flange(&joints);
+        let (here, axes) = arm.flange_and_axes(&joints);
         let error = difference(&here, flange);
         if error.iter().all(|part| part.abs() < 1e-11) {
             let leaps = joints.iter().zip(guess).any(|(to, from)| (to - from).abs() > LEAP);
             return (!leaps).then_some(joints);
         }
-        let mut columns = [[0.0; 6]; 6];
-        for (i, column) in columns.iter_mut().enumerate() {
-            const STEP: f64 = 1e-6;
-            let mut moved = joints;
-            moved[i] += STEP;
-            *column = difference(&here, &arm.flange(&moved)).map(|part| part / STEP);
-        }
+        // How each joint moves the flange, and about what it turns it.
+        let columns = axes.map(|axis| {
+            let moved = axis.direction.cross(here.translation - axis.point) * SCALE;
+            let about = axis.direction;
+            [moved.x, moved.y, moved.z, about.x, about.y, about.z]
+        });
         let change = linear::solve(&columns, error, FLATTEST)?;
         if change.iter().any(|part| part.abs() > LEAP) {
             return None;
@@ -210,6 +209,12 @@ fn difference(from: &Frame, to: &Frame) -> [f64; 6] {
 
 /// The orientation between two, evenly about one axis.
 pub(super) fn turned(from: &Mat3, to: &Mat3, part: f64) -> Mat3 {
+    // Most of a path is looked at at its ends.
+    match part {
+        0.0 => return *from,
+        1.0 => return *to,
+        _ => {}
+    }
     let [from, to] = [from, to].map(Quat::from_mat3);
     Mat3::from_quat(from.slerp(to, part))
 }

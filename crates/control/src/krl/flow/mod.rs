@@ -97,23 +97,25 @@ fn stands(source: Source, is_inside: bool, has_program: bool) -> Outcome<bool> {
     let wrong = |rule: Rule, message: &str| Err(source.error(rule, 0..text.len(), message));
     let separates = |pair: &[u8]| pair == b"\xC2\x85";
     let parts = |three: &[u8]| matches!(three, b"\xE2\x80\xA8" | b"\xE2\x80\xA9");
-    if text.iter().any(|byte| byte.is_ascii_control() && *byte != b'\t')
-        || text.windows(2).any(separates)
-        || text.windows(3).any(parts)
+    // Without a branch, several bytes are looked at at once.
+    let is_control = |found, byte: &u8| found | (byte.is_ascii_control() & (*byte != b'\t'));
+    if text.iter().fold(false, is_control)
+        || !text.is_ascii() && (text.windows(2).any(separates) || text.windows(3).any(parts))
     {
         return wrong(Rule::Syntax, "a control character stands in the line: it may end it");
     }
     let text = text.trim_ascii_start();
     let length = text.iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_');
-    let word = text.get(..length.count()).unwrap_or_default().to_ascii_uppercase();
-    match (word.as_slice(), text.first(), is_inside) {
+    let word = text.get(..length.count()).unwrap_or_default();
+    let is = |words: [&str; 2]| words.iter().any(|own| word.eq_ignore_ascii_case(own.as_bytes()));
+    match (word, text.first(), is_inside) {
         (_, None | Some(b';'), _) => Ok(is_inside),
         (_, Some(b'&'), _) if !has_program => Ok(is_inside),
         (_, Some(b'&'), _) => {
             wrong(Rule::ProgramFrame, "a line with & stands before the first DEF")
         }
-        (b"DEF" | b"DEFFCT", _, _) => Ok(true),
-        (b"END" | b"ENDFCT", _, true) => Ok(false),
+        _ if is(["DEF", "DEFFCT"]) => Ok(true),
+        (_, _, true) if is(["END", "ENDFCT"]) => Ok(false),
         (_, _, true) => Ok(true),
         (_, _, false) => {
             wrong(Rule::ProgramFrame, "the line stands outside of programs: between DEF and END")

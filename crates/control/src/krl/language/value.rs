@@ -78,20 +78,23 @@ impl Value {
 
     /// What a field of a frame or of axes holds of this: they are REAL, but for S and T.
     pub(crate) fn in_field(self, field: Name) -> Value {
-        let is_real = [COORDINATES, AXES, OUTER].concat().contains(&field.as_str());
+        let mut reals = COORDINATES.iter().chain(&AXES).chain(&OUTER);
+        let is_real = reals.any(|name| field.is(name));
         if is_real { self.real() } else { self }
     }
 
     /// The number of a field.
     pub(crate) fn field(&self, name: &str) -> Option<f64> {
         let Value::Fields(fields) = self else { return None };
-        fields.iter().find(|(field, _)| field.as_str() == name)?.1.number()
+        fields.iter().find(|(field, _)| field.is(name))?.1.number()
     }
 
     /// Whether every field is one of `names`.
     pub(crate) fn has_only(&self, names: &[&[&str]]) -> bool {
         let Value::Fields(fields) = self else { return false };
-        fields.iter().all(|(field, _)| names.iter().any(|list| list.contains(&field.as_str())))
+        fields
+            .iter()
+            .all(|(field, _)| names.iter().any(|list| list.iter().any(|name| field.is(name))))
     }
 }
 

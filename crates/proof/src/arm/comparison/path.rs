@@ -365,6 +365,7 @@ impl Comparison<'_> {
 
     /// The step is done where the tool has come to its end.
     fn complete(&mut self, end: &Frame, expected: &Expected) {
+        let tool = self.in_part(end);
         let (to, counted) = match &expected.step {
             Step::Rapid(_, to) | Step::Above(to) => (to, None),
             Step::Line(_, to) => (to, Some(&mut self.report.compared.lines)),
@@ -376,10 +377,6 @@ impl Comparison<'_> {
             | Step::Stop
             | Step::Output(_)
             | Step::Input(_) => return,
-        };
-        let tool = match self.running.base {
-            Some(base) => self.cell.part.inverse() * base * *end,
-            None => return,
         };
         if let Some(counted) = counted {
             let is_end = tool.translation.distance(to.point()) <= self.report.tolerances.tip_mm
