@@ -16,7 +16,8 @@
 //! ([`layer`]), real boards made whole ([`board`]). Joints of an arm are found for frames ([`mod@arm`]), points
 //! in glass are found and ordered ([`mod@glass`]). Memory is what the program asks the allocator for
 //! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
-//! and memory grow no faster. Then come real files ([`library`]).
+//! and memory grow no faster. A proof that hands out its walk is compared with the proof alone ([`walk`]). Then come real files
+//! ([`library`]).
 
 mod arm;
 mod board;
@@ -30,6 +31,7 @@ mod memory;
 mod outside;
 mod path;
 mod programs;
+mod walk;
 mod wire;
 
 use clap::Parser;
@@ -135,13 +137,14 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     board::measure(&arguments.board, arguments.rounds)?;
     if arguments.records > 0 {
         five_axes(arguments)?;
+        walk::measure(arguments.records, &arguments.machine, arguments.rounds)?;
     }
     library::measure(&arguments.files, arguments.rounds)
 }
 
 /// A five-axis toolpath, read, written and proven.
 fn five_axes(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
-    let text = path::cutter_location_data(arguments.records);
+    let text = path::cutter_location_data(arguments.records, true);
     let table = Table { records: arguments.records };
     println!("{} GOTO, {} MB of cutter-location data", arguments.records, text.len() / 1_000_000);
     let measure =
@@ -198,7 +201,7 @@ fn five_axes(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
 
 /// Reads, writes and proves a path ten times as long as that of `once`.
 fn ten_times(records: usize, machine: &Machine, once: &Measured) -> Result<(), Vec<Diagnostic>> {
-    let text = path::cutter_location_data(10 * records);
+    let text = path::cutter_location_data(10 * records, true);
     let all = fastest(1, &mut || read_write_prove(&text, machine))?;
     println!(
         "  {} GOTO to read, write and prove: {:.1}\n  \

@@ -56,7 +56,7 @@ pub fn check(
         )?;
     }
     if records > 0 {
-        let text = |records| path::cutter_location_data(RECORDS.min(records));
+        let text = |records| path::cutter_location_data(RECORDS.min(records), true);
         let words = ["prove", machine];
         agree(
             "read, kinematics, write, prove",

@@ -15,8 +15,8 @@ const HALF: f64 = 100.0;
 /// How far the tool leans from the normal, radians: more than the surface slopes.
 const LEAN: f64 = 20.0 / 360.0 * TAU;
 
-/// Cutter-location data (APT) with `records` points.
-pub fn cutter_location_data(records: usize) -> String {
+/// Cutter-location data (APT) with `records` points; the tool leans, or it is upright.
+pub fn cutter_location_data(records: usize, leans: bool) -> String {
     let mut text = String::with_capacity(records * 70 + 1_000);
     text.push_str("PARTNO/WAVE\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nCOOLNT/ON\n");
     text.push_str("RAPID\n");
@@ -30,7 +30,7 @@ pub fn cutter_location_data(records: usize) -> String {
         let x = HALF * if pass % 2 == 0 { along } else { -along };
         let y = HALF * (pass as f64 / passes as f64 * 2.0 - 1.0);
         let (point, axis) = surface(x, y);
-        put(&mut text, point, axis);
+        put(&mut text, point, if leans { axis } else { Vec3::Z });
     }
     text.push_str("SPINDL/OFF\nCOOLNT/OFF\nFINI\n");
     text

@@ -1,6 +1,6 @@
 //! How work ended, and what is reported of it.
 
-use program::{Diagnostic, Findings, Rule};
+use program::{Diagnostic, Findings};
 use serde_json::{Value, json};
 
 /// How work ended.
@@ -70,10 +70,7 @@ impl Stop {
 
     /// The caller has ended the work.
     pub(crate) fn cancelled() -> Stop {
-        let found =
-            Diagnostic::error(Rule::Cancelled, "the work was cancelled: there is no result")
-                .help("start it again for one");
-        Stop { verdict: Verdict::Cancelled, findings: vec![found] }
+        Stop { verdict: Verdict::Cancelled, findings: vec![program::cancelled()] }
     }
 }
 

@@ -4,7 +4,8 @@ mod inflate;
 
 use crate::files;
 use crate::input::Source;
-use program::{Diagnostic, Rule};
+use crate::watch::Watch;
+use program::{Diagnostic, Rule, cancelled};
 use std::fs::{self, File};
 use std::io;
 use std::path::Path;
@@ -22,7 +23,7 @@ const PROGRAMS: [&str; 2] = ["freecadcmd", "FreeCADCmd"];
 const LONGEST: Duration = Duration::from_secs(300);
 
 /// How often it is looked at.
-const PAUSE: Duration = Duration::from_millis(20);
+const PAUSE: Duration = Duration::from_millis(5);
 
 /// Whether a file is called as a document of FreeCAD's.
 pub fn is(path: &Path) -> bool {
@@ -33,7 +34,7 @@ pub fn is(path: &Path) -> bool {
 ///
 /// # Errors
 /// There is no FreeCAD, it takes too long, or the document has no job.
-pub fn job(source: &Source) -> Result<Vec<u8>, Box<Diagnostic>> {
+pub fn job(source: &Source, watch: &dyn Watch) -> Result<Vec<u8>, Box<Diagnostic>> {
     let about = |message: String| Diagnostic::error(Rule::Freecad, message).file(source.name());
     let bytes = source.read()?;
     inflate::check(&bytes).map_err(|found| Box::new((*found).file(source.name())))?;
@@ -60,7 +61,7 @@ pub fn job(source: &Source) -> Result<Vec<u8>, Box<Diagnostic>> {
                 .stdout(output)
                 .spawn()
         })?;
-        wait(&mut child)
+        wait(&mut child, watch)
     };
     match run() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -71,6 +72,7 @@ pub fn job(source: &Source) -> Result<Vec<u8>, Box<Diagnostic>> {
                 .into());
         }
         Err(error) => return Err(about(format!("FreeCAD cannot be run: {error}")).into()),
+        Ok(None) if watch.is_cancelled() => return Err(cancelled().into()),
         Ok(None) => {
             let seconds = LONGEST.as_secs();
             let help = "post from FreeCAD's window, with the post `toolpost`";
@@ -101,10 +103,10 @@ fn start(spawn: impl Fn(&str) -> io::Result<Child>) -> io::Result<Child> {
     }
 }
 
-/// Waits for the end of a program, which is ended where it takes too long.
-fn wait(child: &mut Child) -> io::Result<Option<ExitStatus>> {
+/// Waits for the end of a program, which is ended where it takes too long, or nobody waits for it any more.
+fn wait(child: &mut Child, watch: &dyn Watch) -> io::Result<Option<ExitStatus>> {
     let began = Instant::now();
-    while began.elapsed() < LONGEST {
+    while began.elapsed() < LONGEST && !watch.is_cancelled() {
         if let Some(status) = child.try_wait()? {
             return Ok(Some(status));
         }

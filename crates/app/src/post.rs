@@ -6,11 +6,11 @@ use crate::prove;
 use crate::report::{self, Digests};
 use crate::summary::{Shape, time};
 use crate::toolpath::{self, Toolpath};
-use crate::watch::Watch;
+use crate::watch::{Waits, Watch};
 use ::post::{Origins, Output, Part};
 use control::Folders;
 use machine::Machine;
-use machine::time::Times;
+use machine::time::{Clock, Times};
 use program::{Diagnostic, Op, Program, Record, Rule};
 use proof::Tolerances;
 use serde_json::{Value, json};
@@ -87,9 +87,13 @@ pub fn proven(
     // What is reported of the toolpath is found meanwhile.
     let headed = headed(program, tolerances);
     let (output, (shape, times)) = parallel(
-        || write((headed.as_ref().unwrap_or(program), file), machine, toolpath, &mut warnings),
-        || (Shape::of(program), Times::of(program, machine)),
+        || {
+            let program = headed.as_ref().unwrap_or(program);
+            write((program, file), machine, toolpath, &mut warnings, watch)
+        },
+        || (Shape::of(program), times(program, machine, watch)),
     );
+    watch.go_on()?;
     let mut output = output?;
     if headed.is_some() {
         // The records of the toolpath stand behind the one that its head has more.
@@ -134,6 +138,21 @@ pub fn proven(
     let Output { text, origins, parts, .. } = output;
     Ok(Posted { text, origins, parts, account })
 }
+
+/// How long a program takes, for as long as the work goes on.
+fn times(program: &Program, machine: &Machine, watch: &dyn Watch) -> Times {
+    let mut clock = Clock::new(machine);
+    for records in program.records.chunks(RECORDS_AT_ONCE) {
+        if watch.is_cancelled() {
+            break;
+        }
+        records.iter().for_each(|record| clock.run(&record.op));
+    }
+    clock.times
+}
+
+/// Between so many records it is asked whether the work goes on: a millisecond at the most.
+const RECORDS_AT_ONCE: usize = 1024;
 
 /// The texts of parts, in the order of the names of their files.
 fn texts(parts: &[Part]) -> Vec<&[u8]> {
@@ -193,8 +212,9 @@ pub(crate) fn write(
     machine: &Machine,
     toolpath: &Toolpath,
     warnings: &mut Vec<Diagnostic>,
+    watch: &dyn Watch,
 ) -> Result<Output, Stop> {
-    match ::post::write_named(program, machine, file) {
+    match ::post::write_named(program, machine, file, &Waits(watch)) {
         Ok(mut output) => {
             warnings.append(&mut output.warnings);
             toolpath.quote(warnings);

@@ -5,6 +5,7 @@ use crate::fcstd;
 use crate::files;
 use crate::input::Source;
 use crate::summary::{Shape, number};
+use crate::watch::{Waits, Watch};
 use control::{Setup, Units, WholeNumbers};
 use freecad::{Job, Listing};
 use geom::Vec3;
@@ -97,14 +98,29 @@ pub fn read(
     machine: Option<&Machine>,
     purpose: Purpose,
 ) -> Result<Toolpath, Stop> {
+    read_for(source, strict, origin, machine, purpose, &())
+}
+
+/// The same for somebody who watches.
+///
+/// # Errors
+/// As [`read`]; the work was ended.
+pub fn read_for(
+    source: &Source,
+    strict: bool,
+    origin: &Origin,
+    machine: Option<&Machine>,
+    purpose: Purpose,
+    watch: &dyn Watch,
+) -> Result<Toolpath, Stop> {
     let bytes = match fcstd::is(source.path()) {
-        true => fcstd::job(source)?,
+        true => fcstd::job(source, watch).map_err(stopped(watch))?,
         false => source.read()?,
     };
     let file = source.name();
     let text = encoding::without_mark(&bytes);
     if encoding::is_utf_16(&bytes) || !Job::begins(text) {
-        return read_by(source, bytes, strict, origin, purpose, |machine| machine);
+        return read_by((source, bytes), strict, origin, purpose, |machine| machine, watch);
     }
     origin.is_of_no_record(&file)?;
     if origin.set_up().is_some() {
@@ -115,7 +131,7 @@ pub fn read(
     let named = origin.from.as_deref().map(|from| origin.reach.load_origin(from)).transpose()?;
     let digest = Some(Digest::of([&bytes[..]]));
     let job = Job::of(&file, text)?;
-    let toolpath = read_job(&file, job, strict, named.as_ref().or(machine), purpose)?;
+    let toolpath = job_for(&file, job, strict, named.as_ref().or(machine), purpose, watch)?;
     Ok(Toolpath { source: Some(source.clone()), digest, ..toolpath })
 }
 
@@ -131,12 +147,23 @@ pub fn read_job(
     machine: Option<&Machine>,
     purpose: Purpose,
 ) -> Result<Toolpath, Stop> {
+    job_for(file, job, strict, machine, purpose, &())
+}
+
+fn job_for(
+    file: &str,
+    job: Job,
+    strict: bool,
+    machine: Option<&Machine>,
+    purpose: Purpose,
+    watch: &dyn Watch,
+) -> Result<Toolpath, Stop> {
     let machine = match machine {
         Some(machine) => machine,
         None => &machine::load_control(THREE_AXES)?,
     };
     let freecad::Reading { program, listing, warnings } =
-        freecad::read(machine, file, job, purpose)?;
+        freecad::read_for(machine, file, job, purpose, &Waits(watch)).map_err(stopped(watch))?;
     Ok(Toolpath {
         file: file.to_owned(),
         warnings: held(warnings, strict)?,
@@ -157,23 +184,31 @@ pub(crate) fn read_wire(
     strict: bool,
     origin: &Origin,
     height: Option<f64>,
+    watch: &dyn Watch,
 ) -> Result<Toolpath, Stop> {
-    read_by(source, source.read()?, strict, origin, Purpose::Contour, |mut machine| {
+    let set_up = |mut machine: Machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = wire.height.or(height);
         }
         machine
-    })
+    };
+    read_by((source, source.read()?), strict, origin, Purpose::Contour, set_up, watch)
+}
+
+/// What has stopped the work: whoever watches, or the finding.
+fn stopped<T: Into<Stop>>(watch: &dyn Watch) -> impl FnOnce(T) -> Stop {
+    move |found| if watch.is_cancelled() { Stop::cancelled() } else { found.into() }
 }
 
 fn read_by(
-    source: &Source,
-    bytes: Vec<u8>,
+    (source, bytes): (&Source, Vec<u8>),
     strict: bool,
     origin: &Origin,
     purpose: Purpose,
     set_up: impl Fn(Machine) -> Machine,
+    watch: &dyn Watch,
 ) -> Result<Toolpath, Stop> {
+    let progress = Waits(watch);
     let file = source.name();
     origin.goes_with(&file)?;
     let digest = Some(Digest::of([&bytes[..]]));
@@ -185,7 +220,9 @@ fn read_by(
             let setup = origin.setup(from, purpose)?;
             let folders = setup.folders.clone();
             let asked = |found: &Diagnostic| is_unknown_position(found.rule);
-            let reading = match nc::read(&machine, setup.clone(), &file, &bytes) {
+            let text = (&*file, &bytes[..]);
+            let reading = match nc::read_for(&machine, setup.clone(), text, &progress) {
+                Err(_) if watch.is_cancelled() => return Err(Stop::cancelled()),
                 Err(found) if purpose != Purpose::Program && asked(&found) => {
                     flat(&machine, setup, &file, &bytes)?.ok_or(found)?
                 }
@@ -198,8 +235,10 @@ fn read_by(
         }
         None => {
             let Origin { csys, cutcom, .. } = *origin;
-            let reading = apt::read(&file, &bytes, &apt::Options { strict, csys, cutcom, purpose });
+            let options = apt::Options { strict, csys, cutcom, purpose };
+            let reading = apt::read_for(&file, &bytes, &options, &progress);
             let reading = reading.map_err(|findings| match is_nc(source.path()) {
+                _ if watch.is_cancelled() => Stop::cancelled(),
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
             })?;

@@ -2,7 +2,7 @@
 
 use crate::account::Stop;
 use machine::Machine;
-use program::Program;
+use program::{Program, Progress};
 use proof::{MachineState, Motion, Observer, Report};
 
 /// Who watches a piece of work. `()` watches nothing and never ends it.
@@ -10,8 +10,12 @@ pub trait Watch: Sync {
     /// The next step begins: `reading`, `writing`, `proving`.
     fn step(&self, _what: &'static str) {}
 
-    /// Whether the work shall end. It is asked before each step and while a program is proven; work that ends so
-    /// answers a [`Stop`] whose verdict is [`crate::Verdict::Cancelled`], and has saved nothing.
+    /// So much of the step is done, 0 to 1: of what is read, of the records that are written, of the lines of the program that are
+    /// proven. Not every step tells it.
+    fn reached(&self, _part: f64) {}
+
+    /// Whether the work shall end. It is asked before each step, and every few milliseconds while a source is read and a program is
+    /// written and proven; work that ends so answers a [`Stop`] whose verdict is [`crate::Verdict::Cancelled`], and has saved nothing.
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -38,8 +42,9 @@ pub(crate) struct Followed<'a> {
 }
 
 impl Observer for Followed<'_> {
-    fn goes_on(&mut self) -> bool {
-        !self.watch.is_cancelled() && self.observer.goes_on()
+    fn reached(&mut self, part: f64) -> bool {
+        self.watch.reached(part);
+        !self.watch.is_cancelled() && self.observer.reached(part)
     }
 
     fn wants_motions(&self) -> bool {
@@ -60,6 +65,16 @@ impl Observer for Followed<'_> {
 
     fn ended(&mut self, report: &Report) {
         self.observer.ended(report);
+    }
+}
+
+/// Who watches waits for a step.
+pub(crate) struct Waits<'a>(pub &'a dyn Watch);
+
+impl Progress for Waits<'_> {
+    fn reached(&self, part: f64) -> bool {
+        self.0.reached(part);
+        !self.0.is_cancelled()
     }
 }
 

@@ -135,9 +135,10 @@ fn who_watches_hears_of_each_step_and_ends_the_work_between_two_and_within_a_pro
     post(&patient).unwrap();
     assert_eq!(patient.steps(), ["writing", "proving"]);
     let asked = usize::MAX - patient.left.load(Ordering::SeqCst);
-    // Once before each step, once after the proof, and every 4096 of its 20,000 events.
-    assert!((3 + 4..3 + 6).contains(&asked), "{asked}");
-    for (asked, steps) in [(0, &[][..]), (1, &["writing"]), (4, &["writing", "proving"])] {
+    // Before each step and behind it, and every 256 of 20,000 records and of as many events; every 1024 records for the time.
+    let most = 4 + 2 * 80 + 20;
+    assert!((most - 20..most + 4).contains(&asked), "{asked}");
+    for (asked, steps) in [(0, &[][..]), (1, &["writing"]), (120, &["writing", "proving"])] {
         let watch = Patience::of(asked);
         assert_eq!(post(&watch), Err(Verdict::Cancelled), "{asked}");
         assert_eq!(watch.steps(), steps);
@@ -433,4 +434,106 @@ fn each_program_of_a_board_and_a_wire_has_a_follower_of_its_own() {
     let walked = walks.0.into_inner().unwrap();
     let [(file, motions, true)] = &walked[..] else { panic!("{walked:?}") };
     assert!(file == "w" && !motions.is_empty());
+}
+
+/// A watch that ends the work when a step is so far, and hears how far each is.
+struct Until {
+    end: Option<(&'static str, f64)>,
+    now: Mutex<(&'static str, f64)>,
+    /// Of each step: how often it was told how far it is, and whether that never went back.
+    told: Mutex<Vec<(&'static str, usize, bool)>>,
+    /// How often it was asked whether the work goes on after the end.
+    late: AtomicUsize,
+}
+
+impl Until {
+    fn new(end: Option<(&'static str, f64)>) -> Until {
+        Until {
+            end,
+            now: Mutex::new(("reading", 0.0)),
+            told: Mutex::new(vec![("reading", 0, true)]),
+            late: AtomicUsize::new(0),
+        }
+    }
+}
+
+impl Watch for Until {
+    fn step(&self, what: &'static str) {
+        *self.now.lock().unwrap() = (what, 0.0);
+        self.told.lock().unwrap().push((what, 0, true));
+    }
+
+    fn reached(&self, part: f64) {
+        assert!((0.0..=1.0).contains(&part), "{part}");
+        let mut now = self.now.lock().unwrap();
+        let mut told = self.told.lock().unwrap();
+        let told = told.last_mut().unwrap();
+        told.1 += 1;
+        told.2 &= now.1 <= part;
+        now.1 = part;
+    }
+
+    fn is_cancelled(&self) -> bool {
+        let (step, part) = *self.now.lock().unwrap();
+        let over = self.end.is_some_and(|(end, at)| step == end && part >= at);
+        self.late.fetch_add(usize::from(over), Ordering::SeqCst);
+        over
+    }
+}
+
+/// Each step asks every few milliseconds and ends where it is asked: what is between two asks is bounded by the number of lines,
+/// records and events.
+#[test]
+fn each_step_tells_how_far_it_is_and_ends_where_it_is_asked() {
+    let mut cls = String::from(
+        "PPRINT/LONG\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,90,0,0,1\nFEDRAT/900\n",
+    );
+    let mut nc = String::from(
+        "%\nO1\nG21 G90 G17 G40 G49 G80 G94\nT1 M6\nG54 G43 H1 S900 M3\nG0 X0. Y0. Z90.\n",
+    );
+    for i in 0..20_000 {
+        let (x, y) = (i % 100, i % 7);
+        let tilt = f64::from(i % 200 - 100).abs() / 1000.0 + 0.2;
+        cls += &format!("GOTO/{x}.5,{y},60,{:.6},0,{:.6}\n", tilt.sin(), tilt.cos());
+        nc += &format!("G1 X{x}.5 Y{y}. Z-1. F900.\n");
+    }
+    cls += "RAPID\nGOTO/0,0,90,0,0,1\nFINI\n";
+    nc += "G0 Z90.\nM5\nG28 Z0.\nM30\n%\n";
+    let fanuc = Origin { from: Some("fanuc-31i".into()), ..Origin::default() };
+    let jobs = [
+        (Source::memory("long.cls", cls.into_bytes()), Origin::default(), "fanuc-table-bc"),
+        (Source::memory("long.nc", nc.into_bytes()), fanuc, "generic-3axis-linuxcnc"),
+    ];
+    for (source, origin, machine) in jobs {
+        let machine = toolpath::machine(machine).unwrap();
+        let work = |watch: &Until| {
+            let purpose = Purpose::Program;
+            let toolpath =
+                toolpath::read_for(&source, false, &origin, Some(&machine), purpose, watch)?;
+            post::proven(&toolpath, &machine, "p", &Tolerances::default(), watch)
+        };
+        let whole = Until::new(None);
+        let posted = work(&whole).unwrap();
+        assert_eq!(posted.account.verdict, Verdict::Done, "{:?}", posted.account.findings);
+        let told = whole.told.lock().unwrap().clone();
+        let [("reading", read, true), ("writing", written, true), ("proving", proven, true)] =
+            told[..]
+        else {
+            panic!("{told:?}")
+        };
+        // 20,000 lines, 1024 at once; as many records and events, 256 at once.
+        assert!(read >= 19 && written >= 78 && proven >= 78, "{told:?}");
+
+        for step in ["reading", "writing", "proving"] {
+            let watch = Until::new(Some((step, 0.3)));
+            let stop = work(&watch).unwrap_err();
+            assert_eq!((stop.verdict, stop.findings.len()), (Verdict::Cancelled, 1), "{step}");
+            assert_eq!(stop.findings[0].rule, "cancelled");
+            let told = watch.told.lock().unwrap().clone();
+            assert_eq!(told.last().unwrap().0, step);
+            let (_, part) = *watch.now.lock().unwrap();
+            assert!((0.3..0.4).contains(&part), "{step} went on to {part}");
+            assert!(watch.late.load(Ordering::SeqCst) < 8, "{step}");
+        }
+    }
 }

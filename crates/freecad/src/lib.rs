@@ -37,4 +37,4 @@ mod reading;
 
 pub use job::{Job, Operation};
 pub use listing::{CommandLocation, Listing};
-pub use reading::{Reading, read};
+pub use reading::{Reading, read, read_for};

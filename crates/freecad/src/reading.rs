@@ -7,7 +7,7 @@ use crate::listing::Listing;
 use control::{Dialect, Setup};
 use geom::Vec3;
 use machine::Machine;
-use program::{Diagnostic, Op, Program, Purpose, Record, Rule, Spindle};
+use program::{Diagnostic, Op, Program, Progress, Purpose, Record, Rule, Spindle};
 use std::collections::HashMap;
 use std::mem;
 
@@ -31,8 +31,22 @@ pub struct Reading {
 pub fn read(
     machine: &Machine,
     file_name: &str,
+    job: Job,
+    purpose: Purpose,
+) -> Result<Reading, Box<Diagnostic>> {
+    read_for(machine, file_name, job, purpose, &())
+}
+
+/// The same for somebody who waits for it.
+///
+/// # Errors
+/// As [`read`]; the work was ended (`cancelled`).
+pub fn read_for(
+    machine: &Machine,
+    file_name: &str,
     mut job: Job,
     purpose: Purpose,
+    progress: &dyn Progress,
 ) -> Result<Reading, Box<Diagnostic>> {
     if let Some((number, what)) = two_tools(&job) {
         let message = format!("two tools of different {what} have the number {number}");
@@ -52,7 +66,7 @@ pub fn read(
         &mut |records: &mut Vec<Record>, record, several| collector.keep(records, record, several);
     let setup = Setup { purpose, ..Setup::default() };
     let settings = nc::settings_in(Dialect::Source(&COMMANDS), &turning, setup);
-    let read = nc::read_by(&turning, &settings, "", listing.text(), keep);
+    let read = nc::read_by(&turning, &settings, ("", listing.text()), keep, progress);
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let (mut reading, several) = read.map_err(|found| located(way_out(*found)))?;
     let mut records = std::mem::take(&mut reading.program.records);

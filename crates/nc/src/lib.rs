@@ -49,7 +49,7 @@ use conversion::Conversion;
 use machine::Machine;
 use path::between;
 use pose::axes_at;
-use program::{Diagnostic, Op, Outcome, Pose, Program, Record, Rule, Severity};
+use program::{Diagnostic, Op, Outcome, Pose, Program, Progress, Pulse, Record, Rule, Severity};
 
 /// What was read.
 #[derive(Clone, Debug, Default)]
@@ -64,15 +64,31 @@ pub struct Reading {
 /// It may delay records, but no tool of a source that has length offsets: these correct the last tool.
 pub type Sink<'a> = dyn FnMut(&mut Vec<Record>, Record, bool) + 'a;
 
+/// After so many events of the control whoever waits is asked: some milliseconds at the most.
+const EVENTS_AT_ONCE: u32 = 256;
+
 /// Reads the NC program `text`, which was written for `machine`.
 ///
 /// # Errors
 /// The first block that the control does not understand, or that a neutral program cannot express,
 /// with `file_name`, line and the way out.
 pub fn read(machine: &Machine, setup: Setup, file_name: &str, text: &[u8]) -> Outcome<Reading> {
+    read_for(machine, setup, (file_name, text), &())
+}
+
+/// The same for somebody who waits for it.
+///
+/// # Errors
+/// As [`read`]; the work was ended (`cancelled`).
+pub fn read_for(
+    machine: &Machine,
+    setup: Setup,
+    (file_name, text): (&str, &[u8]),
+    progress: &dyn Progress,
+) -> Outcome<Reading> {
     let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
     let settings = settings(machine, setup)?;
-    let (mut reading, several) = read_by(machine, &settings, file_name, text, keep)?;
+    let (mut reading, several) = read_by(machine, &settings, (file_name, text), keep, progress)?;
     let records = &mut reading.program.records;
     let is_offset = |record: &Record| matches!(record.op, Op::WorkOffset(_));
     // There is one at most: another one would be one of several.
@@ -159,14 +175,17 @@ pub fn read_in_machine(
 pub fn read_by(
     machine: &Machine,
     settings: &Settings,
-    file_name: &str,
-    text: &[u8],
+    (file_name, text): (&str, &[u8]),
     keep: &mut Sink,
+    progress: &dyn Progress,
 ) -> Outcome<(Reading, bool)> {
+    let lines = text.iter().filter(|byte| **byte == b'\n').count();
+    let mut pulse = Pulse::new(progress, lines, EVENTS_AT_ONCE);
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
     let mut conversion = Conversion::new(machine, settings, name, keep);
     let run = control::read(settings, file_name, text, &mut |event| {
         let line = event.line;
+        pulse.step(line as usize)?;
         conversion.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(way_out)?;
@@ -175,7 +194,6 @@ pub fn read_by(
         if !settings.setup.purpose.asks_ends() {
             found.severity = Severity::Warning;
         }
-        let lines = text.iter().filter(|byte| **byte == b'\n').count();
         let last = u32::try_from(lines).unwrap_or(u32::MAX).max(1);
         let found = found.file(file_name).line(last);
         if found.is_error() {

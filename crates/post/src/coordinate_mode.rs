@@ -11,7 +11,7 @@ use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};
 use minijinja::value::Value;
-use program::{Diagnostic, Op, Pose, Record, Rule};
+use program::{Diagnostic, Op, Pose, Pulse, Record, Rule};
 
 /// How the control counts at the moment.
 #[derive(Clone, Debug)]
@@ -138,12 +138,13 @@ impl Route {
     /// `degrees`.
     ///
     /// # Errors
-    /// A tool axis that the machine cannot reach.
+    /// A tool axis that the machine cannot reach; the work was ended.
     pub(crate) fn of(
         machine: &Machine,
         records: &[Record],
         here: Option<Pose>,
         degrees: Option<[f64; 3]>,
+        mut waits: Pulse,
     ) -> Result<Route, Box<Diagnostic>> {
         if machine.rotary.is_empty() {
             let (records, mode) = (records.len(), OrientationMode::Fixed);
@@ -156,7 +157,12 @@ impl Route {
         // Where the axes only position, each orientation is a route of its own: an axis that is free
         // in one of them has no reason to turn for the next one there.
         let count = if turning { count } else { one_orientation(&records[..count]) };
-        let targets = records[..count].iter().filter_map(target);
+        let mut end = None;
+        let targets = records[..count].iter().enumerate().map_while(|(i, record)| {
+            end = waits.step(i).err();
+            end.is_none().then_some(record)
+        });
+        let targets = targets.filter_map(target);
         let plan = match mode {
             OrientationMode::Fixed | OrientationMode::TiltedPlane => None,
             OrientationMode::ToolCenterAngles
@@ -164,6 +170,9 @@ impl Route {
             | OrientationMode::DynamicOffset
             | OrientationMode::MachineAngles => Some(plan::plan(machine, degrees, targets)?),
         };
+        if let Some(end) = end {
+            return Err(end);
+        }
         Ok(Route { records: count, mode, turning, plan })
     }
 

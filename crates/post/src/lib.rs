@@ -79,7 +79,7 @@ pub use origins::{Origin, Origins, places};
 pub use template::number_of;
 
 use machine::Machine;
-use program::{Diagnostic, Program, Rule, Severity};
+use program::{Diagnostic, Program, Progress, Rule, Severity};
 
 /// A written program.
 #[derive(Clone, Debug, Default)]
@@ -113,17 +113,19 @@ pub struct Part {
 /// Everything that keeps the program from being written, up to a fixed number of findings, each with
 /// the source line it comes from; mistakes in the machine's own files with their place there.
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
-    write_named(program, machine, &program.name)
+    write_named(program, machine, &program.name, &())
 }
 
-/// The same for the file `name`: by that, not by the name of the program, controllers of robots know it.
+/// The same for the file `name`: by that, not by the name of the program, controllers of robots know it; and for somebody who
+/// waits for it.
 ///
 /// # Errors
-/// As [`write()`].
+/// As [`write()`]; the work was ended (`cancelled`).
 pub fn write_named(
     program: &Program,
     machine: &Machine,
     name: &str,
+    progress: &dyn Progress,
 ) -> Result<Output, Vec<Diagnostic>> {
     let is_error = |found: &Diagnostic| found.severity == Severity::Error;
     let (errors, warnings) = program.tools_under_one_number().into_iter().partition(is_error);
@@ -138,8 +140,8 @@ pub fn write_named(
     let (errors, of_leads) = leads.into_iter().partition(is_error);
     let (mut errors, of_leads): (Vec<Diagnostic>, Vec<Diagnostic>) = (errors, of_leads);
     let written = match robot(machine) {
-        Some(robot) => write_arm(program, machine, robot, name),
-        None => write_moves(program, machine),
+        Some(robot) => write_arm(program, machine, robot, name, progress),
+        None => write_moves(program, machine, progress),
     };
     let mut output = match written {
         Ok(output) if errors.is_empty() => output,
@@ -159,12 +161,13 @@ fn write_arm(
     machine: &Machine,
     robot: (&::arm::Arm, &machine::Cell),
     name: &str,
+    progress: &dyn Progress,
 ) -> Result<Output, Vec<Diagnostic>> {
     let centered = center::centered(program, machine.resolution());
     let Some((offset, warning)) = centered.map_err(|found| vec![*found])? else {
-        return arm::write(program, machine, robot, (name, false));
+        return arm::write(program, machine, robot, (name, false), progress);
     };
-    let mut output = arm::write(&offset, machine, robot, (name, true))?;
+    let mut output = arm::write(&offset, machine, robot, (name, true), progress)?;
     output.warnings.push(warning);
     let places = places(program, &offset);
     output.origins = output.origins.moved(|record| places.get(record).copied());
@@ -175,14 +178,19 @@ fn write_arm(
     Ok(output)
 }
 
-fn write_moves(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
-    let Some(sweep::Split { records, places, lines }) = sweep::split(program, machine) else {
+fn write_moves(
+    program: &Program,
+    machine: &Machine,
+    progress: &dyn Progress,
+) -> Result<Output, Vec<Diagnostic>> {
+    let split = sweep::split(program, machine, progress).map_err(|end| vec![*end])?;
+    let Some(sweep::Split { records, places, lines }) = split else {
         let walk = walk::Walk::new(program, machine)?;
         return upright::check(program, machine)
             .map_err(|found| vec![*found])
-            .and_then(|()| walk.run());
+            .and_then(|()| walk.run(progress));
     };
-    let mut output = walk::Walk::new(&program.with_records(records), machine)?.run()?;
+    let mut output = walk::Walk::new(&program.with_records(records), machine)?.run(progress)?;
     output.origins = output.origins.moved(|record| places.get(record).map(|place| *place as usize));
     let message = format!(
         "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",

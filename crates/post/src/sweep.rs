@@ -5,7 +5,7 @@
 
 use geom::{Vec3, angle_between, between};
 use machine::{Machine, OrientationMode};
-use program::{Feed, Op, Pose, Program, Record};
+use program::{Feed, Op, Outcome, Pose, Program, Progress, Pulse, Record};
 
 /// How far the tool axis may leave its way, radians: half a degree.
 const SWING: f64 = std::f64::consts::PI / 360.0;
@@ -18,6 +18,9 @@ const ROUNDING: f64 = 1e-6;
 
 /// How often a cut is halved at the most.
 const HALVINGS: u32 = 8;
+
+/// After so many records whoever waits is asked: a millisecond at the most.
+const AT_ONCE: u32 = 256;
 
 /// So many times the records of the source may be added: what would need more is left as it is.
 const MOST: usize = 4;
@@ -32,11 +35,20 @@ pub(crate) struct Split {
 }
 
 /// `program` with such cuts split; `None` where there are none.
-pub(crate) fn split(program: &Program, machine: &Machine) -> Option<Split> {
+///
+/// # Errors
+/// The work was ended.
+pub(crate) fn split(
+    program: &Program,
+    machine: &Machine,
+    progress: &dyn Progress,
+) -> Outcome<Option<Split>> {
     let turned = [OrientationMode::ToolCenterAngles, OrientationMode::MachineAngles];
     if machine.rotary.len() < 2 || !turned.contains(&machine.orientation.simultaneous) {
-        return None;
+        return Ok(None);
     }
+    let waits = |_| progress.reached(0.0);
+    let mut pulse = Pulse::new(&waits, program.records.len(), AT_ONCE);
     let mut split: Vec<Record> = Vec::new();
     let mut places: Vec<u32> = Vec::new();
     let mut lines = Vec::new();
@@ -45,6 +57,7 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<Split> {
     let mut came = None;
     let mut room = MOST * program.records.len();
     for (index, record) in program.records.iter().enumerate() {
+        pulse.step(index)?;
         let from: Option<Pose> = here;
         if let Some(to) = record.op.pose() {
             here = Some(*to);
@@ -80,7 +93,7 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<Split> {
             places.push(index as u32);
         }
     }
-    (!lines.is_empty()).then_some(Split { records: split, places, lines })
+    Ok((!lines.is_empty()).then_some(Split { records: split, places, lines }))
 }
 
 /// The poses before the end of a cut, and in how many parts of the same turn it is split: in a singular pose the tool

@@ -42,6 +42,7 @@ pub mod lowering;
 mod magazine;
 mod motion;
 mod pose;
+mod progress;
 mod purpose;
 mod record;
 mod rule;
@@ -61,6 +62,7 @@ pub use diagnostic::{
 pub use digest::Digest;
 pub use motion::*;
 pub use pose::{FullPose, NoPose, Pose};
+pub use progress::{Progress, Pulse, cancelled};
 pub use purpose::Purpose;
 pub use record::*;
 pub use rule::Rule;

@@ -101,7 +101,7 @@ pub use tolerance::{Applied, Tolerances};
 use compensation::resolved;
 use control::{Folders, Setup};
 use machine::Machine;
-use observer::{Mark, Silent};
+use observer::{EVENTS_AT_ONCE, Mark, Silent};
 use program::{Diagnostic, Program, Rule};
 use surfaces::MappedSurface;
 
@@ -238,14 +238,19 @@ fn prove_on(
     }
     let mut mark = Mark::default();
     let run = nc::settings(machine, setup.clone()).and_then(|settings| {
-        observer::run(&settings, (file_name, text), observer, |event, observer| {
-            let outcome = prover.event(event);
-            if wants_motions {
-                prover.tell_motions(observer);
-                mark.tell(prover.mismatches(), observer);
-            }
-            outcome
-        })
+        observer::run(
+            &settings,
+            (file_name, text),
+            (observer, EVENTS_AT_ONCE),
+            |event, observer| {
+                let outcome = prover.event(event);
+                if wants_motions {
+                    prover.tell_motions(observer);
+                    mark.tell(prover.mismatches(), observer);
+                }
+                outcome
+            },
+        )
     });
     if let Err(found) = run {
         prover.refused(*found);

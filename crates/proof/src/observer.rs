@@ -5,14 +5,15 @@ use crate::resolved_pose::PartialPose;
 use control::{Event, Settings};
 use geom::{Arc, Vec3};
 use program::{
-    Compensation, Coolant, Cycle, Diagnostic, Feed, Outcome, PathMode, Rule, Spindle, Tool,
-    WorkOffset,
+    Compensation, Coolant, Cycle, Diagnostic, Feed, Outcome, PathMode, Spindle, Tool, WorkOffset,
+    cancelled,
 };
 
-/// Who follows a proof. `()` follows nothing and never ends it; a closure is asked whether the proof goes on.
+/// Who follows a proof. `()` follows nothing and never ends it.
 pub trait Observer {
-    /// Whether the proof goes on. It is asked every few thousand events of the control.
-    fn goes_on(&mut self) -> bool {
+    /// The proof has come to this part of the lines of the program, 0 to 1: whether it goes on. It is asked every few
+    /// milliseconds; a program with loops and calls goes back and forth.
+    fn reached(&mut self, _part: f64) -> bool {
         true
     }
 
@@ -38,12 +39,6 @@ pub trait Observer {
 
 impl Observer for () {}
 
-impl<F: Fn() -> bool> Observer for F {
-    fn goes_on(&mut self) -> bool {
-        self()
-    }
-}
-
 /// It keeps all motions.
 impl Observer for Vec<Motion> {
     fn wants_motions(&self) -> bool {
@@ -55,8 +50,11 @@ impl Observer for Vec<Motion> {
     }
 }
 
-/// After so many events of the control the observer is asked whether the proof goes on: some milliseconds.
-const EVENTS_AT_ONCE: u32 = 4096;
+/// After so many events of the control the observer is asked whether the proof goes on: some milliseconds at the most.
+pub(crate) const EVENTS_AT_ONCE: u32 = 256;
+
+/// The same of an arm, whose joints are followed along each motion.
+pub(crate) const MOTIONS_AT_ONCE: u32 = 8;
 
 /// Whether an observer has been told of the first mismatch.
 #[derive(Default)]
@@ -79,15 +77,17 @@ impl Mark {
 pub(crate) fn run(
     settings: &Settings,
     (file_name, text): (&str, &[u8]),
-    observer: &mut dyn Observer,
+    (observer, every): (&mut dyn Observer, u32),
     mut take: impl FnMut(&Event, &mut dyn Observer) -> Outcome,
 ) -> Outcome {
     let mut events: u32 = 0;
+    let lines = memchr::memchr_iter(b'\n', text).count().max(1) as f64;
     control::read(settings, file_name, text, &mut |event| {
         events = events.wrapping_add(1);
-        if events.is_multiple_of(EVENTS_AT_ONCE) && !observer.goes_on() {
-            let message = "the proof was ended before its end";
-            return Err(Diagnostic::error(Rule::Cancelled, message).help("prove it again").into());
+        if events.is_multiple_of(every)
+            && !observer.reached(f64::from(event.line).min(lines) / lines)
+        {
+            return Err(cancelled().into());
         }
         take(&event, observer)
     })
@@ -97,8 +97,8 @@ pub(crate) fn run(
 pub(crate) struct Silent<'a>(pub &'a mut dyn Observer);
 
 impl Observer for Silent<'_> {
-    fn goes_on(&mut self) -> bool {
-        self.0.goes_on()
+    fn reached(&mut self, part: f64) -> bool {
+        self.0.reached(part)
     }
 }
 

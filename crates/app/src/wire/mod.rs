@@ -156,7 +156,7 @@ pub fn make(
     set_up(&mut machine, settings)?;
     watch.begin("reading")?;
     let Source { mut toolpath, paths, offset, height } =
-        Source::read(source, strict, origin, settings)?;
+        Source::read(source, strict, origin, settings, watch)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     watch.begin("writing")?;
     let planned = cutting::segments(paths, &offset, &settings.cutting, height);
@@ -165,7 +165,7 @@ pub fn make(
     divide(&mut segments, settings.step, &machine)?;
     let cut = Cut::of(segments, height, &machine);
     let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
-    let output = post::write((&program, file), &machine, &toolpath, &mut warnings)?;
+    let output = post::write((&program, file), &machine, &toolpath, &mut warnings, watch)?;
     watch.begin("proving")?;
     if cut.points().is_some() {
         // Chords may leave their arcs by what the conversion has made of them, and by no more.

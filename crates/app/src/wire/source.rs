@@ -4,6 +4,7 @@ use super::{Settings, Sync};
 use crate::account::Stop;
 use crate::input;
 use crate::toolpath::{self, Origin, Toolpath, is_unknown_position};
+use crate::watch::Watch;
 use geom::Vec2;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program, Rule};
 use wire::{Contour, Element, OffsetContour, Path, contours, cuts, dxf, offset_contours};
@@ -38,6 +39,7 @@ impl Source {
         strict: bool,
         origin: &Origin,
         settings: &Settings,
+        watch: &dyn Watch,
     ) -> Result<Source, Stop> {
         let is_drawn = is_drawing(source) || settings.upper.as_ref().is_some_and(is_drawing);
         if let Some(found) = without_drawing(settings).filter(|_| !is_drawn) {
@@ -45,9 +47,9 @@ impl Source {
         }
         let height = height(origin, settings)?;
         let start = origin.start.map(|start| start.truncate());
-        let lower = File::read(source, strict, origin, settings)?;
+        let lower = File::read(source, strict, origin, settings, watch)?;
         let upper = match &settings.upper {
-            Some(source) => Some(File::read(source, strict, origin, settings)?),
+            Some(source) => Some(File::read(source, strict, origin, settings, watch)?),
             None => None,
         };
         let offset = match (&lower, &upper) {
@@ -120,9 +122,10 @@ impl File {
         strict: bool,
         origin: &Origin,
         settings: &Settings,
+        watch: &dyn Watch,
     ) -> Result<File, Stop> {
         if !is_drawing(source) {
-            let toolpath = toolpath::read_wire(source, strict, origin, settings.height);
+            let toolpath = toolpath::read_wire(source, strict, origin, settings.height, watch);
             let toolpath = toolpath.map_err(without_height)?;
             let mut warnings = left_out(&toolpath.program);
             toolpath.quote(&mut warnings);

@@ -23,7 +23,8 @@ use minijinja::value::Value;
 use parts::{Border, Size};
 use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
 use program::{
-    Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Rule, Spindle, Tool,
+    Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Progress, Pulse, Rule, Spindle,
+    Tool,
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::f64::consts::TAU;
@@ -55,6 +56,9 @@ fn is_on_edge(shown: f64) -> bool {
     let turns = (shown + 180.0) / 360.0;
     (turns - turns.round()).abs() * 360.0 < 2e-3
 }
+
+/// After so many steps whoever waits is asked: some milliseconds at the most.
+const STEPS_AT_ONCE: u32 = 32;
 
 /// Joints that differ by less are the same, radians.
 const SAME_JOINTS: f64 = 1e-5;
@@ -105,16 +109,17 @@ pub(crate) fn write(
     machine: &Machine,
     robot: (&Arm, &Cell),
     (name, offsets): (&str, bool),
+    progress: &dyn Progress,
 ) -> Result<Output, Vec<Diagnostic>> {
     let mut walk = Walk { offsets, ..Walk::new(program, machine, robot, name)? };
     let planned = plan(program, machine, robot);
-    match planned.as_ref().map_err(Clone::clone).and_then(|steps| walk.all(steps)) {
+    match planned.as_ref().map_err(Clone::clone).and_then(|steps| walk.all(steps, progress)) {
         Ok(size) if parts::bounds(machine).hold(&size) => {}
         Ok(size) => {
             let whole = walk;
             walk = Walk { offsets, ..Walk::new(program, machine, robot, name)? };
             let steps = planned.as_deref().unwrap_or_default();
-            if let Err(error) = walk.divided(steps, &whole.borders, size) {
+            if let Err(error) = walk.divided(steps, &whole.borders, size, progress) {
                 walk.findings.error(*error);
             }
         }
@@ -290,10 +295,12 @@ impl<'a> Walk<'a> {
     }
 
     /// The whole program in one file; how large it is.
-    fn all(&mut self, steps: &[Step]) -> Outcome<Size> {
+    fn all(&mut self, steps: &[Step], progress: &dyn Progress) -> Outcome<Size> {
+        let mut pulse = Pulse::new(progress, steps.len(), STEPS_AT_ONCE);
         self.start(BlockName::ProgramStart)?;
         let is_bounded = !parts::bounds(self.machine).hold(&Size::MOST);
         for index in 0..steps.len() {
+            pulse.step(index)?;
             if is_bounded && self.is_border() {
                 self.borders.push(Border { step: index, size: self.size() });
             }

@@ -3,11 +3,11 @@
 //! The first run writes it whole, and notes what there is at each place where it may be divided: where a rapid has taken the tool beyond
 //! all cuts. The second run knows by that how much there is to the next one, and begins another file where it would not fit any more.
 
-use super::{BlockName, Step, Walk, WordName, named};
+use super::{BlockName, STEPS_AT_ONCE, Step, Walk, WordName, named};
 use crate::Part;
 use crate::writer::Cutting;
 use machine::Machine;
-use program::{Diagnostic, Outcome, Rule};
+use program::{Diagnostic, Outcome, Progress, Pulse, Rule};
 
 /// How large a file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +80,14 @@ impl Walk<'_> {
     ///
     /// # Errors
     /// Between two places where it may be divided it has more than a file takes; the control has no call.
-    pub(super) fn divided(&mut self, steps: &[Step], borders: &[Border], whole: Size) -> Outcome {
+    pub(super) fn divided(
+        &mut self,
+        steps: &[Step],
+        borders: &[Border],
+        whole: Size,
+        progress: &dyn Progress,
+    ) -> Outcome {
+        let mut pulse = Pulse::new(progress, steps.len(), STEPS_AT_ONCE);
         let bounds = bounds(self.machine);
         if !self.templates.has(BlockName::PartCall) {
             let why = "its control has no call of another file";
@@ -96,6 +103,7 @@ impl Walk<'_> {
         self.start(start)?;
         let mut borders = borders.iter().peekable();
         for index in 0..steps.len() {
+            pulse.step(index)?;
             if let Some(border) = borders.next_if(|border| border.step == index) {
                 let next = borders.peek().map_or(whole, |next| next.size);
                 let comes = next

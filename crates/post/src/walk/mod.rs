@@ -29,8 +29,8 @@ use machine::{Inverse, Machine};
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
-    Compensation, Coolant, CutBox, Diagnostic, Feed, Op, Program, Record, Rule, Spindle, Tool,
-    WorkOffset, WorkOffsetData,
+    Compensation, Coolant, CutBox, Diagnostic, Feed, Op, Program, Progress, Pulse, Record, Rule,
+    Spindle, Tool, WorkOffset, WorkOffsetData,
 };
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
@@ -72,6 +72,9 @@ fn retract_height(program: &Program, height: f64) -> f64 {
 
 /// What reaches over less, mm, is no body.
 const THIN: f64 = 0.01;
+
+/// After so many records whoever waits is asked: some milliseconds at the most.
+const RECORDS_AT_ONCE: u32 = 256;
 
 /// Rapids that are written by feed: how many, from which line of the source on, and how far together, mm.
 #[derive(Debug, Default)]
@@ -192,9 +195,11 @@ impl<'a> Walk<'a> {
     }
 
     /// Writes everything; the text and its lines, or what keeps it from being written.
-    pub(crate) fn run(mut self) -> Result<crate::Output, Vec<Diagnostic>> {
-        if let Err(error) = self.records() {
-            self.findings.error(*error);
+    pub(crate) fn run(mut self, progress: &dyn Progress) -> Result<crate::Output, Vec<Diagnostic>> {
+        match self.records(progress) {
+            Err(end) if end.rule == Rule::Cancelled => return Err(vec![*end]),
+            Err(error) => drop(self.findings.error(*error)),
+            Ok(()) => {}
         }
         if let Some(found) = self.slow_rapids() {
             self.findings.warn(found);
@@ -208,13 +213,19 @@ impl<'a> Walk<'a> {
         Ok(crate::Output { text, origins, blocks, warnings, parts: Vec::new() })
     }
 
-    fn records(&mut self) -> Outcome {
+    fn records(&mut self, progress: &dyn Progress) -> Outcome {
+        let all = self.source.records.len();
+        let mut pulse = Pulse::new(progress, all, RECORDS_AT_ONCE);
         self.block(BlockName::ProgramStart)?;
         while self.index < self.source.records.len() {
             let rest = &self.source.records[self.index..];
-            let route = Route::of(self.machine, rest, self.position.pose(), self.place.degrees());
-            let route = match route {
+            let done = self.index as f64 / all as f64;
+            let waits = |_| progress.reached(done);
+            let waits = Pulse::new(&waits, rest.len(), RECORDS_AT_ONCE);
+            let (here, degrees) = (self.position.pose(), self.place.degrees());
+            let route = match Route::of(self.machine, rest, here, degrees, waits) {
                 Ok(route) => route,
+                Err(end) if end.rule == Rule::Cancelled => return Err(end),
                 // Without an orientation for each pose the operation cannot be written at all.
                 Err(error) => {
                     if !self.findings.error(*error) {
@@ -227,6 +238,7 @@ impl<'a> Walk<'a> {
             route.warnings().for_each(|warning| self.findings.warn(warning));
             let mut stops = route.stops();
             for record in &rest[..route.records] {
+                pulse.step(self.index)?;
                 self.line = record.line;
                 self.writer.is_for(Some(self.index));
                 let stop = record.op.pose().and_then(|_| stops.next());

@@ -25,7 +25,7 @@ mod comparison;
 mod expected;
 mod follow;
 
-use crate::observer::{self, Observer};
+use crate::observer::{self, MOTIONS_AT_ONCE, Observer};
 use crate::report::Report;
 use crate::tolerance::{Applied, Tolerances};
 use ::arm::Arm;
@@ -64,13 +64,18 @@ pub(crate) fn prove(
     }
     let setup = Setup { folders: folders.clone(), ..Setup::default() };
     let run = nc::settings(machine, setup).and_then(|settings| {
-        observer::run(&settings, (file_name, text), observer, |event, observer| {
-            let outcome = comparison.event(event);
-            if wants_motions {
-                comparison.tell_motions(observer);
-            }
-            outcome
-        })
+        observer::run(
+            &settings,
+            (file_name, text),
+            (observer, MOTIONS_AT_ONCE),
+            |event, observer| {
+                let outcome = comparison.event(event);
+                if wants_motions {
+                    comparison.tell_motions(observer);
+                }
+                outcome
+            },
+        )
     });
     let (mut report, called) = comparison.finish(run);
     // A file that is not understood has not been gone through.

@@ -31,7 +31,7 @@ use geom::Vec3;
 use motion::Next;
 use program::{
     CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
-    Purpose, Record, Rule, Spindle, Tool, encoding,
+    Progress, Pulse, Purpose, Record, Rule, Spindle, Tool, encoding,
 };
 use report::Report;
 use statement::{Joiner, Line, Lines, is_blank};
@@ -104,7 +104,21 @@ pub struct Reading {
 /// # Errors
 /// Every error found, at most twenty, in the order of their lines. There is no partial program.
 pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, Vec<Diagnostic>> {
+    read_for(file_name, text, options, &())
+}
+
+/// The same for somebody who waits for it.
+///
+/// # Errors
+/// As [`read`]; the work was ended (`cancelled`).
+pub fn read_for(
+    file_name: &str,
+    text: &[u8],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Reading, Vec<Diagnostic>> {
     let text = encoding::without_mark(text);
+    let mut pulse = Pulse::new(progress, text.len(), LINES_AT_ONCE);
     let mut reader = Reader::new(file_name, text, options);
     if text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff") {
         reader.report.error(encoding::utf_16().line(1));
@@ -114,6 +128,9 @@ pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, 
     let mut lines = Lines::of(text);
     let mut last = Line { number: 0, text: b"" };
     while let Some(line) = lines.next() {
+        pulse
+            .step(line.text.as_ptr() as usize - text.as_ptr() as usize)
+            .map_err(|end| vec![*end])?;
         if reader.obey_plain_goto(line.number, line.text) {
             last = line;
             continue;
@@ -136,6 +153,9 @@ pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, 
     }
     reader.finish(text, last)
 }
+
+/// After so many lines whoever waits is asked: a millisecond at the most.
+const LINES_AT_ONCE: u32 = 1024;
 
 /// How far what a motion needs has been settled since the last statement that could change it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
