@@ -26,6 +26,7 @@ pub mod kinematics;
 pub mod library;
 pub mod limits;
 pub mod linearise;
+pub mod linkage;
 mod load;
 mod model;
 pub mod plan;

@@ -74,6 +74,21 @@ pub struct Machine {
     pub approach: Vec<String>,
     /// Values that the templates of this machine read, by name.
     pub options: BTreeMap<String, OptionValue>,
+    /// What is drawn of it; where nothing is given, [`crate::linkage::Linkage`] has boxes of its own.
+    pub bodies: Vec<Body>,
+}
+
+/// A box that stands for a part of a machine in a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// What it is called.
+    pub name: String,
+    /// What carries it: an axis, `bed`, `spindle` or `table`.
+    pub on: String,
+    /// The corner with the smallest X, Y and Z while all axes stand at zero, mm, in the world of [`crate::linkage`].
+    pub low: Vec3,
+    /// The one with the largest.
+    pub high: Vec3,
 }
 
 /// Where the tool and the part of an arm are, and what its outputs switch.
@@ -257,13 +272,15 @@ pub struct LinearAxis {
     pub rapid: Option<f64>,
     /// Acceleration, m/s²; only the estimate of the time goes by it.
     pub acceleration: f64,
+    /// What it carries: the part, or the tool, as where the file does not say it. Only drawings go by it.
+    pub on: Mount,
 }
 
 impl Default for LinearAxis {
     /// An axis of which nothing is known.
     fn default() -> LinearAxis {
         let (min, max) = (f64::NEG_INFINITY, f64::INFINITY);
-        LinearAxis { min, max, rapid: None, acceleration: 2.0 }
+        LinearAxis { min, max, rapid: None, acceleration: 2.0, on: Mount::Head }
     }
 }
 

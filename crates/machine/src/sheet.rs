@@ -29,6 +29,7 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         WordSheet::KEYS,
         LinearSheet::KEYS,
         RotarySheet::KEYS,
+        BodySheet::KEYS,
         OrientationSheet::KEYS,
         WireSheet::KEYS,
         SpindleSheet::KEYS,
@@ -82,6 +83,7 @@ sheet!(Sheet "" {
     blocks: BTreeMap<String, Spanned<String>>, "", "Table: the templates of the blocks.";
     axes: BTreeMap<LinearName, Spanned<LinearSheet>>, "", "Table: X, Y and Z.";
     rotary: Spanned<Vec<Spanned<RotarySheet>>>, "", "Tables [[rotary]]: the rotary axes from the machine's frame outwards, at most two.";
+    body: Vec<Spanned<BodySheet>>, "", "Tables [[body]]: boxes that stand for parts of the machine in drawings; where there are none, boxes of about the right size are drawn.";
     work_zero: Place3, "mm", "The work zero (G54) in machine coordinates, where it is known: travels are then checked in machine coordinates, otherwise only their length.";
     safe_height: Spanned<Position>, "mm", "Z of the gauge line in machine coordinates at which every tool is clear of every part: where the control shows it, homed and at its top. Retracts in machine coordinates (G53, SUPA, M91) go there; without it none is written.";
     orientation: Spanned<OrientationSheet>, "", "Table: how a tool axis is written.";
@@ -175,6 +177,14 @@ sheet!(merged LinearSheet "axes.X" {
     max: Position, "mm", "Upper end of the travel.";
     rapid: Rate, "mm/min", "Speed of a rapid move.";
     acceleration: Acceleration, "m/s²", "Acceleration.";
+    on: Mount, "", "What it carries, for drawings: table (the part) or head (the tool, as where it is missing). On either side Y carries X, and X carries Z.";
+});
+
+sheet!(BodySheet "body" {
+    name: String, "", "What it is called.";
+    on: String, "", "What carries it: X, Y, Z or a rotary axis, J1 to J6 or rail of a robot, bed (nothing moves it), spindle (what carries the tool), table (what carries the part).";
+    low: Place3, "mm", "Its corner with the smallest X, Y and Z in machine coordinates, on a robot in the world of the controller, while all axes stand at zero and the gauge point of the spindle at the origin.";
+    high: Place3, "mm", "Its corner with the largest.";
 });
 
 sheet!(RotarySheet "rotary" {

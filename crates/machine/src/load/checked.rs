@@ -3,6 +3,7 @@
 use super::Outcome;
 use super::arm::{self, PlacedArm};
 use super::file::SheetFile;
+use crate::linkage::Linkage;
 use crate::model::*;
 use crate::sheet::*;
 use geom::{Vec3, direction};
@@ -58,6 +59,7 @@ pub(super) struct CheckedSheet {
     blocks: BTreeMap<String, Block>,
     axes: BTreeMap<LinearName, Placed<LinearSheet>>,
     rotary: Option<Placed<Vec<RotaryAxis>>>,
+    bodies: Option<Vec<Placed<Body>>>,
     work_zero: Option<Place3>,
     safe_height: Option<Placed<Position>>,
     orientation: Option<Placed<OrientationSheet>>,
@@ -106,6 +108,7 @@ impl CheckedSheet {
             blocks: blocks.map(|(name, text)| (name, file.block(text))).collect(),
             axes: axes?,
             rotary: sheet.rotary.map(|axes| check_rotary(file, axes)).transpose()?,
+            bodies: sheet.body.map(|bodies| check_bodies(file, bodies)).transpose()?,
             work_zero: sheet.work_zero,
             safe_height: sheet.safe_height.map(|z| Placed::new(file, "safe_height", z)),
             orientation: sheet.orientation.map(|o| Placed::new(file, "orientation", o)),
@@ -181,6 +184,31 @@ fn check_approach(file: &SheetFile, order: Spanned<Vec<String>>) -> Outcome<Vec<
     }
     Ok(order.into_inner())
 }
+
+/// The boxes of a drawing.
+fn check_bodies(file: &SheetFile, bodies: Vec<Spanned<BodySheet>>) -> Outcome<Vec<Placed<Body>>> {
+    let body = |spanned: Spanned<BodySheet>| {
+        let place = file.at("body", &spanned, "");
+        let sheet = spanned.into_inner();
+        let missing = |key: &str| wrong(&place, &format!("`{key}` is missing"));
+        let on = sheet.on.ok_or_else(|| missing("on"))?;
+        let low = Vec3::from_array(sheet.low.ok_or_else(|| missing("low"))?.0);
+        let high = Vec3::from_array(sheet.high.ok_or_else(|| missing("high"))?.0);
+        if low.cmpge(high).any() {
+            return Err(wrong(&place, "`low` has a coordinate that is not below that of `high`"));
+        }
+        let name = sheet.name.unwrap_or_else(|| on.clone());
+        Ok(Placed { sheet: Body { name, on, low, high }, place })
+    };
+    if let Some(first) = bodies.get(MOST_BODIES) {
+        let message = format!("a machine is drawn of {MOST_BODIES} bodies at the most");
+        return Err(Box::new(file.at("body", first, &message)));
+    }
+    bodies.into_iter().map(body).collect()
+}
+
+/// The most bodies of a machine.
+const MOST_BODIES: usize = 100;
 
 fn check_rotary(
     file: &SheetFile,
@@ -314,6 +342,7 @@ impl CheckedSheet {
                 farther.under(nearer, LinearSheet::under)
             }),
             rotary: nearer.rotary.or(self.rotary),
+            bodies: nearer.bodies.or(self.bodies),
             work_zero: nearer.work_zero.or(self.work_zero),
             safe_height: nearer.safe_height.or(self.safe_height),
             orientation: joined(self.orientation, nearer.orientation, OrientationSheet::under),
@@ -437,7 +466,8 @@ impl CheckedSheet {
             );
             return Err(Diagnostic::error(Rule::MachineFile, message).file(file).into());
         }
-        Ok(Machine {
+        let bodies = self.bodies.take().unwrap_or_default();
+        let machine = Machine {
             loaded_from: LoadedFrom::default(),
             title: self.title.unwrap_or_else(|| name.clone()),
             name,
@@ -540,7 +570,21 @@ impl CheckedSheet {
                     OptionSheet::Text(text) => (name, OptionValue::Text(text)),
                 })
                 .collect(),
-        })
+            bodies: Vec::new(),
+        };
+        let linkage = Linkage::of(&machine);
+        for Placed { sheet, place } in &bodies {
+            if linkage.link(&sheet.on).is_none() {
+                let links: Vec<&str> = linkage.links.iter().map(|link| &*link.name).collect();
+                let message = format!(
+                    "`{}` carries nothing: `on` is one of {}, spindle, table",
+                    sheet.on,
+                    links.join(", ")
+                );
+                return Err(wrong(place, &message));
+            }
+        }
+        Ok(Machine { bodies: bodies.into_iter().map(|body| body.sheet).collect(), ..machine })
     }
 }
 
@@ -571,6 +615,7 @@ fn finish_linear(sheet: &LinearSheet) -> LinearAxis {
         max: sheet.max.map_or(default.max, |mm| mm.0),
         rapid: sheet.rapid.map(|rate| rate.0),
         acceleration: sheet.acceleration.map_or(default.acceleration, |rate| rate.0),
+        on: sheet.on.unwrap_or(default.on),
     }
 }
 

@@ -3,6 +3,8 @@
 use crate::files::{mills, root};
 use control::{Action, Event};
 use geom::Vec3;
+use machine::library::{ROBOTS, names};
+use machine::linkage::Linkage;
 use machine::time::{Clock, Times};
 use machine::{Machine, Mount};
 use program::{Builder, Feed, Op, Program, Spindle, Tool};
@@ -63,6 +65,7 @@ fn the_axes_of_each_mill_bring_the_tip_to_where_the_motion_ends() {
     for machine in mills().filter(|machine| !machine.rotary.is_empty()) {
         let text = std::fs::read(root().join("machines/samples/five-axes.cls")).unwrap();
         let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let linkage = Linkage::of(&machine);
         let mut length = 0.0;
         let lengths: Vec<f64> = source
             .records
@@ -83,6 +86,11 @@ fn the_axes_of_each_mill_bring_the_tip_to_where_the_motion_ends() {
             let is = tip(&machine, linear, rotary, *length);
             let off = should.distance(Vec3::from_array(is));
             assert!(off < 1e-9 || should.is_nan(), "{}: {off} mm, {motion:?}", machine.name);
+            // The links of a drawing lead there too.
+            let letters = machine.rotary.iter().map(|axis| rotary[axis.index()]);
+            let axes: Vec<f64> = linear.to_array().into_iter().chain(letters).collect();
+            let drawn = linkage.tip(&axes, *length);
+            assert!(should.distance(drawn) < 1e-9 || should.is_nan(), "{}: {drawn}", machine.name);
             compared += usize::from(should.is_finite());
         }
     }
@@ -210,4 +218,38 @@ fn times_of_the_motions_are_those_of_the_report() {
         }
     }
     assert!(compared > 50, "{compared}");
+}
+
+#[test]
+fn the_links_of_each_robot_bring_the_tip_to_where_the_motion_ends() {
+    let mut compared = 0;
+    for name in names(ROBOTS) {
+        let machine = machine::load(name).unwrap();
+        let text = std::fs::read(root().join("machines/samples/robot.cls")).unwrap();
+        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let (linkage, cell) = (Linkage::of(&machine), machine.cell.as_ref().unwrap());
+        let mut length = None;
+        let lengths: Vec<Option<f64>> = source
+            .records
+            .iter()
+            .map(|record| {
+                if let Op::Tool(tool) = &record.op {
+                    length = tool.length;
+                }
+                length.or(cell.tool_length)
+            })
+            .collect();
+        for motion in posted(&source, &machine).1 {
+            let AxisPositions::Arm { joints, rail } = motion.axes else { panic!("{motion:?}") };
+            let Some(Some(length)) = lengths.get(motion.record) else { continue };
+            let axes: Vec<f64> = joints.into_iter().chain(rail).collect();
+            let off = linkage.tip(&axes, *length).distance(motion.tool[1].tip);
+            // Home, before the tool is called, is told of another tool.
+            if motion.tool[1].tip.is_finite() && motion.kind != MotionKind::Joints {
+                assert!(off < 1e-6, "{name}: {off} mm, {motion:?}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 60, "{compared}");
 }

@@ -5,7 +5,13 @@ use std::collections::BTreeMap;
 use toolpost_machine::*;
 
 pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
-    let linear = LinearAxis { min: -500.0, max: 500.0, rapid: Some(30_000.0), acceleration: 5.0 };
+    let linear = LinearAxis {
+        min: -500.0,
+        max: 500.0,
+        rapid: Some(30_000.0),
+        acceleration: 5.0,
+        ..LinearAxis::default()
+    };
     Machine {
         name: "test".into(),
         file: "test.toml".into(),
@@ -76,6 +82,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         operator_parameters: Vec::new(),
         approach: Vec::new(),
         options: BTreeMap::new(),
+        bodies: Vec::new(),
     }
 }
 
