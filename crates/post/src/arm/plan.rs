@@ -76,12 +76,19 @@ impl Reentry {
 
 /// A way out, with the key of the cell that bounds the joint where it is that.
 fn with_cable(help: String, why: Why, cell: &Cell) -> String {
-    match why {
-        Why::Limit(joint, _) | Why::Range(joint) => match cell.cable(joint) {
-            Some(cable) => format!("{help}; {cable}"),
-            None => help,
-        },
-        _ => help,
+    let bounded = match why {
+        Why::Limit(joint, _) | Why::Range(joint) => cell.cable(joint),
+        Why::Reach(_)
+        | Why::Wrist(_)
+        | Why::Shoulder(_)
+        | Why::Elbow(_)
+        | Why::Speed(..)
+        | Why::Apart
+        | Why::Numbers => None,
+    };
+    match bounded {
+        Some(cable) => format!("{help}; {cable}"),
+        None => help,
     }
 }
 
