@@ -306,6 +306,36 @@ fn programs_are_called_within_the_file_and_no_deeper_than_the_control_nests() {
 }
 
 #[test]
+fn a_file_whose_programs_do_not_end_or_have_names_of_kuka_is_refused_whether_they_run_or_not() {
+    let found = |behind: &str| {
+        run_with(&settings(), &format!("DEF job()\nHALT\nEND\n{behind}")).unwrap_err()
+    };
+    for (behind, at, what) in [
+        ("DEF x ( )\n", "job.src:4:", "no END"),
+        ("DEF x ( )\nHALT\n", "job.src:4:", "no END"),
+        ("DEFFCT INT x ( )\nRETURN 1\n", "job.src:4:", "no END"),
+        ("DEF x ( )\nDEF y ( )\nEND\n", "job.src:5:", "begins within another"),
+        ("DEF bas ( )\nEND\n", "job.src:4:", "BAS is a program of KUKA's own software"),
+        ("DEF SPS ( )\nEND\n", "job.src:4:", "own software"),
+        ("DEF Ir_Stopm ( )\nEND\n", "job.src:4:", "own software"),
+        ("DEF p00 ( )\nEND\n", "job.src:4:", "own software"),
+        ("DEF C_DIS ( )\nEND\n", "job.src:4:", "word of the language"),
+    ] {
+        let found = found(behind);
+        assert!(found.contains(at) && found.contains(what), "{behind}: {found}");
+    }
+    let found = arm::run(&settings(), "cell.src", "DEF cell ( )\nHALT\nEND\n").unwrap_err();
+    assert!(found.contains("own software"), "{found}");
+    // In the file of a called program as well.
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("part.src"), "DEF part()\nEND\nDEF more()\n").unwrap();
+    let mut settings = settings();
+    settings.setup.folders = vec![folder.path().to_path_buf()].into();
+    let found = run_with(&settings, "DEF job()\npart()\nEND\n").unwrap_err();
+    assert!(found.contains("no END"), "{found}");
+}
+
+#[test]
 fn a_tool_is_changed_by_the_program_of_the_operator_behind_which_nothing_is_known() {
     let mut settings = settings();
     settings.tool_change = String::from("Tool_Change");

@@ -64,13 +64,15 @@ fn is_called_as((name, line): (Name, u32), file_name: &str) -> Outcome {
 
 impl<'t> File<'t> {
     /// # Errors
-    /// Two programs have one name; a line with `DEF` is not understood.
+    /// Two programs have one name, or one has no end; a line with `DEF` is not understood.
     fn of(text: &'t [u8], name: Option<Box<str>>) -> Outcome<File<'t>> {
         let (mut programs, mut first) = (HashMap::new(), None);
-        let mut is_inside = false;
+        // The line of the program in which the next one stands.
+        let mut begun = None;
         for (place, after, block) in lines(text) {
-            is_inside =
-                stands(Source { line: place.line, text: block }, is_inside, first.is_some())?;
+            let source = Source { line: place.line, text: block };
+            let is_inside = stands(source, begun.is_some(), first.is_some())?;
+            begun = is_inside.then(|| begun.unwrap_or(place.line));
             if !begins_program(block) {
                 continue;
             }
@@ -83,15 +85,26 @@ impl<'t> File<'t> {
                 first = first.or(Some((name, after)));
             }
         }
-        Ok(File { text, name, programs, first })
+        match begun {
+            Some(line) => Err(no_end(line)),
+            None => Ok(File { text, name, programs, first }),
+        }
     }
+}
+
+fn no_end(line: u32) -> Box<Diagnostic> {
+    let found = Diagnostic::error(
+        Rule::NoEnd,
+        "the program has no END: a controller takes none of the file",
+    );
+    Box::new(found.line(line))
 }
 
 /// Whether the line behind this one stands within a program.
 ///
 /// # Errors
-/// A sign is there that ends a line for some readers and not for others; a statement outside of programs, or a line of the head of
-/// the file behind it.
+/// A sign is there that ends a line for some readers and not for others; a statement outside of programs, a program within another, or a
+/// line of the head of the file behind it.
 fn stands(source: Source, is_inside: bool, has_program: bool) -> Outcome<bool> {
     let text = source.text;
     let wrong = |rule: Rule, message: &str| Err(source.error(rule, 0..text.len(), message));
@@ -113,6 +126,9 @@ fn stands(source: Source, is_inside: bool, has_program: bool) -> Outcome<bool> {
         (_, Some(b'&'), _) if !has_program => Ok(is_inside),
         (_, Some(b'&'), _) => {
             wrong(Rule::ProgramFrame, "a line with & stands before the first DEF")
+        }
+        (_, _, true) if is(["DEF", "DEFFCT"]) => {
+            wrong(Rule::ProgramFrame, "a program begins within another: END is missing before it")
         }
         _ if is(["DEF", "DEFFCT"]) => Ok(true),
         (_, _, true) if is(["END", "ENDFCT"]) => Ok(false),
@@ -166,7 +182,7 @@ impl Run<'_, '_> {
             }
             place = after;
         }
-        Err(Diagnostic::error(Rule::NoEnd, "the program has no END").line(place.line).into())
+        Err(no_end(place.line))
     }
 
     fn statement(&mut self, scan: &Scan, statement: Statement) -> Outcome {

@@ -3,7 +3,7 @@
 use super::expression::{Readable, read as value, read_index, read_number};
 use super::scan::Scan;
 use super::value::{Name, Value};
-use super::words::{REFUSED, STATEMENTS, TYPES};
+use super::words::{OF_KUKA, REFUSED, STATEMENTS, TYPES};
 use crate::kernel::formula::mistaken;
 use program::{Outcome, Rule};
 
@@ -254,6 +254,12 @@ fn define(scan: &mut Scan) -> Outcome<Statement> {
     let name = scan.needed("the name of the program")?;
     if [STATEMENTS, REFUSED, TYPES].iter().any(|words| words.contains(&name.as_str())) {
         return Err(scan.wrong(format!("{name} is a word of the language, and names no program")));
+    }
+    if OF_KUKA.contains(&name.as_str()) {
+        let message =
+            format!("{name} is a program of KUKA's own software, which calls it by that name");
+        let found = scan.since(0, Rule::ProgramFrame, message);
+        return Err(Box::new(found.help("give the program, and its file, another name")));
     }
     scan.expect("(")?;
     if !scan.take(b')') {

@@ -102,6 +102,27 @@ pub(super) const STATEMENTS: &[&str] = &[
     "B_AND",
     "B_OR",
     "B_EXOR",
+    "C_DIS",
+    "C_ORI",
+    "C_PTP",
+    "C_VEL",
+];
+
+/// Programs that KUKA's software brings along, which are called by these names: docs/controls/krl.md says where they have been seen.
+pub(super) const OF_KUKA: &[&str] = &[
+    "BAS",
+    "CELL",
+    "COLLMONLIB",
+    "H50",
+    "IR_STOPM",
+    "MASREF_MAIN",
+    "MASREF_USER",
+    "MSGLIB",
+    "P00",
+    "SPS",
+    "TM_BIB",
+    "TM_USERACTION",
+    "USERSPOT",
 ];
 
 /// Types that a declaration names.
