@@ -1,6 +1,6 @@
 //! Cells of robots: cuts that are left and entered again.
 
-use crate::robot::{LINE, proof_of, proven, source};
+use crate::robot::{LINE, proof_of, proven, rings, source};
 use arm::Joints;
 use geom::{Euler, Frame, Mat3, Vec3};
 use machine::Machine;
@@ -120,38 +120,6 @@ fn a_cut_that_is_left_otherwise_is_refused() {
     }
 }
 
-/// So many steps of 6 degrees round a ball of 20 mm, the tool 25° off a direction that leans by 45° towards the arm: about the direction of
-/// its forearm, so that joint 4 turns with the cut.
-fn rings(steps: u32) -> Program {
-    let (tilt, half) = (45_f64.to_radians(), 25_f64.to_radians());
-    let direction = Vec3::new(-tilt.sin(), 0.0, tilt.cos());
-    let across = Vec3::new(tilt.cos(), 0.0, tilt.sin());
-    let mut text =
-        String::from("PARTNO/RINGS\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\n");
-    let last = f64::from(steps) * std::f64::consts::TAU / 60.0;
-    let mut goto = |height: f64, turn: f64| {
-        let about = across * turn.cos() + Vec3::Y * turn.sin();
-        let axis = direction * half.cos() + about * half.sin();
-        let tip = axis * (20.0 + height) + Vec3::Z * 100.0;
-        let [x, y, z] = tip.to_array();
-        let [i, j, k] = axis.to_array();
-        text += &format!("GOTO/{x:.5},{y:.5},{z:.5},{i:.9},{j:.9},{k:.9}\n");
-        if height > 0.0 && turn == 0.0 {
-            text += "FEDRAT/MMPM,300\n";
-        } else if turn == 0.0 {
-            text += "FEDRAT/MMPM,600\n";
-        } else if turn == last && height == 0.0 {
-            text += "RAPID\n";
-        }
-    };
-    goto(60.0, 0.0);
-    for step in 0..=steps {
-        goto(0.0, f64::from(step) * std::f64::consts::TAU / 60.0);
-    }
-    goto(60.0, last);
-    source(&format!("{text}FINI\n"))
-}
-
 /// Robots that have to turn their wrist over on [`rings`], with a place of the part at which they reach it, and why.
 const TURNING: [(&str, &str, &str, &str); 3] = [
     (
@@ -198,16 +166,64 @@ fn a_cut_that_no_posture_carries_is_left_and_entered_again_and_the_line_is_repor
         // A program whose way is left out, but for the first line, is refused.
         let (first, last) =
             (report.excursions[0].first_program_line, report.excursions[0].last_program_line);
-        let lines = || text.split_inclusive('\n').zip(1..);
         for leave_out in first..=last {
-            let damaged: String =
-                lines().filter(|(_, number)| *number != leave_out).map(|(line, _)| line).collect();
-            let kept = proof_of(&source, &machine, &damaged).proven;
+            let kept = proof_of(&source, &machine, &without(&text, leave_out)).proven;
             assert!(
                 !kept || !text.lines().nth(leave_out as usize - 1).unwrap().contains("PTP"),
                 "{leave_out}"
             );
         }
+    }
+}
+
+/// A text without one of its lines, number from 1.
+fn without(text: &str, leave_out: u32) -> String {
+    let lines = text.split_inclusive('\n').zip(1..);
+    lines.filter(|(_, number)| *number != leave_out).map(|(line, _)| line).collect()
+}
+
+#[test]
+fn a_cut_within_a_circle_is_left_between_the_arcs_that_it_is_written_in() {
+    // Twice round the foot of a UR5e: joint 1 turns by two revolutions at the most, less two degrees.
+    let twice = "PARTNO/TWICE\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/400,0,60\nFEDRAT/MMPM,600\nGOTO/400,0,0\n\
+        CIRCLE/0,0,0,0,0,1,400\nGOTO/400,0,0\nCIRCLE/0,0,0,0,0,1,400\nGOTO/400,0,0\nRAPID\nGOTO/400,0,60\nFINI\n";
+    let part = "part = [0, 0, 100, 0, 0, 0]";
+    let from = "part = [450, 0, 150, 0, 0, 0]";
+    let source = source(twice);
+    let found = &post::write(&source, &crate::robot::changed("universal-ur5e", &[(from, part)]))
+        .unwrap_err()[0];
+    assert_eq!((found.rule.name(), found.line), ("arm-path", 12), "{found}");
+    assert!(found.message.contains("joint 1") && found.help.contains("reentry_feed"), "{found}");
+    let again = format!("{part}\nreentry_feed = 400");
+    let machine = crate::robot::changed("universal-ur5e", &[(from, &again)]);
+    let text = proven(&source, &machine);
+    let report = proof_of(&source, &machine, &text);
+    assert_eq!((report.compared.arcs, report.excursions.len()), (2, 1), "{text}");
+    let excursion = &report.excursions[0];
+    assert_eq!(excursion.source_line, 12);
+    // It is left half way round.
+    let line = |number: u32| text.lines().nth(number as usize - 1).unwrap();
+    let (first, last) = (excursion.first_program_line, excursion.last_program_line);
+    assert!(line(first - 1).starts_with("movec") && line(last + 1).starts_with("movec"), "{text}");
+    assert!(line(last).contains("p[-0.400000,0.000000,0.000000,"), "{text}");
+    // Another line of a safe lift may be missing; the first, the joints and the last may not.
+    for number in [first, last] {
+        assert!(!proof_of(&source, &machine, &without(&text, number)).proven, "{number}");
+    }
+    let joints = (first..=last).find(|number| line(*number).starts_with("movej")).unwrap();
+    assert!(!proof_of(&source, &machine, &without(&text, joints)).proven);
+    for (from, to) in [
+        // In again 1 mm aside, 0.1 mm deeper, elsewhere on the circle.
+        ("p[-0.400000,0.000000,0.000000,", "p[-0.400000,0.001000,0.000000,"),
+        ("p[-0.400000,0.000000,0.000000,", "p[-0.400000,0.000000,-0.000100,"),
+        ("p[-0.400000,0.000000,0.000000,", "p[0.000000,0.400000,0.000000,"),
+    ] {
+        let changed = line(last).replace(from, to);
+        assert_ne!(changed, line(last));
+        let before: Vec<&str> = text.lines().take(last as usize - 1).collect();
+        let behind: Vec<&str> = text.lines().skip(last as usize).collect();
+        let damaged = format!("{}\n{changed}\n{}\n", before.join("\n"), behind.join("\n"));
+        assert!(!proof_of(&source, &machine, &damaged).proven, "{changed}");
     }
 }
 

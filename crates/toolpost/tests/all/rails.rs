@@ -282,3 +282,39 @@ fn a_cut_longer_than_the_arm_reaches_from_one_place_of_the_rail_is_refused_and_s
     let found = line([0, 0], [1900, 0]);
     assert!(found.contains("arm-path") && !found.contains("rail stands still"), "{found}");
 }
+
+#[test]
+fn a_cut_is_left_and_entered_again_on_a_rail_which_stands_meanwhile() {
+    let source = crate::robot::rings(150);
+    let rail = "part = [700, 1000, 0, 0, 0, 0]\nreentry_feed = 600\nrail = { direction = [0, 1, 0], origin = [0, 0, 0, 0, 0, 0], \
+                min = 1000, max = 1001, speed = 60000, home = 1000 }";
+    let changes = [("part = [450, 0, 150, 0, 0, 0]", rail), ("[spindle]", KRL)];
+    let machine = crate::robot::changed("kuka-kr6-r900", &changes);
+    let text = proven(&source, &machine);
+    let report = proof_of(&source, &machine, &text);
+    assert!(!report.excursions.is_empty(), "{text}");
+    for excursion in &report.excursions {
+        let (first, last) = (excursion.first_program_line, excursion.last_program_line);
+        let lines = || text.lines().zip(1..).filter(|(_, number)| (first..=last).contains(number));
+        let motions: Vec<(&str, u32)> = lines()
+            .filter(|(line, _)| line.starts_with("PTP") || line.starts_with("LIN"))
+            .collect();
+        assert!(motions.iter().any(|(line, _)| line.starts_with("PTP")), "{motions:?}");
+        // Each states the rail where it stands: 1 mm off in any of them is refused.
+        for (line, number) in motions {
+            let stated = line.split(",E1 ").nth(1).unwrap().split('}').next().unwrap();
+            let at: f64 = stated.parse().unwrap();
+            let moved = format!(",E1 {:.3}", if at > 1000.5 { at - 1.0 } else { at + 1.0 });
+            let damaged: Vec<String> = text
+                .lines()
+                .zip(1..)
+                .map(|(own, at)| match at == number {
+                    true => own.replace(&format!(",E1 {stated}"), &moved),
+                    false => own.to_owned(),
+                })
+                .collect();
+            let report = proof_of(&source, &machine, &(damaged.join("\r\n") + "\r\n"));
+            assert!(!report.proven, "{number}: {line}");
+        }
+    }
+}

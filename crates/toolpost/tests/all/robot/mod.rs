@@ -16,6 +16,38 @@ FEDRAT/MMPM,1200\nGOTO/60,0,-2\nCIRCLE/60,20,-2,0,0,1,20\nGOTO/80,20,-2\nRAPID\n
 pub const LINE: &str = "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\n\
 GOTO/0,0,-2\nFEDRAT/MMPM,1200\nGOTO/60,0,-2\nRAPID\nGOTO/60,0,50\nFINI\n";
 
+/// So many steps of 6 degrees round a ball of 20 mm, the tool 25° off a direction that leans by 45° towards the arm: about the direction of
+/// its forearm, so that joint 4 turns with the cut.
+pub fn rings(steps: u32) -> Program {
+    let (tilt, half) = (45_f64.to_radians(), 25_f64.to_radians());
+    let direction = Vec3::new(-tilt.sin(), 0.0, tilt.cos());
+    let across = Vec3::new(tilt.cos(), 0.0, tilt.sin());
+    let mut text =
+        String::from("PARTNO/RINGS\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,12000,CLW\nRAPID\n");
+    let last = f64::from(steps) * std::f64::consts::TAU / 60.0;
+    let mut goto = |height: f64, turn: f64| {
+        let about = across * turn.cos() + Vec3::Y * turn.sin();
+        let axis = direction * half.cos() + about * half.sin();
+        let tip = axis * (20.0 + height) + Vec3::Z * 100.0;
+        let [x, y, z] = tip.to_array();
+        let [i, j, k] = axis.to_array();
+        text += &format!("GOTO/{x:.5},{y:.5},{z:.5},{i:.9},{j:.9},{k:.9}\n");
+        if height > 0.0 && turn == 0.0 {
+            text += "FEDRAT/MMPM,300\n";
+        } else if turn == 0.0 {
+            text += "FEDRAT/MMPM,600\n";
+        } else if turn == last && height == 0.0 {
+            text += "RAPID\n";
+        }
+    };
+    goto(60.0, 0.0);
+    for step in 0..=steps {
+        goto(0.0, f64::from(step) * std::f64::consts::TAU / 60.0);
+    }
+    goto(60.0, last);
+    source(&format!("{text}FINI\n"))
+}
+
 /// A robot of the library with parts of its file changed.
 pub fn changed(name: &str, changes: &[(&str, &str)]) -> Machine {
     let path = root().join(format!("machines/robots/{name}.toml"));
