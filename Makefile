@@ -87,9 +87,10 @@ studio/dist/index.html: $(PAGE)
 	@rm -rf studio/dist/assets studio/dist/index.html
 	npm --prefix studio run --silent build
 
-## The tests of the page: its parts, and the whole.
-test-studio:
-	@scripts/setup page
+## The tests of the page: its parts, and the whole in Debian's Chromium, with the command as cargo has built it.
+test-studio: rust studio
+	@scripts/setup browser
+	cargo build --quiet --locked --bin toolpost
 	NO_COLOR=1 npm --prefix studio run --silent test
 
 ## The tests in Rust, compiled and not run.

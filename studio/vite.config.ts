@@ -8,5 +8,12 @@ export default defineConfig({
     base: "./",
     build: { target: "es2023", emptyOutDir: false, assetsInlineLimit: 0, modulePreload: { polyfill: false }, reportCompressedSize: false },
     server: { proxy: { "/socket": { ...passed, ws: true }, "/geometry": passed, "/moves": passed, "/upload": passed } },
-    test: { include: ["tests/*.test.ts"], benchmark: { include: ["tests/*.bench.ts"] } },
+    test: {
+        benchmark: { include: ["tests/*.bench.ts"] },
+        projects: [
+            { test: { name: "parts", include: ["tests/*.test.ts"] } },
+            // Browsers, on two cores: one file after the other.
+            { test: { name: "page", include: ["tests/page/*.test.ts"], fileParallelism: false, testTimeout: 30_000, hookTimeout: 30_000 } },
+        ],
+    },
 });

@@ -23,6 +23,7 @@ export function View({ screen }: { screen: Screen }) {
                 </button>
                 <Toggle on={four} title="Four views (Q)" text="4" />
                 <Toggle on={rapids} title="Rapids (R)" text="Rapids" />
+                <Toggle on={screen.axes} title="Tool axes (V)" text="Axes" />
                 <Toggle on={box} title="Box of all moves (B)" text="Box" />
                 <Toggle on={ruler} title="Ruler (L)" text="Ruler" />
                 <label>

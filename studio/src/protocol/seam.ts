@@ -118,7 +118,7 @@ export class Socket implements Seam {
     }
 
     private async fetch(path: string, request: RequestInit): Promise<Response> {
-        const response = await fetch(path, { ...request, headers: { "x-toolpost-token": this.token } });
+        const response = await fetch(path, { ...request, cache: "no-store", headers: { "x-toolpost-token": this.token } });
         if (response.ok) return response;
         const message = (await response.text()).slice(0, 500) || `the server answers ${response.status}`;
         throw new Stopped("invalid", [said(message, "")]);

@@ -7,7 +7,7 @@ import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
-import { painted } from "../view/painted.ts";
+import { Rows } from "../view/rows.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
 import { toolBody } from "../view/solids.ts";
 import type { Vector } from "../view/vector.ts";
@@ -34,6 +34,7 @@ export class Screen {
     readonly mode: Signal<Mode> = signal("kind");
     readonly width: Signal<number> = signal(1);
     readonly rapids: Signal<boolean> = signal(true);
+    readonly axes: Signal<boolean> = signal(false);
     /** While one replays, what is ahead of the cursor is pale. */
     readonly pale: Signal<boolean> = signal(true);
     readonly four: Signal<boolean> = signal(false);
@@ -46,6 +47,7 @@ export class Screen {
         mode: this.mode.value,
         width: this.width.value,
         rapids: this.rapids.value,
+        axes: this.axes.value,
         theme: theme(this.dark.value),
     }));
     readonly scene: Signal<Scene | null> = signal(null);
@@ -62,10 +64,6 @@ export class Screen {
         this.dark.value = dark.matches;
         dark.addEventListener("change", () => (this.dark.value = dark.matches));
         effect(() => this.begin());
-        effect(() => {
-            const { mode, scene } = this;
-            if (scene.value !== null) scene.value.byMove = painted(mode.value, scene.value, studio.seam, studio.job.peek()?.revision ?? 0, () => this.news.value++);
-        });
     }
 
     /** The scene of a job that is new. */
@@ -78,7 +76,7 @@ export class Screen {
         }
         const { walk, revision } = job;
         const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++);
-        this.scene.value = new Scene(walk, chunks);
+        this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++));
         void chunks.load().catch(() => {});
         if (before === null || JSON.stringify(before.box) !== JSON.stringify(walk.box)) for (const viewer of this.viewers) viewer.fit();
     }

@@ -5,7 +5,10 @@ import type { WalkAbout } from "../protocol/asks.ts";
 import type { Projection, Size } from "./camera.ts";
 import { inSight, levelFor, type Chunk, type Chunks } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
+import { GAP, NEEDLES, needlesOf } from "./needles.ts";
+import { painterOf, type Painter } from "./painted.ts";
 import { Raster } from "./raster.ts";
+import type { Rows } from "./rows.ts";
 import { symbolsOf, type Symbol } from "./symbols.ts";
 import { CHUNK_MOVES, Style, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
 
@@ -13,6 +16,8 @@ export interface Looks {
     mode: Mode;
     width: number;
     rapids: boolean;
+    /** The tool axis at some of the moves. */
+    axes: boolean;
     theme: Theme;
 }
 
@@ -37,12 +42,12 @@ export interface Picture {
 const REACH = 6;
 
 export class Scene {
-    /** By chunk: the place in the palette of each of its moves, for the colours that vertices do not tell. */
-    byMove: ((chunk: Chunk) => Uint8Array | null) | null = null;
+    private painter: { mode: Mode; paint: Painter | null } = { mode: "kind", paint: null };
 
     constructor(
         readonly walk: WalkAbout,
         readonly chunks: Chunks,
+        private readonly rows: Rows,
     ) {}
 
     picture(projection: Projection, size: Size, looks: Looks, marks: Marks): Picture {
@@ -54,9 +59,18 @@ export class Scene {
             const vertices = this.chunks.best(level, chunk.number);
             if (vertices === null) continue;
             this.lines(strips, chunk, vertices, looks, marks);
+            if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
         return { strips, symbols, bodies: marks.tool === null ? [] : [marks.tool] };
+    }
+
+    private needles(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, { scale }: Projection): void {
+        const stride = Math.max(1, Math.ceil(((vertices.byteLength / 16) * this.chunks.chunks.length) / NEEDLES));
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => (kind === GAP ? Style.hidden : Style.line));
+        const paint = { palette: new Uint32Array([looks.theme.done[UNKNOWN]!]), byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: 1, lift: 0 };
+        const needles = needlesOf(chunk, vertices, this.rows, stride, 18 / scale, paint);
+        if (needles !== null) strips.push(needles);
     }
 
     private lines(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, marks: Marks): void {
@@ -86,12 +100,12 @@ export class Scene {
 
     private paint(chunk: Chunk, { mode, width, rapids }: Looks, palette: Uint32Array): Paint {
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, rapids));
-        const byMove = this.byMove?.(chunk) ?? null;
+        if (this.painter.mode !== mode) this.painter = { mode, paint: painterOf(mode, this.walk, this.rows) };
+        const byMove = this.painter.paint?.(chunk) ?? null;
         const paint = { palette, styles, dashed: RAPID, width, lift: 0 };
         if (byMove !== null) return { ...paint, byMove, shift: 0, mask: 0 };
         if (mode === "tool") return { ...paint, byMove, shift: 16, mask: 63 };
-        if (mode === "kind") return { ...paint, byMove, shift: 12, mask: 15 };
-        return { ...paint, byMove: new Uint8Array(CHUNK_MOVES).fill(UNKNOWN), shift: 0, mask: 0 };
+        return { ...paint, byMove, shift: 12, mask: 15 };
     }
 
     private plain(place: number, looks: Looks, wider: number, lift: number): Paint {

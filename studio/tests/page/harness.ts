@@ -1,0 +1,104 @@
+/** The real command, and Debian's Chromium without a graphics processor. */
+
+import { spawn, type ChildProcess } from "node:child_process";
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, join, resolve } from "node:path";
+import { createInterface } from "node:readline";
+import { chromium, type Browser, type Page } from "playwright-core";
+import { expect } from "vitest";
+
+const root = resolve(import.meta.dirname, "../../..");
+const command = process.env.TOOLPOST ?? join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "debug/toolpost");
+const browserPath = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
+export const example = (name: string): string => join(root, "examples", name);
+
+/** Why the page cannot be tested here; an error where nothing may be left out (CI=true). */
+export function absent(): string | null {
+    const missing = [command, browserPath].filter((path) => !existsSync(path));
+    if (missing.length === 0) return null;
+    const why = `nothing is judged: ${missing.join(", ")} is missing`;
+    if (process.env.CI === "true") throw new Error(why);
+    process.stderr.write(`${why}\n`);
+    return why;
+}
+
+export class Server {
+    private constructor(
+        readonly link: string,
+        readonly folder: string,
+        private readonly process: ChildProcess,
+    ) {}
+
+    /** A folder of its own with copies of the files; the first is the source. */
+    static async start(files: string[], more: string[] = [], folder = mkdtempSync(join(tmpdir(), "studio-"))): Promise<Server> {
+        for (const file of files) copyFileSync(file, join(folder, basename(file)));
+        const source = files.slice(0, 1).map((file) => basename(file));
+        const child = spawn(command, ["studio", "--no-open", "--folder", folder, ...source, ...more], { stdio: ["ignore", "pipe", "inherit"] });
+        for await (const line of createInterface({ input: child.stdout! })) {
+            const link = /http:\S+/.exec(line)?.[0];
+            if (link !== undefined) return new Server(link, folder, child);
+        }
+        throw new Error("the command has printed no link");
+    }
+
+    /** Ends it as Ctrl-C does. */
+    async end(signal: NodeJS.Signals = "SIGINT"): Promise<void> {
+        const ended = new Promise((done) => this.process.once("exit", done));
+        this.process.kill(signal);
+        await ended;
+    }
+
+    async stop(): Promise<void> {
+        await this.end();
+        rmSync(this.folder, { recursive: true });
+    }
+}
+
+export const launch = (): Promise<Browser> =>
+    chromium.launch({ executablePath: browserPath, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+
+export interface Visit {
+    page: Page;
+    /** What the browser complained of: to be nothing at the end. */
+    complaints: string[];
+}
+
+export async function visit(browser: Browser, link: string, more: Parameters<Browser["newPage"]>[0] = {}): Promise<Visit> {
+    const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...more });
+    const complaints: string[] = [];
+    page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+    page.on("pageerror", (error) => complaints.push(String(error)));
+    await page.goto(link);
+    return { page, complaints };
+}
+
+export async function proven(page: Page): Promise<void> {
+    await page.getByText("✓ PROVEN").waitFor({ timeout: 20_000 });
+}
+
+/** The lit line of a pane: the number in its text, and what stands there. */
+export async function lit(page: Page, pane: "program" | "source"): Promise<string> {
+    return page.locator(`.${pane} .cm-line.at`).innerText();
+}
+
+/** What the readout says, by name. */
+export async function readout(page: Page): Promise<Record<string, string>> {
+    const parts = await page.locator(".readout > div").allInnerTexts();
+    return Object.fromEntries(parts.map((part) => {
+        const [name = "", ...rest] = part.split(/\s+/);
+        return [name, rest.join(" ")];
+    }));
+}
+
+const axe = readFileSync(join(root, "studio/node_modules/axe-core/axe.min.js"), "utf8");
+
+/** Nothing that axe-core finds, of whatever impact. It is put in by the debugger: the page's own policy lets nothing in. */
+export async function accessible(page: Page, where: string): Promise<void> {
+    const debug = await page.context().newCDPSession(page);
+    await debug.send("Runtime.evaluate", { expression: axe });
+    const run = "axe.run(document, { resultTypes: ['violations'], runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'] })";
+    const { violations } = (await page.evaluate(run)) as { violations: { id: string; nodes: { html: string }[] }[] };
+    expect(violations.map(({ id, nodes }) => `${where}: ${id} ${nodes[0]?.html}`)).toEqual([]);
+}
