@@ -1,0 +1,118 @@
+import { expect, test } from "vitest";
+import type { WalkAbout } from "../src/protocol/asks.ts";
+import { project, VIEWS } from "../src/view/camera.ts";
+import { Chunks, inSight, levelFor, readIndex } from "../src/view/chunks.ts";
+import { MARKED, theme } from "../src/view/colours.ts";
+import { Raster } from "../src/view/raster.ts";
+import type { Rows } from "../src/view/rows.ts";
+import { Scene, type Looks, type Marks } from "../src/view/scene.ts";
+import { wordOf } from "../src/view/strip.ts";
+
+const size = { width: 100, height: 50 };
+const above = project({ ...VIEWS[0]!, middle: [0, 0, 0], scale: 1 }, size);
+
+test("the index of a chunk is read as the server writes it", () => {
+    const data = new DataView(new ArrayBuffer(128));
+    [1.5, -2.5, 3.5].forEach((value, i) => data.setFloat64(64 + i * 8, value, true));
+    [10, 20, 30].forEach((value, i) => data.setFloat32(64 + 24 + i * 4, value, true));
+    data.setUint32(64 + 36, 4096, true);
+    expect(readIndex(data.buffer)[1]).toEqual({ number: 1, origin: [1.5, -2.5, 3.5], half: [10, 20, 30], first: 4096 });
+});
+
+test("a chunk is in sight as soon as a corner of its box is", () => {
+    const at = (x: number) => ({ number: 0, origin: [x, 0, 0] as [number, number, number], half: [10, 1, 1] as [number, number, number], first: 0 });
+    // The window reaches 50 mm to each side; 4 pixels are left for wide lines.
+    expect([0, 59, 65, -59, -65].map((x) => inSight(at(x), above, size))).toEqual([true, true, false, true, false]);
+});
+
+test("the coarsest level whose error is at most half a pixel", () => {
+    const levels = [0.002, 0.008, 0.032].map((error) => ({ error, vertices: 1 }));
+    expect([1, 15, 16, 62, 63, 1000].map((scale) => levelFor(levels, scale))).toEqual([2, 2, 1, 1, 0, 0]);
+});
+
+const walk: WalkAbout = {
+    moves: 4097, left_out: 0, chunks: 2, levels: [{ error: 0, vertices: 9 }, { error: 0.01, vertices: 4 }], box: null, time_s: 1,
+    tools: [], operations: [], kinds: ["rapid", "feed", "gap"], row: 16, mismatch: null,
+};
+
+/** Points and words. */
+function vertices(...points: [x: number, y: number, move: number, kind: number][]): ArrayBuffer {
+    const made = new ArrayBuffer(points.length * 16);
+    points.forEach(([x, y, move, kind], i) => {
+        new Float32Array(made).set([x, y, 0], i * 4);
+        new Uint32Array(made)[i * 4 + 3] = wordOf(move, kind, 0);
+    });
+    return made;
+}
+
+const index = new DataView(new ArrayBuffer(128));
+for (const chunk of [0, 1]) {
+    [50, 25, 1].forEach((half, i) => index.setFloat32(chunk * 64 + 24 + i * 4, half, true));
+    index.setUint32(chunk * 64 + 36, chunk * 4096, true);
+}
+
+const server: Record<string, ArrayBuffer> = {
+    index: index.buffer,
+    // Coarse: one line for moves 0 to 2; exact: three of them, the middle one a way that is not known.
+    "1/0": vertices([-40, 0, 0, 1], [40, 0, 2, 1]),
+    "0/0": vertices([-40, 0, 0, 1], [-10, 0, 0, 1], [10, 0, 1, 2], [40, 0, 2, 1]),
+    "0/1": vertices([40, 0, 0, 0], [40, 20, 0, 0]),
+    "1/1": vertices([40, 0, 0, 0], [40, 20, 0, 0]),
+};
+
+async function scene(): Promise<Scene> {
+    const chunks = new Chunks(walk, async (path) => server[path]!, () => {});
+    await chunks.load();
+    return new Scene(walk, chunks, {} as Rows);
+}
+
+const looks: Looks = { mode: "kind", width: 1, rapids: true, axes: false, theme: theme(false) };
+const marks: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null };
+const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
+
+test("what has not come is asked for, and what is there is drawn meanwhile", async () => {
+    const one = await scene();
+    expect(one.picture(above, size, looks, marks).strips).toEqual([]);
+    await settled();
+    expect(one.picture(above, size, looks, marks).strips.map(({ vertices }) => vertices)).toEqual([server["1/0"], server["1/1"]]);
+    const near = { ...above, scale: 1000 };
+    expect(one.picture(near, size, looks, marks).strips[0]!.vertices).toBe(server["1/0"]);
+    await settled();
+    expect(one.picture(near, size, looks, marks).strips[0]!.vertices).toBe(server["0/0"]);
+});
+
+test("a click finds the exact move below a coarse line, and nothing where nothing is", async () => {
+    const one = await scene();
+    one.picture(above, size, looks, marks);
+    await settled();
+    expect(await one.pick(above, size, looks, 20, 27)).toBe(0);
+    expect(await one.pick(above, size, looks, 80, 25)).toBe(2);
+    expect(await one.pick(above, size, looks, 90, 10)).toBe(4096);
+    expect(await one.pick(above, size, looks, 20, 45)).toBe(null);
+});
+
+test("rapids that are hidden are not clicked", async () => {
+    const one = await scene();
+    one.picture(above, size, looks, marks);
+    await settled();
+    expect(await one.pick(above, size, { ...looks, rapids: false }, 90, 10)).toBe(null);
+});
+
+test("behind the cursor's move all is pale, and the moves of its block are marked over it", async () => {
+    const one = await scene();
+    one.picture(above, size, looks, marks);
+    await settled();
+    await one.chunks.exact(0, 0);
+    const near = { ...above, scale: 1000 };
+    one.picture(near, size, looks, marks);
+    await settled();
+    const { strips } = one.picture(near, size, looks, { ...marks, now: 0, pale: true, ofBlock: [[2, 3]] });
+    const first = strips.filter((strip) => strip.first === 0).map(({ from, to, paint }) => [from, to, paint.palette]);
+    const { done, ahead } = looks.theme;
+    const mark = new Uint32Array([done[MARKED]!]);
+    expect(first).toEqual([[1, 2, done], [2, 4, ahead], [3, 4, mark], [1, 2, mark]]);
+    const raster = new Raster(size.width, size.height);
+    raster.clear(0);
+    for (const strip of strips) raster.strip(strip, above);
+    expect([20, 50, 80].map((x) => raster.seen[25 * 100 + x])).toEqual([done[MARKED], 0, done[MARKED]]);
+});
