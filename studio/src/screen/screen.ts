@@ -53,6 +53,8 @@ export class Screen {
     readonly scene: Signal<Scene | null> = signal(null);
     /** Grows with each chunk that comes. */
     readonly news: Signal<number> = signal(0);
+    /** The source that the views were fitted to. */
+    private fitted: string | null = null;
     readonly viewers: Viewer[] = [];
     /** The view that had the focus last. */
     viewer: Viewer | null = null;
@@ -69,7 +71,6 @@ export class Screen {
     /** The scene of a job that is new. */
     private begin(): void {
         const job = this.studio.job.value;
-        const before = this.scene.peek()?.walk ?? null;
         if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
             return;
@@ -78,7 +79,9 @@ export class Screen {
         const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++);
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++));
         void chunks.load().catch(() => {});
-        if (before === null || JSON.stringify(before.box) !== JSON.stringify(walk.box)) for (const viewer of this.viewers) viewer.fit();
+        const isOther = this.fitted !== job.source.file;
+        this.fitted = job.source.file;
+        for (const viewer of this.viewers) viewer.refit(isOther);
     }
 
     marks(): Marks {

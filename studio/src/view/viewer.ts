@@ -36,7 +36,9 @@ export class Viewer {
     private drag: Drag | null = null;
     private measured: Over["drag"] = null;
     private frame = 0;
-    private readonly sizes = new ResizeObserver(() => this.redraw());
+    /** All is shown, until somebody moves or zooms: then it stays so when the window changes. */
+    private isFitted = true;
+    private readonly sizes = new ResizeObserver(() => (this.isFitted ? this.fit() : this.redraw()));
 
     constructor(
         readonly host: HTMLElement,
@@ -122,11 +124,20 @@ export class Viewer {
 
     look(camera: Camera): void {
         this.camera = camera;
+        this.isFitted = false;
         this.redraw();
     }
 
     fit(box: Box | null = this.shown().box): void {
-        if (box !== null) this.look(fit(this.camera, box, this.size));
+        if (box === null) return;
+        this.look(fit(this.camera, box, this.size));
+        this.isFitted = true;
+    }
+
+    /** After another posting: what somebody has zoomed to stays, unless all is another part. */
+    refit(isOther: boolean): void {
+        if (isOther || this.isFitted) this.fit();
+        else this.redraw();
     }
 
     /** A standard view, numbered as in `VIEWS`. */
