@@ -25,7 +25,7 @@ QUICK := $(patsubst $(CURDIR)/%,%,$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/qui
 MAKEFLAGS += --keep-going
 
 .PHONY: demo install test test-rust test-python freecad tests bench judges judges-long images samples rust python
-.PHONY: deny notices studio test-studio
+.PHONY: deny notices studio test-studio images-studio
 .PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python lint-studio
 
 ## Post a part, prove it, draw it, and say what to do next.
@@ -177,6 +177,12 @@ images: rust
 		--output docs/images/rapid-pieces-machine.png
 	$(TOOLPOST) --quiet show examples/lean-one-block.mpf --from sinumerik-840d-table-ac --frame machine \
 		--output docs/images/rapid-one-block-machine.png
+
+## The pictures of docs/studio.md, by the tests of the page.
+images-studio: rust studio
+	@scripts/setup browser
+	cargo build --quiet --locked --bin toolpost
+	TOOLPOST_IMAGES=$(CURDIR)/docs/images npm --prefix studio run --silent test -- --project page images
 
 ## The sample programs next to the machines, written anew: to be read before they are committed.
 samples: rust

@@ -3,10 +3,9 @@
 const KEY = "toolpost-token";
 
 export function token(): string {
-    const given = new URLSearchParams(location.hash.slice(1)).get("token");
-    if (given !== null) {
-        sessionStorage.setItem(KEY, given);
-        history.replaceState(null, "", location.pathname);
-    }
-    return given ?? sessionStorage.getItem(KEY) ?? "";
+    const given = location.hash.slice(1).replace(/^token=/, "");
+    if (given === "") return sessionStorage.getItem(KEY) ?? "";
+    sessionStorage.setItem(KEY, given);
+    history.replaceState(null, "", location.pathname);
+    return given;
 }
