@@ -12,6 +12,8 @@ export class Studio {
     readonly form: Signal<Field[]> = signal([]);
     readonly drafts: Signal<Draft[]> = signal([]);
     readonly work: Signal<Work | null> = signal(null);
+    /** The machine that was chosen last, also before there is a source. */
+    readonly machine: Signal<string | null> = signal(null);
     readonly job: Signal<Job | null> = signal(null);
     readonly running: Signal<Progress | null> = signal(null);
     /** Why there is no job, or why something else was not done. */
@@ -42,17 +44,17 @@ export class Studio {
         const { done: opened } = await this.seam.ask("open", {});
         this.opened.value = opened;
         this.drafts.value = opened.drafts;
+        this.machine.value ??= opened.machine;
         const [machines, form] = await Promise.all([this.seam.ask("machines", {}), this.seam.ask("form", {})]);
         this.machines.value = machines.done;
         this.form.value = form.done;
         if (this.edited.value !== null) return this.prove(this.edited.value);
         if (this.work.value !== null) return this.post(this.work.value);
-        if (opened.source !== null) await this.post({ source: opened.source, machine: opened.machine, options: [] });
+        if (opened.source !== null) await this.open(opened.source);
     }
 
     open(source: FileOrUpload): Promise<void> {
-        const machine = this.work.value?.machine ?? this.opened.value?.machine ?? null;
-        return this.post({ source, machine, options: [] });
+        return this.post({ source, machine: this.machine.value, options: [] });
     }
 
     async drop(file: File): Promise<void> {
@@ -61,6 +63,7 @@ export class Studio {
     }
 
     choose(machine: string): Promise<void> {
+        this.machine.value = machine;
         const work = this.work.value;
         return work === null ? Promise.resolve() : this.post({ ...work, machine });
     }
@@ -118,6 +121,7 @@ export class Studio {
         const { arrays } = await this.seam.ask("draft_text", { name: draft.name });
         const text = new TextDecoder().decode(arrays.text as Uint8Array | undefined);
         this.work.value = draft.of as Work;
+        this.machine.value = this.work.value.machine;
         this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
         await this.prove(text);
     }

@@ -1,4 +1,5 @@
 import { expect, test } from "vitest";
+import { optionsIn } from "../src/panes/Findings.tsx";
 import { commandOf, keyOf, matching, type Command } from "../src/commands.ts";
 
 const press = (key: string, more: Partial<KeyboardEvent> = {}) =>
@@ -21,6 +22,11 @@ test("single letters are commands only while a view has the focus", () => {
     expect(commandOf(commands, "f", false)).toBeUndefined();
     expect(commandOf(commands, "f", true)?.name).toBe("fit");
     expect(commandOf(commands, "Ctrl+k", false)?.name).toBe("palette");
+});
+
+test("a finding's way out leads to the options that it names", () => {
+    const form = [{ name: "from" }, { name: "strict" }, { name: "work-zero" }];
+    expect(optionsIn("for an NC program add `--from CONTROL`, and `--work-zero X,Y,Z` or --unknown", form)).toEqual(["from", "work-zero"]);
 });
 
 test("a search finds what has all its words, in any order", () => {

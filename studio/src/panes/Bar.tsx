@@ -13,7 +13,7 @@ const nameOf = ({ source }: Work): string => ("file" in source ? source.file : s
 
 export function Bar({ screen }: { screen: Screen }) {
     const { studio, dialog } = screen;
-    const { work, job, running, link, opened, stopped } = studio;
+    const { work, machine, job, running, link, stopped } = studio;
     const name = work.value === null ? "Open a source…" : nameOf(work.value);
     return (
         <header class="bar">
@@ -22,9 +22,9 @@ export function Bar({ screen }: { screen: Screen }) {
                 {name}
             </button>
             <button type="button" title="Choose the machine (Ctrl M)" onClick={() => (dialog.value = "machine")}>
-                {work.value?.machine ?? opened.value?.machine ?? "Choose a machine…"}
+                {machine.value ?? "Choose a machine…"}
             </button>
-            <button type="button" onClick={() => (dialog.value = "options")}>
+            <button type="button" onClick={() => screen.toOption("")}>
                 Options
             </button>
             <output class="grow" aria-live="polite">

@@ -13,14 +13,20 @@ export function Findings({ screen }: { screen: Screen }) {
     return (
         <ol class="findings">
             {findings.value.slice(0, SHOWN).map((finding, number) => (
-                <Row key={number} finding={finding} lit={number === screen.finding.value} lead={() => screen.toFinding(number)} />
+                <Row key={number} screen={screen} finding={finding} lit={number === screen.finding.value} lead={() => screen.toFinding(number)} />
             ))}
             {findings.value.length > SHOWN && <li class="soft">and {(findings.value.length - SHOWN).toLocaleString("en")} more</li>}
         </ol>
     );
 }
 
-function Row({ finding, lit, lead }: { finding: Finding; lit: boolean; lead(): void }) {
+/** Options of the form that the way out names. */
+export function optionsIn(help: string, form: { name: string }[]): string[] {
+    const named = new Set([...help.matchAll(/--([a-z][a-z-]*)/g)].map(([, name]) => name));
+    return form.map(({ name }) => name).filter((name) => named.has(name));
+}
+
+function Row({ screen, finding, lit, lead }: { screen: Screen; finding: Finding; lit: boolean; lead(): void }) {
     const place = [finding.file, finding.line, finding.column].filter(Boolean).join(":");
     return (
         <li aria-current={lit}>
@@ -32,7 +38,16 @@ function Row({ finding, lit, lead }: { finding: Finding; lit: boolean; lead(): v
                 {place !== "" && <span class="code soft"> {place}</span>}
             </button>
             {finding.excerpt && <div class="code">{finding.excerpt}</div>}
-            {finding.help && <div class="soft">→ {finding.help}</div>}
+            {finding.help && (
+                <div class="soft">
+                    → {finding.help}{" "}
+                    {optionsIn(finding.help, screen.studio.form.value).map((name) => (
+                        <button key={name} type="button" class="small" onClick={() => screen.toOption(name)}>
+                            Set --{name}…
+                        </button>
+                    ))}
+                </div>
+            )}
         </li>
     );
 }

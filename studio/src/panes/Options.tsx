@@ -8,7 +8,7 @@ type Given = [name: string, value: string][];
 /** The options of the command, as it describes them itself. */
 export function Options({ screen, close }: { screen: Screen; close(): void }) {
     const { studio } = screen;
-    const search = useSignal("");
+    const search = useSignal(screen.option.value);
     const given = useSignal<Given>(studio.work.value?.options ?? []);
     const set = (name: string, values: string[]): void => {
         given.value = [...given.value.filter(([one]) => one !== name), ...values.map((value): Given[number] => [name, value])];
@@ -22,7 +22,7 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
                 if (work !== null) void studio.post({ ...work, options: given.value });
             }}
         >
-            <input type="search" aria-label="Search the options" placeholder="Search the options" autofocus onInput={(event) => (search.value = event.currentTarget.value)} />
+            <input type="search" aria-label="Search the options" placeholder="Search the options" autofocus value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
             <div class="choices" role="group" aria-label="Options" tabIndex={0}>
                 {matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`).map((field) => (
                     <Row

@@ -23,7 +23,7 @@ function general(screen: Screen): Command[] {
         { name: "keys", title: "Keys", keys: ["?"], view: true, run: show("keys") },
         { name: "source", title: "Open a source", keys: ["Ctrl+o"], run: show("source") },
         { name: "machine", title: "Choose the machine", keys: ["Ctrl+m"], run: show("machine") },
-        { name: "options", title: "Options of posting", run: show("options") },
+        { name: "options", title: "Options of posting", run: () => screen.toOption("") },
         { name: "save", title: "Save the program", keys: ["Ctrl+s"], run: show("save") },
         { name: "discard", title: "Discard the edits by hand", run: () => void studio.discard() },
         { name: "go", title: "Go to a block, source line, move or time", keys: ["Ctrl+g"], run: show("go") },

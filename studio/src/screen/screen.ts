@@ -24,6 +24,8 @@ export const axisOf = (axis: (number | null)[]): Vector => (axis.every((part) =>
 export class Screen {
     readonly dialog: Signal<Dialog | null> = signal(null);
     readonly tab: Signal<Tab> = signal("findings");
+    /** What the options are searched for when they are shown. */
+    readonly option: Signal<string> = signal("");
     /** Pane that is searched, and its editors. */
     readonly searched: Signal<"program" | "source"> = signal("program");
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
@@ -117,6 +119,12 @@ export class Screen {
         if (line === 0 || job.value === null) return;
         if (of === "source") void cursor.to({ by: "source", value: line });
         else if (of === "program") void cursor.to({ by: "block", value: line, file: file === job.value.program?.file ? null : file });
+    }
+
+    /** The form, at an option. */
+    toOption(name: string): void {
+        this.option.value = name;
+        this.dialog.value = "options";
     }
 
     toText(of: "program" | "source"): void {
