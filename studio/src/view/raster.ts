@@ -43,9 +43,13 @@ export class Raster {
         const cy = at[1] + dx * ox + dy * oy + dz * oz - this.planes.top;
         const cz = at[2] + ax * ox + ay * oy + az * oz - lift;
 
-        let [x0, y0, z0] = [0, 0, 0];
+        let x0 = 0;
+        let y0 = 0;
+        let z0 = 0;
         for (let vertex = strip.from - 1, i = vertex * 4; vertex < strip.to; vertex++, i += 4) {
-            const [x, y, z] = [numbers[i]!, numbers[i + 1]!, numbers[i + 2]!];
+            const x = numbers[i]!;
+            const y = numbers[i + 1]!;
+            const z = numbers[i + 2]!;
             const x1 = rx * x + ry * y + rz * z + cx;
             const y1 = dx * x + dy * y + dz * z + cy;
             const z1 = ax * x + ay * y + az * z + cz;
@@ -67,7 +71,8 @@ export class Raster {
 
     /** A line of `width` pixels; dashes of five pixels in eight, counted from its beginning. */
     line(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, seen: number, width: number, dashed: boolean): void {
-        const [w, h] = [this.width, this.height];
+        const w = this.width;
+        const h = this.height;
         const inside = x0 >= 0 && x1 >= 0 && y0 >= 0 && y1 >= 0 && x0 < w && x1 < w && y0 < h && y1 < h;
         if (inside && width === 1 && !dashed) this.thin(x0, y0, z0, x1, y1, z1, seen);
         else this.any(x0, y0, z0, x1, y1, z1, seen, width, dashed);
@@ -81,7 +86,9 @@ export class Raster {
         const steps = Math.ceil(Math.max(Math.abs(dx), Math.abs(dy)));
         if (steps > 1) {
             const part = 1 / steps;
-            const [sx, sy, sz] = [dx * part, dy * part, (z1 - z0) * part];
+            const sx = dx * part;
+            const sy = dy * part;
+            const sz = (z1 - z0) * part;
             for (let step = 0; step < steps; step++) {
                 const at = (y0 | 0) * width + (x0 | 0);
                 if (z0 <= depth[at]!) {

@@ -44,6 +44,8 @@ const REACH = 6;
 export class Scene {
     private painter: { mode: Mode; paint: Painter | null } = { mode: "kind", paint: null };
 
+    private alike: { looks: Looks | null; paints: Map<Uint32Array, Paint> } = { looks: null, paints: new Map() };
+
     constructor(
         readonly walk: WalkAbout,
         readonly chunks: Chunks,
@@ -98,14 +100,24 @@ export class Scene {
         part(begin, Math.max(vertexOf(vertices, high), Math.min(begin + 1, vertices.byteLength / 16)), paint);
     }
 
-    private paint(chunk: Chunk, { mode, width, rapids }: Looks, palette: Uint32Array): Paint {
-        const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, rapids));
+    private paint(chunk: Chunk, looks: Looks, palette: Uint32Array): Paint {
+        const { mode } = looks;
         if (this.painter.mode !== mode) this.painter = { mode, paint: painterOf(mode, this.walk, this.rows) };
         const byMove = this.painter.paint?.(chunk) ?? null;
-        const paint = { palette, styles, dashed: RAPID, width, lift: 0 };
-        if (byMove !== null) return { ...paint, byMove, shift: 0, mask: 0 };
-        if (mode === "tool") return { ...paint, byMove, shift: 16, mask: 63 };
-        return { ...paint, byMove, shift: 12, mask: 15 };
+        const paint = this.byBits(looks, palette);
+        return byMove === null ? paint : { ...paint, byMove };
+    }
+
+    /** The paint of all chunks alike: by tool, or by kind. */
+    private byBits(looks: Looks, palette: Uint32Array): Paint {
+        if (this.alike.looks !== looks) this.alike = { looks, paints: new Map() };
+        const known = this.alike.paints.get(palette);
+        if (known !== undefined) return known;
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, looks.rapids));
+        const bits = looks.mode === "tool" ? { shift: 16, mask: 63 } : { shift: 12, mask: 15 };
+        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width: looks.width, lift: 0 };
+        this.alike.paints.set(palette, paint);
+        return paint;
     }
 
     private plain(place: number, looks: Looks, wider: number, lift: number): Paint {
