@@ -632,6 +632,12 @@ impl Toolpath {
         (format!("{}:{number}", self.file), text)
     }
 
+    /// The commands of a FreeCAD job, one a line: the lines of its program are theirs. None of any other source, whose program has the
+    /// lines of its file.
+    pub fn commands(&self) -> Option<&[u8]> {
+        self.listing.as_ref().map(Listing::text)
+    }
+
     /// The text of the source, as far as there is one still.
     fn text(&self) -> Vec<u8> {
         self.source.as_ref().and_then(|source| source.text().ok()).unwrap_or_default()

@@ -111,7 +111,7 @@ impl Listing {
     }
 
     /// The text.
-    pub(crate) fn text(&self) -> &[u8] {
+    pub fn text(&self) -> &[u8] {
         &self.text
     }
 

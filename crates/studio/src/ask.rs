@@ -344,6 +344,497 @@ pub struct Uploaded {
     pub bytes: u64,
 }
 
+/// `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`]; a newer `post` or `prove` of the same page
+/// ends an older one.
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct PostParams {
+    /// The toolpath.
+    pub source: FileOrUpload,
+    /// A name of the library, or the path of a file of the folder.
+    pub machine: String,
+    /// Options as the command line has them, without dashes: `[["from", "fanuc-31i"], ["strict", ""]]`.
+    #[serde(default)]
+    pub options: Vec<(String, String)>,
+    /// Name of the program's file; null: that of the source with the machine's ending.
+    #[serde(default)]
+    pub file: Option<String>,
+}
+
+/// `prove { source, machine, options, program }`, or with the array `text` in place of `program`: proves a program, also one that was edited by
+/// hand. Answered by a [`Job`].
+#[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct ProveParams {
+    /// The toolpath.
+    pub source: FileOrUpload,
+    /// As in `post`.
+    pub machine: String,
+    /// As in `post`.
+    #[serde(default)]
+    pub options: Vec<(String, String)>,
+    /// As in `post`: what a text is called that no file has.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// The program, where it is no edited text.
+    #[serde(default)]
+    pub program: Option<FileOrUpload>,
+}
+
+/// A program with its verdict and its moves.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Job {
+    /// By which all else is asked for.
+    pub revision: u64,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// What is reported of it: head (empty for a further line of the one before) and text.
+    pub rows: Vec<(String, String)>,
+    /// What is wrong with it, or worth knowing.
+    pub findings: Vec<Finding>,
+    /// The program; null where none was written.
+    pub program: Option<Text>,
+    /// The files that it calls.
+    pub parts: Vec<Text>,
+    /// The source.
+    pub source: Text,
+    /// The machine.
+    pub machine: JobMachine,
+    /// The moves that the proof has walked.
+    pub walk: WalkAbout,
+    /// Where a failed proof first differs.
+    pub mismatch: Option<Mismatch>,
+}
+
+/// The first mismatch, side by side.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Mismatch {
+    /// The called file that the block stands in; null for the program itself.
+    pub file: Option<String>,
+    /// Line of the program.
+    pub program: u32,
+    /// Its text.
+    pub block: String,
+    /// Line of the source; 0 for none.
+    pub source: u32,
+}
+
+/// A text of a job.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Text {
+    /// Name of its file.
+    pub file: String,
+    /// How many lines it has.
+    pub lines: u32,
+    /// Its size.
+    pub bytes: u64,
+}
+
+/// The machine of a job.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct JobMachine {
+    /// As it was asked for.
+    pub name: String,
+    /// What a person calls it.
+    pub title: String,
+    /// What it is.
+    pub kind: MachineKind,
+    /// Its dialect, for colours.
+    pub dialect: String,
+    /// Its axes, in the order of [`Place::axes`].
+    pub axes: Vec<Axis>,
+    /// The files that it is made of, the nearest first, as far as its templates stand in them.
+    pub files: Vec<Text>,
+}
+
+/// An axis of a machine.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Axis {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: AxisKind,
+    /// `mm` or `degrees`.
+    pub unit: &'static str,
+    /// The lower end of its travel; null where it is not known, or positions do not count from the zero of the machine.
+    pub low: Option<f64>,
+    /// The upper end.
+    pub high: Option<f64>,
+}
+
+/// What an axis is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "lowercase")]
+pub enum AxisKind {
+    /// Straight.
+    Linear,
+    /// It turns.
+    Rotary,
+    /// Of an arm.
+    Joint,
+    /// On which an arm stands.
+    Rail,
+}
+
+/// What there is of the moves.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct WalkAbout {
+    /// How many there are.
+    pub moves: u32,
+    /// How many were left out, because there are too many.
+    pub left_out: u32,
+    /// How many chunks of 4,096 moves.
+    pub chunks: u32,
+    /// The levels of detail, the exact one first.
+    pub levels: Vec<Level>,
+    /// The box of all that is drawn, mm: low and high.
+    pub r#box: Option<[[f64; 3]; 2]>,
+    /// How long all of it takes, s.
+    pub time_s: f64,
+    /// In the order of their first use: vertices name them by their place.
+    pub tools: Vec<ToolUse>,
+    /// The operations of the source.
+    pub operations: Vec<Operation>,
+    /// What the numbers of kinds mean.
+    pub kinds: Vec<&'static str>,
+    /// How many bytes the row of a move has: 16, or 36 where any tool leans.
+    pub row: u32,
+    /// The last move before the first mismatch.
+    pub mismatch: Option<u32>,
+}
+
+/// A level of detail.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Level {
+    /// How far its lines may be from the exact ones, mm.
+    pub error: f64,
+    /// How many vertices it has.
+    pub vertices: u64,
+}
+
+/// A tool, from its first use on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ToolUse {
+    /// Place in the magazine.
+    pub number: u32,
+    /// Its name; empty for none.
+    pub name: String,
+    /// mm.
+    pub diameter: Option<f64>,
+    /// Corner radius, mm.
+    pub corner: Option<f64>,
+    /// From the gauge line to the tip, mm.
+    pub length: Option<f64>,
+    /// Whether its side or end leans.
+    pub tapered: bool,
+    /// The first move with it.
+    pub r#move: u32,
+    /// When that begins, s.
+    pub time_s: f64,
+}
+
+impl ToolUse {
+    /// A tool that is first used in a move.
+    pub fn new(tool: &program::Tool, first: u32, time_s: f64) -> ToolUse {
+        ToolUse {
+            number: tool.number,
+            name: tool.name.clone(),
+            diameter: tool.diameter,
+            corner: tool.corner_radius,
+            length: tool.length,
+            tapered: tool.tapered,
+            r#move: first,
+            time_s,
+        }
+    }
+}
+
+/// An operation, from its first move on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Operation {
+    /// Its name.
+    pub name: String,
+    /// Its first move.
+    pub r#move: u32,
+    /// When that begins, s.
+    pub time_s: f64,
+}
+
+/// `text { revision, of, file, from, to }`: lines `from` up to, not including, `to`, from 1. Answered with the array `text`, each line ended by LF.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct TextParams {
+    /// Of the job.
+    pub revision: u64,
+    /// Which text.
+    pub of: Of,
+    /// A called file of the program, or a file of the machine; null for the program and the machine's own.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// First line.
+    pub from: u32,
+    /// The line behind the last one.
+    pub to: u32,
+}
+
+/// What was answered of a text.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct TextAbout {
+    /// How many lines the whole text has.
+    pub lines: u32,
+    /// Its size.
+    pub bytes: u64,
+    /// The first line answered.
+    pub from: u32,
+    /// The line behind the last one answered: fewer than asked for where they are large.
+    pub to: u32,
+    /// How many of them are longer than 2,000 characters, and cut.
+    pub cut: u32,
+}
+
+/// `search { revision, of, file, text, from }`: the next line that has a text in it.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct SearchParams {
+    /// Of the job.
+    pub revision: u64,
+    /// Which text.
+    pub of: Of,
+    /// As in `text`.
+    #[serde(default)]
+    pub file: Option<String>,
+    /// What is looked for, whatever its capitals.
+    pub text: String,
+    /// From which line on; behind the last line it goes on at the first.
+    pub from: u32,
+}
+
+/// Where a text was found.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Found {
+    /// The line; null where it is nowhere.
+    pub line: Option<u32>,
+    /// The column, characters from 1.
+    pub column: Option<u32>,
+}
+
+/// By what a place is looked up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "lowercase")]
+pub enum By {
+    /// Seconds from the start.
+    Time,
+    /// Number of a move, from 0: the place is at its end.
+    Move,
+    /// Line of the program: its first move, or that of the next line that moves.
+    Block,
+    /// Line of the source, the same.
+    Source,
+}
+
+/// `place { revision, by, value, file }`.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct PlaceParams {
+    /// Of the job.
+    pub revision: u64,
+    /// By what.
+    pub by: By,
+    /// Seconds, or the number of a move or of a line.
+    pub value: f64,
+    /// The called file of a block.
+    #[serde(default)]
+    pub file: Option<String>,
+}
+
+/// `moves { revision, by, value, file }`: which moves a line makes.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct MovesParams {
+    /// Of the job.
+    pub revision: u64,
+    /// `block` or `source`.
+    pub by: By,
+    /// The line.
+    pub value: u32,
+    /// The called file of a block.
+    #[serde(default)]
+    pub file: Option<String>,
+}
+
+/// Ranges of moves: first, and behind the last; the first thousand.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Moves {
+    /// The ranges, in their order.
+    pub ranges: Vec<[u32; 2]>,
+}
+
+/// One place: at once a time, a move, a block, a line of the source and a template.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Place {
+    /// Seconds from the start.
+    pub time_s: f64,
+    /// The move, from 0.
+    pub r#move: u32,
+    /// How much of it is done, 0 to 1.
+    pub part: f64,
+    /// How it goes: one of `walk.kinds`.
+    pub kind: &'static str,
+    /// What is marked of it.
+    pub marks: u8,
+    /// The block that makes it.
+    pub block: Line,
+    /// The record that it makes.
+    pub source: Option<Line>,
+    /// The template that wrote the block.
+    pub template: Option<Template>,
+    /// Place of its tool in `walk.tools`.
+    pub tool: Option<u32>,
+    /// The tip, work frame, mm.
+    pub tip: [Option<f64>; 3],
+    /// The tool axis, work frame.
+    pub axis: [Option<f64>; 3],
+    /// Positions of the axes, in the order of `machine.axes`.
+    pub axes: Vec<Option<f64>>,
+    /// The feed.
+    pub feed: Option<FeedAbout>,
+    /// The spindle.
+    pub spindle: Option<SpindleAbout>,
+    /// Coolant: `off`, `flood`, `mist`, `flood and mist`, `through`.
+    pub coolant: Option<&'static str>,
+    /// Compensation of the tool's radius: `off`, `left`, `right`.
+    pub compensation: Option<&'static str>,
+    /// The hole cycle that is on; null for none.
+    pub cycle: Option<&'static str>,
+    /// The work offset, as `G54` counts them; null where it is not known.
+    pub work_offset: Option<u32>,
+}
+
+/// A line of a text.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Line {
+    /// Name of the file; null for the program or source itself.
+    pub file: Option<String>,
+    /// From 1.
+    pub line: u32,
+    /// Its text, up to 2,000 characters.
+    pub text: String,
+}
+
+/// A template of a machine file.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Template {
+    /// Its name: a key of `[blocks]`.
+    pub name: String,
+    /// The file that it stands in; null where it is built in.
+    pub file: Option<String>,
+    /// Line of that file at which it begins; 0 where it is built in.
+    pub line: u32,
+    /// Its text.
+    pub text: String,
+}
+
+/// A feed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct FeedAbout {
+    /// How much.
+    pub value: f64,
+    /// `mm/min`, `mm/turn`, or `1/min` for moves a minute.
+    pub unit: &'static str,
+}
+
+/// A spindle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SpindleAbout {
+    /// `off`, `clockwise`, `counter-clockwise`, `on`.
+    pub turns: &'static str,
+    /// Turns a minute.
+    pub speed: Option<f64>,
+}
+
+/// `plot { revision, what, from, to, pixels }`: answered with the arrays `least` and `most` (f32, one for each pixel; NaN: nothing known).
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct PlotParams {
+    /// Of the job.
+    pub revision: u64,
+    /// Name of an axis, or `feed`.
+    pub what: String,
+    /// First time, s.
+    pub from: f64,
+    /// Last time, s.
+    pub to: f64,
+    /// How many pixels, up to 10,000.
+    pub pixels: u32,
+}
+
+/// `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct SaveParams {
+    /// Of the job.
+    pub revision: u64,
+    /// Where, in the folder.
+    pub path: String,
+    /// Whether it may take the place of a file that is there.
+    pub replace: bool,
+}
+
+/// What was saved.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Saved {
+    /// Paths in the folder, the program first.
+    pub files: Vec<String>,
+}
+
+/// A field of the form that is made of the command's own arguments (`form {}`).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Field {
+    /// The option, without dashes.
+    pub name: String,
+    /// What it means.
+    pub help: String,
+    /// What its value is called; null for a switch.
+    pub value: Option<String>,
+    /// The values that it takes, each with its meaning; empty where it takes any.
+    pub values: Vec<(String, String)>,
+    /// Its value where nothing is given.
+    pub default: Option<String>,
+    /// Under which head it stands.
+    pub group: Option<String>,
+    /// Whether it may be given several times.
+    pub repeats: bool,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -388,6 +879,35 @@ mod tests {
             DraftName,
             Nothing,
             Uploaded,
+            PostParams,
+            ProveParams,
+            Job,
+            Mismatch,
+            Text,
+            JobMachine,
+            Axis,
+            AxisKind,
+            WalkAbout,
+            Level,
+            ToolUse,
+            Operation,
+            TextParams,
+            TextAbout,
+            SearchParams,
+            Found,
+            By,
+            PlaceParams,
+            MovesParams,
+            Moves,
+            Place,
+            Line,
+            Template,
+            FeedAbout,
+            SpindleAbout,
+            PlotParams,
+            SaveParams,
+            Saved,
+            Field,
         );
         text
     }

@@ -9,6 +9,8 @@ use cap_std::fs::{Dir, OpenOptions};
 use program::{Diagnostic, Rule};
 use std::io::{self, Read, Write};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
 /// The most entries of a folder that are listed.
 const MOST_ENTRIES: usize = 10_000;
@@ -23,6 +25,10 @@ const DRAFTS: &str = ".toolpost/drafts";
 const MOST_DRAFTS: usize = 100;
 const LARGEST_DRAFT: usize = 64 << 20;
 
+/// How a file ends that is being written, and after what time nobody does so any more.
+const NEW: &str = ".new";
+const LEFT: Duration = Duration::from_secs(60);
+
 /// What the system answers where a path leads out.
 const ESCAPES: &str = "a path led outside of the filesystem";
 
@@ -31,6 +37,8 @@ const ESCAPES: &str = "a path led outside of the filesystem";
 pub struct Folder {
     dir: Dir,
     path: PathBuf,
+    /// Held while a draft is kept: of two of one name the later one holds, text and all.
+    drafting: Mutex<()>,
 }
 
 impl Folder {
@@ -48,7 +56,7 @@ impl Folder {
             let found = Diagnostic::error(Rule::Folder, message).file(path.display().to_string());
             Box::new(found.help("give the name of a folder that is there and may be read"))
         })?;
-        Ok(Folder { dir, path })
+        Ok(Folder { dir, path, drafting: Mutex::new(()) })
     }
 
     /// Where it lies, without links.
@@ -163,12 +171,19 @@ impl Folder {
         text: &[u8],
     ) -> Result<(), Box<Diagnostic>> {
         let (json, path) = (draft(name, "json")?, draft(name, "text")?);
+        let _drafting = self.drafting.lock().unwrap_or_else(PoisonError::into_inner);
         let of = of.to_string();
         if text.len() + of.len() > LARGEST_DRAFT {
             let message = "this edit is larger than 64 MB: it is not kept as a draft";
             return Err(Diagnostic::error(Rule::StudioLimit, message).help("save it often").into());
         }
-        let count = || self.dir.read_dir(DRAFTS).map_or(0, Iterator::count) / 2;
+        let is_draft = |entry: io::Result<cap_std::fs::DirEntry>| {
+            entry.is_ok_and(|entry| entry.file_name().to_string_lossy().ends_with(".json"))
+        };
+        let count = || match self.dir.read_dir(DRAFTS) {
+            Ok(entries) => entries.map(is_draft).filter(|is| *is).count(),
+            Err(_) => 0,
+        };
         if !self.dir.exists(&json) && count() >= MOST_DRAFTS {
             let message = format!("{MOST_DRAFTS} drafts are kept already in {DRAFTS}");
             return Err(Diagnostic::error(Rule::StudioLimit, message).help("drop some").into());
@@ -207,7 +222,10 @@ impl Folder {
 
     /// Writes a file under another name, and puts it in the place of the one that was there.
     fn replace(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        let new = path.with_extension("new");
+        self.sweep();
+        let mut new = path.as_os_str().to_owned();
+        // Another server may work in the same folder.
+        new.push(format!(".{}{NEW}", std::process::id()));
         let written = || {
             let mut file = self.dir.create(&new)?;
             file.write_all(bytes)?;
@@ -215,6 +233,19 @@ impl Folder {
             self.dir.rename(&new, &self.dir, path)
         };
         written().inspect_err(|_| drop(self.dir.remove_file(&new)))
+    }
+
+    /// Removes what a server that was killed has begun to write.
+    fn sweep(&self) {
+        let Ok(entries) = self.dir.read_dir(DRAFTS) else { return };
+        for entry in entries.filter_map(Result::ok) {
+            let begun = entry.metadata().and_then(|metadata| metadata.modified());
+            let age = begun.ok().and_then(|begun| begun.into_std().elapsed().ok());
+            let is_left = age.is_some_and(|age| age > LEFT);
+            if is_left && entry.file_name().to_string_lossy().ends_with(NEW) {
+                let _ = entry.remove_file();
+            }
+        }
     }
 
     fn bytes(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {

@@ -14,8 +14,9 @@
 //!
 //! # What goes over the socket
 //!
-//! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]. What is large goes by HTTP:
-//! geometry comes, uploads go ([`server`]).
+//! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]. What is large goes by HTTP, with the token in the header
+//! `x-toolpost-token`: `PUT /upload/NAME`, `GET /geometry/REVISION/index`, `GET /geometry/REVISION/LEVEL/CHUNK` and
+//! `GET /moves/REVISION/CHUNK`, whose octets [`geometry`] describes.
 //!
 //! # What it never does
 //!
@@ -24,10 +25,18 @@
 
 pub mod ask;
 pub mod folder;
+pub mod geometry;
+pub mod job;
+pub mod jobs;
+pub mod lines;
 pub mod machines;
 pub mod message;
 mod page;
+pub mod place;
+pub mod plots;
 pub mod server;
+pub mod walk;
 
+pub use job::Options;
 pub use page::is_built as has_page;
 pub use server::{Server, Settings};

@@ -2,6 +2,7 @@
 
 use crate::ask::{Finding, MachineEntry, MachineKind};
 use crate::folder::Folder;
+use crate::job::axes;
 use app::{Stop, toolpath};
 use machine::{Machine, Reach, is_path, library};
 use program::{Diagnostic, Rule};
@@ -57,30 +58,22 @@ fn is_meant(name: &str, folder: &Folder) -> bool {
     text.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"extends"))
 }
 
-fn entry(machine: &Machine, name: &str) -> MachineEntry {
-    let kind = match (&machine.wire, &machine.arm) {
+/// What a machine is.
+pub fn kind(machine: &Machine) -> MachineKind {
+    match (&machine.wire, &machine.arm) {
         (Some(_), _) => MachineKind::Wire,
         (_, Some(_)) => MachineKind::Robot,
         _ => MachineKind::Mill,
-    };
-    let axes = match kind {
-        MachineKind::Wire => ["X", "Y", "U", "V"].map(str::to_owned).to_vec(),
-        MachineKind::Robot => {
-            let rail = machine.cell.as_ref().and_then(|cell| cell.rail.as_ref());
-            let rail = rail.map(|_| String::from("E1"));
-            (1..=6).map(|joint| format!("J{joint}")).chain(rail).collect()
-        }
-        MachineKind::Mill => {
-            let rotary = machine.rotary.iter().map(|axis| axis.letter.to_string());
-            ["X", "Y", "Z"].map(str::to_owned).into_iter().chain(rotary).collect()
-        }
-    };
+    }
+}
+
+fn entry(machine: &Machine, name: &str) -> MachineEntry {
     MachineEntry {
         name: name.to_owned(),
         title: machine.title.clone(),
-        kind,
+        kind: kind(machine),
         control: machine.control.clone(),
-        axes,
+        axes: axes(machine).into_iter().map(|axis| axis.name).collect(),
         is_own: false,
         findings: Vec::new(),
     }

@@ -1,9 +1,11 @@
 //! `toolpost studio`: the server of the page, until Ctrl-C.
 
 use crate::answer::Answer;
-use crate::args::Studio;
-use ::studio::{Server, Settings};
+use crate::args::{Command, CommandLine, Studio};
+use ::studio::ask::Field;
+use ::studio::{Options, Server, Settings};
 use app::{Stop, Verdict};
+use clap::{Arg, ArgAction, CommandFactory, Parser};
 use program::{Diagnostic, Rule};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -25,7 +27,14 @@ pub fn run(args: &Studio, json: bool) -> Result<Answer, Stop> {
         name => name.clone(),
     };
     let source = args.source.as_deref().map(within).transpose()?;
-    let settings = Settings { folder: folder.clone(), source, machine, port: args.port };
+    let settings = Settings {
+        folder: folder.clone(),
+        source,
+        machine,
+        port: args.port,
+        form: form(),
+        options: Some(options),
+    };
     let server = Server::bind(&settings)?;
     let link = server.link();
     let text = format!("{link}\n");
@@ -66,4 +75,126 @@ fn below(folder: &Path, path: &Path) -> Result<String, Stop> {
         refused(Rule::FolderReach, format!("lies outside of the folder of the studio, {name}"))
     })?;
     Ok(inner.replace(std::path::MAIN_SEPARATOR, "/"))
+}
+
+/// Arguments of `post` that the page gives by itself.
+const GIVEN: [&str; 4] = ["machine", "output", "path", "help"];
+
+/// The form of the options of `post`.
+fn form() -> Vec<Field> {
+    let command = CommandLine::command();
+    let post = command.find_subcommand("post").into_iter().flat_map(|post| post.get_arguments());
+    post.filter(|arg| !GIVEN.contains(&arg.get_id().as_str()) && !arg.is_global_set())
+        .filter_map(field)
+        .collect()
+}
+
+fn field(arg: &Arg) -> Option<Field> {
+    let takes = arg.get_action().takes_values();
+    let value = arg.get_value_names().filter(|_| takes).and_then(|names| names.first());
+    let values = arg.get_possible_values().into_iter().filter(|_| takes).map(|value| {
+        let help = value.get_help().map(ToString::to_string).unwrap_or_default();
+        (value.get_name().to_owned(), help)
+    });
+    let default = arg.get_default_values().first().filter(|_| takes);
+    Some(Field {
+        name: arg.get_long()?.to_owned(),
+        help: arg.get_help().map(ToString::to_string).unwrap_or_default(),
+        value: value.map(ToString::to_string),
+        values: values.collect(),
+        default: default.map(|value| value.to_string_lossy().into_owned()),
+        group: arg.get_help_heading().map(str::to_owned),
+        repeats: matches!(arg.get_action(), ArgAction::Append),
+    })
+}
+
+/// What options of the form mean: they are read as the command line reads them.
+///
+/// # Errors
+/// As there.
+fn options(given: &[(String, String)]) -> Result<Options, Stop> {
+    let form = form();
+    let mut words: Vec<String> =
+        ["toolpost", "post", "--machine=m", "--output=o"].map(str::to_owned).to_vec();
+    for (name, value) in given {
+        let field = form.iter().find(|field| field.name == *name).ok_or_else(|| {
+            let message =
+                format!("there is no option `{}`", name.chars().take(80).collect::<String>());
+            Diagnostic::error(Rule::StudioAsk, message)
+        })?;
+        words.push(match field.value {
+            Some(_) => format!("--{name}={value}"),
+            None => format!("--{name}"),
+        });
+    }
+    words.extend(["--", "source"].map(str::to_owned));
+    let parsed = CommandLine::try_parse_from(words).map_err(|usage| {
+        let message = crate::shortened(usage).render().to_string();
+        let first = message.split("\n\n").next().unwrap_or_default();
+        let message = first.trim_start_matches("error: ").replace('\n', " ");
+        Diagnostic::error(Rule::StudioAsk, message).help("correct the option in the form")
+    })?;
+    let Command::Post(post) = parsed.command else { return Ok(Options::default()) };
+    Ok(Options {
+        strict: post.source.strict,
+        origin: post.source.origin.origin(),
+        tolerances: post.closeness.tolerances(),
+        machine: post.option,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_form_has_the_options_of_post_and_none_that_the_page_gives() {
+        let form = form();
+        let named = |name: &str| form.iter().find(|field| field.name == name);
+        for given in ["machine", "output", "json", "quiet", "help"] {
+            assert_eq!(named(given), None);
+        }
+        let units = named("units").unwrap();
+        assert_eq!(units.value.as_deref(), Some("UNIT"));
+        assert_eq!(units.values[1], (String::from("inch"), String::from("Inches")));
+        assert_eq!(units.group.as_deref(), Some("NC program as the source"));
+        assert_eq!(
+            (named("strict").unwrap().value.clone(), named("accept").unwrap().repeats),
+            (None, true)
+        );
+    }
+
+    #[test]
+    fn options_are_read_as_the_command_line_reads_them() {
+        let given = |list: &[(&str, &str)]| {
+            let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
+            options(&list)
+        };
+        let read = given(&[
+            ("strict", ""),
+            ("from", "fanuc-31i"),
+            ("tolerance", "0.02"),
+            ("option", "a=b"),
+        ]);
+        let read = read.unwrap();
+        assert!(read.strict);
+        assert_eq!(read.origin.from.as_deref(), Some("fanuc-31i"));
+        assert_eq!(read.tolerances.position, Some(0.02));
+        assert_eq!(read.machine, [(String::from("a"), String::from("b"))]);
+        for wrong in [
+            ("units", "yards"),
+            ("tolerance", "5"),
+            ("machine", "x"),
+            ("output", "/etc/x"),
+            ("no", ""),
+        ] {
+            let stop = given(&[wrong]).unwrap_err();
+            assert!(stop.findings[0].rule == "studio-ask", "{wrong:?}: {:?}", stop.findings);
+        }
+        // What looks like another option is a value.
+        assert_eq!(
+            given(&[("from", "--strict")]).unwrap().origin.from.as_deref(),
+            Some("--strict")
+        );
+    }
 }

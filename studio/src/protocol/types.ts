@@ -343,3 +343,678 @@ upload: string,
  * Its size.
  */
 bytes: number, };
+
+/**
+ * `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`]; a newer `post` or `prove` of the same page
+ * ends an older one.
+ */
+export type PostParams = { 
+/**
+ * The toolpath.
+ */
+source: FileOrUpload, 
+/**
+ * A name of the library, or the path of a file of the folder.
+ */
+machine: string, 
+/**
+ * Options as the command line has them, without dashes: `[["from", "fanuc-31i"], ["strict", ""]]`.
+ */
+options: Array<[string, string]>, 
+/**
+ * Name of the program's file; null: that of the source with the machine's ending.
+ */
+file: string | null, };
+
+/**
+ * `prove { source, machine, options, program }`, or with the array `text` in place of `program`: proves a program, also one that was edited by
+ * hand. Answered by a [`Job`].
+ */
+export type ProveParams = { 
+/**
+ * The toolpath.
+ */
+source: FileOrUpload, 
+/**
+ * As in `post`.
+ */
+machine: string, 
+/**
+ * As in `post`.
+ */
+options: Array<[string, string]>, 
+/**
+ * As in `post`: what a text is called that no file has.
+ */
+file: string | null, 
+/**
+ * The program, where it is no edited text.
+ */
+program: FileOrUpload | null, };
+
+/**
+ * A program with its verdict and its moves.
+ */
+export type Job = { 
+/**
+ * By which all else is asked for.
+ */
+revision: number, 
+/**
+ * How it ended.
+ */
+verdict: Verdict, 
+/**
+ * What is reported of it: head (empty for a further line of the one before) and text.
+ */
+rows: Array<[string, string]>, 
+/**
+ * What is wrong with it, or worth knowing.
+ */
+findings: Array<Finding>, 
+/**
+ * The program; null where none was written.
+ */
+program: Text | null, 
+/**
+ * The files that it calls.
+ */
+parts: Array<Text>, 
+/**
+ * The source.
+ */
+source: Text, 
+/**
+ * The machine.
+ */
+machine: JobMachine, 
+/**
+ * The moves that the proof has walked.
+ */
+walk: WalkAbout, 
+/**
+ * Where a failed proof first differs.
+ */
+mismatch: Mismatch | null, };
+
+/**
+ * The first mismatch, side by side.
+ */
+export type Mismatch = { 
+/**
+ * The called file that the block stands in; null for the program itself.
+ */
+file: string | null, 
+/**
+ * Line of the program.
+ */
+program: number, 
+/**
+ * Its text.
+ */
+block: string, 
+/**
+ * Line of the source; 0 for none.
+ */
+source: number, };
+
+/**
+ * A text of a job.
+ */
+export type Text = { 
+/**
+ * Name of its file.
+ */
+file: string, 
+/**
+ * How many lines it has.
+ */
+lines: number, 
+/**
+ * Its size.
+ */
+bytes: number, };
+
+/**
+ * The machine of a job.
+ */
+export type JobMachine = { 
+/**
+ * As it was asked for.
+ */
+name: string, 
+/**
+ * What a person calls it.
+ */
+title: string, 
+/**
+ * What it is.
+ */
+kind: MachineKind, 
+/**
+ * Its dialect, for colours.
+ */
+dialect: string, 
+/**
+ * Its axes, in the order of [`Place::axes`].
+ */
+axes: Array<Axis>, 
+/**
+ * The files that it is made of, the nearest first, as far as its templates stand in them.
+ */
+files: Array<Text>, };
+
+/**
+ * An axis of a machine.
+ */
+export type Axis = { 
+/**
+ * Its name.
+ */
+name: string, 
+/**
+ * What it is.
+ */
+kind: AxisKind, 
+/**
+ * `mm` or `degrees`.
+ */
+unit: string, 
+/**
+ * The lower end of its travel; null where it is not known, or positions do not count from the zero of the machine.
+ */
+low: number | null, 
+/**
+ * The upper end.
+ */
+high: number | null, };
+
+/**
+ * What an axis is.
+ */
+export type AxisKind = "linear" | "rotary" | "joint" | "rail";
+
+/**
+ * What there is of the moves.
+ */
+export type WalkAbout = { 
+/**
+ * How many there are.
+ */
+moves: number, 
+/**
+ * How many were left out, because there are too many.
+ */
+left_out: number, 
+/**
+ * How many chunks of 4,096 moves.
+ */
+chunks: number, 
+/**
+ * The levels of detail, the exact one first.
+ */
+levels: Array<Level>, 
+/**
+ * The box of all that is drawn, mm: low and high.
+ */
+box: [[number, number, number], [number, number, number]] | null, 
+/**
+ * How long all of it takes, s.
+ */
+time_s: number, 
+/**
+ * In the order of their first use: vertices name them by their place.
+ */
+tools: Array<ToolUse>, 
+/**
+ * The operations of the source.
+ */
+operations: Array<Operation>, 
+/**
+ * What the numbers of kinds mean.
+ */
+kinds: Array<string>, 
+/**
+ * How many bytes the row of a move has: 16, or 36 where any tool leans.
+ */
+row: number, 
+/**
+ * The last move before the first mismatch.
+ */
+mismatch: number | null, };
+
+/**
+ * A level of detail.
+ */
+export type Level = { 
+/**
+ * How far its lines may be from the exact ones, mm.
+ */
+error: number, 
+/**
+ * How many vertices it has.
+ */
+vertices: number, };
+
+/**
+ * A tool, from its first use on.
+ */
+export type ToolUse = { 
+/**
+ * Place in the magazine.
+ */
+number: number, 
+/**
+ * Its name; empty for none.
+ */
+name: string, 
+/**
+ * mm.
+ */
+diameter: number | null, 
+/**
+ * Corner radius, mm.
+ */
+corner: number | null, 
+/**
+ * From the gauge line to the tip, mm.
+ */
+length: number | null, 
+/**
+ * Whether its side or end leans.
+ */
+tapered: boolean, 
+/**
+ * The first move with it.
+ */
+move: number, 
+/**
+ * When that begins, s.
+ */
+time_s: number, };
+
+/**
+ * An operation, from its first move on.
+ */
+export type Operation = { 
+/**
+ * Its name.
+ */
+name: string, 
+/**
+ * Its first move.
+ */
+move: number, 
+/**
+ * When that begins, s.
+ */
+time_s: number, };
+
+/**
+ * `text { revision, of, file, from, to }`: lines `from` up to, not including, `to`, from 1. Answered with the array `text`, each line ended by LF.
+ */
+export type TextParams = { 
+/**
+ * Of the job.
+ */
+revision: number, 
+/**
+ * Which text.
+ */
+of: Of, 
+/**
+ * A called file of the program, or a file of the machine; null for the program and the machine's own.
+ */
+file: string | null, 
+/**
+ * First line.
+ */
+from: number, 
+/**
+ * The line behind the last one.
+ */
+to: number, };
+
+/**
+ * What was answered of a text.
+ */
+export type TextAbout = { 
+/**
+ * How many lines the whole text has.
+ */
+lines: number, 
+/**
+ * Its size.
+ */
+bytes: number, 
+/**
+ * The first line answered.
+ */
+from: number, 
+/**
+ * The line behind the last one answered: fewer than asked for where they are large.
+ */
+to: number, 
+/**
+ * How many of them are longer than 2,000 characters, and cut.
+ */
+cut: number, };
+
+/**
+ * `search { revision, of, file, text, from }`: the next line that has a text in it.
+ */
+export type SearchParams = { 
+/**
+ * Of the job.
+ */
+revision: number, 
+/**
+ * Which text.
+ */
+of: Of, 
+/**
+ * As in `text`.
+ */
+file: string | null, 
+/**
+ * What is looked for, whatever its capitals.
+ */
+text: string, 
+/**
+ * From which line on; behind the last line it goes on at the first.
+ */
+from: number, };
+
+/**
+ * Where a text was found.
+ */
+export type Found = { 
+/**
+ * The line; null where it is nowhere.
+ */
+line: number | null, 
+/**
+ * The column, characters from 1.
+ */
+column: number | null, };
+
+/**
+ * By what a place is looked up.
+ */
+export type By = "time" | "move" | "block" | "source";
+
+/**
+ * `place { revision, by, value, file }`.
+ */
+export type PlaceParams = { 
+/**
+ * Of the job.
+ */
+revision: number, 
+/**
+ * By what.
+ */
+by: By, 
+/**
+ * Seconds, or the number of a move or of a line.
+ */
+value: number, 
+/**
+ * The called file of a block.
+ */
+file: string | null, };
+
+/**
+ * `moves { revision, by, value, file }`: which moves a line makes.
+ */
+export type MovesParams = { 
+/**
+ * Of the job.
+ */
+revision: number, 
+/**
+ * `block` or `source`.
+ */
+by: By, 
+/**
+ * The line.
+ */
+value: number, 
+/**
+ * The called file of a block.
+ */
+file: string | null, };
+
+/**
+ * Ranges of moves: first, and behind the last; the first thousand.
+ */
+export type Moves = { 
+/**
+ * The ranges, in their order.
+ */
+ranges: Array<[number, number]>, };
+
+/**
+ * One place: at once a time, a move, a block, a line of the source and a template.
+ */
+export type Place = { 
+/**
+ * Seconds from the start.
+ */
+time_s: number, 
+/**
+ * The move, from 0.
+ */
+move: number, 
+/**
+ * How much of it is done, 0 to 1.
+ */
+part: number, 
+/**
+ * How it goes: one of `walk.kinds`.
+ */
+kind: string, 
+/**
+ * What is marked of it.
+ */
+marks: number, 
+/**
+ * The block that makes it.
+ */
+block: Line, 
+/**
+ * The record that it makes.
+ */
+source: Line | null, 
+/**
+ * The template that wrote the block.
+ */
+template: Template | null, 
+/**
+ * Place of its tool in `walk.tools`.
+ */
+tool: number | null, 
+/**
+ * The tip, work frame, mm.
+ */
+tip: [number | null, number | null, number | null], 
+/**
+ * The tool axis, work frame.
+ */
+axis: [number | null, number | null, number | null], 
+/**
+ * Positions of the axes, in the order of `machine.axes`.
+ */
+axes: Array<number | null>, 
+/**
+ * The feed.
+ */
+feed: FeedAbout | null, 
+/**
+ * The spindle.
+ */
+spindle: SpindleAbout | null, 
+/**
+ * Coolant: `off`, `flood`, `mist`, `flood and mist`, `through`.
+ */
+coolant: string | null, 
+/**
+ * Compensation of the tool's radius: `off`, `left`, `right`.
+ */
+compensation: string | null, 
+/**
+ * The hole cycle that is on; null for none.
+ */
+cycle: string | null, 
+/**
+ * The work offset, as `G54` counts them; null where it is not known.
+ */
+work_offset: number | null, };
+
+/**
+ * A line of a text.
+ */
+export type Line = { 
+/**
+ * Name of the file; null for the program or source itself.
+ */
+file: string | null, 
+/**
+ * From 1.
+ */
+line: number, 
+/**
+ * Its text, up to 2,000 characters.
+ */
+text: string, };
+
+/**
+ * A template of a machine file.
+ */
+export type Template = { 
+/**
+ * Its name: a key of `[blocks]`.
+ */
+name: string, 
+/**
+ * The file that it stands in; null where it is built in.
+ */
+file: string | null, 
+/**
+ * Line of that file at which it begins; 0 where it is built in.
+ */
+line: number, 
+/**
+ * Its text.
+ */
+text: string, };
+
+/**
+ * A feed.
+ */
+export type FeedAbout = { 
+/**
+ * How much.
+ */
+value: number, 
+/**
+ * `mm/min`, `mm/turn`, or `1/min` for moves a minute.
+ */
+unit: string, };
+
+/**
+ * A spindle.
+ */
+export type SpindleAbout = { 
+/**
+ * `off`, `clockwise`, `counter-clockwise`, `on`.
+ */
+turns: string, 
+/**
+ * Turns a minute.
+ */
+speed: number | null, };
+
+/**
+ * `plot { revision, what, from, to, pixels }`: answered with the arrays `least` and `most` (f32, one for each pixel; NaN: nothing known).
+ */
+export type PlotParams = { 
+/**
+ * Of the job.
+ */
+revision: number, 
+/**
+ * Name of an axis, or `feed`.
+ */
+what: string, 
+/**
+ * First time, s.
+ */
+from: number, 
+/**
+ * Last time, s.
+ */
+to: number, 
+/**
+ * How many pixels, up to 10,000.
+ */
+pixels: number, };
+
+/**
+ * `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused.
+ */
+export type SaveParams = { 
+/**
+ * Of the job.
+ */
+revision: number, 
+/**
+ * Where, in the folder.
+ */
+path: string, 
+/**
+ * Whether it may take the place of a file that is there.
+ */
+replace: boolean, };
+
+/**
+ * What was saved.
+ */
+export type Saved = { 
+/**
+ * Paths in the folder, the program first.
+ */
+files: Array<string>, };
+
+/**
+ * A field of the form that is made of the command's own arguments (`form {}`).
+ */
+export type Field = { 
+/**
+ * The option, without dashes.
+ */
+name: string, 
+/**
+ * What it means.
+ */
+help: string, 
+/**
+ * What its value is called; null for a switch.
+ */
+value: string | null, 
+/**
+ * The values that it takes, each with its meaning; empty where it takes any.
+ */
+values: Array<[string, string]>, 
+/**
+ * Its value where nothing is given.
+ */
+default: string | null, 
+/**
+ * Under which head it stands.
+ */
+group: string | null, 
+/**
+ * Whether it may be given several times.
+ */
+repeats: boolean, };

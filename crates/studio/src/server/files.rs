@@ -3,8 +3,13 @@
 use super::closed::say;
 use super::{Studio, UPLOAD};
 use crate::ask::Uploaded;
+use crate::geometry;
+use app::Source;
 use axum::body::{Body, to_bytes};
+use axum::extract::Request;
+use axum::http::header::CONTENT_LENGTH;
 use axum::http::{HeaderValue, Response, StatusCode};
+use program::{Diagnostic, Rule};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most uploads that are kept, and all of them together, bytes: the oldest goes when another comes.
@@ -38,14 +43,32 @@ impl Uploads {
         }
         id
     }
+
+    /// The file of this id.
+    ///
+    /// # Errors
+    /// There is none, or no more.
+    pub fn find(&self, id: &str) -> Result<Source, Box<Diagnostic>> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = kept.files.iter().find(|(kept, ..)| kept == id);
+        let (_, name, bytes) = found.ok_or_else(|| {
+            let message = "this upload is not kept any more: newer ones have taken its place";
+            Diagnostic::error(Rule::StudioLimit, message).help("drop the file again")
+        })?;
+        Ok(Source::memory(name, Arc::clone(bytes)))
+    }
 }
 
 /// Takes an upload.
-pub async fn upload(studio: &Studio, name: &str, body: Body) -> Response<Body> {
+pub async fn upload(studio: &Studio, name: &str, request: Request) -> Response<Body> {
     let Some(name) = decoded(name) else {
         return say(StatusCode::BAD_REQUEST, "an upload has the name of a file, without folders");
     };
-    let Ok(bytes) = to_bytes(body, UPLOAD).await else {
+    let length = request.headers().get(CONTENT_LENGTH);
+    let length = length.and_then(|length| length.to_str().ok()?.parse::<usize>().ok());
+    let is_too_large = length.is_some_and(|length| length > UPLOAD);
+    let body = if is_too_large { None } else { to_bytes(request.into_body(), UPLOAD).await.ok() };
+    let Some(bytes) = body else {
         let why = "the upload is larger than 256 MB, or was broken off: put the file into the folder instead";
         return say(StatusCode::PAYLOAD_TOO_LARGE, why);
     };
@@ -56,6 +79,39 @@ pub async fn upload(studio: &Studio, name: &str, body: Body) -> Response<Body> {
     let mut response = Response::new(Body::from(serde_json::json!(answer).to_string()));
     response.headers_mut().insert("content-type", HeaderValue::from_static("application/json"));
     response
+}
+
+/// Answers the geometry or the rows of a job: `geometry/REVISION/index`, `geometry/REVISION/LEVEL/CHUNK`, `moves/REVISION/CHUNK`.
+pub async fn drawn(studio: Arc<Studio>, path: String) -> Response<Body> {
+    // Chunks are made when they are asked for.
+    let made = tokio::task::spawn_blocking(move || octets(&studio, &path)).await;
+    match made.ok().flatten() {
+        Some(bytes) => {
+            let mut response = Response::new(Body::from(bytes));
+            let octets = HeaderValue::from_static("application/octet-stream");
+            response.headers_mut().insert("content-type", octets);
+            // A revision never changes.
+            let kept = HeaderValue::from_static("private, max-age=86400, immutable");
+            response.headers_mut().insert("cache-control", kept);
+            response
+        }
+        None => {
+            say(StatusCode::NOT_FOUND, "this program is not open any more, or has no such part")
+        }
+    }
+}
+
+fn octets(studio: &Studio, path: &str) -> Option<Vec<u8>> {
+    let parts: Vec<&str> = path.split('/').collect();
+    let job = studio.jobs.find(parts.get(1)?.parse().ok()?).ok()?;
+    match parts[..] {
+        ["geometry", _, "index"] => Some(job.geometry().index(job.walk())),
+        ["geometry", _, level, chunk] => {
+            job.geometry().vertices(job.walk(), level.parse().ok()?, chunk.parse().ok()?)
+        }
+        ["moves", _, chunk] => geometry::rows(job.walk(), chunk.parse().ok()?),
+        _ => None,
+    }
 }
 
 /// A name of a file from a path, where `%20` is a blank.
@@ -93,5 +149,15 @@ mod tests {
         {
             assert_eq!(decoded(wrong), None, "{wrong}");
         }
+    }
+
+    #[test]
+    fn the_oldest_upload_goes_when_too_many_come() {
+        let uploads = Uploads::default();
+        let ids: Vec<String> = (0..=MOST_UPLOADS)
+            .map(|_| uploads.keep(String::from("a"), Arc::from(&b"x"[..])))
+            .collect();
+        assert!(uploads.find(&ids[0]).unwrap_err().rule == "studio-limit");
+        assert_eq!(uploads.find(&ids[1]).unwrap().read().unwrap(), b"x");
     }
 }

@@ -1,14 +1,17 @@
 //! The server: who is answered ([`closed`]), the socket, and files by HTTP.
 
+mod asks;
 pub mod closed;
 mod files;
 mod socket;
 
-use crate::ask::{FileOrUpload, Limits};
+use crate::ask::{Field, FileOrUpload, Limits};
 use crate::folder::Folder;
+use crate::job::Options;
+use crate::jobs::{Jobs, MOST_JOBS};
 use crate::message;
 use crate::page;
-use app::Stop;
+use app::{Source, Stop};
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::{Method, Response, StatusCode};
@@ -35,9 +38,6 @@ const SOCKETS: usize = 16;
 /// The largest upload, bytes.
 const UPLOAD: usize = 256 << 20;
 
-/// How many jobs are open at the same time; the oldest goes when another comes.
-const JOBS: u32 = 8;
-
 /// How long a connection may take to say what it wants, and a request to be answered.
 const PATIENCE: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
 
@@ -45,7 +45,7 @@ const PATIENCE: (Duration, Duration) = (Duration::from_secs(10), Duration::from_
 const LIMITS: Limits = Limits {
     upload: UPLOAD as u64,
     frame: message::MOST_BYTES as u64,
-    jobs: JOBS,
+    jobs: MOST_JOBS as u32,
     sockets: SOCKETS as u32,
 };
 
@@ -60,7 +60,14 @@ pub struct Settings {
     pub machine: Option<String>,
     /// The port that it listens on; `None` for one that is free.
     pub port: Option<u16>,
+    /// The form of the command's own options.
+    pub form: Vec<Field>,
+    /// What such options, names without dashes and values, mean; `None`: there are none.
+    pub options: Option<ReadOptions>,
 }
+
+/// Reads options of the command line.
+pub type ReadOptions = fn(&[(String, String)]) -> Result<Options, Stop>;
 
 /// A server that listens.
 #[derive(Debug)]
@@ -81,6 +88,28 @@ pub(crate) struct Studio {
     names: Names,
     sockets: Arc<Semaphore>,
     uploads: files::Uploads,
+    jobs: Jobs,
+    form: Vec<Field>,
+    options: Option<ReadOptions>,
+}
+
+impl Studio {
+    /// What options mean.
+    fn options(&self, given: &[(String, String)]) -> Result<Options, Stop> {
+        match self.options {
+            Some(read) => read(given),
+            None if given.is_empty() => Ok(Options::default()),
+            None => Err(Diagnostic::error(Rule::StudioAsk, "there are no options here").into()),
+        }
+    }
+
+    /// A file of the folder or an upload, read.
+    fn source(&self, source: &FileOrUpload) -> Result<Source, Stop> {
+        match source {
+            FileOrUpload::File(path) => Ok(Source::memory(path, self.folder.read(path)?)),
+            FileOrUpload::Upload(id) => Ok(self.uploads.find(id)?),
+        }
+    }
 }
 
 impl Server {
@@ -104,7 +133,9 @@ impl Server {
         let (listener, port) = listen().map_err(|error: std::io::Error| {
             refused(&format!("port {} of 127.0.0.1 cannot be opened", address.1), &error)
         })?;
-        let token = Token::new().map_err(|error| refused("the system gives no token", &error))?;
+        let no_token = |error| refused("the system gives no token", &error);
+        let token = Token::new().map_err(no_token)?;
+        let own = getrandom::u32().map_err(no_token)?;
         let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(64).build();
         let runtime = runtime.map_err(|error| refused("the server cannot start", &error))?;
         let studio = Arc::new(Studio {
@@ -115,6 +146,9 @@ impl Server {
             names: Names::of(port),
             sockets: Arc::new(Semaphore::new(SOCKETS)),
             uploads: files::Uploads::default(),
+            jobs: Jobs::new(own),
+            form: settings.form.clone(),
+            options: settings.options,
         });
         Ok(Server { runtime, listener, port, studio })
     }
@@ -213,9 +247,15 @@ async fn route(studio: Arc<Studio>, request: Request) -> Response<Body> {
     if !brings(&studio.token, &request) {
         return say(StatusCode::UNAUTHORIZED, "the token of the link is missing or wrong");
     }
+    if path.starts_with("geometry/") || path.starts_with("moves/") {
+        return match is_get {
+            true => files::drawn(studio, path.to_owned()).await,
+            false => say(StatusCode::METHOD_NOT_ALLOWED, "geometry is asked for by GET"),
+        };
+    }
     match path.strip_prefix("upload/") {
         Some(name) if request.method() == Method::PUT => {
-            files::upload(&studio, name, request.into_body()).await
+            files::upload(&studio, name, request).await
         }
         Some(_) => say(StatusCode::METHOD_NOT_ALLOWED, "uploads are sent by PUT"),
         None => say(StatusCode::NOT_FOUND, "there is nothing of this name"),

@@ -1,25 +1,24 @@
 //! The socket: first the token, then asks and their answers.
 
+use super::asks::{self, Answer, wrong};
 use super::closed::say;
-use super::{LIMITS, SOCKETS, Studio};
-use crate::ask::{
-    Done, DraftName, DraftParams, FolderParams, Hello, Listing, Nothing, Opened, Stop, Stopped,
-    Verdict,
-};
-use crate::machines;
-use crate::message::{self, Array, Frame};
+use super::{SOCKETS, Studio};
+use crate::ask::{Cancel, Done, Hello, Progress, Stop, Stopped, Verdict};
+use crate::job::{Ended, Waits};
+use crate::message::{self, Frame};
 use axum::body::Body;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{FromRequestParts, Request};
 use axum::http::{Response, StatusCode};
 use axum::response::IntoResponse;
 use program::{Diagnostic, Rule};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use std::sync::Arc;
-use std::time::Duration;
-use tokio::sync::Semaphore;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tokio::time::timeout;
 
@@ -29,6 +28,9 @@ const PATIENCE: (Duration, Duration) = (Duration::from_secs(3), Duration::from_s
 /// The codes with which a socket is closed.
 const NO_TOKEN: u16 = 4401;
 const BROKEN: u16 = 4400;
+
+/// How long it is between two words of how far a step is.
+const BETWEEN: Duration = Duration::from_millis(100);
 
 /// How many asks of a page wait for their answers at the same time.
 const MOST_ASKS: usize = 64;
@@ -63,7 +65,9 @@ async fn talk(studio: Arc<Studio>, mut socket: WebSocket) {
         return close(socket, NO_TOKEN, "the first message is the token of the link").await;
     }
     let (answers, mut to_send) = unbounded_channel();
-    let page = Arc::new(Page { studio, answers, waiting: Arc::new(Semaphore::new(MOST_ASKS)) });
+    let page = Arc::new(Page { studio, answers, running: Mutex::default() });
+    // However this ends, nobody waits for what is being done.
+    let _ends = EndsAll(&page);
     loop {
         tokio::select! {
             frame = next(&mut socket) => match frame {
@@ -102,8 +106,47 @@ async fn close(mut socket: WebSocket, code: u16, why: &'static str) {
 struct Page {
     studio: Arc<Studio>,
     answers: UnboundedSender<Vec<u8>>,
-    /// How many asks more may wait.
-    waiting: Arc<Semaphore>,
+    /// What is being done for it, by the ids of the asks: whether that makes a job, and how it is ended.
+    running: Mutex<BTreeMap<u32, (bool, Ended)>>,
+}
+
+/// Ends all work for a page that has gone.
+struct EndsAll<'a>(&'a Page);
+
+impl Drop for EndsAll<'_> {
+    fn drop(&mut self) {
+        self.0.running().values().for_each(|(_, ended)| ended.end());
+    }
+}
+
+/// Tells a page how far an ask has come.
+struct Tells<'a> {
+    page: &'a Page,
+    id: u32,
+    /// The step, and when something was told last.
+    last: Mutex<(&'static str, Instant)>,
+}
+
+impl Tells<'_> {
+    fn tell(&self, step: &'static str, part: Option<f64>) {
+        let progress = Progress { event: "progress", id: self.id, step, part };
+        let _ = self.page.answers.send(message::write(&progress, &[]));
+    }
+}
+
+impl Waits for Tells<'_> {
+    fn step(&self, step: &'static str) {
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = (step, Instant::now());
+        self.tell(step, None);
+    }
+
+    fn reached(&self, part: f64) {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.1.elapsed() > BETWEEN {
+            last.1 = Instant::now();
+            self.tell(last.0, Some(part));
+        }
+    }
 }
 
 /// An ask.
@@ -116,139 +159,88 @@ struct Ask {
     params: Map<String, Value>,
 }
 
-/// What an ask is answered: a head and arrays.
-struct Answer {
-    done: Value,
-    arrays: Vec<Array>,
-}
-
-impl Answer {
-    fn of(done: impl Serialize) -> Result<Answer, app::Stop> {
-        Answer::with(done, Vec::new())
-    }
-
-    fn with(done: impl Serialize, arrays: Vec<Array>) -> Result<Answer, app::Stop> {
-        let done = serde_json::to_value(done).map_err(|error| wrong(&error.to_string()))?;
-        Ok(Answer { done, arrays })
-    }
-}
-
 /// Takes a frame of a page: an ask, or the end of one.
 fn take(page: &Arc<Page>, frame: Frame) {
-    let id = frame.head.get("id").and_then(Value::as_u64).and_then(|id| u32::try_from(id).ok());
+    let Frame { head, arrays } = frame;
+    if head.contains_key("cancel") {
+        return match of_head::<Cancel>(head) {
+            Ok(Cancel { cancel }) => page.end(cancel),
+            Err(why) => page.stop(0, wrong(&why)),
+        };
+    }
+    let id = head.get("id").and_then(Value::as_u64).and_then(|id| u32::try_from(id).ok());
     let Some(id) = id else {
         return page.stop(0, wrong("the message has no id"));
     };
-    let ask = match of_head::<Ask>(frame.head) {
+    let Ask { id, ask, params } = match of_head(head) {
         Ok(ask) => ask,
         Err(why) => return page.stop(id, wrong(&why)),
     };
-    let Ok(place) = Arc::clone(&page.waiting).try_acquire_owned() else {
-        let found = Diagnostic::error(Rule::StudioLimit, format!("{MOST_ASKS} asks wait already"));
-        return page.stop(id, found.help("ask again when they are answered").into());
+    let ended = match page.begin(id, asks::makes_job(&ask)) {
+        Ok(ended) => ended,
+        Err(found) => return page.stop(id, (*found).into()),
     };
     let page = Arc::clone(page);
     tokio::task::spawn_blocking(move || {
-        let answer = || page.answer(&ask.ask, ask.params, frame.arrays);
-        let answer = std::panic::catch_unwind(std::panic::AssertUnwindSafe(answer));
+        let tells = Tells { page: &page, id, last: Mutex::new(("", Instant::now())) };
+        let answer = || asks::answer(&page.studio, &ask, params, arrays, (&tells, &ended));
+        let answer = catch_unwind(AssertUnwindSafe(answer));
+        page.running().remove(&id);
         match answer {
             Ok(Ok(Answer { done, arrays })) => {
-                let _ = page.answers.send(message::write(&Done { id: ask.id, done }, &arrays));
+                let _ = page.answers.send(message::write(&Done { id, done }, &arrays));
             }
-            Ok(Err(stop)) => page.stop(ask.id, stop),
+            Ok(Err(stop)) => page.stop(id, stop),
             Err(_) => {
                 let found = Diagnostic::error(Rule::StudioAsk, "the studio has failed at this");
                 let help = "this is a mistake of Toolpost: report it with the file, and use the command meanwhile";
-                page.stop(ask.id, found.help(help).into());
+                page.stop(id, found.help(help).into());
             }
         }
-        drop(place);
     });
 }
 
 impl Page {
+    fn running(&self) -> MutexGuard<'_, BTreeMap<u32, (bool, Ended)>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Begins an ask. One that makes a job ends the others that do.
+    fn begin(&self, id: u32, makes_job: bool) -> Result<Ended, Box<Diagnostic>> {
+        let mut running = self.running();
+        if running.len() >= MOST_ASKS {
+            let found =
+                Diagnostic::error(Rule::StudioLimit, format!("{MOST_ASKS} asks wait already"));
+            return Err(found.help("ask again when they are answered").into());
+        }
+        if running.contains_key(&id) {
+            return Err(
+                Diagnostic::error(Rule::StudioAsk, "an ask of this id waits already").into()
+            );
+        }
+        let older = running.values().filter(|(does, _)| makes_job && *does);
+        older.for_each(|(_, ended)| ended.end());
+        let ended = Ended::default();
+        running.insert(id, (makes_job, ended.clone()));
+        Ok(ended)
+    }
+
+    /// Ends an ask, where it is not answered yet.
+    fn end(&self, id: u32) {
+        if let Some((_, ended)) = self.running().get(&id) {
+            ended.end();
+        }
+    }
+
     fn stop(&self, id: u32, stop: app::Stop) {
         let app::Stop { verdict, findings } = stop;
         let findings = findings.into_iter().map(Into::into).collect();
         let stop = Stop { verdict: Verdict::from(verdict), findings };
         let _ = self.answers.send(message::write(&Stopped { id, stop }, &[]));
     }
-
-    /// Answers an ask.
-    fn answer(
-        &self,
-        ask: &str,
-        params: Map<String, Value>,
-        arrays: Vec<Array>,
-    ) -> Result<Answer, app::Stop> {
-        let studio = &*self.studio;
-        let folder = &studio.folder;
-        let mut frame = Frame { head: params, arrays };
-        let params = std::mem::take(&mut frame.head);
-        match ask {
-            "open" => {
-                none(params)?;
-                Answer::of(Opened {
-                    version: env!("CARGO_PKG_VERSION"),
-                    folder: folder.name(),
-                    source: studio.source.clone(),
-                    machine: studio.machine.clone(),
-                    drafts: folder.drafts(),
-                    limits: LIMITS,
-                })
-            }
-            "folder" => {
-                let FolderParams { path } = read(params)?;
-                let (entries, is_whole) = folder.list(&path)?;
-                Answer::of(Listing { entries, is_whole })
-            }
-            "machines" => {
-                none(params)?;
-                Answer::of(machines::list(folder))
-            }
-            "drafts" => {
-                none(params)?;
-                Answer::of(folder.drafts())
-            }
-            "draft" => {
-                let DraftParams { name, of } = read(params)?;
-                let text = frame.take_text("text").ok_or_else(|| wrong("`text` is missing"))?;
-                folder.keep_draft(&name, &of, &text)?;
-                Answer::of(Nothing {})
-            }
-            "draft_text" => {
-                let DraftName { name } = read(params)?;
-                let text = folder.text_of_draft(&name)?;
-                Answer::with(Nothing {}, vec![Array::text("text", text)])
-            }
-            "drop_draft" => {
-                let DraftName { name } = read(params)?;
-                folder.drop_draft(&name)?;
-                Answer::of(Nothing {})
-            }
-            _ => {
-                let asks = "open, folder, machines, drafts, draft, draft_text, drop_draft";
-                Err(wrong(&format!("there is no ask `{ask}`; there are {asks}")))
-            }
-        }
-    }
 }
 
-/// The parameters of an ask.
-fn read<T: DeserializeOwned>(params: Map<String, Value>) -> Result<T, app::Stop> {
-    of_head(params).map_err(|why| wrong(&why))
-}
-
-/// Checks that an ask has no parameters.
-fn none(params: Map<String, Value>) -> Result<(), app::Stop> {
-    if params.is_empty() { Ok(()) } else { Err(wrong("this ask has no parameters")) }
-}
-
-fn of_head<T: DeserializeOwned>(head: Map<String, Value>) -> Result<T, String> {
+/// A head as one of the types of [`crate::ask`].
+pub fn of_head<T: DeserializeOwned>(head: Map<String, Value>) -> Result<T, String> {
     serde_json::from_value(Value::Object(head)).map_err(|error| error.to_string())
-}
-
-fn wrong(why: &str) -> app::Stop {
-    let why: String = why.chars().take(300).collect();
-    Diagnostic::error(Rule::StudioAsk, why).into()
 }

@@ -1,0 +1,443 @@
+//! What is drawn: chunks of moves, each as a polyline, in levels of detail.
+//!
+//! A chunk has 4,096 moves. Its polyline begins where its first move begins; each further vertex ends a segment that belongs to the
+//! vertex's move, or, of kind `gap`, draws no line: the tool has gone there by a way that is not known. Level 0 is exact, arcs as chords
+//! within [`EXACT`]; a line of level `n` is nowhere further from that than `EXACT` times 4 to the power of `n`. Only the coarsest level
+//! is kept; the others are made of the walk when they are asked for.
+//!
+//! ```text
+//! vertex  16 bytes  x y z f32 from the chunk's origin, mm; u32: move in the chunk (12 bits), kind (4), tool (8), marks (8)
+//! index   64 bytes  a chunk: origin 3 f64, half box 3 f32, first move u32, its begin f32 s, its block u32, vertices of levels 0 to 2
+//!                   3 u32, flags u32 (1: nothing of it is drawn)
+//! row     16 bytes  a move: its end f32 s from the chunk's begin, block u32, source line u32, feed f32 (NaN: not known);
+//!         36 bytes  where any tool leans: then the tool axis 3 f32, and the first two rotary axes 2 f32, degrees
+//! ```
+//! All little-endian.
+
+use crate::walk::{GAP, Walk};
+use geom::Vec3;
+use program::Feed;
+use std::ops::Range;
+
+/// How many moves a chunk has.
+pub const CHUNK: u32 = 4096;
+
+/// How far a chord may be from its arc at level 0, mm.
+pub const EXACT: f64 = 0.002;
+
+/// How many vertices the coarsest level has, where it can be made of so few.
+const COARSEST: usize = 250_000;
+
+/// How many levels there are at most: the last one is within half a metre.
+const MOST_LEVELS: usize = 10;
+
+/// How many vertices the arcs of a chunk are drawn with at most.
+const MOST_VERTICES: usize = 1 << 20;
+
+/// A point of the drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Vertex {
+    at: Vec3,
+    /// Move in the chunk, kind, tool and marks.
+    packed: u32,
+}
+
+impl Vertex {
+    fn kind(self) -> u8 {
+        (self.packed >> 12 & 15) as u8
+    }
+
+    /// What segments must have in common to be drawn as one.
+    fn look(self) -> u32 {
+        self.packed >> 12
+    }
+}
+
+/// The levels of a walk.
+#[derive(Debug, Default)]
+pub struct Geometry {
+    chunks: Vec<Chunk>,
+    /// How many vertices each level has.
+    levels: Vec<usize>,
+    bounds: Option<[Vec3; 2]>,
+}
+
+#[derive(Debug)]
+struct Chunk {
+    origin: Vec3,
+    half: Vec3,
+    /// How many vertices each level has.
+    counts: Vec<u32>,
+    /// Those of the coarsest level.
+    coarsest: Vec<Vertex>,
+}
+
+impl Chunk {
+    /// Makes it one level coarser.
+    fn coarsen(&mut self) {
+        let level = self.counts.len();
+        self.coarsest = simplified(&self.coarsest, level);
+        self.counts.push(self.coarsest.len() as u32);
+    }
+}
+
+impl Geometry {
+    /// Of a walk.
+    pub fn of(walk: &Walk) -> Geometry {
+        let mut geometry = Geometry { levels: vec![0], ..Geometry::default() };
+        for chunk in 0..walk.len().div_ceil(CHUNK) {
+            geometry.add(polyline(walk, chunk));
+        }
+        geometry
+    }
+
+    /// Adds the exact polyline of the next chunk. While all are more than the coarsest level may have, all become coarser.
+    fn add(&mut self, exact: Vec<Vertex>) {
+        let bounds = bounds_of(&exact);
+        let [low, high] = bounds.unwrap_or_default();
+        self.bounds = match (self.bounds, bounds) {
+            (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
+            (one, other) => one.or(other),
+        };
+        let counts = vec![exact.len() as u32];
+        let origin = (low + high) / 2.0;
+        let mut chunk = Chunk { origin, half: (high - low) / 2.0, counts, coarsest: exact };
+        while chunk.counts.len() < self.levels.len() {
+            chunk.coarsen();
+        }
+        for (level, count) in self.levels.iter_mut().zip(&chunk.counts) {
+            *level += *count as usize;
+        }
+        self.chunks.push(chunk);
+        while self.levels.len() < MOST_LEVELS && self.levels.last().is_some_and(|l| *l > COARSEST) {
+            let vertices = self.chunks.iter_mut().map(|chunk| {
+                chunk.coarsen();
+                chunk.coarsest.len()
+            });
+            let vertices = vertices.sum();
+            self.levels.push(vertices);
+        }
+    }
+
+    /// How many chunks there are.
+    pub fn chunks(&self) -> usize {
+        self.chunks.len()
+    }
+
+    /// Of each level how far its lines may be from the exact ones, mm, and how many vertices it has.
+    pub fn levels(&self) -> impl Iterator<Item = (f64, usize)> {
+        self.levels.iter().enumerate().map(|(level, vertices)| (error(level), *vertices))
+    }
+
+    /// The box of all that is drawn, mm.
+    pub fn bounds(&self) -> Option<[Vec3; 2]> {
+        self.bounds
+    }
+
+    /// How much memory it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        let of = |chunk: &Chunk| size_of::<Chunk>() + chunk.coarsest.len() * size_of::<Vertex>();
+        self.chunks.iter().map(of).sum()
+    }
+
+    /// The index of all chunks.
+    pub fn index(&self, walk: &Walk) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.chunks.len() * 64);
+        for (number, chunk) in self.chunks.iter().enumerate() {
+            let first = number as u32 * CHUNK;
+            bytes.extend(chunk.origin.to_array().iter().flat_map(|value| value.to_le_bytes()));
+            bytes.extend(chunk.half.to_array().iter().flat_map(|v| (*v as f32).to_le_bytes()));
+            bytes.extend(first.to_le_bytes());
+            bytes.extend((walk.end_before(first) as f32).to_le_bytes());
+            bytes.extend(walk.line(first).to_le_bytes());
+            let counts = [0, 1, 2].map(|level| chunk.counts.get(level).copied().unwrap_or(0));
+            bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
+            bytes.extend(u32::from(chunk.counts[0] == 0).to_le_bytes());
+        }
+        bytes
+    }
+
+    /// The vertices of a chunk at a level; `None` where there is no such chunk or level.
+    pub fn vertices(&self, walk: &Walk, level: usize, chunk: usize) -> Option<Vec<u8>> {
+        let kept = self.chunks.get(chunk).filter(|_| level < self.levels.len())?;
+        let bytes = |vertices: &[Vertex]| {
+            let mut bytes = Vec::with_capacity(vertices.len() * 16);
+            for Vertex { at, packed } in vertices {
+                let at = (*at - kept.origin).to_array();
+                bytes.extend(at.iter().flat_map(|value| (*value as f32).to_le_bytes()));
+                bytes.extend(packed.to_le_bytes());
+            }
+            bytes
+        };
+        if level + 1 == self.levels.len() {
+            return Some(bytes(&kept.coarsest));
+        }
+        let exact = polyline(walk, chunk as u32);
+        let made = (1..=level).fold(exact, |finer, level| simplified(&finer, level));
+        Some(bytes(&made))
+    }
+}
+
+/// The rows of the moves of a chunk.
+pub fn rows(walk: &Walk, chunk: u32) -> Option<Vec<u8>> {
+    let moves = moves(walk, chunk)?;
+    let begin = walk.end_before(moves.start);
+    let mut bytes = Vec::with_capacity(moves.len() * row_bytes(walk));
+    for at in moves {
+        bytes.extend(((walk.end(at) - begin) as f32).to_le_bytes());
+        bytes.extend(walk.line(at).to_le_bytes());
+        bytes.extend(walk.source_line(at).to_le_bytes());
+        let feed = match walk.feed(at) {
+            Some(Feed::PerMinute(feed)) => feed as f32,
+            Some(Feed::PerTurn(_) | Feed::InverseTime(_)) | None => f32::NAN,
+        };
+        bytes.extend(feed.to_le_bytes());
+        if walk.leans() {
+            let axis = walk.behind(at).axis.to_array();
+            let rotary = |place: usize| walk.positions(at).get(place).copied().unwrap_or(f64::NAN);
+            let values = axis.into_iter().chain([rotary(3), rotary(4)]);
+            bytes.extend(values.flat_map(|value| (value as f32).to_le_bytes()));
+        }
+    }
+    Some(bytes)
+}
+
+/// How many bytes the row of a move has.
+pub fn row_bytes(walk: &Walk) -> usize {
+    if walk.leans() { 36 } else { 16 }
+}
+
+/// The moves of a chunk.
+fn moves(walk: &Walk, chunk: u32) -> Option<Range<u32>> {
+    let first = chunk.checked_mul(CHUNK).filter(|first| *first < walk.len())?;
+    Some(first..first.saturating_add(CHUNK).min(walk.len()))
+}
+
+/// How far the lines of a level may be from the exact ones, mm.
+fn error(level: usize) -> f64 {
+    if level == 0 { EXACT } else { EXACT * 4f64.powi(level as i32) }
+}
+
+/// The exact polyline of a chunk.
+fn polyline(walk: &Walk, chunk: u32) -> Vec<Vertex> {
+    let Some(moves) = moves(walk, chunk) else { return Vec::new() };
+    let arcs = moves.clone().filter(|at| walk.arc(*at).is_some()).count();
+    let most = (MOST_VERTICES / arcs.max(1)).max(16);
+    let mut vertices = Vec::with_capacity(moves.len() + 1);
+    let first = moves.start;
+    for at in moves {
+        let packed = |kind: u8| {
+            let (tool, marks) = (u32::from(walk.tool(at)), u32::from(walk.marks(at)));
+            (at - first) | u32::from(kind) << 12 | tool << 16 | marks << 24
+        };
+        let (before, behind) = (walk.before(at).tip, walk.behind(at).tip);
+        if !behind.is_finite() {
+            continue;
+        }
+        let is_drawn = before.is_finite();
+        let goes_on = walk.goes_on(at) && !vertices.is_empty();
+        if is_drawn && !goes_on {
+            vertices.push(Vertex { at: before, packed: packed(GAP) });
+        }
+        match walk.arc(at).filter(|_| is_drawn) {
+            Some(arc) => {
+                let chords = arc.chords(EXACT).min(most);
+                let point = |i: usize| arc.at(i as f64 / chords as f64);
+                let kind = packed(walk.kind(at));
+                let points = (1..=chords).map(point).filter(|at| at.is_finite());
+                vertices.extend(points.map(|at| Vertex { at, packed: kind }));
+            }
+            None => {
+                let kind = if is_drawn { walk.kind(at) } else { GAP };
+                vertices.push(Vertex { at: behind, packed: packed(kind) });
+            }
+        }
+    }
+    vertices
+}
+
+fn bounds_of(vertices: &[Vertex]) -> Option<[Vec3; 2]> {
+    vertices.iter().fold(None, |bounds: Option<[Vec3; 2]>, vertex| {
+        let [low, high] = bounds.unwrap_or([vertex.at; 2]);
+        Some([low.min(vertex.at), high.max(vertex.at)])
+    })
+}
+
+/// The vertices of a level, made of those of the finer one (Douglas and Peucker). Where segments look otherwise, their common end stays.
+fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
+    // The errors of all levels add up to no more than that of this one: 3/4 (1 + 1/4 + 1/16 ...) = 1.
+    let most = 0.75 * error(level);
+    let mut kept = Vec::new();
+    let mut from = 0;
+    while let Some(first) = finer.get(from) {
+        // A stretch of segments that look alike, from the vertex before it.
+        let alike = |vertex: &&Vertex| vertex.look() == first.look() && vertex.kind() != GAP;
+        let to = from + finer[from..].iter().take_while(alike).count().max(1);
+        match from.checked_sub(1).filter(|_| to - from > 1) {
+            Some(anchor) => thin(&finer[anchor..to], most, &mut kept),
+            None => kept.extend_from_slice(&finer[from..to]),
+        }
+        from = to;
+    }
+    kept
+}
+
+/// Keeps of a line, without its first point, what no chord may leave out.
+fn thin(line: &[Vertex], most: f64, kept: &mut Vec<Vertex>) {
+    let mut open = vec![line.len() - 1];
+    let mut anchor = 0;
+    while let Some(end) = open.last().copied() {
+        let (a, b) = (line[anchor].at, line[end].at);
+        let between = line[anchor + 1..end].iter().map(|vertex| distance(vertex.at, a, b));
+        let furthest = between.enumerate().fold((0, 0.0), |furthest, (i, distance)| {
+            if distance > furthest.1 { (anchor + 1 + i, distance) } else { furthest }
+        });
+        if furthest.1 > most {
+            open.push(furthest.0);
+        } else {
+            kept.push(line[end]);
+            anchor = end;
+            open.pop();
+        }
+    }
+}
+
+/// Distance of a point from a segment.
+fn distance(point: Vec3, a: Vec3, b: Vec3) -> f64 {
+    let along = b - a;
+    let length = along.length_squared();
+    let t = if length > 0.0 { ((point - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    point.distance(a + along * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::walk::Follower;
+    use geom::Arc;
+    use program::Program;
+    use proof::{AxisPositions, Motion, MotionKind, Observer, Report, ToolPose};
+    use std::f64::consts::TAU;
+    use std::sync::Mutex;
+
+    /// A walk of moves that each end at a point; an arc goes there where one is given.
+    fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {
+        let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+        let (source, handed) = (Program::new("x"), Mutex::new(None));
+        let mut follower = Follower::new(&source, &machine, &handed);
+        let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
+        for (line, (kind, tip)) in (1..).zip(moves) {
+            let behind = ToolPose { tip, axis: Vec3::Z };
+            follower.moved(&Motion {
+                file: None,
+                line,
+                record: 0,
+                source_line: line,
+                kind,
+                tool: [before, behind],
+                axes: AxisPositions::Mill { linear: tip, rotary: [0.0; 3] },
+                feed: None,
+                seconds: 1.0,
+                waited: 0.0,
+            });
+            before = behind;
+        }
+        follower.ended(&Report::default());
+        handed.into_inner().unwrap().unwrap()
+    }
+
+    fn points(geometry: &Geometry, walk: &Walk, level: usize, chunk: usize) -> Vec<Vec3> {
+        let origin = geometry.chunks[chunk].origin;
+        let bytes = geometry.vertices(walk, level, chunk).unwrap();
+        let point = |vertex: &[u8]| {
+            let [x, y, z] = [0, 4, 8]
+                .map(|at| f64::from(f32::from_le_bytes(vertex[at..at + 4].try_into().unwrap())));
+            origin + Vec3::new(x, y, z)
+        };
+        bytes.chunks(16).map(point).collect()
+    }
+
+    fn furthest(points: &[Vec3], line: &[Vec3]) -> f64 {
+        let nearest = |point: &Vec3| {
+            let segments = line.windows(2).map(|ends| distance(*point, ends[0], ends[1]));
+            segments.fold(f64::INFINITY, f64::min)
+        };
+        points.iter().map(nearest).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn no_chord_leaves_its_arc_and_its_ends_are_those_of_the_move() {
+        let (start, end) = (Vec3::ZERO, Vec3::new(20.0, 0.0, 5.0));
+        let arc = Arc::new(start, end, Vec3::new(10.0, 0.0, 0.0), -Vec3::Z, 2, 1e-6).unwrap();
+        let walk = walk([(MotionKind::Arc(Box::new(arc)), end)]);
+        let geometry = Geometry::of(&walk);
+        let points = points(&geometry, &walk, 0, 0);
+        // By hand: a chord of a circle of 10 mm that leaves it by 0.002 mm spans 2 acos(1 - 0.0002) = 0.0400 rad; 2.5 turns take 393.
+        assert_eq!(points.len(), 1 + (2.5 * TAU / 0.040_000_7_f64).ceil() as usize);
+        let exact: Vec<Vec3> = (0..=10_000).map(|i| arc.at(f64::from(i) / 1e4)).collect();
+        assert!(furthest(&exact, &points) < EXACT + 1e-5);
+        assert!(points.last().unwrap().distance(end) < 1e-5);
+        assert_eq!(geometry.bounds().unwrap()[0].z, 0.0);
+    }
+
+    /// A spiral of small steps: as many vertices as the coarsest level may have, and half of that more.
+    #[test]
+    fn the_lines_of_a_level_are_no_further_off_than_it_says() {
+        let spiral = |i: u32| {
+            let t = f64::from(i) * 0.002;
+            (MotionKind::Line, Vec3::new(t.cos(), t.sin(), 0.0) * (10.0 + t / 50.0))
+        };
+        let walk = walk((0..375_000).map(spiral));
+        let geometry = Geometry::of(&walk);
+        let levels: Vec<(f64, usize)> = geometry.levels().collect();
+        assert!(levels.len() > 1 && levels.len() < MOST_LEVELS, "{levels:?}");
+        assert!(levels.last().unwrap().1 <= COARSEST);
+        assert_eq!(levels[0].1, 375_000 + geometry.chunks());
+        for chunk in [0, 40, geometry.chunks() - 1] {
+            let exact = points(&geometry, &walk, 0, chunk);
+            for (level, (error, _)) in levels.iter().enumerate().skip(1) {
+                let coarse = points(&geometry, &walk, level, chunk);
+                assert!(coarse.len() < exact.len());
+                assert!(furthest(&exact, &coarse) <= error + 1e-4, "level {level}");
+                assert_eq!((coarse.first(), coarse.last()), (exact.first(), exact.last()));
+            }
+        }
+    }
+
+    #[test]
+    fn rapids_and_cuts_are_not_drawn_as_one() {
+        let step = |i: u32| {
+            let kind = if i.is_multiple_of(2) { MotionKind::Rapid } else { MotionKind::Line };
+            (kind, Vec3::new(f64::from(i) * 1e-6, 0.0, 0.0))
+        };
+        let vertices = polyline(&walk((0..100).map(step)), 0);
+        assert_eq!(simplified(&vertices, 5), vertices);
+    }
+
+    #[test]
+    fn what_is_not_known_or_far_away_is_not_drawn_or_drawn_far_away() {
+        let walk = walk([
+            (MotionKind::Line, Vec3::new(1.0, 0.0, 0.0)),
+            (MotionKind::Rapid, Vec3::NAN),
+            (MotionKind::Rapid, Vec3::new(1e9, 0.0, 0.0)),
+            (MotionKind::Line, Vec3::new(1e9, 1.0, 0.0)),
+        ]);
+        let vertices = polyline(&walk, 0);
+        let kinds: Vec<u8> = vertices.iter().map(|vertex| vertex.kind()).collect();
+        assert_eq!(kinds, [GAP, crate::walk::FEED, GAP, crate::walk::FEED]);
+        let geometry = Geometry::of(&walk);
+        let flags = geometry.index(&walk);
+        assert_eq!((flags.len(), flags[60]), (64, 0));
+        let nothing = Geometry::of(&Walk::default());
+        assert_eq!((nothing.chunks(), nothing.bounds(), nothing.levels().count()), (0, None, 1));
+    }
+
+    #[test]
+    fn a_helix_of_a_hundred_thousand_turns_has_no_more_vertices_than_there_is_room_for() {
+        let end = Vec3::new(0.0, 0.0, -100.0);
+        let helix = Arc::new(Vec3::ZERO, end, Vec3::new(10.0, 0.0, 0.0), Vec3::Z, 100_000, 1e-6);
+        let arc = MotionKind::Arc(Box::new(helix.unwrap()));
+        let vertices = polyline(&walk([(arc.clone(), end), (arc, end)]), 0);
+        assert!(vertices.len() <= MOST_VERTICES + 3, "{}", vertices.len());
+    }
+}

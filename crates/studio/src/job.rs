@@ -1,0 +1,600 @@
+//! A job: one source with one machine, its program, its verdict and its walk. What is asked of it is answered here.
+
+use crate::ask::{
+    self, Axis, AxisKind, Finding, Found, JobMachine, Level, Line, MachineKind, Mismatch, Moves,
+    Of, Place, Saved, Template, TextAbout, WalkAbout,
+};
+use crate::folder::Folder;
+use crate::geometry::{self, Geometry};
+use crate::lines::{Lines, readable};
+use crate::machines;
+use crate::message::{Array, Values};
+use crate::place::{self, At};
+use crate::plots::{self, What};
+use crate::walk::{By, Follower, KINDS, Walk};
+use ::post::{Origins, Part};
+use app::toolpath::{self, Toolpath};
+use app::{Account, Source, Stop, Verdict, Watch, files, post, prove};
+use control::Folders;
+use machine::{Machine, Reach, library};
+use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
+use proof::{Observer, Tolerances};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The most bytes of a text that are answered at once.
+const MOST_TEXT: usize = 4 << 20;
+
+/// The most ranges of moves that are answered.
+const MOST_RANGES: usize = 1000;
+
+/// What the command's options say of a job.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Every warning about the toolpath is an error.
+    pub strict: bool,
+    /// What the source does not say itself.
+    pub origin: app::Origin,
+    /// How close the program has to be.
+    pub tolerances: Tolerances,
+    /// Options of the machine file.
+    pub machine: Vec<(String, String)>,
+}
+
+impl Options {
+    /// The same, with every file that they name read in the folder, or lying in it; and the tool table, where there is one.
+    ///
+    /// # Errors
+    /// One leads out of the folder, or cannot be read.
+    fn within(mut self, folder: &Folder) -> Result<(Options, Option<PathBuf>), Stop> {
+        let origin = &mut self.origin;
+        origin.reach = Reach::Folder(folder.path().to_owned());
+        let mut tools = None;
+        if let Some(Source::File(path)) = &origin.tools {
+            let name = path.to_string_lossy();
+            tools = Some(folder.target(&name)?);
+            origin.tools = Some(Source::memory(path, folder.read(&name)?));
+        }
+        if let Some(from) = origin.from.as_deref().filter(|from| machine::is_path(from)) {
+            origin.from = Some(folder.target(from)?.to_string_lossy().into_owned());
+        }
+        let own = |path: &PathBuf| folder.target(&path.to_string_lossy());
+        origin.folders = origin.folders.iter().map(own).collect::<Result<_, _>>()?;
+        Ok((self, tools))
+    }
+}
+
+/// Who waits for a job.
+pub trait Waits: Sync {
+    /// The next step begins.
+    fn step(&self, what: &'static str);
+
+    /// So much of it is done, 0 to 1.
+    fn reached(&self, part: f64);
+}
+
+/// Work that may be ended: by the page, by a newer ask, or because the page has gone.
+#[derive(Clone, Debug, Default)]
+pub struct Ended(Arc<AtomicBool>);
+
+impl Ended {
+    /// Ends it.
+    pub fn end(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was ended.
+    pub fn is_ended(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Follows the work on a job.
+struct Follows<'a> {
+    waits: &'a dyn Waits,
+    ended: &'a Ended,
+    walk: Mutex<Option<Walk>>,
+}
+
+impl Watch for Follows<'_> {
+    fn step(&self, what: &'static str) {
+        self.waits.step(what);
+    }
+
+    fn reached(&self, part: f64) {
+        self.waits.reached(part);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.ended.is_ended()
+    }
+
+    fn follow<'a>(
+        &'a self,
+        _file: &str,
+        source: &'a Program,
+        machine: &'a Machine,
+    ) -> Box<dyn Observer + 'a> {
+        Box::new(Follower::new(source, machine, &self.walk))
+    }
+}
+
+/// What a job is made of.
+pub struct Asked<'a> {
+    /// The toolpath.
+    pub source: Source,
+    /// Name of the machine, as it was asked for.
+    pub machine: &'a str,
+    /// What the options say.
+    pub options: Options,
+    /// Name of the program's file.
+    pub file: Option<String>,
+    /// The program, where it is there already.
+    pub program: Option<Vec<u8>>,
+    /// Where the programs are that it calls: a robot has them in the folder of the program.
+    pub folders: Vec<PathBuf>,
+    /// The files that it is made of, which nothing is saved over.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// A program with its verdict and its moves.
+#[derive(Debug)]
+pub struct Job {
+    account: Account,
+    machine_name: String,
+    machine: Machine,
+    machine_files: BTreeMap<String, Lines>,
+    toolpath: Toolpath,
+    source: Lines,
+    file: String,
+    program: Lines,
+    parts: BTreeMap<String, (Lines, Origins)>,
+    origins: Origins,
+    /// Whether the program is as it was written.
+    is_posted: bool,
+    /// The files that it is made of.
+    inputs: Vec<PathBuf>,
+    walk: Walk,
+    geometry: Geometry,
+}
+
+impl Job {
+    /// Does the work.
+    ///
+    /// # Errors
+    /// Why there is no program; or that the work was ended.
+    pub fn make(
+        asked: Asked,
+        folder: &Folder,
+        waits: &dyn Waits,
+        ended: &Ended,
+    ) -> Result<Job, Stop> {
+        let follows = Follows { waits, ended, walk: Mutex::new(None) };
+        follows.step("reading");
+        let (options, tools) = asked.options.within(folder)?;
+        let Options { strict, origin, tolerances, machine: set } = options;
+        let mut machine = machines::open(asked.machine, folder)?;
+        for (name, value) in &set {
+            machine.set_option(name, value)?;
+        }
+        let toolpath = toolpath::read_for(
+            &asked.source,
+            strict,
+            &origin,
+            Some(&machine),
+            Purpose::Program,
+            &follows,
+        )?;
+        let file = asked.file.unwrap_or_else(|| {
+            let name = asked.source.path().with_extension(&machine.extension);
+            files::name(&name)
+        });
+        let is_posted = asked.program.is_none();
+        let (account, text, origins, parts) = match asked.program {
+            None => {
+                let posted = post::proven(&toolpath, &machine, &file, &tolerances, &follows)?;
+                (posted.account, posted.text, posted.origins, posted.parts)
+            }
+            Some(text) => {
+                if encoding::is_utf_16(&text) {
+                    return Err(encoding::utf_16().file(file).into());
+                }
+                let called = if machine.arm.is_some() { asked.folders } else { Vec::new() };
+                let folders = Folders::from(called);
+                let read = encoding::without_mark(&text);
+                let program = (&*file, read, &folders);
+                let account = prove::compare(&toolpath, &machine, program, &tolerances, &follows)?;
+                (account, text, Origins::default(), Vec::new())
+            }
+        };
+        follows.step("drawing");
+        let walk = follows.walk.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let walk = walk.unwrap_or_default();
+        let geometry = Geometry::of(&walk);
+        let mut inputs = asked.inputs;
+        inputs.extend(tools);
+        inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
+        inputs.extend(machine.loaded_from.files.iter().cloned());
+        let part = |Part { file, text, origins }| (file, (Lines::of(text), origins));
+        Ok(Job {
+            account,
+            machine_name: asked.machine.to_owned(),
+            machine_files: texts_of(&machine),
+            source: source_lines(&toolpath, &asked.source),
+            toolpath,
+            machine,
+            file,
+            program: Lines::of(text),
+            parts: parts.into_iter().map(part).collect(),
+            origins,
+            is_posted,
+            inputs,
+            walk,
+            geometry,
+        })
+    }
+
+    /// How much memory it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        let records = size_of_val(&self.toolpath.program.records[..]);
+        let parts: usize = self.parts.values().map(|(lines, _)| lines.bytes()).sum();
+        let texts = self.source.bytes() + self.program.bytes() + parts;
+        texts + records + 5 * self.origins.lines() + self.walk.bytes() + self.geometry.bytes()
+    }
+
+    /// The walk.
+    pub fn walk(&self) -> &Walk {
+        &self.walk
+    }
+
+    /// What is drawn.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// What is said of it.
+    pub fn about(&self, revision: u64) -> ask::Job {
+        let mut findings = self.account.findings.clone();
+        if self.walk.left_out() > 0 {
+            let message = format!(
+                "the view has the first {} moves; {} more are proven and not shown",
+                self.walk.len(),
+                self.walk.left_out()
+            );
+            findings.push(Diagnostic::warning(Rule::StudioLimit, message));
+        }
+        let findings = findings.into_iter().collect::<Findings>().finish();
+        let text = |file: &str, lines: &Lines| ask::Text {
+            file: file.to_owned(),
+            lines: lines.count(),
+            bytes: lines.text().len() as u64,
+        };
+        let rows = self.account.rows.iter().map(|(head, text)| ((*head).to_owned(), text.clone()));
+        ask::Job {
+            revision,
+            verdict: self.account.verdict.into(),
+            rows: rows.collect(),
+            findings: findings.into_iter().map(|found| self.finding(found)).collect(),
+            program: Some(text(&self.file, &self.program)),
+            parts: self.parts.iter().map(|(file, (lines, _))| text(file, lines)).collect(),
+            source: text(&self.toolpath.file, &self.source),
+            machine: JobMachine {
+                name: self.machine_name.clone(),
+                title: self.machine.title.clone(),
+                kind: machines::kind(&self.machine),
+                dialect: self.machine.reader.clone(),
+                axes: axes(&self.machine),
+                files: self.machine_files.iter().map(|(file, lines)| text(file, lines)).collect(),
+            },
+            walk: self.walk_about(),
+            mismatch: self.mismatch(),
+        }
+    }
+
+    fn walk_about(&self) -> WalkAbout {
+        let (walk, geometry) = (&self.walk, &self.geometry);
+        let level = |(error, vertices)| Level { error, vertices: vertices as u64 };
+        WalkAbout {
+            moves: walk.len(),
+            left_out: u32::try_from(walk.left_out()).unwrap_or(u32::MAX),
+            chunks: geometry.chunks() as u32,
+            levels: geometry.levels().map(level).collect(),
+            r#box: geometry.bounds().map(|bounds| bounds.map(|corner| corner.to_array())),
+            time_s: walk.seconds(),
+            tools: walk.tool_uses().to_vec(),
+            operations: walk.operations().to_vec(),
+            kinds: KINDS.to_vec(),
+            row: geometry::row_bytes(walk) as u32,
+            mismatch: walk.mismatch(),
+        }
+    }
+
+    /// The first mismatch, as the report has it.
+    fn mismatch(&self) -> Option<Mismatch> {
+        let first = self.account.data.get("proof")?.get("first_mismatch")?.as_object()?;
+        let line = |key| first.get(key)?.as_u64().and_then(|line| u32::try_from(line).ok());
+        Some(Mismatch {
+            file: first.get("program_file").and_then(|file| Some(file.as_str()?.to_owned())),
+            program: line("program_line")?,
+            block: readable(first.get("block")?.as_str()?.as_bytes()).0,
+            source: line("source_line")?,
+        })
+    }
+
+    fn finding(&self, found: Diagnostic) -> Finding {
+        let of = match &*found.file {
+            "" => None,
+            file if file == self.file || self.parts.contains_key(file) => Some(Of::Program),
+            file if file == self.toolpath.file => Some(Of::Source),
+            file if self.machine_files.contains_key(file) => Some(Of::Machine),
+            _ => None,
+        };
+        Finding { of, ..Finding::from(found) }
+    }
+
+    fn lines(&self, of: Of, file: Option<&str>) -> Result<&Lines, Stop> {
+        let found = match (of, file) {
+            (Of::Program, None) => Some(&self.program),
+            (Of::Program, Some(file)) if file == self.file => Some(&self.program),
+            (Of::Program, Some(file)) => self.parts.get(file).map(|(lines, _)| lines),
+            (Of::Source, _) => Some(&self.source),
+            (Of::Machine, None) => self.machine_files.get(&self.machine.file),
+            (Of::Machine, Some(file)) => self.machine_files.get(file),
+        };
+        found.ok_or_else(|| {
+            let message = "this program has no text of this name";
+            Diagnostic::error(Rule::StudioAsk, message).into()
+        })
+    }
+
+    /// Lines of a text.
+    ///
+    /// # Errors
+    /// There is no such text.
+    pub fn text(
+        &self,
+        of: Of,
+        file: Option<&str>,
+        from: u32,
+        to: u32,
+    ) -> Result<(TextAbout, Array), Stop> {
+        let lines = self.lines(of, file)?;
+        let (text, cut, behind) = lines.shown(from, to, MOST_TEXT);
+        let bytes = lines.text().len() as u64;
+        let about = TextAbout { lines: lines.count(), bytes, from: from.max(1), to: behind, cut };
+        Ok((about, Array::text("text", text)))
+    }
+
+    /// The next line that has a text in it.
+    ///
+    /// # Errors
+    /// There is no such text.
+    pub fn search(&self, of: Of, file: Option<&str>, text: &str, from: u32) -> Result<Found, Stop> {
+        let (line, column) = self.lines(of, file)?.find(text.as_bytes(), from).unzip();
+        Ok(Found { line, column })
+    }
+
+    /// The place that was asked for; `None` where there are no moves.
+    pub fn place(&self, by: ask::By, value: f64, file: Option<&str>) -> Option<Place> {
+        let whole =
+            if value.is_finite() { value.clamp(0.0, f64::from(u32::MAX)) as u32 } else { 0 };
+        let walk = &self.walk;
+        let at = match by {
+            ask::By::Time => place::at_time(walk, value),
+            ask::By::Move => place::at_move(walk, whole),
+            ask::By::Block => place::at_line(walk, By::Block(file), whole),
+            ask::By::Source => place::at_line(walk, By::Source, whole),
+        }?;
+        Some(self.place_at(at))
+    }
+
+    fn place_at(&self, at: At) -> Place {
+        let (walk, number) = (&self.walk, at.r#move);
+        let stand = place::stand(walk, &self.machine, at);
+        let known = |value: f64| value.is_finite().then_some(value);
+        let state = walk.state(number);
+        let (file, line) = (walk.file(number), walk.line(number));
+        let (lines, origins) = match file.and_then(|file| self.parts.get(file)) {
+            Some((lines, origins)) => (Some(lines), origins),
+            None => (file.is_none().then_some(&self.program), &self.origins),
+        };
+        let shown = |lines: &Lines, line: u32| readable(lines.line(line)).0;
+        let template = origins.of(line).map(|origin| {
+            let block = origin.template(&self.machine);
+            Template {
+                name: origin.block.to_owned(),
+                file: block.map(|block| block.file.clone()),
+                line: block.map_or(0, |block| block.line),
+                text: block.map(|block| block.text.clone()).unwrap_or_default(),
+            }
+        });
+        let source_line = walk.source_line(number);
+        let source = (source_line > 0).then(|| Line {
+            file: None,
+            line: source_line,
+            text: shown(&self.source, source_line),
+        });
+        let tools = u32::try_from(walk.tool_uses().len()).unwrap_or(u32::MAX);
+        Place {
+            time_s: at.seconds,
+            r#move: number,
+            part: at.part,
+            kind: place::kind(walk, at),
+            marks: walk.marks(number),
+            block: Line {
+                file: file.map(str::to_owned),
+                line,
+                text: lines.map(|lines| shown(lines, line)).unwrap_or_default(),
+            },
+            source,
+            template,
+            tool: Some(u32::from(walk.tool(number))).filter(|tool| *tool < tools),
+            tip: stand.tip.to_array().map(known),
+            axis: stand.axis.to_array().map(known),
+            axes: stand.positions.into_iter().map(known).collect(),
+            feed: walk.feed(number).map(place::feed),
+            spindle: state.map(place::spindle),
+            coolant: state.map(|state| place::coolant(state.coolant)),
+            compensation: state.map(|state| place::compensation(state.compensation)),
+            cycle: state.and_then(|state| Some(place::cycle(state.cycle.as_ref()?.kind))),
+            work_offset: state.and_then(|state| state.work_offset).map(|offset| offset.number()),
+        }
+    }
+
+    /// The moves that a line makes.
+    pub fn moves(&self, by: ask::By, line: u32, file: Option<&str>) -> Result<Moves, Stop> {
+        let by = match by {
+            ask::By::Block => By::Block(file),
+            ask::By::Source => By::Source,
+            ask::By::Time | ask::By::Move => {
+                let message = "moves are asked for by a line: by `block` or by `source`";
+                return Err(Diagnostic::error(Rule::StudioAsk, message).into());
+            }
+        };
+        Ok(Moves { ranges: self.walk.moves_of(by, line, MOST_RANGES) })
+    }
+
+    /// An axis or the feed over time.
+    ///
+    /// # Errors
+    /// There is no such axis.
+    pub fn plot(&self, what: &str, times: [f64; 2], pixels: u32) -> Result<Vec<Array>, Stop> {
+        let axis = || axes(&self.machine).iter().position(|axis| axis.name == what);
+        let what = match what {
+            "feed" => What::Feed,
+            _ => What::Axis(axis().ok_or_else(|| {
+                let message = "there is no plot of this name: an axis of the machine, or `feed`";
+                Diagnostic::error(Rule::StudioAsk, message)
+            })?),
+        };
+        let [least, most] = plots::plot(&self.walk, what, times, pixels);
+        let array = |name: &str, values| Array::new(name, Values::F32(values));
+        Ok(vec![array("least", least), array("most", most)])
+    }
+
+    /// Saves the program with what it calls and its report, all or none.
+    ///
+    /// # Errors
+    /// It is not proven, leads out of the folder, or cannot be saved; nothing is changed then.
+    pub fn save(&self, folder: &Folder, path: &str, replace: bool) -> Result<Saved, Stop> {
+        let refused = |message: &str, help: &str| {
+            Stop::from(Diagnostic::error(Rule::OutputFile, message).help(help).file(path))
+        };
+        if self.account.verdict != Verdict::Done {
+            let message = "the program is not proven: it is not saved";
+            return Err(refused(message, "correct what the findings name, and prove it again"));
+        }
+        let target = folder.target(path)?;
+        if target.exists() && !replace {
+            return Err(refused("it is there already", "give another name, or replace it"));
+        }
+        if self.machine.cell.is_some() && files::name(&target) != self.file {
+            let message =
+                format!("the program calls itself by the name of its file, {}", self.file);
+            return Err(refused(&message, "post it under the name that it is to be saved by"));
+        }
+        let parent = Path::new(path).parent().unwrap_or(Path::new(""));
+        let within = |name: &str| parent.join(name).to_string_lossy().into_owned();
+        let mut saved = vec![path.to_owned()];
+        for part in self.parts.keys() {
+            folder.target(&within(part))?;
+            saved.push(within(part));
+        }
+        let report = self.is_posted.then(|| self.account.report());
+        if report.is_some() {
+            let name = files::name(&files::report_of(&target));
+            folder.target(&within(&name))?;
+            saved.push(within(&name));
+        }
+        let parts = self.parts.iter().map(|(file, (lines, _))| (&**file, lines.text()));
+        let parts: Vec<(&str, &[u8])> = parts.collect();
+        let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
+        let text = self.program.text();
+        files::save_program(&target, text, &parts, report.as_deref(), &inputs)?;
+        Ok(Saved { files: saved })
+    }
+}
+
+/// The lines of a source as its findings count them: those of the file, or the commands of a FreeCAD job.
+fn source_lines(toolpath: &Toolpath, source: &Source) -> Lines {
+    if let Some(text) = toolpath.commands() {
+        return Lines::of(text.to_vec());
+    }
+    Lines::of(source.text().unwrap_or_default())
+}
+
+/// The files in which the templates of a machine stand.
+fn texts_of(machine: &Machine) -> BTreeMap<String, Lines> {
+    let of_blocks = machine.blocks.values().map(|block| &block.file);
+    let names = of_blocks.chain([&machine.file]);
+    let mut texts: BTreeMap<String, Lines> = BTreeMap::new();
+    for name in names {
+        if texts.contains_key(name) {
+            continue;
+        }
+        let own = machine.loaded_from.files.iter().find(|path| files::name(path) == *name);
+        let stem = name.strip_suffix(".toml").unwrap_or(name);
+        let text = match own {
+            Some(path) => files::read(path).ok(),
+            None => library::find(stem, library::EVERYTHING).map(|(_, text)| text.into()),
+        };
+        if let Some(text) = text {
+            texts.insert(name.clone(), Lines::of(text));
+        }
+    }
+    texts
+}
+
+/// The axes of a machine, in the order in which their positions are kept.
+pub fn axes(machine: &Machine) -> Vec<Axis> {
+    let known = |value: f64| value.is_finite().then_some(value);
+    let axis = |name: String, kind, unit, low: f64, high: f64| {
+        let (low, high) = (known(low), known(high));
+        Axis { name, kind, unit, low, high }
+    };
+    match machines::kind(machine) {
+        MachineKind::Mill => {
+            // Travels count from the zero of the machine; so do positions where the work zero is known.
+            let counts = machine.work_zero.is_some();
+            let linear = ["X", "Y", "Z"].into_iter().zip(&machine.linear).map(|(name, linear)| {
+                let (low, high) =
+                    if counts { (linear.min, linear.max) } else { (f64::NAN, f64::NAN) };
+                axis(name.to_owned(), AxisKind::Linear, "mm", low, high)
+            });
+            let rotary = machine.rotary.iter().map(|rotary| {
+                let name = rotary.letter.to_string();
+                axis(name, AxisKind::Rotary, "degrees", rotary.min, rotary.max)
+            });
+            linear.chain(rotary).collect()
+        }
+        MachineKind::Wire => {
+            let travel = machine.wire.as_ref().map_or(f64::NAN, |wire| wire.uv_travel);
+            let linear = |name: &str, travel: f64| {
+                axis(name.to_owned(), AxisKind::Linear, "mm", -travel, travel)
+            };
+            let unknown = f64::NAN;
+            [("X", unknown), ("Y", unknown), ("U", travel), ("V", travel)]
+                .map(|(name, travel)| linear(name, travel))
+                .to_vec()
+        }
+        MachineKind::Robot => {
+            let arm = machine.arm.as_ref();
+            let joints = arm.iter().flat_map(|arm| arm.joints()).zip(1..).map(|(joint, number)| {
+                // How the controller counts joint 3 depends on joint 2, or is not known.
+                let (low, high) = match number {
+                    3 => (f64::NAN, f64::NAN),
+                    _ => (joint.min.to_degrees(), joint.max.to_degrees()),
+                };
+                axis(format!("J{number}"), AxisKind::Joint, "degrees", low, high)
+            });
+            let rail = machine
+                .cell
+                .as_ref()
+                .and_then(|cell| cell.rail.as_ref())
+                .map(|rail| axis(String::from("E1"), AxisKind::Rail, "mm", rail.min, rail.max));
+            joints.chain(rail).collect()
+        }
+    }
+}

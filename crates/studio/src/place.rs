@@ -1,0 +1,165 @@
+//! The one cursor: from a time, a move, a block or a line of the source to everything that holds there.
+
+use crate::ask::{FeedAbout, SpindleAbout};
+use crate::walk::{ARC, By, KINDS, RAPID, Walk};
+use geom::Vec3;
+use machine::Machine;
+use program::{Compensation, Coolant, CycleKind, Feed};
+use proof::{MachineState, SpindleState};
+
+/// A place within a move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct At {
+    /// The move.
+    pub r#move: u32,
+    /// How much of it is done, 0 to 1.
+    pub part: f64,
+    /// Seconds from the start.
+    pub seconds: f64,
+}
+
+/// The place at a time, s; that of the start or the end where there is nothing before or behind.
+pub fn at_time(walk: &Walk, seconds: f64) -> Option<At> {
+    let seconds = if seconds.is_finite() { seconds.clamp(0.0, walk.seconds()) } else { 0.0 };
+    let at = walk.at_time(seconds)?;
+    let begin = walk.end_before(at) + walk.waited(at);
+    let takes = walk.end(at) - begin;
+    let part = if takes > 0.0 { ((seconds - begin) / takes).clamp(0.0, 1.0) } else { 1.0 };
+    Some(At { r#move: at, part, seconds })
+}
+
+/// The end of a move; that of the last one where there are fewer.
+pub fn at_move(walk: &Walk, number: u32) -> Option<At> {
+    let at = number.min(walk.len().checked_sub(1)?);
+    Some(At { r#move: at, part: 1.0, seconds: walk.end(at) })
+}
+
+/// The end of the first move that a line makes; where it makes none, of the first one of the next line that makes some.
+pub fn at_line(walk: &Walk, by: By, line: u32) -> Option<At> {
+    let next = match walk.moves_of(by, line, 1).first() {
+        Some([first, _]) => Some(*first),
+        None => walk.next_line(by, line),
+    };
+    at_move(walk, next?)
+}
+
+/// The tool and the axes at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stand {
+    /// The tip, work frame, mm; NaN where it is not known.
+    pub tip: Vec3,
+    /// The tool axis.
+    pub axis: Vec3,
+    /// The axes.
+    pub positions: Vec<f64>,
+}
+
+/// Where tool and axes are at a place. Between the ends of a move rotary axes and joints turn evenly, a cut keeps its tip on its line or arc,
+/// with the linear axes where the machine's kinematics have them, and in a rapid every axis goes evenly.
+pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
+    let (before, behind) = (walk.before(at.r#move), walk.behind(at.r#move));
+    let end = walk.positions(at.r#move);
+    if at.part >= 1.0 {
+        return Stand { tip: behind.tip, axis: behind.axis, positions: end.to_vec() };
+    }
+    let part = at.part;
+    let tip = match walk.arc(at.r#move) {
+        Some(arc) => arc.at(part),
+        None => before.tip.lerp(behind.tip, part),
+    };
+    let axis = before.axis.lerp(behind.axis, part).normalize_or(behind.axis);
+    let start: &[f64] = match at.r#move.checked_sub(1) {
+        Some(last) => walk.positions(last),
+        None => &[],
+    };
+    let between = |(place, end): (usize, &f64)| {
+        let start = start.get(place).copied().unwrap_or(f64::NAN);
+        start + (end - start) * part
+    };
+    let mut positions: Vec<f64> = end.iter().enumerate().map(between).collect();
+    let is_mill = machine.wire.is_none() && machine.arm.is_none();
+    if walk.kind(at.r#move) != RAPID && is_mill {
+        let degrees = |positions: &[f64]| {
+            let mut degrees = [0.0; 3];
+            for (axis, position) in machine.rotary.iter().zip(positions.iter().skip(3)) {
+                degrees[axis.index()] = *position;
+            }
+            degrees
+        };
+        let length = walk.state(at.r#move).and_then(|state| state.tool.as_ref()?.length);
+        let linear = |tip, positions: &[f64]| {
+            machine.linear_for(tip, degrees(positions), length.unwrap_or(0.0))
+        };
+        // What positions count from is the same at the end of the move.
+        let moved = linear(tip, &positions) - linear(behind.tip, end);
+        for ((position, moved), end) in positions.iter_mut().zip(moved.to_array()).zip(end) {
+            *position = end + moved;
+        }
+    } else if walk.kind(at.r#move) == ARC && machine.wire.is_some() {
+        let moved = (tip - behind.tip).to_array();
+        for ((position, moved), end) in positions.iter_mut().zip(&moved[..2]).zip(end) {
+            *position = end + moved;
+        }
+    }
+    Stand { tip, axis, positions }
+}
+
+/// What a move is called.
+pub fn kind(walk: &Walk, at: At) -> &'static str {
+    KINDS[usize::from(walk.kind(at.r#move))]
+}
+
+/// A feed in its unit.
+pub fn feed(feed: Feed) -> FeedAbout {
+    let unit = match feed {
+        Feed::PerMinute(_) => "mm/min",
+        Feed::PerTurn(_) => "mm/turn",
+        Feed::InverseTime(_) => "1/min",
+    };
+    FeedAbout { value: feed.value(), unit }
+}
+
+/// A spindle.
+pub fn spindle(state: &MachineState) -> SpindleAbout {
+    let (turns, speed) = match state.spindle {
+        SpindleState::Off => ("off", Some(0.0)),
+        SpindleState::Clockwise(speed) => ("clockwise", Some(speed)),
+        SpindleState::CounterClockwise(speed) => ("counter-clockwise", Some(speed)),
+        SpindleState::On(speed) => ("on", speed),
+    };
+    SpindleAbout { turns, speed }
+}
+
+/// Coolant in words.
+pub fn coolant(coolant: Coolant) -> &'static str {
+    match coolant {
+        Coolant::Off => "off",
+        Coolant::Flood => "flood",
+        Coolant::Mist => "mist",
+        Coolant::FloodAndMist => "flood and mist",
+        Coolant::Through => "through",
+    }
+}
+
+/// Compensation in words.
+pub fn compensation(compensation: Compensation) -> &'static str {
+    match compensation {
+        Compensation::Off => "off",
+        Compensation::Left(_) => "left",
+        Compensation::Right(_) => "right",
+    }
+}
+
+/// A cycle in words.
+pub fn cycle(kind: CycleKind) -> &'static str {
+    match kind {
+        CycleKind::Drill => "drill",
+        CycleKind::Deep => "deep",
+        CycleKind::BreakChip => "break chip",
+        CycleKind::Tap { .. } => "tap",
+        CycleKind::Ream => "ream",
+        CycleKind::Bore => "bore",
+        CycleKind::FineBore(_) => "fine bore",
+        CycleKind::BackBore { .. } => "back bore",
+    }
+}

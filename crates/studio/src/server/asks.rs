@@ -1,0 +1,200 @@
+//! What the asks are answered.
+
+use super::socket::of_head;
+use super::{LIMITS, Studio};
+use crate::ask::{
+    DraftName, DraftParams, FileOrUpload, FolderParams, Listing, MovesParams, Nothing, Opened,
+    PlaceParams, PlotParams, PostParams, ProveParams, SaveParams, SearchParams, TextParams,
+};
+use crate::job::{Asked, Ended, Job, Waits};
+use crate::machines;
+use crate::message::{Array, Frame};
+use app::Stop;
+use program::{Diagnostic, Rule};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// All asks there are.
+const ASKS: &str = "open, folder, machines, form, post, prove, text, search, place, moves, plot, save, drafts, draft, draft_text, drop_draft";
+
+/// What an ask is answered: a head and arrays.
+pub struct Answer {
+    /// The head's `done`.
+    pub done: Value,
+    /// The arrays.
+    pub arrays: Vec<Array>,
+}
+
+impl Answer {
+    fn of(done: impl Serialize) -> Result<Answer, Stop> {
+        Answer::with(done, Vec::new())
+    }
+
+    fn with(done: impl Serialize, arrays: Vec<Array>) -> Result<Answer, Stop> {
+        let done = serde_json::to_value(done).map_err(|error| wrong(&error.to_string()))?;
+        Ok(Answer { done, arrays })
+    }
+}
+
+/// Whether an ask makes a job: of those of a page the newest ends the older.
+pub fn makes_job(ask: &str) -> bool {
+    ["post", "prove"].contains(&ask)
+}
+
+/// Answers an ask.
+///
+/// # Errors
+/// It is none, its parameters are wrong, or it has no answer.
+pub fn answer(
+    studio: &Studio,
+    ask: &str,
+    params: Map<String, Value>,
+    arrays: Vec<Array>,
+    work: (&dyn Waits, &Ended),
+) -> Result<Answer, Stop> {
+    let folder = &studio.folder;
+    let mut frame = Frame { head: Map::new(), arrays };
+    match ask {
+        "open" => {
+            none(params)?;
+            Answer::of(Opened {
+                version: env!("CARGO_PKG_VERSION"),
+                folder: folder.name(),
+                source: studio.source.clone(),
+                machine: studio.machine.clone(),
+                drafts: folder.drafts(),
+                limits: LIMITS,
+            })
+        }
+        "folder" => {
+            let FolderParams { path } = read(params)?;
+            let (entries, is_whole) = folder.list(&path)?;
+            Answer::of(Listing { entries, is_whole })
+        }
+        "machines" => {
+            none(params)?;
+            Answer::of(machines::list(folder))
+        }
+        "form" => {
+            none(params)?;
+            Answer::of(&studio.form)
+        }
+        "post" => {
+            let PostParams { source, machine, options, file } = read(params)?;
+            let asked = (&source, &*machine, &*options, file);
+            make(studio, asked, None, None, work)
+        }
+        "prove" => {
+            let ProveParams { source, machine, options, file, program } = read(params)?;
+            let text = match (&program, frame.take_text("text")) {
+                (None, Some(text)) => text,
+                (Some(program), None) => studio.source(program)?.read()?,
+                _ => return Err(wrong("a program is proven by `program`, or by the array `text`")),
+            };
+            let asked = (&source, &*machine, &*options, file);
+            make(studio, asked, Some(text), program.as_ref(), work)
+        }
+        "text" => {
+            let TextParams { revision, of, file, from, to } = read(params)?;
+            let job = studio.jobs.find(revision)?;
+            let (about, text) = job.text(of, file.as_deref(), from, to)?;
+            Answer::with(about, vec![text])
+        }
+        "search" => {
+            let SearchParams { revision, of, file, text, from } = read(params)?;
+            Answer::of(studio.jobs.find(revision)?.search(of, file.as_deref(), &text, from)?)
+        }
+        "place" => {
+            let PlaceParams { revision, by, value, file } = read(params)?;
+            Answer::of(studio.jobs.find(revision)?.place(by, value, file.as_deref()))
+        }
+        "moves" => {
+            let MovesParams { revision, by, value, file } = read(params)?;
+            Answer::of(studio.jobs.find(revision)?.moves(by, value, file.as_deref())?)
+        }
+        "plot" => {
+            let PlotParams { revision, what, from, to, pixels } = read(params)?;
+            let job = studio.jobs.find(revision)?;
+            Answer::with(Nothing {}, job.plot(&what, [from, to], pixels)?)
+        }
+        "save" => {
+            let SaveParams { revision, path, replace } = read(params)?;
+            Answer::of(studio.jobs.find(revision)?.save(folder, &path, replace)?)
+        }
+        "drafts" => {
+            none(params)?;
+            Answer::of(folder.drafts())
+        }
+        "draft" => {
+            let DraftParams { name, of } = read(params)?;
+            let text = frame.take_text("text").ok_or_else(|| wrong("`text` is missing"))?;
+            folder.keep_draft(&name, &of, &text)?;
+            Answer::of(Nothing {})
+        }
+        "draft_text" => {
+            let DraftName { name } = read(params)?;
+            let text = folder.text_of_draft(&name)?;
+            Answer::with(Nothing {}, vec![Array::text("text", text)])
+        }
+        "drop_draft" => {
+            let DraftName { name } = read(params)?;
+            folder.drop_draft(&name)?;
+            Answer::of(Nothing {})
+        }
+        _ => Err(wrong(&format!("there is no ask `{ask}`; there are {ASKS}"))),
+    }
+}
+
+/// Makes a job, and keeps it.
+fn make(
+    studio: &Studio,
+    (source, machine, options, file): (&FileOrUpload, &str, &[(String, String)], Option<String>),
+    text: Option<Vec<u8>>,
+    program: Option<&FileOrUpload>,
+    (waits, ended): (&dyn Waits, &Ended),
+) -> Result<Answer, Stop> {
+    let options = studio.options(options)?;
+    let within = |file: &FileOrUpload| match file {
+        FileOrUpload::File(path) => studio.folder.target(path).ok(),
+        FileOrUpload::Upload(_) => None,
+    };
+    let inputs: Vec<PathBuf> =
+        [within(source), program.and_then(within)].into_iter().flatten().collect();
+    let beside = program.and_then(within).and_then(|path| Some(path.parent()?.to_owned()));
+    // A program of the folder keeps its name.
+    let named = match program {
+        Some(FileOrUpload::File(path)) => path.rsplit('/').next().map(str::to_owned),
+        Some(FileOrUpload::Upload(_)) | None => None,
+    };
+    let asked = Asked {
+        source: studio.source(source)?,
+        machine,
+        options,
+        file: file.or(named),
+        program: text,
+        folders: beside.into_iter().collect(),
+        inputs,
+    };
+    let job = Arc::new(Job::make(asked, &studio.folder, waits, ended)?);
+    let revision = studio.jobs.keep(Arc::clone(&job));
+    Answer::of(job.about(revision))
+}
+
+/// The parameters of an ask.
+fn read<T: DeserializeOwned>(params: Map<String, Value>) -> Result<T, Stop> {
+    of_head(params).map_err(|why| wrong(&why))
+}
+
+/// Checks that an ask has no parameters.
+fn none(params: Map<String, Value>) -> Result<(), Stop> {
+    if params.is_empty() { Ok(()) } else { Err(wrong("this ask has no parameters")) }
+}
+
+/// What the page has done wrong.
+pub fn wrong(why: &str) -> Stop {
+    let why: String = why.chars().take(300).collect();
+    Diagnostic::error(Rule::StudioAsk, why).into()
+}

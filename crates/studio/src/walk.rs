@@ -1,0 +1,600 @@
+//! The walk: all moves of a program in the control's order, as columns. Whatever the page asks is looked up here.
+//!
+//! A move takes 67 bytes on three axes (8 more for each further axis, 24 where any tool leans), and what changes seldom is kept where
+//! it changes: feeds, states, arcs, waits, and where a move does not begin where the one before it ended.
+
+use crate::ask::{Operation, ToolUse};
+use geom::{Arc, Vec3};
+use machine::Machine;
+use program::{Compensation, Diagnostic, Feed, Op, Program};
+use proof::{AxisPositions, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// How a move goes, by its number in vertices and rows.
+pub const KINDS: [&str; 5] = ["gap", "rapid", "feed", "arc", "joints"];
+
+/// No line is drawn to this vertex.
+pub const GAP: u8 = 0;
+/// As fast as the axes can.
+pub const RAPID: u8 = 1;
+/// Straight, at the feed.
+pub const FEED: u8 = 2;
+/// An arc or a helix.
+pub const ARC: u8 = 3;
+/// All joints of an arm together.
+pub const JOINTS: u8 = 4;
+
+/// Marks of a move: compensation is switched with it.
+pub const SWITCHED: u8 = 1;
+/// It belongs to an excursion.
+pub const EXCURSION: u8 = 2;
+/// It is the last one before the first mismatch.
+pub const MISMATCH: u8 = 4;
+
+/// How much memory a walk takes, bytes: what goes beyond is left out.
+const MOST_BYTES: usize = 3 << 29;
+
+/// How many tools and how many operations are listed.
+const MOST_NAMED: usize = 10_000;
+
+/// After so many moves it is looked at.
+const LOOK: usize = 4096;
+
+/// The moves of a program.
+#[derive(Debug, Default)]
+pub struct Walk {
+    kinds: Vec<u8>,
+    tools: Vec<u8>,
+    marks: Vec<u8>,
+    lines: Vec<u32>,
+    source_lines: Vec<u32>,
+    /// Time behind the move, s.
+    ends: Vec<f64>,
+    tips: Vec<Vec3>,
+    /// The tool axis behind the move; empty where no tool leans.
+    axes: Vec<Vec3>,
+    /// Positions of the axes behind the move, so many for each.
+    positions: Vec<f64>,
+    stride: usize,
+    /// Where the tool is before a move that does not begin where the one before it ended.
+    starts: Vec<(u32, ToolPose)>,
+    arcs: Vec<(u32, Arc)>,
+    waits: Vec<(u32, f64)>,
+    feeds: Vec<(u32, Option<Feed>)>,
+    states: Vec<(u32, MachineState)>,
+    /// Which called file a move stands in, as a place in `names`; from where on.
+    files: Vec<(u32, Option<u32>)>,
+    names: Vec<Box<str>>,
+    tool_uses: Vec<ToolUse>,
+    operations: Vec<Operation>,
+    mismatch: Option<u32>,
+    /// How many moves there were beyond [`MOST_BYTES`].
+    left_out: usize,
+    is_full: bool,
+}
+
+/// The entry of a list, ordered by moves, that holds for a move.
+fn holds<T>(list: &[(u32, T)], at: u32) -> Option<&T> {
+    let behind = list.partition_point(|(from, _)| *from <= at);
+    behind.checked_sub(1).map(|place| &list[place].1)
+}
+
+/// The entry of a list, ordered by moves, that is of a move alone.
+fn of<T>(list: &[(u32, T)], at: u32) -> Option<&T> {
+    list.binary_search_by_key(&at, |(of, _)| *of).ok().map(|place| &list[place].1)
+}
+
+/// Which lines moves are looked up by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By<'a> {
+    /// Those of the program, or of the file of this name that it calls.
+    Block(Option<&'a str>),
+    /// Those of the source.
+    Source,
+}
+
+impl Walk {
+    /// How many moves there are.
+    pub fn len(&self) -> u32 {
+        self.kinds.len() as u32
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// How many moves were left out, because there are too many.
+    pub fn left_out(&self) -> usize {
+        self.left_out
+    }
+
+    /// How long all of it takes, s.
+    pub fn seconds(&self) -> f64 {
+        self.ends.last().copied().unwrap_or(0.0)
+    }
+
+    /// The tools in the order of their first use.
+    pub fn tool_uses(&self) -> &[ToolUse] {
+        &self.tool_uses
+    }
+
+    /// The operations of the source.
+    pub fn operations(&self) -> &[Operation] {
+        &self.operations
+    }
+
+    /// The last move before the first mismatch; the first one where there is none before it.
+    pub fn mismatch(&self) -> Option<u32> {
+        self.mismatch
+    }
+
+    /// Whether any tool leans.
+    pub fn leans(&self) -> bool {
+        !self.axes.is_empty()
+    }
+
+    /// How many axes there are.
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// How a move goes.
+    pub fn kind(&self, at: u32) -> u8 {
+        self.kinds[at as usize]
+    }
+
+    /// Place of its tool among [`Walk::tool_uses`], 255 for the 256th and on.
+    pub fn tool(&self, at: u32) -> u8 {
+        self.tools[at as usize]
+    }
+
+    /// What is marked of it.
+    pub fn marks(&self, at: u32) -> u8 {
+        self.marks[at as usize]
+    }
+
+    /// The line of its block.
+    pub fn line(&self, at: u32) -> u32 {
+        self.lines[at as usize]
+    }
+
+    /// The called file that its block stands in; none where it is the program itself.
+    pub fn file(&self, at: u32) -> Option<&str> {
+        holds(&self.files, at)?.map(|name| &*self.names[name as usize])
+    }
+
+    /// The line of its record; 0 for none.
+    pub fn source_line(&self, at: u32) -> u32 {
+        self.source_lines[at as usize]
+    }
+
+    /// When it is over, s.
+    pub fn end(&self, at: u32) -> f64 {
+        self.ends[at as usize]
+    }
+
+    /// When what goes before it is over, s.
+    pub fn end_before(&self, at: u32) -> f64 {
+        at.checked_sub(1).map_or(0.0, |before| self.end(before))
+    }
+
+    /// How long the machine waits before it, s.
+    pub fn waited(&self, at: u32) -> f64 {
+        of(&self.waits, at).copied().unwrap_or(0.0)
+    }
+
+    /// Its arc.
+    pub fn arc(&self, at: u32) -> Option<&Arc> {
+        of(&self.arcs, at)
+    }
+
+    /// Its feed.
+    pub fn feed(&self, at: u32) -> Option<Feed> {
+        *holds(&self.feeds, at)?
+    }
+
+    /// What holds in it.
+    pub fn state(&self, at: u32) -> Option<&MachineState> {
+        holds(&self.states, at)
+    }
+
+    /// The tool behind it.
+    pub fn behind(&self, at: u32) -> ToolPose {
+        let axis = self.axes.get(at as usize).copied().unwrap_or(Vec3::Z);
+        ToolPose { tip: self.tips[at as usize], axis }
+    }
+
+    /// The tool before it.
+    pub fn before(&self, at: u32) -> ToolPose {
+        of(&self.starts, at).copied().unwrap_or_else(|| match at.checked_sub(1) {
+            Some(before) => self.behind(before),
+            None => ToolPose { tip: Vec3::NAN, axis: Vec3::NAN },
+        })
+    }
+
+    /// Whether it begins where the one before it ended.
+    pub fn goes_on(&self, at: u32) -> bool {
+        of(&self.starts, at).is_none()
+    }
+
+    /// Where the axes are behind it.
+    pub fn positions(&self, at: u32) -> &[f64] {
+        let from = at as usize * self.stride;
+        &self.positions[from..from + self.stride]
+    }
+
+    /// The move that is under way at a time, s.
+    pub fn at_time(&self, seconds: f64) -> Option<u32> {
+        let at = self.ends.partition_point(|end| *end < seconds);
+        u32::try_from(at.min(self.kinds.len().checked_sub(1)?)).ok()
+    }
+
+    /// The moves that a line makes, as ranges (first, behind the last), up to so many.
+    pub fn moves_of(&self, by: By, line: u32, most: usize) -> Vec<[u32; 2]> {
+        let column = match by {
+            By::Block(_) => &self.lines,
+            By::Source => &self.source_lines,
+        };
+        let is_of = |at: u32| match by {
+            By::Block(file) => self.file(at) == file,
+            By::Source => true,
+        };
+        let mut ranges: Vec<[u32; 2]> = Vec::new();
+        for (at, _) in column.iter().enumerate().filter(|(_, of)| **of == line) {
+            let at = at as u32;
+            if !is_of(at) {
+                continue;
+            }
+            let is_full = ranges.len() == most;
+            match ranges.last_mut() {
+                Some([_, end]) if *end == at => *end += 1,
+                _ if is_full => break,
+                _ => ranges.push([at, at + 1]),
+            }
+        }
+        ranges
+    }
+
+    /// The first move of the first line behind `line` that makes some.
+    pub fn next_line(&self, by: By, line: u32) -> Option<u32> {
+        let column = match by {
+            By::Block(_) => &self.lines,
+            By::Source => &self.source_lines,
+        };
+        let is_of = |at: u32| match by {
+            By::Block(file) => self.file(at) == file,
+            By::Source => true,
+        };
+        let behind = column.iter().zip(0..).filter(|(of, at)| **of > line && is_of(*at));
+        behind.min().map(|(_, at)| at)
+    }
+
+    /// How much memory it takes, bytes.
+    pub fn bytes(&self) -> usize {
+        let each = 3 + 2 * size_of::<u32>() + size_of::<f64>() + size_of::<Vec3>();
+        let rare = self.starts.len() * size_of::<(u32, ToolPose)>()
+            + self.arcs.len() * size_of::<(u32, Arc)>()
+            + self.feeds.len() * size_of::<(u32, Option<Feed>)>()
+            + self.states.len() * size_of::<(u32, MachineState)>();
+        let axes = self.axes.len() * size_of::<Vec3>() + self.positions.len() * size_of::<f64>();
+        self.kinds.len() * each + axes + rare
+    }
+
+    fn push(&mut self, motion: &Motion) {
+        let Ok(at) = u32::try_from(self.kinds.len()) else { return };
+        let Motion { tool: [before, behind], .. } = motion;
+        self.kinds.push(match &motion.kind {
+            MotionKind::Rapid => RAPID,
+            MotionKind::Line => FEED,
+            MotionKind::Arc(_) => ARC,
+            MotionKind::Joints => JOINTS,
+        });
+        if let MotionKind::Arc(arc) = &motion.kind {
+            self.arcs.push((at, **arc));
+        }
+        let goes_on = at.checked_sub(1).is_some_and(|last| same(&self.behind(last), before));
+        if !goes_on {
+            self.starts.push((at, *before));
+        }
+        if !self.axes.is_empty() || behind.axis != Vec3::Z {
+            self.axes.resize(self.tips.len(), Vec3::Z);
+            self.axes.push(behind.axis);
+        }
+        self.tips.push(behind.tip);
+        self.lines.push(motion.line);
+        self.source_lines.push(motion.source_line);
+        self.tools.push(self.tool_uses.len().saturating_sub(1).min(255) as u8);
+        let (seconds, waited) = (known(motion.seconds), known(motion.waited));
+        if waited > 0.0 {
+            self.waits.push((at, waited));
+        }
+        self.ends.push(self.seconds() + waited + seconds);
+        if self.feeds.last().is_none_or(|(_, feed)| *feed != motion.feed) {
+            self.feeds.push((at, motion.feed));
+        }
+        let file =
+            motion.file.as_ref().map(|file| match self.names.iter().position(|n| n == file) {
+                Some(place) => place as u32,
+                None => {
+                    self.names.push(file.clone());
+                    self.names.len() as u32 - 1
+                }
+            });
+        if self.files.last().is_none_or(|(_, last)| *last != file) {
+            self.files.push((at, file));
+        }
+    }
+}
+
+/// A duration, as far as it is one.
+fn known(seconds: f64) -> f64 {
+    if seconds.is_finite() { seconds.max(0.0) } else { 0.0 }
+}
+
+/// Whether two poses are the same, also where both are not known.
+fn same(a: &ToolPose, b: &ToolPose) -> bool {
+    let bits = |pose: &ToolPose| {
+        (pose.tip.to_array().map(f64::to_bits), pose.axis.to_array().map(f64::to_bits))
+    };
+    bits(a) == bits(b)
+}
+
+/// Writes the columns while a proof runs.
+pub struct Follower<'a> {
+    walk: Walk,
+    source: &'a Program,
+    /// Which of A, B and C the machine has.
+    rotary: Vec<usize>,
+    /// The record up to which operations have been looked for.
+    searched: usize,
+    numbers: BTreeMap<(u32, String), u8>,
+    compensation: Option<Compensation>,
+    /// What is marked of the next move.
+    next_marks: u8,
+    goes_to: &'a Mutex<Option<Walk>>,
+}
+
+impl<'a> Follower<'a> {
+    /// Follows the proof of a program that is to make the motions of `source`, and hands the walk over at its end.
+    pub fn new(
+        source: &'a Program,
+        machine: &Machine,
+        to: &'a Mutex<Option<Walk>>,
+    ) -> Follower<'a> {
+        Follower {
+            walk: Walk::default(),
+            source,
+            rotary: machine.rotary.iter().map(|axis| axis.index()).collect(),
+            searched: 0,
+            numbers: BTreeMap::new(),
+            compensation: None,
+            next_marks: 0,
+            goes_to: to,
+        }
+    }
+
+    /// Looks, now and then, whether there is memory for more.
+    fn look(&mut self) {
+        if self.walk.kinds.len().is_multiple_of(LOOK) {
+            self.walk.is_full |= self.walk.bytes() > MOST_BYTES;
+        }
+    }
+
+    /// Notes the operations that begin up to a record.
+    fn operations(&mut self, record: usize) {
+        let records = &self.source.records;
+        let end = (record + 1).min(records.len());
+        for record in records.get(self.searched..end).unwrap_or_default() {
+            if let Op::Operation(name) = &record.op {
+                let (r#move, time_s) = (self.walk.len(), self.walk.seconds());
+                let begun = Operation { name: name.to_string(), r#move, time_s };
+                // Of operations without a move the last one holds.
+                let is_full = self.walk.operations.len() == MOST_NAMED;
+                match self.walk.operations.last_mut() {
+                    Some(last) if last.r#move == r#move => *last = begun,
+                    _ if is_full => {}
+                    _ => self.walk.operations.push(begun),
+                }
+            }
+        }
+        self.searched = self.searched.max(end);
+    }
+
+    fn positions(&mut self, axes: &AxisPositions) {
+        let before = self.walk.positions.len();
+        match axes {
+            AxisPositions::Mill { linear, rotary } => {
+                self.walk.positions.extend(linear.to_array());
+                self.walk.positions.extend(self.rotary.iter().map(|axis| rotary[*axis]));
+            }
+            AxisPositions::Wire { guide, lean } => {
+                self.walk.positions.extend([guide.x, guide.y, lean[0], lean[1]]);
+            }
+            AxisPositions::Arm { joints, rail } => {
+                self.walk.positions.extend(joints);
+                self.walk.positions.extend(rail);
+            }
+        }
+        self.walk.stride = self.walk.positions.len() - before;
+    }
+}
+
+impl Observer for Follower<'_> {
+    fn wants_motions(&self) -> bool {
+        true
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        self.look();
+        if self.walk.is_full {
+            self.walk.left_out += 1;
+            return;
+        }
+        self.operations(motion.record);
+        self.walk.push(motion);
+        self.walk.marks.push(std::mem::take(&mut self.next_marks));
+        self.positions(&motion.axes);
+        if let Some(tool) =
+            self.walk.state(self.walk.len() - 1).and_then(|state| state.tool.as_ref())
+            && let Some(place) = self.numbers.get(&(tool.number, tool.name.clone()))
+        {
+            let last = self.walk.tools.len() - 1;
+            self.walk.tools[last] = *place;
+        }
+    }
+
+    fn stated(&mut self, state: &MachineState) {
+        let at = self.walk.len();
+        if self.walk.is_full {
+            return;
+        }
+        if self.compensation.is_some_and(|before| before != state.compensation) {
+            self.next_marks |= SWITCHED;
+        }
+        self.compensation = Some(state.compensation);
+        if let Some(tool) = &state.tool {
+            let key = (tool.number, tool.name.clone());
+            if self.walk.tool_uses.len() < MOST_NAMED && !self.numbers.contains_key(&key) {
+                self.numbers.insert(key, self.walk.tool_uses.len().min(255) as u8);
+                let time_s = self.walk.seconds();
+                self.walk.tool_uses.push(ToolUse::new(tool, at, time_s));
+            }
+        }
+        // What holds for no move is not kept.
+        self.walk.states.pop_if(|(from, _)| *from == at);
+        self.walk.states.push((at, state.clone()));
+    }
+
+    fn mismatched(&mut self, _found: &Diagnostic) {
+        self.walk.mismatch = Some(self.walk.len().saturating_sub(1));
+        if let Some(marks) = self.walk.marks.last_mut() {
+            *marks |= MISMATCH;
+        }
+    }
+
+    fn ended(&mut self, report: &Report) {
+        let mut walk = std::mem::take(&mut self.walk);
+        // By file and first line: excursions do not overlap.
+        let excursions = report.excursions.iter().map(|excursion| {
+            let from = (excursion.program_file.as_deref(), excursion.first_program_line);
+            (from, excursion.last_program_line)
+        });
+        let excursions: BTreeMap<(Option<&str>, u32), u32> = excursions.collect();
+        for at in (0..walk.len()).filter(|_| !excursions.is_empty()) {
+            let (file, line) = (walk.file(at), walk.line(at));
+            let found = excursions.range(..=(file, line)).next_back();
+            if found.is_some_and(|((of, _), last)| *of == file && line <= *last) {
+                walk.marks[at as usize] |= EXCURSION;
+            }
+        }
+        *self.goes_to.lock().unwrap_or_else(PoisonError::into_inner) = Some(walk);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use program::Tool;
+
+    fn motion(line: u32, tip: [f64; 3]) -> Motion {
+        let pose = |tip: [f64; 3]| ToolPose { tip: tip.into(), axis: Vec3::Z };
+        Motion {
+            file: None,
+            line,
+            record: 0,
+            source_line: 10 * line,
+            kind: MotionKind::Line,
+            tool: [pose([0.0; 3]), pose(tip)],
+            axes: AxisPositions::Mill { linear: tip.into(), rotary: [0.0; 3] },
+            feed: Some(Feed::PerMinute(100.0)),
+            seconds: 2.0,
+            waited: 0.0,
+        }
+    }
+
+    fn followed(tell: impl Fn(&mut Follower)) -> Walk {
+        let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+        let (source, handed) = (Program::new("x"), Mutex::new(None));
+        let mut follower = Follower::new(&source, &machine, &handed);
+        tell(&mut follower);
+        follower.ended(&Report::default());
+        handed.into_inner().unwrap().unwrap()
+    }
+
+    #[test]
+    fn a_line_that_is_run_again_makes_several_ranges() {
+        let walk = followed(|follower| {
+            for line in [1, 2, 2, 3, 1, 2, 9] {
+                follower.moved(&motion(line, [f64::from(line), 0.0, 0.0]));
+            }
+        });
+        let by = By::Block(None);
+        assert_eq!(walk.moves_of(by, 2, 9), [[1, 3], [5, 6]]);
+        assert_eq!(walk.moves_of(by, 2, 1), [[1, 3]]);
+        assert_eq!(walk.moves_of(By::Source, 10, 9), [[0, 1], [4, 5]]);
+        assert!(walk.moves_of(By::Block(Some("part.nc")), 2, 9).is_empty());
+        assert_eq!((walk.next_line(by, 4), walk.next_line(by, 9)), (Some(6), None));
+    }
+
+    #[test]
+    fn time_goes_through_waits() {
+        let walk = followed(|follower| {
+            follower.moved(&motion(1, [1.0, 0.0, 0.0]));
+            follower.moved(&Motion { waited: 6.0, ..motion(2, [2.0, 0.0, 0.0]) });
+            follower.moved(&Motion { seconds: f64::NAN, ..motion(3, [f64::NAN; 3]) });
+        });
+        assert_eq!((walk.end(0), walk.end(1), walk.seconds()), (2.0, 10.0, 10.0));
+        assert_eq!(
+            (walk.at_time(0.0), walk.at_time(2.0), walk.at_time(2.1)),
+            (Some(0), Some(0), Some(1))
+        );
+        assert_eq!((walk.at_time(99.0), Walk::default().at_time(0.0)), (Some(2), None));
+    }
+
+    /// 1 + 1 + 1 + 4 + 4 + 8 + 24, and 8 for each of three axes.
+    #[test]
+    fn a_move_takes_as_much_memory_as_the_front_page_says() {
+        let walk = followed(|follower| {
+            let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
+            for line in 1..=1000 {
+                let motion = motion(line, [f64::from(line), 0.0, 0.0]);
+                let [_, behind] = motion.tool;
+                follower.moved(&Motion { tool: [before, behind], ..motion });
+                before = behind;
+            }
+        });
+        assert!((walk.bytes() as f64 / 1000.0 - 67.0).abs() < 1.0, "{}", walk.bytes());
+    }
+
+    #[test]
+    fn tools_and_switches_of_the_compensation_are_marked() {
+        let state = |number: u32, compensation| MachineState {
+            tool: Some(Tool { number, ..Tool::default() }),
+            compensation,
+            spindle: proof::SpindleState::Off,
+            surface_speed: None,
+            coolant: program::Coolant::Off,
+            length_offset: None,
+            work_offset: None,
+            cycle: None,
+            path: program::PathMode::AsSetUp,
+            taper: 0.0,
+            joint_speed: None,
+        };
+        let walk = followed(|follower| {
+            follower.stated(&state(4, Compensation::Off));
+            follower.moved(&motion(1, [1.0, 0.0, 0.0]));
+            follower.stated(&state(7, Compensation::Off));
+            follower.moved(&motion(2, [2.0, 0.0, 0.0]));
+            follower.stated(&state(4, Compensation::Left(None)));
+            follower.moved(&motion(3, [3.0, 0.0, 0.0]));
+        });
+        assert_eq!([0, 1, 2].map(|at| walk.tool(at)), [0, 1, 0]);
+        assert_eq!([0, 1, 2].map(|at| walk.marks(at)), [0, 0, SWITCHED]);
+        let first: Vec<(u32, u32)> =
+            walk.tool_uses().iter().map(|tool| (tool.number, tool.r#move)).collect();
+        assert_eq!(first, [(4, 0), (7, 1)]);
+    }
+}

@@ -1,0 +1,263 @@
+//! Jobs: what is posted and proven, and what is asked of it.
+
+use crate::client::{Said, Studio};
+use serde_json::{Value, json};
+use toolpost_studio::message::{Array, Values};
+
+fn f32s(bytes: &[u8]) -> Vec<f32> {
+    bytes.as_chunks().0.iter().map(|chunk| f32::from_le_bytes(*chunk)).collect()
+}
+
+fn u32_at(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap())
+}
+
+#[test]
+fn a_source_is_posted_and_every_place_of_it_is_one() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "fanuc-table-bc");
+    assert_eq!(job["verdict"], "done", "{job}");
+    let revision = &job["revision"];
+    let moves = job["walk"]["moves"].as_u64().unwrap();
+    assert!(moves > 100, "{}", job["walk"]);
+    assert_eq!(job["machine"]["axes"].as_array().unwrap().len(), 5);
+    assert_eq!(job["program"]["file"], "dome.nc");
+
+    // By its number, its time, its block and its line of the source a move is at the same place.
+    let mut place = |by: &str, value: &Value| {
+        page.done("place", json!({ "revision": revision, "by": by, "value": value }))
+    };
+    // The last moves are those of the end, which no record of the source makes.
+    for number in [1, 17, moves / 2, moves - 20] {
+        let by_move = place("move", &json!(number));
+        assert_eq!(by_move["move"], number);
+        let by_block = place("block", &by_move["block"]["line"]);
+        assert_eq!(by_block["block"], by_move["block"]);
+        let by_source = place("source", &by_move["source"]["line"]);
+        assert_eq!(by_source["source"], by_move["source"]);
+        assert!(!by_move["block"]["text"].as_str().unwrap().is_empty());
+        assert!(!by_move["template"]["name"].as_str().unwrap().is_empty(), "{by_move}");
+    }
+    let whole = job["walk"]["time_s"].as_f64().unwrap();
+    let mut last = 0;
+    for step in 0..=20 {
+        let place = place("time", &json!(whole * f64::from(step) / 20.0));
+        let number = place["move"].as_u64().unwrap();
+        assert!(number >= last, "{place}");
+        last = number;
+    }
+    assert_eq!(last, moves - 1);
+    // Out of range is the nearest there is.
+    assert_eq!(place("move", &json!(1e12))["move"], moves - 1);
+    assert_eq!(place("time", &json!(-5))["time_s"], 0.0);
+}
+
+/// The axes of a place, through the forward chain of the machine, are its tip.
+#[test]
+fn between_the_ends_of_a_cut_the_axes_lead_the_tip() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "sinumerik-840d-table-ac");
+    let machine = machine::load("sinumerik-840d-table-ac").unwrap();
+    let whole = job["walk"]["time_s"].as_f64().unwrap();
+    let numbers = |value: &Value| -> Option<Vec<f64>> {
+        value.as_array().unwrap().iter().map(Value::as_f64).collect()
+    };
+    let (mut checked, mut turned) = (0, 0);
+    for step in 0..400 {
+        let time = whole * f64::from(step) / 400.0;
+        let params = json!({ "revision": job["revision"], "by": "time", "value": time });
+        let place = page.done("place", params);
+        let (Some(tip), Some(axes)) = (numbers(&place["tip"]), numbers(&place["axes"])) else {
+            continue;
+        };
+        if place["kind"] == "rapid" {
+            continue;
+        }
+        let mut degrees = [0.0; 3];
+        for (axis, position) in machine.rotary.iter().zip(&axes[3..]) {
+            degrees[axis.index()] = *position;
+        }
+        let zero = machine.work_zero.unwrap().to_array();
+        let linear = [0, 1, 2].map(|axis| axes[axis] - zero[axis]);
+        let (at, _) = machine.forward(linear.into(), degrees, 0.0);
+        let off = at.distance([tip[0], tip[1], tip[2]].into());
+        assert!(off < 1e-9, "{off} mm: {place}");
+        checked += 1;
+        turned += u32::from(degrees.iter().any(|degrees| *degrees != 0.0));
+    }
+    assert!(checked > 100 && turned > 50, "{checked} {turned}");
+}
+
+#[test]
+fn the_geometry_is_that_of_the_moves() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "fanuc-table-bc");
+    let (revision, walk) = (&job["revision"], &job["walk"]);
+    let index = studio.get(&format!("/geometry/{revision}/index"));
+    assert_eq!(index.len(), 64 * walk["chunks"].as_u64().unwrap() as usize);
+    let vertices = studio.get(&format!("/geometry/{revision}/0/0"));
+    assert_eq!(vertices.len() / 16, u32_at(&index, 48) as usize);
+    let rows = studio.get(&format!("/moves/{revision}/0"));
+    let row = walk["row"].as_u64().unwrap() as usize;
+    assert_eq!(row, 36);
+    assert_eq!(rows.len(), row * walk["moves"].as_u64().unwrap() as usize);
+    // The last vertex of a move is its tip, its row has its block and its line.
+    for number in [3u32, 40, 200] {
+        let params = json!({ "revision": revision, "by": "move", "value": number });
+        let place = page.done("place", params);
+        let of_move = |vertex: &&[u8]| u32_at(vertex, 12) & 4095 == number;
+        let vertex = vertices.chunks(16).rfind(of_move).unwrap();
+        let origin =
+            |axis: usize| f64::from_le_bytes(index[8 * axis..8 * axis + 8].try_into().unwrap());
+        for (axis, value) in f32s(&vertex[..12]).into_iter().enumerate() {
+            let tip = place["tip"][axis].as_f64().unwrap();
+            assert!((f64::from(value) + origin(axis) - tip).abs() < 1e-4, "{place}");
+        }
+        let at = row * number as usize;
+        assert_eq!(place["block"]["line"], u32_at(&rows, at + 4));
+        assert_eq!(place["source"]["line"], u32_at(&rows, at + 8));
+    }
+    for path in ["0/99", "9/0", "x/0", "0/-1", "0/0/0", "index/0"] {
+        let (status, ..) = studio.request(&format!("GET /geometry/{revision}/{path}"), "", b"");
+        assert_eq!(status, 404, "{path}");
+    }
+}
+
+#[test]
+fn an_edit_is_proven_and_one_that_cuts_otherwise_is_refused_and_not_saved() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "fanuc-table-bc");
+    let lines = job["program"]["lines"].as_u64().unwrap();
+    let params =
+        json!({ "revision": job["revision"], "of": "program", "from": 1, "to": lines + 1 });
+    let mut frame = page.answer("text", params, &[]).unwrap();
+    let text = String::from_utf8(frame.take_text("text").unwrap()).unwrap();
+    assert_eq!(text.lines().count() as u64, lines);
+    let prove = |page: &mut crate::client::Socket, text: &str| {
+        let params = json!({ "source": { "file": "dome.cls" }, "machine": "fanuc-table-bc", "file": "dome.nc" });
+        let frame = page.answer("prove", params, &[Array::text("text", text)]).unwrap();
+        frame.head["done"].clone()
+    };
+    let same = prove(&mut page, &text);
+    assert_eq!((&same["verdict"], &same["walk"]["moves"]), (&json!("done"), &job["walk"]["moves"]));
+    // One coordinate is off by a millimetre.
+    let (at, line) =
+        text.lines().enumerate().filter(|(_, line)| line.contains(" X")).nth(40).unwrap();
+    let edited = line.replacen(" X", " X1", 1);
+    let edited: Vec<&str> =
+        text.lines().enumerate().map(|(i, line)| if i == at { &edited } else { line }).collect();
+    let failed = prove(&mut page, &(edited.join("\n") + "\n"));
+    assert_eq!(failed["verdict"], "failed");
+    assert_eq!(failed["mismatch"]["program"], at + 1, "{}", failed["mismatch"]);
+    assert_eq!(failed["findings"][0]["of"], "program");
+    let mismatch = failed["walk"]["mismatch"].as_u64().unwrap();
+    assert!(mismatch > 0 && mismatch < job["walk"]["moves"].as_u64().unwrap());
+    let save = |revision: &Value, path: &str, replace: bool| json!({ "revision": revision, "path": path, "replace": replace });
+    assert_eq!(page.refused("save", save(&failed["revision"], "dome.nc", true)), "output-file");
+    assert!(!studio.own().join("dome.nc").exists());
+    // What is proven is saved, with its report, and not over what is there unless that is said.
+    let saved = page.done("save", save(&job["revision"], "dome.nc", false));
+    assert_eq!(saved["files"], json!(["dome.nc", "dome.nc.report.json"]));
+    assert_eq!(std::fs::read_to_string(studio.own().join("dome.nc")).unwrap(), text);
+    assert_eq!(page.refused("save", save(&job["revision"], "dome.nc", false)), "output-file");
+    page.done("save", save(&job["revision"], "dome.nc", true));
+    assert_eq!(page.refused("save", save(&job["revision"], "../dome.nc", true)), "folder-reach");
+    assert_eq!(page.refused("save", save(&job["revision"], "dome.cls", true)), "output-file");
+}
+
+#[test]
+fn a_plot_has_the_least_and_the_most_of_each_pixel() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "fanuc-table-bc");
+    let whole = &job["walk"]["time_s"];
+    let mut plot = |what: &str, pixels: u32| {
+        let params = json!({ "revision": job["revision"], "what": what, "from": 0, "to": whole, "pixels": pixels });
+        let frame = page.answer("plot", params, &[])?;
+        let values = |name: &str| {
+            let array = frame.arrays.iter().find(|array| array.name == name).unwrap();
+            let Values::F32(values) = &array.values else { panic!() };
+            values.clone()
+        };
+        Ok::<_, Value>((values("least"), values("most")))
+    };
+    let (one_least, one_most) = plot("X", 1).unwrap();
+    let (least, most) = plot("X", 640).unwrap();
+    assert_eq!((least.len(), most.len()), (640, 640));
+    let fold =
+        |values: &[f32], with: fn(f32, f32) -> f32| values.iter().copied().fold(f32::NAN, with);
+    assert_eq!(fold(&least, f32::min), one_least[0]);
+    assert_eq!(fold(&most, f32::max), one_most[0]);
+    assert!(least.iter().zip(&most).all(|(least, most)| least <= most || least.is_nan()));
+    assert_eq!(plot("Q", 10).unwrap_err()["findings"][0]["rule"], "studio-ask");
+    assert_eq!(plot("feed", 1_000_000).unwrap().0.len(), 10_000);
+}
+
+#[test]
+fn a_newer_ask_ends_the_older_and_a_page_can_end_its_own() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let params = json!({ "source": { "file": "dome.cls" }, "machine": "sinumerik-840d-table-ac" });
+    let first = page.ask("post", params.clone(), &[]);
+    let second = page.ask("post", params.clone(), &[]);
+    let stop = page.answer_of(first).unwrap_err();
+    assert_eq!(
+        (&stop["verdict"], &stop["findings"][0]["rule"]),
+        (&json!("cancelled"), &json!("cancelled"))
+    );
+    assert_eq!(page.answer_of(second).unwrap().head["done"]["verdict"], "done");
+    let third = page.ask("post", params, &[]);
+    page.send(&json!({ "cancel": third }), &[]);
+    assert_eq!(page.answer_of(third).unwrap_err()["verdict"], "cancelled");
+    page.send(&json!({ "cancel": 12345 }), &[]);
+    assert_eq!(page.done("folder", json!({ "path": "" }))["entries"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn a_job_tells_its_steps() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let params = json!({ "source": { "file": "dome.cls" }, "machine": "fanuc-table-bc" });
+    page.ask("post", params, &[]);
+    let mut steps = Vec::new();
+    loop {
+        let Said::Frame(frame) = page.next() else { panic!() };
+        match frame.head.get("step") {
+            Some(step) if frame.head["part"].is_null() => {
+                steps.push(step.as_str().unwrap().to_owned())
+            }
+            Some(_) => assert!((0.0..=1.0).contains(&frame.head["part"].as_f64().unwrap())),
+            None => break,
+        }
+    }
+    assert_eq!(steps, ["reading", "writing", "proving", "drawing"]);
+}
+
+#[test]
+fn uploads_are_posted_and_the_oldest_job_goes() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let bytes = std::fs::read(studio.own().join("dome.cls")).unwrap();
+    let (status, _, body) = studio.request("PUT /upload/a%20dome.cls", "", &bytes);
+    let upload: Value = serde_json::from_slice(&body).unwrap();
+    assert_eq!((status, upload["bytes"].as_u64()), (200, Some(bytes.len() as u64)));
+    let params = json!({ "source": { "upload": upload["upload"] }, "machine": "linuxcnc-xyzbc" });
+    let job = match page.answer("post", params, &[]) {
+        Ok(frame) => frame.head["done"].clone(),
+        Err(stop) => panic!("{stop}"),
+    };
+    assert_eq!(job["source"]["file"], "a dome.cls");
+    assert_eq!(
+        page.refused("post", json!({ "source": { "upload": "99" }, "machine": "x" })),
+        "studio-limit"
+    );
+    for _ in 0..8 {
+        page.post("lean.cls", "fanuc-table-bc");
+    }
+    let place = json!({ "revision": job["revision"], "by": "move", "value": 1 });
+    assert_eq!(page.refused("place", place), "studio-limit");
+}

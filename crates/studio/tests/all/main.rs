@@ -1,0 +1,6 @@
+//! The server as a page talks with it, and as nobody should.
+
+mod client;
+mod closed;
+mod jobs;
+mod process;

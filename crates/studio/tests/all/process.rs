@@ -1,0 +1,169 @@
+//! A server in a process of its own: what becomes of its work when the page goes, and of its files when it is killed.
+
+use crate::client::{Said, Studio};
+use serde_json::json;
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use toolpost_studio::message::Array;
+use toolpost_studio::{Server, Settings};
+
+/// Names the folder of the child.
+const FOLDER: &str = "TOOLPOST_STUDIO_TEST_FOLDER";
+
+/// The server, where this process was started as one; otherwise nothing.
+#[test]
+fn serves_as_a_child() {
+    let Some(folder) = std::env::var_os(FOLDER) else { return };
+    let server = Server::bind(&Settings { folder: folder.into(), ..Settings::default() }).unwrap();
+    eprintln!("link {}", server.link());
+    server.run();
+}
+
+/// A server that is killed when it is dropped.
+struct Process(Child);
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Process {
+    fn start(outside: tempfile::TempDir) -> (Process, Studio) {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "process::serves_as_a_child", "--nocapture"])
+            .env(FOLDER, outside.path().join("own"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        let link = lines.map_while(Result::ok).find_map(|line| {
+            let (port, token) = line.strip_prefix("link http://127.0.0.1:")?.split_once("/#")?;
+            Some((port.parse().unwrap(), token.to_owned()))
+        });
+        let (port, token) = link.unwrap();
+        (Process(child), Studio { outside, port, token })
+    }
+}
+
+fn folder() -> tempfile::TempDir {
+    let outside = tempfile::tempdir().unwrap();
+    std::fs::create_dir(outside.path().join("own")).unwrap();
+    outside
+}
+
+/// Processor time of a process, s, of which there are a hundred ticks.
+#[cfg(target_os = "linux")]
+fn processor_time(process: &Process) -> f64 {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.0.id())).unwrap();
+    let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
+    (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
+}
+
+/// Work that takes long goes on for nobody.
+#[cfg(target_os = "linux")]
+#[test]
+fn work_ends_when_the_page_goes() {
+    let outside = folder();
+    let mut source =
+        String::from("UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n");
+    for i in 0..400_000 {
+        let _ = writeln!(source, "GOTO/{}.{:03},{},-1", i / 1000, i % 1000, i % 7);
+    }
+    std::fs::write(outside.path().join("own/long.cls"), source).unwrap();
+    let (process, studio) = Process::start(outside);
+    let mut page = studio.socket();
+    let params = json!({ "source": { "file": "long.cls" }, "machine": "generic-3axis-linuxcnc" });
+    page.ask("post", params, &[]);
+    loop {
+        let Said::Frame(frame) = page.next() else { panic!() };
+        let step = frame.head.get("step").unwrap_or_else(|| panic!("too fast for this test"));
+        if step == "proving" {
+            break;
+        }
+    }
+    drop(page);
+    // While it works a second of the clock is at least a tenth of a second of the processor, however busy the machine is.
+    let begun = Instant::now();
+    loop {
+        let before = processor_time(&process);
+        std::thread::sleep(Duration::from_millis(300));
+        if processor_time(&process) - before < 0.02 {
+            break;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(5), "it works on");
+    }
+    assert!(studio.socket().done("open", json!({}))["version"].is_string());
+}
+
+/// Drafts and programs are there whole, as before, or not at all, whenever the server is killed.
+#[test]
+fn a_killed_server_leaves_no_half_file() {
+    for delay in [15, 40, 90] {
+        let outside = folder();
+        let source = std::fs::read(crate::client::root().join("examples/dome.cls")).unwrap();
+        std::fs::write(outside.path().join("own/dome.cls"), source).unwrap();
+        let (mut process, studio) = Process::start(outside);
+        let mut page = studio.socket();
+        let job = page.post("dome.cls", "fanuc-table-bc");
+        let bytes = job["program"]["bytes"].as_u64().unwrap();
+        let texts = [b'a', b'b'].map(|letter| vec![letter; 4 << 20]);
+        for (text, number) in texts.iter().cycle().zip(0..12) {
+            page.ask(
+                "draft",
+                json!({ "name": "d", "of": {} }),
+                &[Array::text("text", text.clone())],
+            );
+            let path = format!("{number}.nc");
+            page.ask(
+                "save",
+                json!({ "revision": job["revision"], "path": path, "replace": true }),
+                &[],
+            );
+        }
+        std::thread::sleep(Duration::from_millis(delay));
+        process.0.kill().unwrap();
+        process.0.wait().unwrap();
+        let own = studio.own();
+        if let Ok(draft) = std::fs::read(own.join(".toolpost/drafts/d.text")) {
+            assert!(texts.contains(&draft), "a draft of {} bytes", draft.len());
+        }
+        for entry in std::fs::read_dir(&own).unwrap() {
+            let entry = entry.unwrap();
+            let name = entry.file_name().into_string().unwrap();
+            if name.ends_with(".nc") {
+                assert_eq!(entry.metadata().unwrap().len(), bytes, "{name}");
+            }
+        }
+        // The next server goes on with what is there.
+        let (_process, studio) = Process::start(studio.outside);
+        let mut page = studio.socket();
+        page.done("drafts", json!({}));
+        page.answer("draft", json!({ "name": "d", "of": {} }), &[Array::text("text", "x")])
+            .unwrap();
+        assert_eq!(page.done("drafts", json!({}))[0]["bytes"], 1);
+    }
+}
+
+/// A folder in which nobody may write: the page is told, and the rest works.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_folder_that_cannot_be_written_is_read_all_the_same() {
+    let server =
+        Server::bind(&Settings { folder: "/proc/self".into(), ..Settings::default() }).unwrap();
+    let (port, link) = (server.port(), server.link());
+    std::thread::spawn(move || server.run());
+    let token = link.split_once('#').unwrap().1.to_owned();
+    let studio = Studio { outside: tempfile::tempdir().unwrap(), port, token };
+    let mut page = studio.socket();
+    let stop = page
+        .answer("draft", json!({ "name": "d", "of": {} }), &[Array::text("text", "x")])
+        .unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "output-file");
+    assert_eq!(page.done("drafts", json!({})), json!([]));
+    assert!(!page.done("folder", json!({ "path": "" }))["entries"].as_array().unwrap().is_empty());
+}
