@@ -307,6 +307,7 @@ impl From<&Pose> for TipPose {
 }
 
 /// Rapid of an axis, mm/min.
+#[inline]
 fn rapid_of(axis: &LinearAxis) -> f64 {
     axis.rapid.unwrap_or(UNKNOWN_RAPID)
 }
@@ -325,14 +326,24 @@ pub fn rapid(machine: &Machine, way: Vec3, turn: [f64; 3]) -> f64 {
 }
 
 /// Seconds that a cut takes that takes so many at its feed: no less than each axis needs at its rapid. What is not known takes nothing.
+#[inline]
 pub fn cut(machine: &Machine, way: Vec3, turn: [f64; 3], at_feed: f64) -> f64 {
-    let linear = machine.linear.iter().zip(way.to_array());
-    let linear = linear.map(|(axis, way)| 60.0 * way.abs() / rapid_of(axis));
-    let rotary = machine.rotary.iter();
-    let rotary = rotary.map(|axis| 60.0 * turn[axis.index()].abs() / axis.rapid);
     // A feed that is missing makes no sensible time: what the axes need is left.
-    let at_feed = if at_feed.is_finite() { at_feed } else { 0.0 };
-    linear.chain(rotary).fold(at_feed, f64::max)
+    let mut seconds = if at_feed.is_finite() { at_feed } else { 0.0 };
+    // Few cuts are as fast as that: divisions are for these.
+    let mut at_least = |way: f64, rapid: f64| {
+        let minute = 60.0 * way.abs();
+        if minute > seconds * rapid {
+            seconds = minute / rapid;
+        }
+    };
+    for (i, axis) in machine.linear.iter().enumerate() {
+        at_least(way[i], rapid_of(axis));
+    }
+    for axis in &machine.rotary {
+        at_least(turn[axis.index()], axis.rapid);
+    }
+    seconds
 }
 
 /// Seconds for the distance `way` with the speed (per s) and the acceleration (per s²) of an axis.

@@ -201,21 +201,24 @@ impl Walk {
         }
     }
 
-    /// Keeps a motion, and before it the waiting.
-    pub fn moved(&mut self, motion: Motion) {
-        let waited = std::mem::take(&mut self.waited);
-        self.moved.push(Motion { waited, ..motion });
+    /// Keeps a motion, before which the machine has waited.
+    #[inline]
+    pub fn moved(&mut self, mut motion: Motion) {
+        motion.waited = std::mem::take(&mut self.waited);
+        self.moved.push(motion);
     }
 
     /// Tells what has been kept.
     pub fn tell(&mut self, observer: &mut dyn Observer) {
-        let mut states = self.stated.drain(..).peekable();
-        for (place, motion) in self.moved.drain(..).enumerate() {
+        let mut states = self.stated.iter().peekable();
+        for (place, motion) in self.moved.iter().enumerate() {
             while let Some((_, state)) = states.next_if(|(from, _)| *from <= place) {
-                observer.stated(&state);
+                observer.stated(state);
             }
-            observer.moved(&motion);
+            observer.moved(motion);
         }
+        self.stated.clear();
+        self.moved.clear();
     }
 }
 

@@ -30,7 +30,7 @@ use crate::travel::Travel;
 use crate::{arc, line, stops};
 use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
-use machine::{Machine, Mount};
+use machine::{Machine, Mount, TouchPlate};
 use program::Rule;
 use program::statistics::Statistics;
 use program::{
@@ -78,6 +78,8 @@ pub struct Prover<'a> {
     top: f64,
     /// Whether the operator has set up a machine without switches, or the tool has moved.
     is_set_up: bool,
+    /// The plate on which tools are touched off, where there is one.
+    plate: Option<TouchPlate>,
     /// How far the touch-off of the tool is that has been put in by hand.
     touch: touch_off::Touch,
     /// The length register of the last cut with the tool before.
@@ -164,6 +166,7 @@ impl<'a> Prover<'a> {
             raised: false,
             top: f64::NEG_INFINITY,
             is_set_up: false,
+            plate: machine.touch_plate(),
             touch: touch_off::Touch::default(),
             length_before_tool: None,
             swivelled: false,

@@ -197,32 +197,36 @@ impl Prover<'_> {
     ) -> f64 {
         let (machine, running) = (self.gauge.machine, &self.running);
         let stood = self.motions.as_ref().and_then(|motions| motions.axes);
-        let (way, turn) = match (stood, axes) {
+        let (mut way, turn) = match (stood, axes) {
             (
                 Some(AxisPositions::Mill { linear: a, rotary: from }),
                 AxisPositions::Mill { linear: b, rotary: to },
-            ) => (*b - a, [0, 1, 2].map(|i| to[i] - from[i])),
+            ) => (*b - a, [to[0] - from[0], to[1] - from[1], to[2] - from[2]]),
             _ => (Vec3::NAN, [0.0; 3]),
         };
         // Where nobody says how the rotary axes carry the tip, it goes its own way.
-        let tip = end.tip - from.tip;
-        let way = Vec3::select(way.is_nan_mask(), tip, way);
+        if way.is_nan() {
+            way = Vec3::select(way.is_nan_mask(), end.tip - from.tip, way);
+        }
         let length = match kind {
             Kind::Rapid | Kind::Joints => return time::rapid(machine, way, turn),
             Kind::Arc(arc) => arc.length(),
             Kind::Line if matches!(event.action, Action::Hole(_)) => from.tip.distance(end.tip),
+            Kind::Line if running.feed_path.is_of_tip(before, to) => {
+                before.point.distance(to.point)
+            }
             Kind::Line => {
                 let counted = running.feed_path.length(before, to);
                 counted.unwrap_or_else(|| from.tip.distance(end.tip))
             }
         };
-        let cycle = running.cycle.filter(|_| matches!(event.action, Action::Hole(_)));
-        let feed = match (&event.action, cycle) {
+        let feed = match (&event.action, &running.cycle) {
             (Action::Thread(thread), _) => Some(Feed::PerTurn(thread.pitch)),
-            (_, Some(Cycle { kind: CycleKind::Tap { pitch, .. }, .. })) => {
-                Some(Feed::PerTurn(pitch))
+            (Action::Hole(_), Some(Cycle { kind: CycleKind::Tap { pitch, .. }, .. })) => {
+                Some(Feed::PerTurn(*pitch))
             }
-            (_, cycle) => cycle.and_then(|cycle| cycle.feed).or(running.feed),
+            (Action::Hole(_), Some(cycle)) => cycle.feed.or(running.feed),
+            (_, _) => running.feed,
         };
         let at_feed = match feed {
             Some(Feed::PerMinute(feed)) => 60.0 * length / feed,

@@ -33,7 +33,7 @@ impl Prover<'_> {
     /// A tool is in: the first one has been set up by the operator.
     pub(super) fn awaits_touch_off(&mut self) {
         let is_first = self.report.compared.tool_changes <= 1;
-        if self.gauge.machine.touch_plate().is_some() && !is_first {
+        if self.plate.is_some() && !is_first {
             // A tool that is put in by hand is so at a stop.
             self.touch = if self.running.length_by_word { Touch::Due } else { Touch::Ready };
         }
@@ -41,7 +41,7 @@ impl Prover<'_> {
 
     /// Whether an event is part of a touch-off alone. What is wrong with it, or missing before another event, is reported.
     pub(super) fn touches_off(&mut self, event: &Event) -> bool {
-        let Some(plate) = self.gauge.machine.touch_plate() else { return false };
+        let Some(plate) = self.plate else { return false };
         match (self.touch, &event.action) {
             (Touch::Done | Touch::Due, Action::Rapid(to))
                 if self.goes_over_plate(event.line, &plate, to) =>
