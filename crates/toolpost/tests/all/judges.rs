@@ -6,7 +6,9 @@
 
 use crate::files::sources;
 use geom::{Arc, Vec2, Vec3};
+use machine::Machine;
 use program::{ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle};
+use proof::Motion;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -124,8 +126,8 @@ fn assert_same_cuts(program: &Program, cuts: &[Cut], tolerance: f64, holes: bool
     (count, total)
 }
 
-/// The cuts that `rs274 -g` makes of a program, or what it says against it.
-fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
+/// What `rs274 -g` says of a program, or against it.
+fn rs274_says(folder: &Path, text: &[u8]) -> Result<String, String> {
     let program = folder.join("program.ngc");
     std::fs::write(&program, text).unwrap();
     // Every tool is there, without length and without wear.
@@ -147,6 +149,12 @@ fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
             String::from_utf8_lossy(&run.stderr)
         ));
     }
+    Ok(said)
+}
+
+/// The cuts that `rs274 -g` makes of a program, or what it says against it.
+fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
+    let said = rs274_says(folder, text)?;
     let (mut at, mut plane, mut cuts) = (Vec3::ZERO, 0, Vec::new());
     for line in said.lines() {
         // A line is `   19 N..... STRAIGHT_TRAVERSE(1.0000, 2.0000, ...)`.
@@ -208,6 +216,138 @@ fn linuxcnc_itself_runs_our_programs_along_the_source() {
         judged += 1;
     }
     assert!(judged > 0);
+}
+
+/// The blocks that move, each with where its last motion ends, in the order of the motions; of several motions of a block in a row one.
+type Blocks = Vec<(u32, Vec3)>;
+
+fn note(blocks: &mut Blocks, line: u32, end: Vec3) {
+    match blocks.last_mut() {
+        Some((last, at)) if *last == line => *at = end,
+        _ => blocks.push((line, end)),
+    }
+}
+
+/// The blocks of a program as `rs274` has them: it prints the block number of each motion, which is that of its line here.
+fn blocks_of_rs274(folder: &Path, text: &str) -> Blocks {
+    let number = |(i, line): (usize, &str)| {
+        // What is no block has no number: comments, and the lines of loops and subprograms.
+        let plain = line.trim_start().starts_with(|c: char| c.is_ascii_alphabetic());
+        let is_block = plain && !line.trim_start().starts_with(['o', 'O']);
+        if is_block { format!("N{} {line}\n", i + 1) } else { format!("{line}\n") }
+    };
+    let numbered: String = text.lines().enumerate().map(number).collect();
+    let said = rs274_says(folder, numbered.as_bytes()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let (mut plane, mut blocks) = (0, Vec::new());
+    let mut at = Vec3::ZERO;
+    for line in said.lines() {
+        let Some((head, rest)) = line.split_once('(') else { continue };
+        let mut words = head.split_whitespace().rev();
+        let (call, block) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+        let numbers: Vec<f64> =
+            rest.trim_end_matches(')').split(',').filter_map(|n| n.trim().parse().ok()).collect();
+        match call {
+            "SELECT_PLANE" => {
+                plane = ["XY", "YZ", "XZ"].iter().position(|p| rest.contains(p)).unwrap();
+                continue;
+            }
+            "STRAIGHT_TRAVERSE" | "STRAIGHT_FEED" | "STRAIGHT_PROBE" => {
+                at = Vec3::new(numbers[0], numbers[1], numbers[2]);
+            }
+            // It comes out again.
+            "RIGID_TAP" => {}
+            "ARC_FEED" => {
+                let (a, b, c) = (numbers[0], numbers[1], numbers[5]);
+                at = match plane {
+                    0 => Vec3::new(a, b, c),
+                    1 => Vec3::new(c, a, b),
+                    _ => Vec3::new(b, c, a),
+                };
+            }
+            _ => continue,
+        }
+        let block = block.strip_prefix('N').and_then(|number| number.parse().ok());
+        note(&mut blocks, block.unwrap_or_else(|| panic!("no block number: {line}")), at);
+    }
+    blocks
+}
+
+/// The same as whoever follows the proof is told.
+fn blocks_of_proof(program: &Program, machine: &Machine, text: &str) -> Blocks {
+    let mut motions: Vec<Motion> = Vec::new();
+    let tolerances = Default::default();
+    let report =
+        proof::prove_for(program, machine, "p", text.as_bytes(), &tolerances, &mut motions);
+    assert!(report.proven, "{:#?}\n{text}", report.mismatches);
+    let mut blocks = Vec::new();
+    for motion in &motions {
+        note(&mut blocks, motion.line, motion.tool[1].tip);
+    }
+    blocks
+}
+
+fn assert_same_blocks(ours: &Blocks, theirs: &Blocks, text: &str) {
+    let lines = |blocks: &Blocks| blocks.iter().map(|(line, _)| *line).collect::<Vec<_>>();
+    assert_eq!(lines(ours), lines(theirs), "{text}");
+    for ((line, is), (_, should)) in ours.iter().zip(theirs) {
+        // Where axes are home, the proof does not know where that is.
+        let off = (*is - *should).to_array().into_iter().filter(|off| off.is_finite());
+        let off = off.map(f64::abs).fold(0.0, f64::max);
+        assert!(off < 1e-3, "line {line}: {is}, and {should} of rs274");
+    }
+}
+
+/// A click on a motion leads to the block that LinuxCNC says makes it.
+#[test]
+fn the_block_of_each_motion_is_the_one_that_linuxcnc_prints() {
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (mut programs, mut blocks) = (0, 0);
+    for name in ["generic-3axis-linuxcnc", "linuxcnc-mill"] {
+        let machine = machine::load(name).unwrap();
+        let samples = files::root().join("machines/samples/three-axes.cls");
+        for file in sources().into_iter().chain([samples]) {
+            let Some((program, text)) = posted(&file, name) else { continue };
+            let text = String::from_utf8(text).unwrap();
+            let theirs = blocks_of_rs274(folder.path(), &text);
+            let ours = blocks_of_proof(&program, &machine, &text);
+            assert_same_blocks(&ours, &theirs, &file.display().to_string());
+            (programs, blocks) = (programs + 1, blocks + ours.len());
+        }
+    }
+    eprintln!("{programs} programs, {blocks} blocks");
+    assert!(programs > 3 && blocks > 300, "{programs} {blocks}");
+}
+
+/// A block of a loop or a subprogram moves once in each turn.
+#[test]
+fn the_blocks_of_loops_and_subprograms_are_those_that_linuxcnc_prints() {
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
+    }
+    let mut job = program::Builder::new("job");
+    job.tool(program::Tool { number: 1, ..Default::default() }).unwrap();
+    job.spindle(Spindle::Clockwise(5000.0)).unwrap();
+    job.feed(Feed::PerMinute(300.0)).unwrap();
+    job.rapid([0.0, 0.0, 5.0], None).unwrap();
+    for pass in 1..=3 {
+        let z = -f64::from(pass);
+        job.line([0.0, 0.0, z], None).unwrap();
+        job.line([10.0, 0.0, z], None).unwrap();
+        job.arc([0.0, 0.0, z], [5.0, 0.0, z], [0.0, 0.0, 1.0], 0).unwrap();
+    }
+    job.rapid([0.0, 0.0, 5.0], None).unwrap();
+    let text = "o10 sub\nG1 Z#1 F300\nG1 X10\nG3 X0 Y0 I-5 J0\no10 endsub\n\
+        G21 G17 G40 G49 G80 G90 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0\nZ5\n\
+        #2=0\no20 repeat [3]\n#2=[#2-1]\n(a pass)\no10 call [#2]\no20 endrepeat\nG0 Z5\nM5\nG53 G0 Z0\nM2\n";
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let ours = blocks_of_proof(&job.build(), &machine, text);
+    assert_same_blocks(&ours, &blocks_of_rs274(folder.path(), text), text);
+    let cuts: Vec<u32> = ours.iter().map(|(line, _)| *line).filter(|line| *line <= 4).collect();
+    assert_eq!(cuts, [2, 3, 4, 2, 3, 4, 2, 3, 4]);
 }
 
 /// Every probing move ends where the interpreter goes: its end is where it touches. With another end for each place it
