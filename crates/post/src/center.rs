@@ -84,11 +84,46 @@ enum Item {
 
 /// A move of a contour in its plane.
 #[derive(Clone, Copy)]
-struct Move {
-    line: u32,
-    element: Element,
+pub(crate) struct Move {
+    pub(crate) line: u32,
+    pub(crate) element: Element,
     /// Height above the plane at its start and end.
-    heights: [f64; 2],
+    pub(crate) heights: [f64; 2],
+}
+
+impl Move {
+    /// Height at its higher end.
+    pub(crate) fn high(&self) -> f64 {
+        self.heights[0].max(self.heights[1])
+    }
+}
+
+/// With which elements a segment is compared.
+#[derive(Clone, Copy)]
+enum Reach {
+    All,
+    /// Those that are no neighbours; of them not what runs on past a crossing with the segment's own.
+    Necks,
+}
+
+/// What is wrong with a contour that a control offsets by so many mm to its left, where the tool fits to each element and its neighbours
+/// but not between two others: no control looks so far ahead.
+pub(crate) fn neck(moves: &[Move], left: f64, axis: Vec3, resolution: f64) -> Option<Diagnostic> {
+    let section = Section {
+        line: 0,
+        left: left.signum(),
+        radius: left.abs(),
+        shortest: resolution,
+        axis,
+        lead: None,
+        items: Vec::new(),
+        leaves: false,
+    };
+    let seen = |step: &&Move| step.element.length() > resolution;
+    let moves: Vec<Move> = moves.iter().filter(seen).copied().collect();
+    // What does not fit at a corner is the control's own rule.
+    let segments = section.parallels(&moves).ok()?;
+    section.keeps_off(&moves, &segments, Reach::Necks).err().map(|found| *found)
 }
 
 /// A stretch in which compensation is on.
@@ -375,7 +410,8 @@ impl Section {
     /// Writes the path of the centre behind `records`; where it ends.
     fn write(&self, lead: &Move, records: &mut Vec<Record>) -> Outcome<Pose> {
         let moves: Vec<Move> = self.items.iter().filter_map(Item::as_move).collect();
-        let segments = self.segments(&moves)?;
+        let segments = self.parallels(&moves)?;
+        self.keeps_off(&moves, &segments, Reach::All)?;
         let pose = |at: Vec2, height: f64| Pose::new(self.point(at, height), self.axis);
         let Some(first) = segments.first() else {
             let message = "cutter compensation is on and off again with no contour between";
@@ -434,7 +470,7 @@ impl Section {
     }
 
     /// The parallels of the elements, cut off or joined at the corners.
-    fn segments(&self, moves: &[Move]) -> Outcome<Vec<CenterMove>> {
+    fn parallels(&self, moves: &[Move]) -> Outcome<Vec<CenterMove>> {
         let mut parallel = Vec::with_capacity(moves.len());
         for step in moves {
             let Some(element) = step.element.parallel(self.left * self.radius) else {
@@ -494,7 +530,6 @@ impl Section {
                 height: step.heights[1],
             });
         }
-        self.keeps_off(moves, &segments)?;
         Ok(segments)
     }
 
@@ -505,7 +540,11 @@ impl Section {
     }
 
     /// No segment comes nearer than the radius to another element that faces it.
-    fn keeps_off(&self, moves: &[Move], segments: &[CenterMove]) -> Outcome {
+    fn keeps_off(&self, moves: &[Move], segments: &[CenterMove], reach: Reach) -> Outcome {
+        let away = match reach {
+            Reach::All => 1,
+            Reach::Necks => 2,
+        };
         // By where they begin along X: what begins behind the end of a segment is not near it.
         let mut order: Vec<(usize, Vec2, Vec2)> = moves
             .iter()
@@ -516,18 +555,20 @@ impl Section {
             })
             .collect();
         order.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
+        let widest = order.iter().map(|(_, low, high)| high.x - low.x).fold(0.0, f64::max);
         for (k, segment) in segments.iter().enumerate() {
             for element in segment.around.iter().chain([&segment.element]) {
                 let (low, high) = element.extents();
                 let (low, high) = (low - self.radius, high + self.radius);
-                for (i, from, to) in order.iter().take_while(|(_, from, _)| from.x <= high.x) {
+                let first = order.partition_point(|(_, from, _)| from.x < low.x - widest);
+                let near = order[first..].iter().take_while(|(_, from, _)| from.x <= high.x);
+                for (i, from, to) in near {
                     let is_apart = to.x < low.x || to.y < low.y || from.y > high.y;
-                    if is_apart || *i == k {
+                    if is_apart || i.abs_diff(k) < away {
                         continue;
                     }
                     let step = &moves[*i];
-                    let top = step.heights[0].max(step.heights[1]);
-                    let is_above = moves[k].heights[0].min(segment.height) > top + NEAR;
+                    let is_above = moves[k].heights[0].min(segment.height) > step.high() + NEAR;
                     if is_above || element.distance(&step.element, NEAR) >= self.radius - NEAR {
                         continue;
                     }
@@ -535,9 +576,26 @@ impl Section {
                     let points = evenly.chain(self.within(element, &step.element));
                     let mut points = points.map(|t| element.at(t));
                     let is_neighbour = i.abs_diff(k) == 1;
+                    let crosses =
+                        |own: &&Move| own.element.meets(&step.element, NEAR).next().is_some();
+                    // Of a contour that the writer offsets every place counts.
+                    let crossing: Vec<Element> = match reach {
+                        Reach::All => Vec::new(),
+                        Reach::Necks => moves[k.saturating_sub(1)..=k]
+                            .iter()
+                            .filter(crosses)
+                            .map(|own| own.element)
+                            .collect(),
+                    };
                     let cuts = |at: Vec2| match is_neighbour {
                         true => step.element.away(at) < self.radius - NEAR,
-                        false => self.cuts_into(&step.element, &moves[k], at),
+                        false => {
+                            self.cuts_into(&step.element, &moves[k], at)
+                                && !self.is_cut_away(
+                                    step.element.at(step.element.nearest(at).0),
+                                    &crossing,
+                                )
+                        }
                     };
                     if points.any(cuts) {
                         let what = format!("between this element and that of line {}", step.line);
@@ -571,6 +629,15 @@ impl Section {
         };
         let ends: Vec<f64> = near.iter().flat_map(|&t| [last(t, 0.0), t, last(t, 1.0)]).collect();
         ends.into_iter()
+    }
+
+    /// Whether a place of an element is on that side of one that crosses it on which the tool goes along that one: what runs on there past
+    /// the crossing, as a contour that begins and ends beyond its corner does, bounds nothing.
+    fn is_cut_away(&self, at: Vec2, crossing: &[Element]) -> bool {
+        crossing.iter().any(|own| {
+            let t = own.nearest(at).0;
+            own.tangent(t).perp_dot(at - own.at(t)) * self.left > NEAR
+        })
     }
 
     /// Whether the tool at `at`, which touches the contour at `own`, cuts into an element whose own side of the tool is that from which
@@ -638,6 +705,12 @@ mod tests {
         }
     }
 
+    /// The path of the centre, where the tool fits.
+    fn fitted(section: &Section, moves: &[Move]) -> Outcome<Vec<CenterMove>> {
+        let segments = section.parallels(moves)?;
+        section.keeps_off(moves, &segments, Reach::All).map(|()| segments)
+    }
+
     fn moves(elements: &[Element]) -> Vec<Move> {
         let step =
             |(line, element): (u32, &Element)| Move { line, element: *element, heights: [0.0; 2] };
@@ -681,7 +754,7 @@ mod tests {
             let contour = contour(&mut chance, most);
             let radius = chance.between(0.2, 6.0);
             let left = if chance.next() < 0.5 { 1.0 } else { -1.0 };
-            let Ok(segments) = section(radius, left).segments(&moves(&contour)) else {
+            let Ok(segments) = fitted(&section(radius, left), &moves(&contour)) else {
                 tight += 1;
                 continue;
             };
@@ -729,7 +802,7 @@ mod tests {
             let lines = corners.windows(2).map(|pair| Element::line(pair[0], pair[1]));
             let contour: Vec<Element> = lines.collect();
             let radius = chance.between(0.1, 30.0);
-            let segments = section(radius, 1.0).segments(&moves(&contour)).unwrap();
+            let segments = fitted(&section(radius, 1.0), &moves(&contour)).unwrap();
             for segment in &segments {
                 for element in segment.around.iter().chain([&segment.element]) {
                     let near = nearest(element, &contour);
@@ -752,7 +825,7 @@ mod tests {
                 FRAC_PI_2,
             ),
         ];
-        let segments = section(3.0, 1.0).segments(&moves(&contour)).unwrap();
+        let segments = fitted(&section(3.0, 1.0), &moves(&contour)).unwrap();
         assert!(segments.iter().all(|segment| segment.around.is_none()));
         assert_eq!(segments[0].element.end, Vec2::new(17.0, 3.0));
         assert_eq!(
@@ -760,7 +833,7 @@ mod tests {
             (Vec2::new(17.0, 3.0), Vec2::new(17.0, 12.0))
         );
         assert!(segments[2].element.end.distance(Vec2::new(12.0, 17.0)) < 1e-12);
-        let refused = section(8.0, 1.0).segments(&moves(&contour)).unwrap_err();
+        let refused = fitted(&section(8.0, 1.0), &moves(&contour)).unwrap_err();
         assert_eq!(refused.line, 3, "{refused}");
     }
 }

@@ -1,10 +1,11 @@
-//! Whether the tool cuts into a contour on its way to it or off it.
+//! Whether the tool cuts into a contour on its way to it or off it, or in a neck of it.
 //!
 //! Where compensation is switched on, the tool's centre is where the source says; the way from there to the parallel of the first element
 //! is the source's own choice, and so is the way off. A control follows both whatever they go through. Here a way of the centre over its
 //! own contour, at its depth, is refused: the tool cuts a slot through what it has just cut, or is about to. Where it only comes nearer
 //! than the radius, or goes over another contour of the program (which may be a pass that another one follows), that is a warning.
 
+use crate::center::{Move, neck};
 use geom::{Element, Turn, Vec2, Vec3, angle_between};
 use program::{ArcTo, CompensatedPath, Compensation, Diagnostic, Op, Pose, Program, Rule};
 
@@ -22,15 +23,6 @@ const SAMPLES: u32 = 32;
 
 /// The most pairs of ways and elements of other contours that are compared.
 const MOST_PAIRS: usize = 30_000_000;
-
-/// A move of a contour in its plane.
-#[derive(Clone, Copy)]
-struct Move {
-    line: u32,
-    element: Element,
-    /// Height above the plane at its higher end.
-    high: f64,
-}
 
 /// A way to a contour or off it, from its outer end to the contour.
 struct Lead {
@@ -56,9 +48,9 @@ struct Stretch {
     leaves: bool,
 }
 
-/// Errors and warnings about the ways to contours and off them. `offsets` where the control works out the path of the centre: how it goes
-/// from the way to the first element is then the control's.
-pub(crate) fn check(program: &Program, offsets: bool) -> Vec<Diagnostic> {
+/// Errors and warnings about the ways to contours and off them, and about necks of contours. `offsets` is the smallest step of the words, mm,
+/// where the control works out the path of the centre: how it goes from the way to the first element is then the control's.
+pub(crate) fn check(program: &Program, offsets: Option<f64>) -> Vec<Diagnostic> {
     if program.compensated_path != Some(CompensatedPath::Contour) {
         return Vec::new();
     }
@@ -67,8 +59,11 @@ pub(crate) fn check(program: &Program, offsets: bool) -> Vec<Diagnostic> {
     let mut pairs = 0;
     let mut others = Others::of(&stretches);
     for (number, stretch) in stretches.iter().enumerate() {
+        // Where the writer offsets, it finds them itself.
+        let necks = offsets.and_then(|step| neck(&stretch.moves, stretch.left, stretch.axis, step));
+        found.extend(necks);
         for lead in stretch.leads() {
-            match stretch.own(&lead, offsets) {
+            match stretch.own(&lead, offsets.is_some()) {
                 Some(finding) => found.push(finding),
                 None => found.extend(others.crossed(number, stretch, &lead, &mut pairs)),
             }
@@ -147,8 +142,8 @@ impl Stretch {
             _ => None,
         };
         let Some(element) = element else { return false };
-        let [from, to] = ends.map(|point| point.dot(self.axis));
-        self.moves.push(Move { line, element, high: from.max(to) });
+        let heights = ends.map(|point| point.dot(self.axis));
+        self.moves.push(Move { line, element, heights });
         true
     }
 
@@ -197,7 +192,7 @@ impl Stretch {
         let neighbour = if lead.is_exit { self.moves.len() - 1 } else { 0 };
         let mut bites: Option<(f64, u32)> = None;
         for (k, other) in self.moves.iter().enumerate() {
-            let is_above = lead.low > other.high + NEAR;
+            let is_above = lead.low > other.high() + NEAR;
             // A control that offsets finds its own way to the first element, and off the last.
             let is_free = is_above || k == neighbour && offsets;
             if is_free || lead.way.distance(&other.element, NEAR) >= radius - NEAR {
@@ -348,7 +343,7 @@ impl<'a> Others<'a> {
             let other = &self.stretches[*of];
             let own = &other.moves[*k];
             let is_apart = *of == number
-                || lead.low > own.high + NEAR
+                || lead.low > own.high() + NEAR
                 || angle_between(other.axis, stretch.axis) > geom::ANGLE_EPSILON;
             if !is_apart && lead.crossings(own, other.left).next().is_some() {
                 let message = format!(

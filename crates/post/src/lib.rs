@@ -135,7 +135,7 @@ pub fn write_named(
     }
     let leads = match machine.wire {
         Some(_) => Vec::new(),
-        None => leads::check(program, robot(machine).is_none()),
+        None => leads::check(program, robot(machine).is_none().then(|| machine.resolution())),
     };
     let (errors, of_leads) = leads.into_iter().partition(is_error);
     let (mut errors, of_leads): (Vec<Diagnostic>, Vec<Diagnostic>) = (errors, of_leads);

@@ -310,3 +310,63 @@ fn a_flat_outer_corner_is_cut_into_by_two_steps_of_the_words_at_the_most() {
         assert!((8.0 - 0.0025..8.0 + 1e-3).contains(&nearest), "{name}: {nearest}\n{text}");
     }
 }
+
+/// Two rooms of 20 by 40 mm with a passage so many mm wide between them, along their walls from inside with a tool of 10 mm.
+fn rooms(passage: f64) -> Program {
+    let half = passage / 2.0;
+    let corners = [
+        [30.0, -20.0],
+        [30.0, 20.0],
+        [10.0, 20.0],
+        [10.0, half],
+        [-10.0, half],
+        [-10.0, 20.0],
+        [-30.0, 20.0],
+        [-30.0, -20.0],
+        [-10.0, -20.0],
+        [-10.0, -half],
+        [10.0, -half],
+        [10.0, -20.0],
+        [20.0, -20.0],
+    ];
+    let walls: String = corners.iter().map(|[x, y]| format!("GOTO/{x},{y},-2\n")).collect();
+    let text = format!(
+        "PARTNO/ROOMS\nUNITS/MM\nCUTTER/10\nLOADTL/1\nSPINDL/RPM,8000,CLW\nRAPID\nGOTO/20,0,20\nFEDRAT/MMPM,300\nGOTO/20,0,-2\n\
+         CUTCOM/LEFT\nGOTO/20,-20,-2\n{walls}CUTCOM/OFF\nGOTO/20,0,-2\nRAPID\nGOTO/20,0,20\nSPINDL/OFF\nFINI\n"
+    );
+    read(&text).unwrap()
+}
+
+#[test]
+fn a_passage_that_is_narrower_than_the_tool_is_refused_with_its_line_and_a_wider_one_is_proven() {
+    for (k, machine) in offsetting().into_iter().enumerate() {
+        let found = post::write(&rooms(9.9), &machine).expect_err(&machine.name);
+        // The first wall of the passage, and the one across it. The way in of a LinuxCNC is an element, along the same walls.
+        let known = found.iter().any(|found| {
+            (found.rule.name(), found.line) == ("compensation", 16)
+                && found.message.contains("between this element and that of line 22")
+        });
+        assert!(known, "{}: {found:?}", machine.name);
+        if k == 3 {
+            continue;
+        }
+        let source = rooms(10.1);
+        let output = post::write(&source, &machine).expect(&machine.name);
+        let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+        assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+    }
+}
+
+/// A contour that begins and ends 12 mm beyond its corner: a mill's control goes along the overrun, which bounds nothing.
+#[test]
+fn what_runs_on_beyond_a_corner_is_no_wall_to_a_control_that_offsets() {
+    let text = "PARTNO/OVER\nUNITS/MM\nCUTTER/10\nLOADTL/1\nSPINDL/RPM,8000,CLW\nRAPID\nGOTO/-20,-20,20\nFEDRAT/MMPM,300\nGOTO/-20,-20,-2\n\
+        CUTCOM/LEFT\nGOTO/0,-12,-2\nGOTO/0,40,-2\nGOTO/60,40,-2\nGOTO/60,0,-2\nGOTO/-12,0,-2\nCUTCOM/OFF\nGOTO/-25,-8,-2\nRAPID\n\
+        GOTO/-25,-8,20\nSPINDL/OFF\nFINI\n";
+    let source = read(text).unwrap();
+    for machine in offsetting().into_iter().skip(1) {
+        let output = post::write(&source, &machine).expect(&machine.name);
+        let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+        assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+    }
+}
