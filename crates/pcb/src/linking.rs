@@ -12,7 +12,8 @@ use crate::{Path, SAME};
 use geom::region::{Index, Region};
 use geom::{Element, Vec2};
 use static_aabb2d_index::{StaticAABB2DIndex, StaticAABB2DIndexBuilder};
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// Ends of paths that are nearer to each other than this are one, mm.
 const ONE: f64 = 1e-4;
@@ -30,31 +31,20 @@ const STEP: f64 = 0.02;
 /// A link does not cut less than this off an element, mm.
 const SHORT: f64 = 0.005;
 
-/// `paths` in as few trails as there are without lifting the tool: each path is part of one. Short ones are gone along twice
-/// where that saves a trail, up to `longest` mm each.
+/// So many nodes are looked at, at most, for one to which the tool goes again from another.
+const MOST_PASSED: usize = 256;
+
+/// `paths` in as few trails as there are without lifting the tool: each path is part of one. Some are gone along twice where that
+/// saves a trail, up to `longest` mm for each.
 pub(crate) fn trails(paths: &[Path], longest: f64) -> Vec<Path> {
     let mut graph = Graph::default();
     for (i, path) in paths.iter().enumerate() {
         let ends = [path.start(), path.end()].map(|end| graph.node(end));
         graph.edge(i, ends);
     }
-    let mut short: Vec<(usize, f64)> = paths.iter().map(Path::length).enumerate().collect();
-    short.retain(|(_, length)| *length <= longest);
-    short.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let mut piece_of = vec![0; graph.at.len()];
-    let mut odd = BTreeMap::new();
-    for (piece, nodes) in graph.pieces() {
-        nodes.iter().for_each(|node| piece_of[*node] = piece);
-        odd.insert(piece, nodes.iter().filter(|node| graph.is_odd(**node)).count());
-    }
-    for (i, _) in short {
-        let [from, to] = graph.edges[i].ends;
-        // Two ends are one trail in any case.
-        let Some(ends) = odd.get_mut(&piece_of[from]).filter(|ends| **ends > 2) else { continue };
-        if from != to && graph.is_odd(from) && graph.is_odd(to) {
-            graph.edge(i, [from, to]);
-            *ends -= 2;
-        }
+    let lengths: Vec<f64> = paths.iter().map(Path::length).collect();
+    for i in graph.gone_along_twice(&lengths, longest) {
+        graph.edge(i, graph.edges[i].ends);
     }
     let trails = graph.trails().into_iter();
     let path = |trail: Vec<(usize, bool)>| {
@@ -82,6 +72,20 @@ struct Edge {
     ends: [usize; 2],
 }
 
+impl Edge {
+    fn other(&self, node: usize) -> usize {
+        self.ends[usize::from(self.ends[0] == node)]
+    }
+}
+
+/// From one node to another.
+struct Way {
+    to: usize,
+    /// Without what was gone along twice before, mm.
+    length: f64,
+    edges: Vec<usize>,
+}
+
 /// A path, or `None` where the tool is lifted, and whether it is gone along backwards.
 type Along = (Option<usize>, bool);
 
@@ -106,6 +110,90 @@ impl Graph {
 
     fn is_odd(&self, node: usize) -> bool {
         self.at[node].len() % 2 == 1
+    }
+
+    /// The edges that are gone along twice, so that fewer nodes are odd: between two of these along `longest` mm at most, the nearest
+    /// two first. A way along an edge that is gone along twice already costs nothing: once is enough for it from then on.
+    fn gone_along_twice(&self, lengths: &[f64], longest: f64) -> Vec<usize> {
+        let mut is_odd: Vec<bool> = (0..self.at.len()).map(|node| self.is_odd(node)).collect();
+        let mut piece_of = vec![0; self.at.len()];
+        let mut odd = BTreeMap::new();
+        for (piece, nodes) in self.pieces() {
+            nodes.iter().for_each(|node| piece_of[*node] = piece);
+            odd.insert(piece, nodes.iter().filter(|node| is_odd[**node]).count());
+        }
+        let mut twice = vec![false; self.edges.len()];
+        loop {
+            // Two ends are one trail in any case.
+            let from = (0..is_odd.len()).filter(|node| is_odd[*node] && odd[&piece_of[*node]] > 2);
+            let mut ways: Vec<(u64, usize, Way)> = from
+                .filter_map(|node| {
+                    let way = self.way_to_odd(node, &is_odd, &twice, lengths, longest)?;
+                    Some((way.length.to_bits(), node, way))
+                })
+                .collect();
+            ways.sort_by_key(|(length, from, _)| (*length, *from));
+            let mut is_changed = vec![false; self.edges.len()];
+            let mut found = false;
+            for (_, from, Way { to, edges, .. }) in ways {
+                let Some(ends) = odd.get_mut(&piece_of[from]).filter(|ends| **ends > 2) else {
+                    continue;
+                };
+                if is_odd[from] && is_odd[to] && !edges.iter().any(|edge| is_changed[*edge]) {
+                    *ends -= 2;
+                    (is_odd[from], is_odd[to], found) = (false, false, true);
+                    for edge in edges {
+                        twice[edge] = !twice[edge];
+                        is_changed[edge] = true;
+                    }
+                }
+            }
+            if !found {
+                return (0..twice.len()).filter(|edge| twice[*edge]).collect();
+            }
+        }
+    }
+
+    /// The shortest way from a node to another one that is odd, of no more than `longest` mm without what is gone along `twice`.
+    fn way_to_odd(
+        &self,
+        from: usize,
+        is_odd: &[bool],
+        twice: &[bool],
+        lengths: &[f64],
+        longest: f64,
+    ) -> Option<Way> {
+        // A length that is not negative is ordered as its bits are.
+        let mut open = BinaryHeap::from([Reverse((0_u64, from))]);
+        let mut reached: BTreeMap<usize, (f64, Option<usize>)> =
+            BTreeMap::from([(from, (0.0, None))]);
+        while let Some(Reverse((length, node))) = open.pop() {
+            let length = f64::from_bits(length);
+            if reached.get(&node).is_none_or(|(least, _)| length > *least) {
+                continue;
+            }
+            if is_odd[node] && node != from {
+                let mut way = Way { to: node, length, edges: Vec::new() };
+                let mut at = node;
+                while let Some((_, Some(edge))) = reached.get(&at) {
+                    way.edges.push(*edge);
+                    at = self.edges[*edge].other(at);
+                }
+                return Some(way);
+            }
+            if reached.len() > MOST_PASSED {
+                return None;
+            }
+            for &edge in &self.at[node] {
+                let to = self.edges[edge].other(node);
+                let on = length + if twice[edge] { 0.0 } else { lengths[edge] };
+                if on <= longest && reached.get(&to).is_none_or(|(least, _)| on < *least) {
+                    reached.insert(to, (on, Some(edge)));
+                    open.push(Reverse((on.to_bits(), to)));
+                }
+            }
+        }
+        None
     }
 
     /// The nodes of each piece, by the least of them.
@@ -511,6 +599,31 @@ mod tests {
         let [one] = &trails(&around, 0.0)[..] else { panic!() };
         assert!(one.is_closed());
         assert_eq!(trails(&[line(a, b), line(c, d)], 0.0).len(), 2);
+    }
+
+    /// A ladder: two sides of five pieces, with four rungs that are too long to be gone along twice. All eight ends of the rungs are
+    /// odd. The nearest are joined in the middle of either side, which leaves the outer ones over, three pieces apart.
+    #[test]
+    fn ends_that_others_have_left_over_are_joined_through_what_is_gone_along_twice() {
+        let mut paths = Vec::new();
+        for y in [0.0, 20.0] {
+            for (from, to) in [(0.0, 5.0), (5.0, 7.0), (7.0, 8.0), (8.0, 10.0), (10.0, 15.0)] {
+                paths.push(line((from, y), (to, y)));
+            }
+        }
+        for x in [5.0, 7.0, 8.0, 10.0] {
+            paths.push(line((x, 0.0), (x, 20.0)));
+        }
+        paths.push(line((0.0, 0.0), (0.0, 20.0)));
+        paths.push(line((15.0, 0.0), (15.0, 20.0)));
+        // Without a detour four trails, each of which has two of the eight ends.
+        assert_eq!(trails(&paths, 0.0).len(), 4);
+        // By hand: on one side its two pieces of 2 mm twice and that of 1 mm between them once, on the other that of 1 mm twice. The
+        // two ends that are left there are one trail in any case.
+        let all = trails(&paths, 4.5);
+        assert_eq!(all.len(), 1);
+        let more = length(&all) - length(&paths);
+        assert!((more - 5.0).abs() < 1e-9, "{more}");
     }
 
     #[test]
