@@ -4,6 +4,7 @@
 use crate::answer::{Answer, not_saved};
 use crate::args::pcb::Pcb;
 use crate::progress::Progress;
+use crate::settings::placed;
 use ::pcb::plan::Part;
 use app::pcb::{Job, PROBE, Program, file_of};
 use app::{Source, Stop, Verdict, Watch, files, toolpath};
@@ -13,6 +14,10 @@ use std::path::Path;
 
 /// Writes the programs, proves them, and only then saves them with their pictures and the report.
 pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
+    made(args, silent).map_err(|stop| placed(stop, &args.origins))
+}
+
+fn made(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
     let (settings, tolerances) = (args.plan(), args.closeness.tolerances());
     let mut job = Job::new(&machine, &settings, &tolerances)?;

@@ -18,6 +18,35 @@ pub struct Expanded {
     pub words: Vec<OsString>,
     /// What was found in the file.
     pub found: Vec<Diagnostic>,
+    /// Where its options stand.
+    pub origins: Vec<Origin>,
+}
+
+/// Where an option that is not typed stands.
+#[derive(Clone, Debug)]
+pub struct Origin {
+    /// As it is typed, without the dashes in front.
+    option: String,
+    /// File, line from 1, and the line itself.
+    file: String,
+    line: u32,
+    text: String,
+}
+
+/// The same with the places of what begins with the name of an option that a settings file states.
+pub fn placed(stop: Stop, origins: &[Origin]) -> Stop {
+    let placed = |found: Diagnostic| {
+        let name = found.message.strip_prefix('`').and_then(|rest| rest.split('`').next());
+        let name = name.map(|name| name.replace('_', "-"));
+        let origin = origins.iter().find(|origin| Some(&origin.option) == name.as_ref());
+        match origin.filter(|_| found.file.is_empty()) {
+            Some(Origin { file, line, text, .. }) => {
+                found.file(file).at(*line, text.as_bytes(), 0, text.len())
+            }
+            None => found,
+        }
+    };
+    Stop { findings: stop.findings.into_iter().map(placed).collect(), ..stop }
 }
 
 /// Options that are files or folders: one in a file lies where that file does.
@@ -40,12 +69,13 @@ const ELSEWHERE: [&str; 9] =
 /// What is wrong with the file.
 pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
     let command = CommandLine::command().ignore_errors(true);
-    let as_typed = |words| Ok(Expanded { words, found: Vec::new() });
+    let as_typed = |words| Ok(Expanded { words, found: Vec::new(), origins: Vec::new() });
     let Ok(matches) = command.try_get_matches_from(&words) else { return as_typed(words) };
     let Some(("pcb", typed)) = matches.subcommand() else { return as_typed(words) };
     let Some(file) = file(typed) else {
         let found = lies_beside(typed, SETTINGS[1]).map(|file| unused(&file));
-        return Ok(Expanded { words, found: found.into_iter().collect() });
+        let found = found.into_iter().collect();
+        return Ok(Expanded { words, found, origins: Vec::new() });
     };
     let text = Source::File(file.clone()).text()?;
     let text = String::from_utf8_lossy(&text);
@@ -68,7 +98,13 @@ pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
             all.extend(more.take().into_iter().flatten().map(OsString::from));
         }
     }
-    Ok(Expanded { words: all, found })
+    let line_of = |line: u32| text.lines().nth((line as usize).wrapping_sub(1));
+    let origin = |Stated { name, line, .. }: Stated| {
+        let text = line_of(line)?.to_owned();
+        Some(Origin { option: name, file: file.display().to_string(), line, text })
+    };
+    let origins = stated.into_iter().filter_map(origin).collect();
+    Ok(Expanded { words: all, found, origins })
 }
 
 /// The options of a command line as they are typed, each with its value in one word, for a later proof: without those that say

@@ -21,9 +21,10 @@ use control::Folders;
 use drawing::{BoardPicture, BoardSheet, BoardSide, Format};
 use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
+use machine::limits::Limits;
 use machine::{Machine, OptionValue};
 use program::heights::HeightMap;
-use program::{Diagnostic, Op, Record, Rule, not_both};
+use program::{Diagnostic, Feed, Op, Record, Rule, Spindle, not_both};
 use proof::{Observer, Tolerances};
 use rayon::prelude::*;
 use serde_json::json;
@@ -189,6 +190,7 @@ impl<'a> Job<'a> {
         watch.begin("reading")?;
         let source = source::read(board, &self.named, settings)?;
         let parts = plan::parts(&source.artwork, settings)?;
+        can_run(&parts, settings, machine)?;
         let surface = surface(&parts, settings, self.surface.as_ref())?;
         let running = &settings.running;
         if let Some(places) = running.probe.filter(|_| running.on_control) {
@@ -452,6 +454,39 @@ fn surface(
 
 /// How much a surface rises on which programs that measure it keep to that, mm a mm.
 const STEEPNESS: f64 = 0.02;
+
+/// # Errors
+/// A feed or the speed of the settings is beyond what the machine does, and one of `parts` asks for it. The message begins with the
+/// name of the setting.
+fn can_run(parts: &[Part], settings: &Settings, machine: &Machine) -> Result<(), Stop> {
+    let running = &settings.running;
+    let is_milled = settings.drilling.hole_mill.is_some();
+    let cuts = |part: &Part| !matches!(part, Part::Drill | Part::Outline);
+    let mills = |part: &Part| *part == Part::Outline || *part == Part::Drill && is_milled;
+    let any = |takes: &dyn Fn(&Part) -> bool| parts.iter().any(takes);
+    let limits = Limits::new(machine);
+    let feed = |name, feed: f64, is_used: bool| {
+        let wrong =
+            limits.feed(Feed::PerMinute(feed), Spindle::Off, 0).err().filter(|_| is_used)?;
+        Some(Diagnostic { message: format!("`{name}` is {feed} mm/min"), ..*wrong })
+    };
+    let speed = |speed: f64| {
+        let wrong = limits.spindle(Spindle::Clockwise(speed), 0).err()?;
+        Some(Diagnostic { message: format!("`speed` is {speed} 1/min"), ..*wrong })
+    };
+    let found = [
+        feed("feed", running.feed, any(&cuts)),
+        feed("plunge", running.plunge, any(&|part| cuts(part) || mills(part))),
+        feed("drill_feed", running.drill_feed, any(&|part| *part == Part::Drill)),
+        feed("outline_feed", running.outline_feed, any(&mills)),
+        running.speed.and_then(speed),
+    ];
+    let findings: Vec<Diagnostic> = found.into_iter().flatten().collect();
+    match findings.is_empty() {
+        true => Ok(()),
+        false => Err(Stop { verdict: Verdict::Failed, findings }),
+    }
+}
 
 /// # Errors
 /// The control cannot keep what a probe finds at so many places, or a program cuts what no tool feels.

@@ -1,6 +1,7 @@
 //! What can be typed after `toolpost pcb`.
 
 use super::{Choice, Closeness, choice, length, lengths, option};
+use crate::settings::Origin;
 use ::pcb::board::{Face, Layer};
 use ::pcb::excellon::Unit;
 use ::pcb::isolation::{Direction, Narrow};
@@ -33,6 +34,9 @@ pub struct Pcb {
     /// What was found in the settings file.
     #[arg(skip)]
     pub found: Vec<Diagnostic>,
+    /// Where the options of the settings file stand.
+    #[arg(skip)]
+    pub origins: Vec<Origin>,
     /// The options as words of a command line, those of the settings file among them.
     #[arg(skip)]
     pub options: Vec<String>,

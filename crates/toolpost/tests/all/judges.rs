@@ -307,7 +307,7 @@ fn the_block_of_each_motion_is_the_one_that_linuxcnc_prints() {
     let (mut programs, mut blocks) = (0, 0);
     for name in ["generic-3axis-linuxcnc", "linuxcnc-mill"] {
         let machine = machine::load(name).unwrap();
-        let samples = files::root().join("machines/samples/three-axes.cls");
+        let samples = crate::files::root().join("machines/samples/three-axes.cls");
         for file in sources().into_iter().chain([samples]) {
             let Some((program, text)) = posted(&file, name) else { continue };
             let text = String::from_utf8(text).unwrap();

@@ -388,6 +388,39 @@ fn programs_of_a_board_are_proven_again() {
 }
 
 /// Two keys of a millproject for the one option that says where the cuts are: the first counts, and the other is named.
+/// A feed or speed that the machine does not have is reported where it stands, by the name of its option, before anything is cut;
+/// programs that are not asked for ask for none.
+#[test]
+fn a_feed_beyond_the_machine_is_reported_where_it_stands() {
+    let folder = small();
+    let project = "mill-diameters=0.4mm\nmill-speed=20000\nmill-feed=100\nmill-vertfeed=2\ncut-feed=200mm\nzero-start=1\n";
+    folder.write("board/millproject", project);
+    folder.write("own.toml", "extends = \"grbl-3018\"\nfeed_max = 2000\n[spindle]\nmax = 10000\n");
+    let call = ["pcb", "board", "-o", "out", "-m", "own.toml"];
+    let said = folder.run(&[&call[..], &["--settings", "board/millproject"]].concat());
+    assert_eq!(said.code, 1, "{said:?}");
+    // Inches each minute.
+    for line in [
+        "board/millproject:3:1: error[feed-range]: `feed` is 2540 mm/min\n    | mill-feed=100\n",
+        "= the machine feeds at most 2000 mm/min (feed_max)",
+        "board/millproject:2:1: error[spindle-range]: `speed` is 20000 1/min\n    | mill-speed=20000\n",
+    ] {
+        assert!(said.err.contains(line), "{line} {said:?}");
+    }
+    assert!(!folder.path().join("out").exists(), "{said:?}");
+    // Typed, it stands in no file.
+    let typed = ["--tool", "0.4", "--drill-feed", "2001", "--outline-feed", "3000"];
+    let said = folder.run(&[&call[..], &typed].concat());
+    assert_eq!(said.code, 1, "{said:?}");
+    for line in
+        ["error[feed-range]: `drill_feed` is 2001", "\nerror[feed-range]: `outline_feed` is 3000"]
+    {
+        assert!(said.err.contains(line), "{line} {said:?}");
+    }
+    let said = folder.run(&[&call[..], &typed, &["--only", "front"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+}
+
 #[test]
 fn a_millproject_that_says_two_places_of_the_cuts_gets_the_first() {
     let folder = small();
