@@ -74,7 +74,7 @@ function Running({ screen }: { screen: Screen }) {
 }
 
 function VerdictOf({ job, stopped }: { job: Job | null; stopped: boolean }) {
-    if (job === null) return stopped ? <strong class="invalid">✗ see the findings</strong> : <span class="soft">no program yet</span>;
+    if (job === null) return stopped ? <strong class="invalid">✗ NOT POSTED</strong> : <span class="soft">no program yet</span>;
     const moves = `${job.walk.moves.toLocaleString("en")} moves`;
     return (
         <>

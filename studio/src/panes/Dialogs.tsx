@@ -29,7 +29,7 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
     const open = dialog.value;
     if (open === null) return null;
     return (
-        <Modal title={titles[open]} close={close}>
+        <Modal key={open} title={titles[open]} close={close}>
             {open === "commands" && (
                 <Choose
                     label="Search the commands"

@@ -83,7 +83,7 @@ function Template({ screen }: { screen: Screen }) {
     const template = screen.studio.cursor.place.value?.template ?? null;
     if (template === null) return null;
     return (
-        <footer class="template">
+        <footer class="template" role="group" aria-label="Template of the block" tabIndex={0}>
             <span class="soft">
                 written by <b>{template.name}</b>
                 {template.file === null ? ", built in" : `, ${template.file} line ${template.line}`}

@@ -15,7 +15,7 @@ export function Verdict({ screen }: { screen: Screen }) {
                 <tbody>
                     {job.rows.map(([head, text], row) => (
                         <tr key={row}>
-                            <th scope="row">{head}</th>
+                            {head === "" ? <td /> : <th scope="row">{head}</th>}
                             <td>{text}</td>
                         </tr>
                     ))}

@@ -89,17 +89,13 @@ export class Chunks {
     }
 
     /** The vertices at this level, else at the nearest that is there; what is missing is asked for. */
-    best(level: number, chunk: number): ArrayBuffer | null {
-        const exact = this.take(level, chunk);
-        if (exact !== null) return exact;
-        this.want(level, chunk, () => this.changed());
-        for (let other = level + 1; other < this.walk.levels.length; other++) {
+    best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
+        const coarser = Array.from({ length: this.walk.levels.length - level }, (_, i) => level + i);
+        const finer = Array.from({ length: level }, (_, i) => level - 1 - i);
+        for (const other of [...coarser, ...finer]) {
             const vertices = this.take(other, chunk);
-            if (vertices !== null) return vertices;
-        }
-        for (let other = level - 1; other >= 0; other--) {
-            const vertices = this.take(other, chunk);
-            if (vertices !== null) return vertices;
+            if (vertices === null && other === level) this.want(level, chunk, () => this.changed());
+            if (vertices !== null) return { vertices, isExact: other === 0 };
         }
         return null;
     }

@@ -38,6 +38,8 @@ export interface Picture {
     symbols: Symbol[];
 }
 
+type Best = NonNullable<ReturnType<Chunks["best"]>>;
+
 /** Pixels round the pointer in which a line is looked for. */
 const REACH = 6;
 
@@ -58,9 +60,10 @@ export class Scene {
         const level = levelFor(this.walk.levels, projection.scale);
         for (const chunk of this.chunks.chunks) {
             if (!inSight(chunk, projection, size)) continue;
-            const vertices = this.chunks.best(level, chunk.number);
-            if (vertices === null) continue;
-            this.lines(strips, chunk, vertices, looks, marks);
+            const best = this.chunks.best(level, chunk.number);
+            if (best === null) continue;
+            const { vertices } = best;
+            this.lines(strips, chunk, best, looks, marks);
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
@@ -75,7 +78,8 @@ export class Scene {
         if (needles !== null) strips.push(needles);
     }
 
-    private lines(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, marks: Marks): void {
+    private lines(strips: Strip[], chunk: Chunk, best: Best, looks: Looks, marks: Marks): void {
+        const { vertices } = best;
         const { origin, first } = chunk;
         const count = vertices.byteLength / 16;
         const part = (from: number, to: number, paint: Paint): void => {
@@ -87,17 +91,18 @@ export class Scene {
         part(now, count, this.paint(chunk, looks, marks.pale ? ahead : done));
 
         const { mismatch } = marks;
-        if (mismatch !== null) this.marked(part, chunk, vertices, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
-        for (const range of marks.ofBlock) this.marked(part, chunk, vertices, range, this.plain(MARKED, looks, 2, 2));
-        if (marks.now !== null) this.marked(part, chunk, vertices, [marks.now, marks.now + 1], this.plain(MARKED, looks, 3, 3));
+        if (mismatch !== null) this.marked(part, chunk, best, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
+        for (const range of marks.ofBlock) this.marked(part, chunk, best, range, this.plain(MARKED, looks, 2, 2));
+        if (marks.now !== null) this.marked(part, chunk, best, [marks.now, marks.now + 1], this.plain(MARKED, looks, 3, 3));
     }
 
-    private marked(part: (from: number, to: number, paint: Paint) => void, chunk: Chunk, vertices: ArrayBuffer, [from, to]: Range, paint: Paint): void {
+    private marked(part: (from: number, to: number, paint: Paint) => void, chunk: Chunk, { vertices, isExact }: Best, [from, to]: Range, paint: Paint): void {
         const [low, high] = [Math.max(from - chunk.first, 0), Math.min(to - chunk.first, CHUNK_MOVES)];
         if (low >= high) return;
         const begin = vertexOf(vertices, low);
         // At a coarse level a move may have no vertex of its own: the one that it is in is marked.
-        part(begin, Math.max(vertexOf(vertices, high), Math.min(begin + 1, vertices.byteLength / 16)), paint);
+        const least = isExact ? begin : Math.min(begin + 1, vertices.byteLength / 16);
+        part(begin, Math.max(vertexOf(vertices, high), least), paint);
     }
 
     private paint(chunk: Chunk, looks: Looks, palette: Uint32Array): Paint {
@@ -144,7 +149,7 @@ export class Scene {
         const vertices = await this.chunks.exact(0, chunk.number);
         if (vertices === null) return rough;
         const exact: Strip[] = [];
-        this.lines(exact, chunk, vertices, { ...looks, width: 1 }, none);
+        this.lines(exact, chunk, { vertices, isExact: true }, { ...looks, width: 1 }, none);
         return nearest(exact, camera, x, y) ?? rough;
     }
 }

@@ -5,7 +5,7 @@ import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync } from "nod
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { createInterface } from "node:readline";
-import { chromium, type Browser, type Page } from "playwright-core";
+import { chromium, type Browser, type Page, type Route } from "playwright-core";
 import { expect } from "vitest";
 
 const root = resolve(import.meta.dirname, "../../..");
@@ -34,7 +34,7 @@ export class Server {
     /** A folder of its own with copies of the files; the first is the source. */
     static async start(files: string[], more: string[] = [], folder = mkdtempSync(join(tmpdir(), "studio-"))): Promise<Server> {
         for (const file of files) copyFileSync(file, join(folder, basename(file)));
-        const source = files.slice(0, 1).map((file) => basename(file));
+        const source = files.slice(0, 1).map((file) => join(folder, basename(file)));
         const child = spawn(command, ["studio", "--no-open", "--folder", folder, ...source, ...more], { stdio: ["ignore", "pipe", "inherit"] });
         for await (const line of createInterface({ input: child.stdout! })) {
             const link = /http:\S+/.exec(line)?.[0];
@@ -57,7 +57,7 @@ export class Server {
 }
 
 export const launch = (): Promise<Browser> =>
-    chromium.launch({ executablePath: browserPath, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+    chromium.launch({ executablePath: browserPath, args: ["--no-sandbox", "--enable-unsafe-swiftshader", ...(newer ? ["--disable-features=LocalNetworkAccessChecks"] : [])] });
 
 export interface Visit {
     page: Page;
@@ -67,11 +67,23 @@ export interface Visit {
 
 export async function visit(browser: Browser, link: string, more: Parameters<Browser["newPage"]>[0] = {}): Promise<Visit> {
     const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...more });
+    page.setDefaultTimeout(10_000);
     const complaints: string[] = [];
     page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
     page.on("pageerror", (error) => complaints.push(String(error)));
+    if (newer !== undefined) await page.route(/\/(assets\/.*)?$/, (route) => serve(route, newer));
     await page.goto(link);
     return { page, complaints };
+}
+
+/** While the page is worked on: the folder of a build that the command has not in it yet. The headers are the command's. */
+const newer = process.env.TOOLPOST_DIST;
+
+async function serve(route: Route, folder: string): Promise<void> {
+    const { origin, pathname } = new URL(route.request().url());
+    const path = join(folder, pathname === "/" ? "index.html" : pathname);
+    const { "content-security-policy": policy = "" } = (await route.fetch({ url: `${origin}/` })).headers();
+    await route.fulfill({ path, headers: { "content-security-policy": policy } });
 }
 
 export async function proven(page: Page): Promise<void> {
@@ -81,6 +93,14 @@ export async function proven(page: Page): Promise<void> {
 /** The lit line of a pane: the number in its text, and what stands there. */
 export async function lit(page: Page, pane: "program" | "source"): Promise<string> {
     return page.locator(`.${pane} .cm-line.at`).innerText();
+}
+
+/** By the keyboard, as `120`, `s7`, `m3` or `1:20`. */
+export async function goTo(page: Page, where: string): Promise<void> {
+    await page.keyboard.press("Control+g");
+    await page.keyboard.type(where);
+    await page.keyboard.press("Enter");
+    await page.getByRole("dialog").waitFor({ state: "detached" });
 }
 
 /** What the readout says, by name. */

@@ -3,7 +3,7 @@
 import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { describe, test } from "vitest";
-import { absent, example, launch, proven, Server, visit } from "./harness.ts";
+import { absent, example, goTo, launch, proven, Server, visit } from "./harness.ts";
 
 const folder = process.env.TOOLPOST_IMAGES;
 
@@ -30,8 +30,9 @@ describe.skipIf(folder === undefined || absent() !== null)("pictures of the docu
         }
         const { page } = await visit(browser, server.link);
         await proven(page);
-        const line = page.locator(".program .cm-line", { hasText: /X-?[\d.]+.*Y-?[\d.]+/ }).nth(2);
-        await line.click();
+        await goTo(page, "m40");
+        await page.waitForTimeout(300);
+        await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");
         await page.keyboard.type(" Z-3.");
         await page.getByText("✗ NOT PROVEN").waitFor();

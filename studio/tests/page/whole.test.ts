@@ -1,0 +1,192 @@
+import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Browser } from "playwright-core";
+import { afterAll, afterEach, beforeAll, describe, expect, test } from "vitest";
+import { absent, accessible, example, goTo, launch, lit, proven, readout, Server, visit, type Visit } from "./harness.ts";
+
+/** The numbers of a `GOTO/`. */
+const goto = (text: string): number[] => text.replace(/^GOTO\s*\//, "").split(",").map(Number);
+
+describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
+    let browser: Browser;
+    let server: Server;
+    let open: Visit | null = null;
+
+    beforeAll(async () => {
+        [browser, server] = await Promise.all([launch(), Server.start([example("plate.cls")], ["-m", "generic-3axis-fanuc"])]);
+    });
+    afterAll(async () => {
+        await browser.close();
+        await server.stop();
+    });
+    afterEach(async () => {
+        const complaints = open?.complaints ?? [];
+        await open?.page.close();
+        open = null;
+        // No violation of the content policy, nothing that failed unseen.
+        expect(complaints).toEqual([]);
+    });
+
+    const begin = async (more = {}) => {
+        open = await visit(browser, server.link, more);
+        await proven(open.page);
+        await open.page.locator(".program .cm-line.at").waitFor();
+        return open.page;
+    };
+
+    test("the token is taken out of the address", async () => {
+        const page = await begin();
+        expect(page.url()).not.toContain(new URL(server.link).hash.slice(1));
+    });
+
+    test("a click on a move lights its block and its record, and the axes stand where the record goes", async () => {
+        const page = await begin();
+        const view = (await page.locator(".canvas").boundingBox())!;
+        const before = await lit(page, "program");
+        // A spiral of clicks from the middle, until one meets a line.
+        for (let step = 0; step < 40 && (await lit(page, "program")) === before; step++) {
+            const radius = step * 4;
+            await page.mouse.click(view.x + view.width / 2 + radius * Math.cos(step), view.y + view.height / 2 + radius * Math.sin(step));
+            await page.waitForTimeout(60);
+        }
+        const [block, record] = [await lit(page, "program"), await lit(page, "source")];
+        expect(block).not.toBe(before);
+        const { X, Y, Z } = await readout(page);
+        const [x, y, z] = goto(record);
+        expect([X, Y, Z].map((value) => Number.parseFloat(value!))).toEqual([x, y, z].map((value) => expect.closeTo(value!, 3)));
+        expect(block).toMatch(/[XYZ]/);
+    });
+
+    test("a click on a block goes to its move: the axes stand where its words say", async () => {
+        const page = await begin();
+        const line = page.locator(".program .cm-line", { hasText: /X-?[\d.]+.*Y-?[\d.]+/ }).first();
+        const text = await line.innerText();
+        await line.click();
+        await page.locator(".program .cm-line.at", { hasText: text }).waitFor();
+        const { X, Y } = await readout(page);
+        expect(Number.parseFloat(X!)).toBeCloseTo(Number(/X(-?[\d.]+)/.exec(text)![1]), 3);
+        expect(Number.parseFloat(Y!)).toBeCloseTo(Number(/Y(-?[\d.]+)/.exec(text)![1]), 3);
+    });
+
+    test("a click on a record of the source lights the block that it became", async () => {
+        const page = await begin();
+        const line = page.locator(".source .cm-line", { hasText: /^GOTO\// }).nth(3);
+        const [x] = goto(await line.innerText());
+        await line.click();
+        await expect.poll(async () => Number.parseFloat((await readout(page)).X ?? "")).toBeCloseTo(x!, 3);
+    });
+
+    test("an edit by hand is proven anew; discarding it brings back what was posted", async () => {
+        const page = await begin();
+        await goTo(page, "m8");
+        const text = await lit(page, "program");
+        await page.locator(".program .cm-line.at").click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" Z-7.777");
+        await page.getByText("✗ NOT PROVEN").waitFor();
+        expect(await page.getByRole("button", { name: "Save…" }).isDisabled()).toBe(true);
+        await page.getByRole("tab", { name: "Verdict" }).click();
+        expect(await page.getByRole("region", { name: "First mismatch" }).innerText()).toContain("Z-7.777");
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+        await page.locator(".program .cm-line", { hasText: text }).first().waitFor();
+        expect(await page.locator(".program .cm-content").innerText()).not.toContain("Z-7.777");
+    });
+
+    test("an edit outlives a reload: it is offered again, and goes on", async () => {
+        const page = await begin();
+        await page.locator(".program .cm-line").first().click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" (mine)");
+        await page.getByText("▲ edited").waitFor();
+        await page.waitForTimeout(800);
+        await page.reload();
+        await page.getByRole("button", { name: "Continue" }).click();
+        await page.locator(".program .cm-line", { hasText: "(mine)" }).waitFor();
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+        expect(await page.getByRole("button", { name: "Continue" }).count()).toBe(0);
+    });
+
+    test("by keyboard alone: another machine, a step, a view, a place, saved", async () => {
+        const page = await begin();
+        await page.keyboard.press("Control+k");
+        await page.keyboard.type("choose machine");
+        await page.keyboard.press("Enter");
+        await page.keyboard.type("grbl-3018");
+        await page.keyboard.press("Enter");
+        await page.getByRole("button", { name: "grbl-3018" }).waitFor();
+        await page.getByText(/PROVEN|NOT POSTED/).waitFor();
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("generic-3axis-fanuc");
+        await page.keyboard.press("Enter");
+        await page.getByRole("button", { name: "generic-3axis-fanuc" }).waitFor();
+        await proven(page);
+
+        for (let pane = 0; pane < 6 && (await page.locator(".canvas:focus").count()) === 0; pane++) await page.keyboard.press("F6");
+        const before = await lit(page, "program");
+        await page.keyboard.press("Home");
+        await page.keyboard.press(".");
+        await page.keyboard.press(".");
+        await expect.poll(() => lit(page, "program")).not.toBe(before);
+        await page.keyboard.press("1");
+        await page.keyboard.press("?");
+        await page.getByRole("dialog", { name: "Keys" }).waitFor();
+        await page.keyboard.press("Escape");
+
+        await goTo(page, "m3");
+        await expect.poll(async () => (await readout(page)).Move).toMatch(/^3 /);
+
+        await page.keyboard.press("Control+s");
+        await page.keyboard.press("Tab");
+        await page.keyboard.press("Enter");
+        await page.getByText(/saved /).waitFor();
+        const saved = (await page.getByText(/saved /).innerText()).replace("saved ", "").split(", ");
+        expect(existsSync(join(server.folder, saved[0]!))).toBe(true);
+        expect(readFileSync(join(server.folder, saved[0]!), "utf8")).toContain("G1");
+    });
+
+    test("replay moves the cursor on, and stops at the end", async () => {
+        const page = await begin();
+        await page.getByLabel("Speed of the replay").selectOption({ label: "× 1000" });
+        await page.getByRole("button", { name: "Play" }).click();
+        await page.getByRole("button", { name: "Play" }).waitFor();
+        const slider = page.getByLabel("Time of the machine");
+        await expect.poll(() => slider.evaluate((input: HTMLInputElement) => input.valueAsNumber / Number(input.max))).toBeCloseTo(1, 3);
+    });
+
+    test("the picture is the same by the rasteriser and, nearly, by WebGL", async () => {
+        const page = await begin();
+        const canvas = page.locator(".canvas canvas").first();
+        const shot = async (): Promise<number[]> => {
+            await page.waitForTimeout(500);
+            return [...(await canvas.screenshot())];
+        };
+        const plain = await shot();
+        await page.keyboard.press("Control+k");
+        await page.keyboard.type("draw by webgl");
+        await page.keyboard.press("Enter");
+        expect((await shot()).length).toBeGreaterThan(plain.length * 0.5);
+        await page.evaluate(() => {
+            const gl = document.querySelector<HTMLCanvasElement>(".canvas canvas")!.getContext("webgl2");
+            gl?.getExtension("WEBGL_lose_context")?.loseContext();
+        });
+        // Lost: the rasteriser draws the same as before.
+        await expect.poll(shot).toEqual(plain);
+    });
+
+    test.each(["light", "dark"] as const)("axe-core finds nothing, %s, in the smallest window", async (colorScheme) => {
+        const page = await begin({ colorScheme, viewport: { width: 1024, height: 640 } });
+        await accessible(page, "page");
+        for (const tab of ["Verdict", "Axes over time"]) {
+            await page.getByRole("tab", { name: tab }).click();
+            await accessible(page, tab);
+        }
+        for (const key of ["Control+k", "Control+o", "Control+m", "Control+g", "Control+f", "Control+s"]) {
+            await page.keyboard.press(key);
+            await page.getByRole("dialog").waitFor();
+            await accessible(page, key);
+            await page.keyboard.press("Escape");
+        }
+    });
+});
