@@ -20,6 +20,8 @@ export class Cursor {
     private readonly asked: Newest<Where>;
     private readonly askedMoves: Newest<number>;
     private block = "";
+    /** Of which job the place is. */
+    private revision = 0;
 
     constructor(
         private readonly seam: Seam,
@@ -54,7 +56,13 @@ export class Cursor {
         const job = this.job.value;
         if (job === null || job.walk.moves === 0) return;
         const { done } = await this.seam.ask("place", { ...by, revision: job.revision });
-        if (done === null || this.job.value?.revision !== job.revision) return;
+        if (this.job.value?.revision !== job.revision) return;
+        if (done === null) {
+            // Of another job, and this one does not come so far: its end, which is the first mismatch of a failed proof.
+            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? job.walk.moves - 1);
+            return;
+        }
+        this.revision = job.revision;
         this.place.value = done;
         const block = `${job.revision} ${done.block.file ?? ""} ${done.block.line}`;
         if (block === this.block) return;

@@ -30,6 +30,25 @@ test("of asks that come while one runs, only the newest is asked", async () => {
 const job = (revision: number): Job =>
     ({ revision, walk: { moves: 9, chunks: 1, levels: [], box: null, time_s: 9, tools: [], kinds: [] } }) as unknown as Job;
 
+test("where a new job does not come as far as the record, the cursor is at its end", async () => {
+    const asked: PlaceParams[] = [];
+    const seam = {
+        async ask(ask: string, params: PlaceParams) {
+            if (ask === "moves") return { done: { ranges: [] }, arrays: {} };
+            asked.push(params);
+            const place = { move: params.value, block: { file: null, line: 1, text: "" }, source: { file: null, line: 40, text: "" } };
+            return { done: params.by === "source" ? null : place, arrays: {} };
+        },
+    } as unknown as Seam;
+    const now = signal<Job | null>(job(1));
+    const cursor = new Cursor(seam, now);
+    await settled();
+    now.value = job(2);
+    await settled();
+    expect(asked.at(-1)).toEqual({ revision: 2, by: "move", value: 8 });
+    expect(cursor.place.value?.move).toBe(8);
+});
+
 test("the cursor is at the same record of the source after a new posting", async () => {
     const asked: PlaceParams[] = [];
     const seam = {

@@ -67,7 +67,7 @@ async function scene(): Promise<Scene> {
 }
 
 const looks: Looks = { mode: "kind", width: 1, rapids: true, axes: false, theme: theme(false) };
-const marks: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null };
+const marks: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null, bodies: [] };
 const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
 
 test("what has not come is asked for, and what is there is drawn meanwhile", async () => {

@@ -11,6 +11,7 @@ export function Readout({ screen }: { screen: Screen }) {
     const pointer = screen.pointer.value;
     const parts: [string, string, string][] = place === null ? [] : [
         ...axes.map(({ name, unit }, i): [string, string, string] => [name, number(place.axes[i]), unit]),
+        ["Tip", place.tip.map((part) => number(part)).join("  "), "mm"],
         ["Feed", number(place.feed?.value, 0), place.feed?.unit ?? ""],
         ["Spindle", place.spindle === null ? "–" : `${place.spindle.turns} ${place.spindle.speed ?? ""}`, "1/min"],
         ["Coolant", place.coolant ?? "–", ""],

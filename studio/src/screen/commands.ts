@@ -74,6 +74,7 @@ function looking(screen: Screen): Command[] {
         { name: "four", title: "Four views, or one", keys: ["q"], view: true, run: flip(screen.four) },
         { name: "rapids", title: "Show rapids, or hide them", keys: ["r"], view: true, run: flip(screen.rapids) },
         { name: "axes", title: "Show tool axes, or hide them", keys: ["v"], view: true, run: flip(screen.axes) },
+        { name: "machine-bodies", title: "Show the machine, or hide it", keys: ["m"], view: true, run: flip(screen.machine) },
         { name: "pale", title: "What is ahead is pale, or not", keys: ["n"], view: true, run: flip(screen.pale) },
         { name: "box", title: "Box of all moves", keys: ["b"], view: true, run: flip(screen.box) },
         { name: "ruler", title: "Ruler: dragging measures", keys: ["l"], view: true, run: flip(screen.ruler) },

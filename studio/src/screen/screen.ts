@@ -2,14 +2,16 @@
 
 import { computed, effect, signal, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { ToolUse } from "../protocol/asks.ts";
+import type { Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
+import { bodiesOf, type Linkage } from "../view/linkage.ts";
 import { Rows } from "../view/rows.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
 import { toolBody } from "../view/solids.ts";
+import type { Triangles } from "../view/strip.ts";
 import type { Vector } from "../view/vector.ts";
 import type { Drawing, Viewer } from "../view/viewer.ts";
 
@@ -37,6 +39,7 @@ export class Screen {
     readonly width: Signal<number> = signal(1);
     readonly rapids: Signal<boolean> = signal(true);
     readonly axes: Signal<boolean> = signal(false);
+    readonly machine: Signal<boolean> = signal(false);
     /** While one replays, what is ahead of the cursor is pale. */
     readonly pale: Signal<boolean> = signal(true);
     readonly four: Signal<boolean> = signal(false);
@@ -95,8 +98,21 @@ export class Screen {
             pale: this.pale.value && cursor.by.value === "time",
             ofBlock: cursor.ofBlock.value,
             mismatch: job.value?.walk.mismatch ?? null,
+            bodies: place === null || !this.machine.value ? [] : this.bodiesAt(place),
             tool: place === null ? null : toolBody(this.toolOf(place.tool), vector(place.tip), axisOf(place.axis), size),
         };
+    }
+
+    /** The machine round the tool, where all its axes are known. */
+    private bodiesAt({ axes, tip, tool }: Place): Triangles[] {
+        const linkage = this.linkage;
+        const known = axes.filter((position) => position !== null);
+        if (linkage === null || known.length !== axes.length) return [];
+        return bodiesOf(linkage, known, vector(tip), this.toolOf(tool)?.length ?? 0);
+    }
+
+    get linkage(): Linkage | null {
+        return (this.studio.job.value?.machine as { linkage?: Linkage | null } | undefined)?.linkage ?? null;
     }
 
     toolOf(place: number | null): ToolUse | null {

@@ -30,6 +30,7 @@ export interface Marks {
     ofBlock: Range[];
     mismatch: number | null;
     tool: Triangles | null;
+    bodies: Triangles[];
 }
 
 export interface Picture {
@@ -67,7 +68,7 @@ export class Scene {
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
-        return { strips, symbols, bodies: marks.tool === null ? [] : [marks.tool] };
+        return { strips, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
     }
 
     private needles(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, { scale }: Projection): void {
@@ -140,7 +141,7 @@ export class Scene {
 
     /** The move under the pixel: found in what is drawn, then among the exact lines of that chunk. */
     async pick(camera: Projection, size: Size, looks: Looks, x: number, y: number): Promise<number | null> {
-        const none: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null };
+        const none: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null, bodies: [] };
         const { strips } = this.picture(camera, size, { ...looks, width: 1 }, none);
         const rough = nearest(strips, camera, x, y);
         if (rough === null) return null;
