@@ -25,6 +25,8 @@ export function absent(): string | null {
 }
 
 export class Server {
+    private static readonly running = new Set<Server>();
+
     private constructor(
         readonly link: string,
         readonly folder: string,
@@ -38,7 +40,10 @@ export class Server {
         const child = spawn(command, ["studio", "--no-open", "--folder", folder, ...source, ...more], { stdio: ["ignore", "pipe", "inherit"] });
         for await (const line of createInterface({ input: child.stdout! })) {
             const link = /http:\S+/.exec(line)?.[0];
-            if (link !== undefined) return new Server(link, folder, child);
+            if (link === undefined) continue;
+            const server = new Server(link, folder, child);
+            Server.running.add(server);
+            return server;
         }
         throw new Error("the command has printed no link");
     }
@@ -48,11 +53,15 @@ export class Server {
         const ended = new Promise((done) => this.process.once("exit", done));
         this.process.kill(signal);
         await ended;
+        Server.running.delete(this);
     }
 
-    async stop(): Promise<void> {
-        await this.end();
-        rmSync(this.folder, { recursive: true });
+    /** Ends all that still run, also those of tests that failed. */
+    static async stopAll(): Promise<void> {
+        for (const server of Server.running) {
+            await server.end();
+            rmSync(server.folder, { recursive: true, force: true });
+        }
     }
 }
 

@@ -40,6 +40,6 @@ describe.skipIf(folder === undefined || absent() !== null)("pictures of the docu
         await page.waitForTimeout(500);
         await page.screenshot({ path: join(folder!, "studio-failed.png") });
         await browser.close();
-        await server.stop();
+        await Server.stopAll();
     }, 120_000);
 });

@@ -17,7 +17,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
     });
     afterAll(async () => {
         await browser.close();
-        await server.stop();
+        await Server.stopAll();
     });
     afterEach(async () => {
         const complaints = open?.complaints ?? [];

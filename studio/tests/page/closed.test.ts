@@ -1,0 +1,96 @@
+import { createServer } from "node:http";
+import type { AddressInfo } from "node:net";
+import { existsSync, readdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { absent, example, launch, proven, Server, visit } from "./harness.ts";
+
+describe.skipIf(absent() !== null)("the page and others", () => {
+    let browser: Browser;
+    beforeAll(async () => {
+        browser = await launch();
+    });
+    afterAll(async () => {
+        await browser.close();
+        await Server.stopAll();
+    });
+
+    test("a page of another origin gets no socket and no data, even with the token", async () => {
+        const server = await Server.start([example("plate.cls")], ["-m", "generic-3axis-fanuc"]);
+        const other = createServer((_, response) => response.setHeader("content-type", "text/html").end("<p>elsewhere")).listen(0, "127.0.0.1");
+        const page = await browser.newPage();
+        await page.goto(`http://127.0.0.1:${(other.address() as AddressInfo).port}/`);
+        const { origin, hash } = new URL(server.link);
+        const token = hash.slice(1);
+        const got = await page.evaluate(async ({ origin, token }) => {
+            const asked = await fetch(`${origin}/geometry/1/index`, { headers: { "x-toolpost-token": token } }).then(() => "data", () => "refused");
+            const blind = await fetch(`${origin}/geometry/1/index`, { mode: "no-cors" }).then((answer) => answer.type, () => "refused");
+            const socket = await new Promise<string>((tell) => {
+                const opened = new WebSocket(`${origin.replace("http", "ws")}/socket`);
+                opened.addEventListener("open", () => tell("open"));
+                opened.addEventListener("error", () => tell("refused"));
+            });
+            return { asked, blind, socket };
+        }, { origin, token });
+        expect(got.asked).toBe("refused");
+        expect(got.socket).toBe("refused");
+        // What a page cannot read, it gets at most as an opaque refusal.
+        expect(["refused", "opaque"]).toContain(got.blind);
+        await page.close();
+        other.close();
+    });
+
+    test("a link with another token is refused, and the page says so", async () => {
+        const server = await Server.start([]);
+        const { page } = await visit(browser, `${server.link.slice(0, -4)}0000`);
+        await page.getByText("the link is not of this server").waitFor();
+        await page.close();
+    });
+
+    test("markup in files is text", async () => {
+        const server = await Server.start([]);
+        const file = join(server.folder, "x<img src=x onerror=alert(1)>.cls");
+        writeFileSync(file, "PARTNO/<script>alert(1)</script>\nUNITS/MM\nLOADTL/1\nSPINDL/900,RPM,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\nGOTO/0,0,0\nPPRINT/<b onmouseover=alert(2)>\nGOTO/10,0,0\nFINI\n");
+        const { page, complaints } = await visit(browser, server.link);
+        let alerts = 0;
+        page.on("dialog", (dialog) => {
+            alerts++;
+            void dialog.dismiss();
+        });
+        await page.keyboard.press("Control+m");
+        await page.getByText("generic-3axis-fanuc:").waitFor();
+        await page.keyboard.type("generic-3axis-fanuc");
+        await page.keyboard.press("Enter");
+        await page.keyboard.press("Control+o");
+        await page.getByText("x<img src=x").click();
+        await proven(page);
+        await page.locator(".source .cm-line", { hasText: "<script>alert(1)</script>" }).waitFor();
+        expect(await page.locator("img, script:not([src]), b[onmouseover]").count()).toBe(0);
+        expect([alerts, complaints]).toEqual([0, []]);
+        await page.close();
+    });
+
+    test("a killed server loses no edit: the page says that it is gone, the next server offers the edit", async () => {
+        const files = [example("plate.cls")];
+        const machine = ["-m", "generic-3axis-fanuc"];
+        const first = await Server.start(files, machine);
+        const { page } = await visit(browser, first.link);
+        await proven(page);
+        await page.locator(".program .cm-line").first().click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" (kept)");
+        const drafts = join(first.folder, ".toolpost/drafts");
+        await expect.poll(() => existsSync(drafts) && readdirSync(drafts).length > 0).toBe(true);
+        await first.end("SIGKILL");
+        await page.getByText("connection lost").waitFor();
+        await page.close();
+
+        const second = await Server.start([], machine, first.folder);
+        const again = await visit(browser, second.link);
+        await again.page.getByRole("button", { name: "Continue" }).click();
+        await again.page.locator(".program .cm-line", { hasText: "(kept)" }).waitFor();
+        expect(again.complaints).toEqual([]);
+        await again.page.close();
+    });
+});

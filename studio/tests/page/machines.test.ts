@@ -1,0 +1,47 @@
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { absent, example, goTo, launch, lit, proven, readout, Server, visit } from "./harness.ts";
+
+describe.skipIf(absent() !== null)("the same part on machines of other kinds", () => {
+    let browser: Browser;
+    beforeAll(async () => {
+        browser = await launch();
+    });
+    afterAll(async () => {
+        await browser.close();
+        await Server.stopAll();
+    });
+
+    test.each([
+        ["five axes", "fanuc-table-bc", ["X", "Y", "Z", "B", "C"]],
+        ["a robot", "universal-ur10e", ["J1", "J2", "J3", "J4", "J5", "J6"]],
+    ])("%s: the tip is where the record goes, and each axis is read out", async (_, machine, axes) => {
+        const server = await Server.start([example("dome.cls")], ["-m", machine]);
+        const { page, complaints } = await visit(browser, server.link);
+        await proven(page);
+        await page.locator(".program .cm-line.at").waitFor();
+        const before = await lit(page, "source");
+        await goTo(page, "m500");
+        await expect.poll(() => lit(page, "source")).not.toBe(before);
+        const record = await lit(page, "source");
+        const read = await readout(page);
+        for (const axis of axes) expect(read).toHaveProperty(axis);
+        const tip = read.Tip!.split(" ").slice(0, 3).map(Number);
+        const to = record.replace("GOTO/", "").split(",").slice(0, 3).map(Number);
+        // The program has three decimals.
+        tip.forEach((part, i) => expect(Math.abs(part - to[i]!)).toBeLessThan(0.002));
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("a program without a control leads to the option that it needs", async () => {
+        const server = await Server.start([example("flange.nc")], ["-m", "generic-3axis-fanuc"]);
+        const { page } = await visit(browser, server.link);
+        await page.getByRole("button", { name: "Set --from…" }).click();
+        await page.getByLabel(/^from/).fill("fanuc-31i");
+        await page.getByRole("button", { name: "Post" }).click();
+        await page.getByText(/PROVEN|NOT POSTED/).waitFor();
+        await expect.poll(() => page.getByText("no control named").count()).toBe(0);
+        await page.close();
+    });
+});
