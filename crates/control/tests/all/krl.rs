@@ -324,7 +324,7 @@ fn a_file_whose_programs_do_not_end_or_have_names_of_kuka_is_refused_whether_the
         let found = found(behind);
         assert!(found.contains(at) && found.contains(what), "{behind}: {found}");
     }
-    let found = arm::run(&settings(), "cell.src", "DEF cell ( )\nHALT\nEND\n").unwrap_err();
+    let found = crate::arm::run(&settings(), "cell.src", "DEF cell ( )\nHALT\nEND\n").unwrap_err();
     assert!(found.contains("own software"), "{found}");
     // In the file of a called program as well.
     let folder = tempfile::tempdir().unwrap();
