@@ -6,7 +6,7 @@ use crate::files;
 use crate::input::Source;
 use crate::summary::{Shape, number};
 use crate::watch::{Waits, Watch};
-use control::{Setup, Units, WholeNumbers};
+use control::{Folders, Setup, Units, WholeNumbers};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, Reach, library};
@@ -15,6 +15,7 @@ use program::{
 };
 use serde_json::{Value, json};
 use source::apt::{self, Csys, Cutcom, SetUps};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// What a source does not say itself: what an NC program was written for and what the operator has set up, and how
@@ -30,6 +31,8 @@ pub struct Origin {
     pub tools: Option<Source>,
     /// Folders in which called programs are looked for; nothing outside them is opened.
     pub folders: Vec<PathBuf>,
+    /// Called programs that the caller has in memory, by the names of their files: they are found before those of the folders.
+    pub called: BTreeMap<String, Vec<u8>>,
     /// Whether `X10` means 10 mm or 10 increments, on a control that can be set to both.
     pub whole_numbers: WholeNumbers,
     /// What lengths count before the program says it.
@@ -414,6 +417,7 @@ impl Origin {
             reach: _,
             tools,
             folders,
+            called,
             whole_numbers,
             units,
             aside,
@@ -424,7 +428,7 @@ impl Origin {
         } = self;
         let given = [
             ("--tools", tools.is_some()),
-            ("--folder", !folders.is_empty()),
+            ("--folder", !folders.is_empty() || !called.is_empty()),
             ("--whole-numbers", *whole_numbers != WholeNumbers::Unknown),
             ("--units", units.is_some()),
             ("--aside", aside.is_some()),
@@ -475,7 +479,7 @@ impl Origin {
         };
         Ok(Setup {
             tools,
-            folders: self.folders.clone().into(),
+            folders: Folders::from(self.folders.clone()).with_texts(self.called.clone()),
             whole_numbers: self.whole_numbers,
             units: self.units,
             aside: self.aside,

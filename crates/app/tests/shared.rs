@@ -537,3 +537,79 @@ fn each_step_tells_how_far_it_is_and_ends_where_it_is_asked() {
         }
     }
 }
+
+/// A program that calls another one, and a tool table: all of them from memory as from files.
+#[test]
+fn called_programs_are_read_from_memory_as_from_a_folder() {
+    let main = "%\nO1\nG21 G90 G17 G40 G49 G80 G94\nT1 M6\nG54 G43 H1 S900 M3\nG0 X0. Y0.\nZ5.\nM98 P2\nG0 Z5.\nM5\nG28 Z0.\nM30\n%\n";
+    let called = "%\nO2\nG1 Z-1. F100.\nX20.\nM99\n%\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("O0002"), called).unwrap();
+    let source = Source::memory("main.nc", main.as_bytes());
+    let fanuc = || Origin { from: Some("fanuc-31i".into()), ..Origin::default() };
+    let read = |origin: &Origin| {
+        toolpath::read(&source, false, origin, None, Purpose::Program).map(|read| {
+            let files = read.files().len();
+            (read.program, files)
+        })
+    };
+    let (of_folder, files) =
+        read(&Origin { folders: vec![folder.path().to_owned()], ..fanuc() }).unwrap();
+    assert_eq!(files, 1, "the called file");
+    let texts = || [(String::from("O0002"), called.as_bytes().to_vec())].into();
+    let (of_memory, files) = read(&Origin { called: texts(), ..fanuc() }).unwrap();
+    assert_eq!(files, 0);
+    assert_eq!(of_folder.records, of_memory.records);
+    // Before those of a folder.
+    std::fs::write(folder.path().join("O0002"), called.replace("20.", "30.")).unwrap();
+    let both = Origin { folders: vec![folder.path().to_owned()], called: texts(), ..fanuc() };
+    assert_eq!(read(&both).unwrap().0.records, of_memory.records);
+    let stop = read(&fanuc()).unwrap_err();
+    assert!(stop.findings[0].message.contains("O2") || stop.findings[0].message.contains("O0002"));
+    let stop = read(&Origin { called: texts(), ..Origin::default() }).unwrap_err();
+    assert_eq!(stop.findings[0].rule, "origin");
+}
+
+/// The layers of a board, of which the caller says what two hold.
+#[test]
+fn the_layers_of_a_board_are_read_from_memory_as_from_a_folder() {
+    let head = "%FSLAX46Y46*%\n%MOMM*%\n";
+    let copper =
+        format!("{head}%ADD10C,1.0*%\nD10*\nX2000000Y2000000D02*\nX8000000Y2000000D01*\nM02*\n");
+    let outline = format!(
+        "{head}%ADD10C,0.1*%\nD10*\nX0Y0D02*\nX10000000Y0D01*\nX10000000Y5000000D01*\nX0Y5000000D01*\nX0Y0D01*\nM02*\n"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("b.one"), &copper).unwrap();
+    std::fs::write(folder.path().join("b.two"), &outline).unwrap();
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let mut settings = Settings::default();
+    settings.isolation.tool = Some(0.3);
+    let tolerances = Tolerances::default();
+    let file = |name: &str| Source::File(folder.path().join(name));
+    let memory = |name: &str, text: &str| Source::memory(name, text.as_bytes());
+    let made = |given: &[Source], one: Source, two: Source| {
+        let mut job = board::Job::new(&machine, &settings, &tolerances).unwrap();
+        job.named = vec![
+            (one, ::pcb::board::Layer::Copper(::pcb::board::Face::Front)),
+            (two, ::pcb::board::Layer::Outline),
+        ];
+        let made = job.make(given, &()).unwrap();
+        made.programs.iter().map(|program| program.posted.text.clone()).collect::<Vec<_>>()
+    };
+    let of_files = made(&[Source::File(folder.path().to_owned())], file("b.one"), file("b.two"));
+    let (one, two) = (memory("b.one", &copper), memory("b.two", &outline));
+    let of_memory = made(&[one.clone(), two.clone()], one, two);
+    assert!(!of_files.is_empty());
+    let lines = |texts: &[Vec<u8>]| -> Vec<String> {
+        let cuts = |text: &Vec<u8>| {
+            String::from_utf8_lossy(text)
+                .lines()
+                .filter(|line| line.starts_with(['G', 'X', 'Y', 'Z']))
+                .collect::<Vec<_>>()
+                .join("\n")
+        };
+        texts.iter().map(cuts).collect()
+    };
+    assert_eq!(lines(&of_files), lines(&of_memory));
+}

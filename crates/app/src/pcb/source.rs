@@ -38,8 +38,7 @@ pub fn read(
         files => files.to_vec(),
     };
     let mut files = chosen(given, all)?;
-    let whole = |file: &input::Source| std::fs::canonicalize(file.path()).ok();
-    files.retain(|file| named.iter().all(|(other, _)| whole(other) != whole(file)));
+    files.retain(|file| named.iter().all(|(other, _)| !is_same(other, file)));
     if let Some(board) =
         files.iter().find(|file| ending(file) == "kicad_pcb").filter(|_| !named.is_empty())
     {
@@ -81,6 +80,18 @@ pub fn read(
         artwork = artwork.rectangular(margin).map_err(Stop::invalid)?;
     }
     Ok(Source { artwork, layers, files })
+}
+
+/// Whether two are one file: bytes in memory by their name.
+fn is_same(a: &input::Source, b: &input::Source) -> bool {
+    match (a.file(), b.file()) {
+        (Some(a), Some(b)) => match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => a == b,
+        },
+        (None, None) => a.path() == b.path(),
+        _ => false,
+    }
 }
 
 /// Endings that plots of layers have mostly: where such files are in the same folder, a KiCad board is not read.

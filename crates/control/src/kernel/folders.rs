@@ -34,11 +34,18 @@ impl From<Vec<PathBuf>> for Folders {
 
 impl From<BTreeMap<String, Vec<u8>>> for Folders {
     fn from(texts: BTreeMap<String, Vec<u8>>) -> Folders {
-        Folders { texts: Arc::new(texts), ..Folders::default() }
+        Folders::default().with_texts(texts)
     }
 }
 
 impl Folders {
+    /// The same, with programs that are in no folder yet, by the names of their files: they are found first.
+    #[must_use]
+    pub fn with_texts(mut self, texts: BTreeMap<String, Vec<u8>>) -> Folders {
+        self.texts = Arc::new(texts);
+        self
+    }
+
     /// The files that have been read from them, by any of the controls that were set up with clones of it.
     pub fn files_read(&self) -> Vec<PathBuf> {
         self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()

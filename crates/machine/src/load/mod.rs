@@ -375,6 +375,21 @@ max = 200.5
         assert!(load(&Reach::Anywhere, "../base.toml").is_ok());
         assert!(load(&Reach::Library, "base.toml").is_err());
         assert!(load(&Reach::Library, "emco-concept-mill-105").is_ok());
+        // Nor by a link that leads out; one that leads to a file within is followed.
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::symlink;
+            symlink("../base.toml", folder.join("shop/out.toml")).unwrap();
+            symlink("base.toml", folder.join("shop/in.toml")).unwrap();
+            symlink("..", folder.join("shop/up")).unwrap();
+            for extends in ["out.toml", "up/base.toml"] {
+                let shown = load(&within, extends).unwrap_err();
+                assert!(shown.contains("may not be read here"), "{shown}");
+            }
+            assert!(load(&within, "in.toml").is_ok());
+            let link = folder.join("shop/out.toml").display().to_string();
+            assert_eq!(within.load(&link).unwrap_err().rule, "machine-reach");
+        }
         let outside = folder.join("base.toml").display().to_string();
         assert_eq!(within.load(&outside).unwrap_err().rule, "machine-reach");
         assert_eq!(Reach::Library.load_origin(&mine).unwrap_err().rule, "machine-reach");
