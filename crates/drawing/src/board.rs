@@ -49,8 +49,12 @@ const MARK: f64 = 15.0;
 const BASE: &str = "#efe9d2";
 const EDGE: &str = "#8d8663";
 
-/// Colours of holes, by their widths, the narrowest first.
-const HOLES: [&str; 6] = ["#4a4f55", "#7a3b2e", "#2e4f7a", "#3f6b34", "#6b3f78", "#7a6a2a"];
+/// Colours of holes, by their widths, the narrowest first: neighbours differ in hue, those six apart in lightness. Boards have no more
+/// than sixteen widths but for rare ones.
+const HOLES: [&str; 16] = [
+    "#4a4f55", "#7a3b2e", "#2e4f7a", "#3f6b34", "#6b3f78", "#7a6a2a", "#16181b", "#c4684f",
+    "#4f86c9", "#67a858", "#a968bd", "#b89f35", "#868c94", "#4d120a", "#0b2548", "#163a0f",
+];
 
 const TAB: &str = "#111111";
 const STOCK: &str = "stroke=\"#8d8663\" stroke-width=\"1.2\" stroke-dasharray=\"7 5\"";
@@ -249,16 +253,42 @@ impl Drawn {
                 from.x, from.y, to.x, to.y
             );
         }
-        for (i, place) in picture.problems.iter().take(MOST_MARKED).enumerate() {
-            let at = view.at(place.at.extend(0.0));
+        let marked = picture.problems.iter().take(MOST_MARKED);
+        let rings: Vec<DVec2> = marked.map(|place| view.at(place.at.extend(0.0))).collect();
+        for at in &rings {
             let _ = writeln!(
                 out,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{MARK}\" stroke=\"{PROBLEM}\" stroke-width=\"2.4\"/>",
                 at.x, at.y
             );
-            write_text(out, &(i + 1).to_string(), at + DVec2::new(MARK, -MARK), 9.0, PROBLEM);
+        }
+        for group in overlapping(&rings) {
+            let numbers: Vec<String> = group.iter().map(|i| (i + 1).to_string()).collect();
+            let corner = group.iter().map(|i| rings[*i]).reduce(DVec2::min).unwrap_or_default();
+            // One alone has its number beside it, several have theirs above all of them.
+            let label = match group.len() {
+                1 => corner + DVec2::new(MARK, -MARK),
+                _ => corner + DVec2::new(-MARK, -MARK - 4.0),
+            };
+            write_text(out, &numbers.join(", "), label, 9.0, PROBLEM);
         }
     }
+}
+
+/// Rings around places, by those that overlap each other or others between them, each group in their order.
+fn overlapping(rings: &[DVec2]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (i, ring) in rings.iter().enumerate() {
+        let touches =
+            |group: &Vec<usize>| group.iter().any(|k| rings[*k].distance(*ring) < 2.0 * MARK);
+        let (near, mut apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(touches);
+        let mut group = near.concat();
+        group.sort_unstable();
+        group.push(i);
+        apart.push(group);
+        groups = apart;
+    }
+    groups
 }
 
 /// The line about which the board is turned over, from end to end of it and a little farther.
@@ -484,7 +514,8 @@ fn entries(drawn: &Drawn, picture: &BoardPicture) -> Vec<Entry> {
         entry(String::new(), &text, "");
     }
     if !picture.tabs.is_empty() {
-        let text = format!("{} TABS", picture.tabs.len());
+        let plural = if picture.tabs.len() == 1 { "" } else { "S" };
+        let text = format!("{} TAB{plural}", picture.tabs.len());
         entry(format!("stroke=\"{TAB}\" stroke-width=\"5\" stroke-linecap=\"butt\""), &text, "");
     }
     if let Some((low, high)) = picture.stock {
@@ -538,6 +569,23 @@ mod tests {
         );
     }
 
+    /// Of rings that overlap nobody can tell whose number is whose.
+    #[test]
+    fn rings_that_overlap_have_their_numbers_together() {
+        let rings = [0.0, 100.0, 40.0, 129.0, 20.0, 200.0].map(|x| DVec2::new(x, 50.0));
+        assert_eq!(overlapping(&rings), [vec![1, 3], vec![0, 2, 4], vec![5]]);
+        assert!(overlapping(&[]).is_empty());
+    }
+
+    /// Six colours stood for all widths: a board of KiCad's demos with fourteen had three of each.
+    #[test]
+    fn each_of_sixteen_widths_of_holes_has_a_colour_of_its_own() {
+        let mut colors: Vec<&str> = (0..16).map(|i| hole_color(Some(i))).collect();
+        colors.sort_unstable();
+        colors.dedup();
+        assert_eq!(colors.len(), 16);
+    }
+
     #[test]
     fn a_board_shows_its_copper_its_cut_as_wide_as_the_tool_and_its_problems() {
         let copper =
@@ -577,7 +625,10 @@ mod tests {
         assert!(svg.contains("d=\"M460.0 735.0L460.0 25.0\"") && svg.contains("X 10.000"), "{svg}");
         assert!(svg.contains("1 HOLE OF 1 MM") && svg.contains("1: X12.00 Y12.00"));
         // 8 to 12 mm of 20 on the lower edge.
-        assert!(svg.contains("d=\"M392.0 720.0L528.0 720.0\"") && svg.contains("1 TABS"), "{svg}");
+        assert!(
+            svg.contains("d=\"M392.0 720.0L528.0 720.0\"") && svg.contains("\"1 TAB\""),
+            "{svg}"
+        );
         assert_eq!(svg.matches("<circle").count(), 1);
         assert!(svg.contains(&format!("fill=\"{}\"", NETS[0])));
     }
