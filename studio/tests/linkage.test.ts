@@ -15,10 +15,9 @@ const machines = JSON.parse(readFileSync(new URL("vectors/linkage.json", import.
 describe.each(machines)("the chain of $machine", ({ linkage, cases }) => {
     test.each(cases)("at $axes is that of the core", ({ axes, links, tool_length, tip }) => {
         const placed = place(linkage, axes);
-        // Directions are given to nine decimals: 5e-10 of the distances, up to 40 mm, that they turn.
         const off = (numbers: number[], others: number[]): number => Math.max(...numbers.map((number, i) => Math.abs(number - others[i]!)));
-        expect(Math.max(...placed.map((matrix, link) => off(matrix, links[link]!)))).toBeLessThanOrEqual(2e-8);
-        expect(off(tipOf(linkage, placed, tool_length), tip)).toBeLessThanOrEqual(2e-8);
+        expect(Math.max(...placed.map((matrix, link) => off(matrix, links[link]!)))).toBeLessThanOrEqual(1e-9);
+        expect(off(tipOf(linkage, placed, tool_length), tip)).toBeLessThanOrEqual(1e-9);
     });
 
     test("carries its bodies to where the tool is", () => {

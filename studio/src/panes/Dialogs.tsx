@@ -1,5 +1,5 @@
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Command } from "../commands.ts";
 import type { Dialog, Screen } from "../screen/screen.ts";
 import { Choose } from "./Choose.tsx";
@@ -66,7 +66,8 @@ export const shownKey = (key: string | undefined): string =>
 /** The browser's own dialog: it keeps the focus within, and Escape closes it. */
 function Modal({ title, close, children }: { title: string; close(): void; children: ComponentChildren }) {
     const dialog = useRef<HTMLDialogElement>(null);
-    useEffect(() => dialog.current?.showModal(), []);
+    // Before the browser draws, so that no key that is typed next is lost.
+    useLayoutEffect(() => dialog.current?.showModal(), []);
     return (
         <dialog ref={dialog} aria-label={title} onClose={close} onClick={(event) => event.target === dialog.current && close()}>
             <h2>{title}</h2>

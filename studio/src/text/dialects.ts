@@ -123,7 +123,11 @@ const style = HighlightStyle.define([
     { tag: tags.variableName, color: "var(--code-variable)" },
 ]);
 
+const made = new Map<Family, Extension>();
+
 export function coloured(family: Family): Extension {
+    const known = made.get(family);
+    if (known !== undefined) return known;
     const language = StreamLanguage.define({
         name: family,
         token(stream) {
@@ -132,5 +136,7 @@ export function coloured(family: Family): Extension {
             return tag;
         },
     });
-    return [language, syntaxHighlighting(style)];
+    const extension = [language, syntaxHighlighting(style)];
+    made.set(family, extension);
+    return extension;
 }

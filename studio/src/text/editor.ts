@@ -4,10 +4,16 @@
  */
 
 import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
-import { Compartment, EditorState, StateEffect, StateField, type Extension, type Text } from "@codemirror/state";
+import { Compartment, EditorState, StateEffect, StateField, Transaction, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
-import { isNearEnd, isWithin, windowAround, type Window } from "./window.ts";
+import { FIRST, isNearEnd, isWithin, KEPT, windowAround, type Window } from "./window.ts";
+
+/** Between two jumps to lines that are not here, ms. */
+const JUMPS = 250;
+
+/** How long the cursor rests before all lines around it are fetched, ms. */
+const REST = 700;
 
 /** A text that is somewhere else. */
 export interface Origin {
@@ -67,11 +73,15 @@ export class Editor {
     readonly more = new Compartment();
     private window: Window = { from: 1, to: 1 };
     private origin: Origin | null = null;
+    /** Of which text the lines in the editor are. */
+    private shown: Origin | null = null;
     private marked: { at: number | null; wrong: number[] } = { at: null, wrong: [] };
     private reading = 0;
     /** The window that is on its way. */
     private coming: Window | null = null;
     private isSetting = false;
+    private jumping: ReturnType<typeof setTimeout> | undefined;
+    private resting: ReturnType<typeof setTimeout> | undefined;
 
     constructor(host: HTMLElement, label: string, private readonly listener: Listener) {
         const root = host.attachShadow({ mode: "open" });
@@ -89,6 +99,8 @@ export class Editor {
     }
 
     close(): void {
+        clearTimeout(this.resting);
+        clearTimeout(this.jumping);
         this.view.destroy();
     }
 
@@ -117,23 +129,37 @@ export class Editor {
         if (this.text !== text) this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
     }
 
-    private async fetch(line: number): Promise<void> {
+    private async fetch(line: number, kept = FIRST): Promise<void> {
         const { origin } = this;
         if (origin === null) return;
         const reading = ++this.reading;
-        const window = windowAround(line, origin.lines);
+        clearTimeout(this.resting);
+        const window = windowAround(line, origin.lines, origin.lines <= KEPT ? KEPT : kept);
+        if (window.to - window.from < Math.min(KEPT, origin.lines)) this.resting = setTimeout(() => void this.widen(), REST);
         this.coming = window;
         try {
             const text = await origin.read(window.from, window.to);
-            if (reading === this.reading) this.set(text, window);
+            if (reading === this.reading) this.move(text, window);
         } finally {
             if (reading === this.reading) this.coming = null;
         }
     }
 
+    /** Other lines of the same text take the place of these; those of another text begin anew. */
+    private move(text: string, window: Window): void {
+        if (this.shown !== this.origin || this.origin === null || this.origin.lines <= KEPT) return this.set(text, window);
+        this.window = window;
+        this.isSetting = true;
+        const { length } = this.view.state.doc;
+        this.view.dispatch({ changes: { from: 0, to: length, insert: text }, annotations: Transaction.addToHistory.of(false), selection: { anchor: 0 } });
+        this.isSetting = false;
+        this.draw(true);
+    }
+
     private set(text: string, window: Window): void {
         this.window = window;
         const { origin } = this;
+        this.shown = origin;
         const isEditable = origin?.isEditable === true && this.isWhole;
         this.isSetting = true;
         this.view.setState(
@@ -150,8 +176,24 @@ export class Editor {
     mark(at: number | null, wrong: number[]): void {
         const isNew = at !== this.marked.at;
         this.marked = { at, wrong };
-        if (at !== null && this.origin !== null && isNew && !isWithin(this.coming ?? this.window, at) && at <= this.origin.lines) void this.fetch(at);
+        if (isNew && this.isElsewhere) this.jump();
         else this.draw(isNew);
+    }
+
+    /** The cursor's line is not among those that are here or on their way. */
+    private get isElsewhere(): boolean {
+        const { at } = this.marked;
+        return at !== null && this.origin !== null && at <= this.origin.lines && !isWithin(this.coming ?? this.window, at);
+    }
+
+    /** At once, but while somebody scrubs through a long text only now and then. */
+    private jump(): void {
+        if (this.jumping !== undefined) return;
+        void this.fetch(this.marked.at!);
+        this.jumping = setTimeout(() => {
+            this.jumping = undefined;
+            if (this.isElsewhere) this.jump();
+        }, JUMPS);
     }
 
     private draw(isNew: boolean): void {
@@ -178,16 +220,19 @@ export class Editor {
         if (update.viewportChanged && this.origin !== null && !this.isWhole) {
             const line = (position: number): number => state.doc.lineAt(position).number + this.window.from - 1;
             const [first, last] = [line(viewport.from), line(viewport.to)];
-            if (isNearEnd(this.window, first, last, this.origin.lines)) void this.slide(Math.round((first + last) / 2));
+            const isResting = this.window.to - this.window.from >= KEPT && this.coming === null;
+            if (isResting && isNearEnd(this.window, first, last, this.origin.lines)) void this.widen();
         }
     }
 
-    /** Another window, with the same lines in sight. */
-    private async slide(line: number): Promise<void> {
-        await this.fetch(line);
-        const { doc } = this.view.state;
-        const at = Math.max(1, Math.min(doc.lines, line - this.window.from + 1));
-        this.view.dispatch({ effects: EditorView.scrollIntoView(doc.line(at).from, { y: "center" }) });
+    /** As many lines as are kept, with the same ones in sight. */
+    private async widen(): Promise<void> {
+        const { view } = this;
+        const first = view.state.doc.lineAt(view.lineBlockAtHeight(view.scrollDOM.scrollTop).from).number + this.window.from - 1;
+        await this.fetch(first, KEPT);
+        const { doc } = view.state;
+        const at = Math.max(1, Math.min(doc.lines, first - this.window.from + 1));
+        view.dispatch({ effects: EditorView.scrollIntoView(doc.line(at).from, { y: "start" }) });
     }
 
     /** Puts the selection on a line of the file, as if it were clicked. */

@@ -8,6 +8,9 @@ export interface Window {
 
 export const KEPT = 200_000;
 
+/** Of a text that is not kept whole: as many lines are fetched first, the others when the cursor rests. */
+export const FIRST = 500;
+
 /** All of a text, or as many lines as are kept, with `line` in the middle. */
 export function windowAround(line: number, lines: number, kept = KEPT): Window {
     if (lines <= kept) return { from: 1, to: lines + 1 };

@@ -81,7 +81,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         await page.keyboard.press("End");
         await page.keyboard.type(" (kept)");
         const drafts = join(first.folder, ".toolpost/drafts");
-        await expect.poll(() => existsSync(drafts) && readdirSync(drafts).length > 0).toBe(true);
+        await expect.poll(() => existsSync(drafts) && readdirSync(drafts).filter((name) => /\.(json|text)$/.test(name)).length).toBe(2);
         await first.end("SIGKILL");
         await page.getByText("connection lost").waitFor();
         await page.close();

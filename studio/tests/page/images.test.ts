@@ -13,6 +13,7 @@ async function replayed(page: Page): Promise<void> {
         slider.value = String(Number(slider.max) * 0.66);
         slider.dispatchEvent(new Event("input", { bubbles: true }));
     });
+    await page.getByRole("tab", { name: "Axes over time" }).click();
     await page.waitForTimeout(1500);
 }
 
