@@ -3,10 +3,10 @@
 import { effect, signal, untracked, type Signal } from "@preact/signals";
 import { Newest } from "./newest.ts";
 import type { Seam } from "./protocol/seam.ts";
-import type { Job, Place, PlaceParams } from "./protocol/asks.ts";
+import type { Asked, Job, Place, PlaceParams } from "./protocol/asks.ts";
 
 /** What a place is asked by. */
-export type Where = Omit<PlaceParams, "revision">;
+export type Where = Asked<Omit<PlaceParams, "revision">>;
 
 /** Moves from the first to before the last. */
 export type Range = [number, number];
