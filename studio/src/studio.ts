@@ -44,7 +44,7 @@ export class Studio {
         const { done: opened } = await this.seam.ask("open", {});
         this.opened.value = opened;
         this.drafts.value = opened.drafts;
-        this.machine.value ??= opened.machine;
+        this.machine.value ??= this.work.value?.machine ?? opened.machine;
         const [machines, form] = await Promise.all([this.seam.ask("machines", {}), this.seam.ask("form", {})]);
         this.machines.value = machines.done;
         this.form.value = form.done;
@@ -91,6 +91,20 @@ export class Studio {
         this.isCurrent.value = false;
         clearTimeout(this.typing);
         this.typing = setTimeout(() => void this.prove(text), 400);
+    }
+
+    /** Proves a program of the folder against the toolpath that is open. */
+    async proveFile(file: string): Promise<void> {
+        const work = this.work.value;
+        if (work === null || work.machine === null) return;
+        const { source, machine, options } = work;
+        const program = { file };
+        const job = await this.told(async (signal, progress) =>
+            (await this.seam.ask("prove", { source, machine, options, program }, { signal, progress })).done);
+        if (job === undefined) return;
+        this.edited.value = null;
+        this.job.value = job;
+        this.isCurrent.value = true;
     }
 
     /** Proves the program as edited by hand, and keeps it as a draft. */

@@ -15,6 +15,7 @@ const titles: Record<Dialog, string> = {
     keys: "Keys",
     machine: "Machine",
     source: "Source",
+    program: "Program to prove",
     options: "Options",
     save: "Save",
     go: "Go to",
@@ -50,7 +51,22 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
                     }))}
                 />
             )}
-            {open === "source" && <Folder screen={screen} close={close} />}
+            {open === "source" && (
+                <Folder
+                    screen={screen}
+                    close={close}
+                    take={(file) => void studio.open({ file })}
+                    takeOther={(file) => void studio.drop(file)}
+                />
+            )}
+            {open === "program" && (
+                <Folder
+                    screen={screen}
+                    close={close}
+                    take={(file) => void studio.proveFile(file)}
+                    takeOther={(file) => void file.text().then((text) => studio.prove(text))}
+                />
+            )}
             {open === "options" && <Options screen={screen} close={close} />}
             {open === "save" && <Save screen={screen} close={close} />}
             {open === "find" && <Find screen={screen} close={close} />}

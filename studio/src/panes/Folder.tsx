@@ -4,8 +4,15 @@ import type { Entry } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { Choose, type Choice } from "./Choose.tsx";
 
+interface Props {
+    screen: Screen;
+    close(): void;
+    take(path: string): void;
+    takeOther(file: File): void;
+}
+
 /** The files of the named folder; any other file is picked or dropped. */
-export function Folder({ screen, close }: { screen: Screen; close(): void }) {
+export function Folder({ screen, close, take, takeOther }: Props) {
     const { studio } = screen;
     const path = useSignal("");
     const entries = useSignal<Entry[]>([]);
@@ -24,7 +31,7 @@ export function Folder({ screen, close }: { screen: Screen; close(): void }) {
             if (kind === "folder") path.value = to;
             else {
                 close();
-                void studio.open({ file: to });
+                take(to);
             }
         },
     }));
@@ -38,7 +45,7 @@ export function Folder({ screen, close }: { screen: Screen; close(): void }) {
                         onChange={(event) => {
                             const file = event.currentTarget.files?.[0];
                             close();
-                            if (file) void studio.drop(file);
+                            if (file) takeOther(file);
                         }}
                     />
                 </label>

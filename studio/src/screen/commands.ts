@@ -22,6 +22,7 @@ function general(screen: Screen): Command[] {
         { name: "commands", title: "Commands", keys: ["Ctrl+k"], run: show("commands") },
         { name: "keys", title: "Keys", keys: ["?"], view: true, run: show("keys") },
         { name: "source", title: "Open a source", keys: ["Ctrl+o"], run: show("source") },
+        { name: "program", title: "Prove a program from a file against this toolpath", run: show("program") },
         { name: "machine", title: "Choose the machine", keys: ["Ctrl+m"], run: show("machine") },
         { name: "options", title: "Options of posting", run: () => screen.toOption("") },
         { name: "save", title: "Save the program", keys: ["Ctrl+s"], run: show("save") },

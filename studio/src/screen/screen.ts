@@ -15,7 +15,7 @@ import type { Triangles } from "../view/strip.ts";
 import type { Vector } from "../view/vector.ts";
 import type { Drawing, Viewer } from "../view/viewer.ts";
 
-export type Dialog = "commands" | "keys" | "machine" | "source" | "options" | "save" | "go" | "find";
+export type Dialog = "commands" | "keys" | "machine" | "source" | "program" | "options" | "save" | "go" | "find";
 export type Tab = "findings" | "verdict" | "plots";
 
 /** What is not known of a point counts as 0, where it has to be drawn somewhere. */

@@ -146,6 +146,33 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         expect(readFileSync(join(server.folder, saved[0]!), "utf8")).toContain("G1");
     });
 
+    test("a program beside its toolpath is proven: from the folder, and dropped on its pane", async () => {
+        const page = await begin();
+        await page.keyboard.press("Control+s");
+        await page.locator("#save-path").fill("beside.nc");
+        await page.keyboard.press("Enter");
+        await page.getByText("saved beside.nc").waitFor();
+        await page.keyboard.press("Control+k");
+        await page.keyboard.type("prove program file");
+        await page.keyboard.press("Enter");
+        await page.getByRole("listbox").getByText("beside.nc", { exact: true }).click();
+        // What the writer finds is not said of a program that is given.
+        await page.getByRole("tab", { name: "Findings 0" }).waitFor();
+        await proven(page);
+        await page.locator(".program .template").waitFor({ state: "detached" });
+
+        const other = readFileSync(join(server.folder, "beside.nc"), "utf8").replace("X145.", "X146.");
+        const dropped = await page.evaluateHandle((text) => {
+            const data = new DataTransfer();
+            data.items.add(new File([text], "other.nc"));
+            return data;
+        }, other);
+        await page.dispatchEvent(".program", "drop", { dataTransfer: dropped });
+        await page.getByText("✗ NOT PROVEN").waitFor();
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+    });
+
     test("replay moves the cursor on, and stops at the end", async () => {
         const page = await begin();
         await page.getByLabel("Speed of the replay").selectOption({ label: "× 1000" });
