@@ -80,11 +80,11 @@ freecad: python
 ## The page of `toolpost studio`, which cargo builds into the command from then on.
 studio: studio/dist/index.html
 
-PAGE := $(shell find studio/src studio/index.html studio/package-lock.json studio/vite.config.ts -type f)
+PAGE := $(shell find studio/src studio/index.html studio/package-lock.json studio/vite.config.ts studio/licences.ts -type f)
 
 studio/dist/index.html: $(PAGE)
 	@scripts/setup page
-	@rm -rf studio/dist/assets studio/dist/index.html
+	@rm -rf studio/dist/assets studio/dist/index.html studio/dist/licences.txt
 	npm --prefix studio run --silent build
 
 ## The tests of the page: its parts, and the whole in Debian's Chromium, with the command as cargo has built it.
