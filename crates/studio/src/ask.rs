@@ -4,6 +4,7 @@
 //! An ask is `{ "id": 7, "ask": "folder", "params": {...} }`, answered by [`Done`], with arrays where the type says so, or by [`Stopped`].
 //! Meanwhile come [`Progress`] events; [`Cancel`] ends it. What nobody knows is null, and never 0.
 
+use machine::linkage::Linkage;
 use program::Diagnostic;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -344,6 +345,29 @@ pub struct Uploaded {
     pub bytes: u64,
 }
 
+/// Whose options a form has: a source is cut by a wire where the machine is one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "lowercase")]
+pub enum Command {
+    /// Mills and robots.
+    #[default]
+    Post,
+    /// Wire EDM.
+    Wire,
+}
+
+/// `form { command }`: answers the fields.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct FormParams {
+    /// Of which command; left out: `post`.
+    #[serde(default)]
+    #[cfg_attr(test, ts(optional, as = "Option<_>"))]
+    pub command: Command,
+}
+
 /// `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`]; a newer `post` or `prove` of the same page
 /// ends an older one.
 #[derive(Clone, Debug, Deserialize)]
@@ -449,8 +473,11 @@ pub struct JobMachine {
     pub dialect: String,
     /// Its axes, in the order of [`Place::axes`].
     pub axes: Vec<Axis>,
-    /// The files that it is made of, the nearest first, as far as its templates stand in them.
+    /// The files that it is made of, as far as its templates stand in them.
     pub files: Vec<Text>,
+    /// What carries what, and the bodies that are drawn.
+    #[cfg_attr(test, ts(type = "Linkage"))]
+    pub linkage: Linkage,
 }
 
 /// An axis of a machine.
@@ -500,7 +527,7 @@ pub struct WalkAbout {
     pub r#box: Option<[[f64; 3]; 2]>,
     /// How long all of it takes, s.
     pub time_s: f64,
-    /// In the order of their first use: vertices name them by their place.
+    /// The first 255 in the order of their first use: vertices name them by their place, and by 255 one that is not listed or not known.
     pub tools: Vec<ToolUse>,
     /// The operations of the source.
     pub operations: Vec<Operation>,
@@ -815,7 +842,7 @@ pub struct Saved {
     pub files: Vec<String>,
 }
 
-/// A field of the form that is made of the command's own arguments (`form {}`).
+/// A field of the form that is made of the command's own arguments.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Field {
@@ -841,6 +868,37 @@ mod tests {
     use std::fmt::Write as _;
     use std::path::Path;
     use ts_rs::Config;
+
+    /// What a machine's linkage is: `machine::linkage` has what each field means.
+    const LINKAGE: &str = r#"
+/**
+ * What carries what, for drawing a machine.
+ */
+export type Linkage = {
+axes: Array<{ name: string, unit: string, low: number | null, high: number | null, }>,
+links: Array<{ name: string, on: number | null, kind: "fixed" | "slide" | "turn", direction: [number, number, number], point: [number, number, number], zero: number, terms: Array<[number, number]>, }>,
+bodies: Array<{ name: string, on: number, low: [number, number, number], high: [number, number, number], is_given: boolean, }>,
+tool: { on: number, frame: [[number, number, number], [number, number, number], [number, number, number], [number, number, number]], },
+part: { on: number, frame: [[number, number, number], [number, number, number], [number, number, number], [number, number, number]], }, };
+"#;
+
+    /// That type is written by hand: its fields are those that are sent.
+    #[test]
+    fn the_type_of_a_linkage_has_the_fields_that_are_sent() {
+        let machine = machine::load("fanuc-table-bc").unwrap();
+        let sent = serde_json::json!(Linkage::of(&machine));
+        let mut fields = Vec::new();
+        for key in sent.as_object().unwrap().keys() {
+            fields.push(key.clone());
+            let inner = sent[key].get(0).unwrap_or(&sent[key]);
+            fields.extend(inner.as_object().unwrap().keys().cloned());
+        }
+        for field in &fields {
+            assert!(LINKAGE.contains(&format!("{field}: ")), "{field}");
+        }
+        let declared = LINKAGE.matches(": ").count();
+        assert_eq!(declared, fields.len(), "{fields:?}");
+    }
 
     /// The types as TypeScript, each with its sentence.
     fn types() -> String {

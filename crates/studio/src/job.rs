@@ -1,8 +1,8 @@
 //! A job: one source with one machine, its program, its verdict and its walk. What is asked of it is answered here.
 
 use crate::ask::{
-    self, Axis, AxisKind, Finding, Found, JobMachine, Level, Line, MachineKind, Mismatch, Moves,
-    Of, Place, Saved, Template, TextAbout, WalkAbout,
+    self, Axis, AxisKind, Command, Finding, Found, JobMachine, Level, Line, MachineKind, Mismatch,
+    Moves, Of, Place, Saved, Template, TextAbout, WalkAbout,
 };
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
@@ -11,11 +11,12 @@ use crate::machines;
 use crate::message::{Array, Values};
 use crate::place::{self, At};
 use crate::plots::{self, What};
-use crate::walk::{By, Follower, KINDS, Walk};
+use crate::walk::{By, Follower, KINDS, NO_TOOL, Walk};
 use ::post::{Origins, Part};
 use app::toolpath::{self, Toolpath};
-use app::{Account, Source, Stop, Verdict, Watch, files, post, prove};
+use app::{Account, Source, Stop, Verdict, Watch, files, post, prove, wire};
 use control::Folders;
+use machine::linkage::Linkage;
 use machine::{Machine, Reach, library};
 use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
 use proof::{Observer, Tolerances};
@@ -41,28 +42,37 @@ pub struct Options {
     pub tolerances: Tolerances,
     /// Options of the machine file.
     pub machine: Vec<(String, String)>,
+    /// How a wire cuts, where the machine is one.
+    pub wire: Option<wire::Settings>,
 }
 
 impl Options {
-    /// The same, with every file that they name read in the folder, or lying in it; and the tool table, where there is one.
+    /// The same, with every file that they name read in the folder, or lying in it; and those that were read.
     ///
     /// # Errors
     /// One leads out of the folder, or cannot be read.
-    fn within(mut self, folder: &Folder) -> Result<(Options, Option<PathBuf>), Stop> {
+    fn within(mut self, folder: &Folder) -> Result<(Options, Vec<PathBuf>), Stop> {
         let origin = &mut self.origin;
         origin.reach = Reach::Folder(folder.path().to_owned());
-        let mut tools = None;
-        if let Some(Source::File(path)) = &origin.tools {
-            let name = path.to_string_lossy();
-            tools = Some(folder.target(&name)?);
-            origin.tools = Some(Source::memory(path, folder.read(&name)?));
+        let mut read = Vec::new();
+        let mut in_memory = |source: &mut Option<Source>| {
+            if let Some(Source::File(path)) = source {
+                let name = path.to_string_lossy();
+                read.push(folder.target(&name)?);
+                *source = Some(Source::memory(&*path, folder.read(&name)?));
+            }
+            Ok::<(), Stop>(())
+        };
+        in_memory(&mut origin.tools)?;
+        if let Some(wire) = &mut self.wire {
+            in_memory(&mut wire.upper)?;
         }
         if let Some(from) = origin.from.as_deref().filter(|from| machine::is_path(from)) {
             origin.from = Some(folder.target(from)?.to_string_lossy().into_owned());
         }
         let own = |path: &PathBuf| folder.target(&path.to_string_lossy());
         origin.folders = origin.folders.iter().map(own).collect::<Result<_, _>>()?;
-        Ok((self, tools))
+        Ok((self, read))
     }
 }
 
@@ -127,8 +137,8 @@ pub struct Asked<'a> {
     pub source: Source,
     /// Name of the machine, as it was asked for.
     pub machine: &'a str,
-    /// What the options say.
-    pub options: Options,
+    /// What the options say, as options of that command.
+    pub options: &'a dyn Fn(Command) -> Result<Options, Stop>,
     /// Name of the program's file.
     pub file: Option<String>,
     /// The program, where it is there already.
@@ -143,6 +153,8 @@ pub struct Asked<'a> {
 #[derive(Debug)]
 pub struct Job {
     account: Account,
+    /// What is saved next to the program, where it is as it was written.
+    report: Option<String>,
     machine_name: String,
     machine: Machine,
     machine_files: BTreeMap<String, Lines>,
@@ -152,8 +164,6 @@ pub struct Job {
     program: Lines,
     parts: BTreeMap<String, (Lines, Origins)>,
     origins: Origins,
-    /// Whether the program is as it was written.
-    is_posted: bool,
     /// The files that it is made of.
     inputs: Vec<PathBuf>,
     walk: Walk,
@@ -173,53 +183,47 @@ impl Job {
     ) -> Result<Job, Stop> {
         let follows = Follows { waits, ended, walk: Mutex::new(None) };
         follows.step("reading");
-        let (options, tools) = asked.options.within(folder)?;
-        let Options { strict, origin, tolerances, machine: set } = options;
         let mut machine = machines::open(asked.machine, folder)?;
-        for (name, value) in &set {
+        let command = if machine.wire.is_some() { Command::Wire } else { Command::Post };
+        let (options, read) = (asked.options)(command)?.within(folder)?;
+        let mut inputs = asked.inputs;
+        inputs.extend(read);
+        for (name, value) in &options.machine {
             machine.set_option(name, value)?;
         }
-        let toolpath = toolpath::read_for(
-            &asked.source,
-            strict,
-            &origin,
-            Some(&machine),
-            Purpose::Program,
-            &follows,
-        )?;
         let file = asked.file.unwrap_or_else(|| {
             let name = asked.source.path().with_extension(&machine.extension);
             files::name(&name)
         });
-        let is_posted = asked.program.is_none();
-        let (account, text, origins, parts) = match asked.program {
-            None => {
-                let posted = post::proven(&toolpath, &machine, &file, &tolerances, &follows)?;
-                (posted.account, posted.text, posted.origins, posted.parts)
+        let made = match (&options.wire, asked.program) {
+            (Some(settings), None) => {
+                cut(&asked.source, &options, &machine, settings, &file, &follows)?
             }
-            Some(text) => {
-                if encoding::is_utf_16(&text) {
-                    return Err(encoding::utf_16().file(file).into());
-                }
-                let called = if machine.arm.is_some() { asked.folders } else { Vec::new() };
-                let folders = Folders::from(called);
-                let read = encoding::without_mark(&text);
-                let program = (&*file, read, &folders);
-                let account = prove::compare(&toolpath, &machine, program, &tolerances, &follows)?;
-                (account, text, Origins::default(), Vec::new())
+            (Some(_), Some(_)) => {
+                let message = "a program of a wire is proven as it was written, not after an edit";
+                let found = Diagnostic::error(Rule::MachineKind, message);
+                return Err(found
+                    .help("change the contour or an option, and post it again")
+                    .into());
+            }
+            (None, None) => posted(&asked.source, &options, &machine, &file, &follows)?,
+            (None, Some(text)) => {
+                let folders = if machine.arm.is_some() { asked.folders } else { Vec::new() };
+                let program = (&*file, text, Folders::from(folders));
+                compared(&asked.source, &options, &machine, program, &follows)?
             }
         };
         follows.step("drawing");
         let walk = follows.walk.into_inner().unwrap_or_else(PoisonError::into_inner);
         let walk = walk.unwrap_or_default();
         let geometry = Geometry::of(&walk);
-        let mut inputs = asked.inputs;
-        inputs.extend(tools);
+        let Made { toolpath, account, text, origins, parts, report } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         inputs.extend(machine.loaded_from.files.iter().cloned());
         let part = |Part { file, text, origins }| (file, (Lines::of(text), origins));
         Ok(Job {
             account,
+            report,
             machine_name: asked.machine.to_owned(),
             machine_files: texts_of(&machine),
             source: source_lines(&toolpath, &asked.source),
@@ -229,7 +233,6 @@ impl Job {
             program: Lines::of(text),
             parts: parts.into_iter().map(part).collect(),
             origins,
-            is_posted,
             inputs,
             walk,
             geometry,
@@ -287,6 +290,7 @@ impl Job {
                 dialect: self.machine.reader.clone(),
                 axes: axes(&self.machine),
                 files: self.machine_files.iter().map(|(file, lines)| text(file, lines)).collect(),
+                linkage: Linkage::of(&self.machine),
             },
             walk: self.walk_about(),
             mismatch: self.mismatch(),
@@ -416,7 +420,6 @@ impl Job {
             line: source_line,
             text: shown(&self.source, source_line),
         });
-        let tools = u32::try_from(walk.tool_uses().len()).unwrap_or(u32::MAX);
         Place {
             time_s: at.seconds,
             r#move: number,
@@ -430,7 +433,7 @@ impl Job {
             },
             source,
             template,
-            tool: Some(u32::from(walk.tool(number))).filter(|tool| *tool < tools),
+            tool: Some(walk.tool(number)).filter(|tool| *tool != NO_TOOL).map(u32::from),
             tip: stand.tip.to_array().map(known),
             axis: stand.axis.to_array().map(known),
             axes: stand.positions.into_iter().map(known).collect(),
@@ -502,8 +505,7 @@ impl Job {
             folder.target(&within(part))?;
             saved.push(within(part));
         }
-        let report = self.is_posted.then(|| self.account.report());
-        if report.is_some() {
+        if self.report.is_some() {
             let name = files::name(&files::report_of(&target));
             folder.target(&within(&name))?;
             saved.push(within(&name));
@@ -512,9 +514,79 @@ impl Job {
         let parts: Vec<(&str, &[u8])> = parts.collect();
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let text = self.program.text();
-        files::save_program(&target, text, &parts, report.as_deref(), &inputs)?;
+        files::save_program(&target, text, &parts, self.report.as_deref(), &inputs)?;
         Ok(Saved { files: saved })
     }
+}
+
+/// What was made of a source.
+struct Made {
+    toolpath: Toolpath,
+    account: Account,
+    text: Vec<u8>,
+    origins: Origins,
+    parts: Vec<Part>,
+    report: Option<String>,
+}
+
+/// Writes the program for a mill or a robot, and proves it.
+fn posted(
+    source: &Source,
+    options: &Options,
+    machine: &Machine,
+    file: &str,
+    watch: &dyn Watch,
+) -> Result<Made, Stop> {
+    let toolpath = toolpath_of(source, options, machine, watch)?;
+    let posted = post::proven(&toolpath, machine, file, &options.tolerances, watch)?;
+    let post::Posted { text, origins, parts, account } = posted;
+    let report = Some(account.report());
+    Ok(Made { toolpath, account, text, origins, parts, report })
+}
+
+/// Proves a program that is there already.
+fn compared(
+    source: &Source,
+    options: &Options,
+    machine: &Machine,
+    (file, text, folders): (&str, Vec<u8>, Folders),
+    watch: &dyn Watch,
+) -> Result<Made, Stop> {
+    if encoding::is_utf_16(&text) {
+        return Err(encoding::utf_16().file(file).into());
+    }
+    let toolpath = toolpath_of(source, options, machine, watch)?;
+    let program = (file, encoding::without_mark(&text), &folders);
+    let account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
+    let (origins, parts) = (Origins::default(), Vec::new());
+    Ok(Made { toolpath, account, text, origins, parts, report: None })
+}
+
+/// Writes the program of a wire, and proves it.
+fn cut(
+    source: &Source,
+    options: &Options,
+    machine: &Machine,
+    settings: &wire::Settings,
+    file: &str,
+    watch: &dyn Watch,
+) -> Result<Made, Stop> {
+    let Options { strict, origin, tolerances, .. } = options;
+    let machine = machine.clone();
+    let made = wire::make(source, *strict, origin, machine, settings, file, tolerances, watch)?;
+    let wire::Made { posted, report, toolpath, .. } = made;
+    let post::Posted { text, origins, parts, account } = posted;
+    Ok(Made { toolpath, account, text, origins, parts, report: Some(report) })
+}
+
+fn toolpath_of(
+    source: &Source,
+    options: &Options,
+    machine: &Machine,
+    watch: &dyn Watch,
+) -> Result<Toolpath, Stop> {
+    let Options { strict, origin, .. } = options;
+    toolpath::read_for(source, *strict, origin, Some(machine), Purpose::Program, watch)
 }
 
 /// The lines of a source as its findings count them: those of the file, or the commands of a FreeCAD job.
@@ -574,8 +646,8 @@ pub fn axes(machine: &Machine) -> Vec<Axis> {
             let linear = |name: &str, travel: f64| {
                 axis(name.to_owned(), AxisKind::Linear, "mm", -travel, travel)
             };
-            let unknown = f64::NAN;
-            [("X", unknown), ("Y", unknown), ("U", travel), ("V", travel)]
+            let (x, u) = (f64::NAN, travel);
+            [("X", x), ("Y", x), ("Z", x), ("U", u), ("V", u)]
                 .map(|(name, travel)| linear(name, travel))
                 .to_vec()
         }
@@ -589,11 +661,10 @@ pub fn axes(machine: &Machine) -> Vec<Axis> {
                 };
                 axis(format!("J{number}"), AxisKind::Joint, "degrees", low, high)
             });
-            let rail = machine
-                .cell
-                .as_ref()
-                .and_then(|cell| cell.rail.as_ref())
-                .map(|rail| axis(String::from("E1"), AxisKind::Rail, "mm", rail.min, rail.max));
+            let rail =
+                machine.cell.as_ref().and_then(|cell| cell.rail.as_ref()).map(|rail| {
+                    axis(String::from("rail"), AxisKind::Rail, "mm", rail.min, rail.max)
+                });
             joints.chain(rail).collect()
         }
     }

@@ -97,7 +97,7 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         }
     } else if walk.kind(at.r#move) == ARC && machine.wire.is_some() {
         let moved = (tip - behind.tip).to_array();
-        for ((position, moved), end) in positions.iter_mut().zip(&moved[..2]).zip(end) {
+        for ((position, moved), end) in positions.iter_mut().zip(moved).zip(end) {
             *position = end + moved;
         }
     }

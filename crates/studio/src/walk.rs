@@ -6,7 +6,7 @@
 use crate::ask::{Operation, ToolUse};
 use geom::{Arc, Vec3};
 use machine::Machine;
-use program::{Compensation, Diagnostic, Feed, Op, Program};
+use program::{Compensation, Diagnostic, Feed, Op, Program, Tool};
 use proof::{AxisPositions, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -25,6 +25,9 @@ pub const ARC: u8 = 3;
 /// All joints of an arm together.
 pub const JOINTS: u8 = 4;
 
+/// No tool is known, or one that is not among the first 255.
+pub const NO_TOOL: u8 = 255;
+
 /// Marks of a move: compensation is switched with it.
 pub const SWITCHED: u8 = 1;
 /// It belongs to an excursion.
@@ -35,7 +38,7 @@ pub const MISMATCH: u8 = 4;
 /// How much memory a walk takes, bytes: what goes beyond is left out.
 const MOST_BYTES: usize = 3 << 29;
 
-/// How many tools and how many operations are listed.
+/// How many operations are listed.
 const MOST_NAMED: usize = 10_000;
 
 /// After so many moves it is looked at.
@@ -145,7 +148,7 @@ impl Walk {
         self.kinds[at as usize]
     }
 
-    /// Place of its tool among [`Walk::tool_uses`], 255 for the 256th and on.
+    /// Place of its tool among [`Walk::tool_uses`], or [`NO_TOOL`].
     pub fn tool(&self, at: u32) -> u8 {
         self.tools[at as usize]
     }
@@ -305,7 +308,6 @@ impl Walk {
         self.tips.push(behind.tip);
         self.lines.push(motion.line);
         self.source_lines.push(motion.source_line);
-        self.tools.push(self.tool_uses.len().saturating_sub(1).min(255) as u8);
         let (seconds, waited) = (known(motion.seconds), known(motion.waited));
         if waited > 0.0 {
             self.waits.push((at, waited));
@@ -350,6 +352,8 @@ pub struct Follower<'a> {
     /// The record up to which operations have been looked for.
     searched: usize,
     numbers: BTreeMap<(u32, String), u8>,
+    /// Place of the tool that is in the spindle.
+    tool: u8,
     compensation: Option<Compensation>,
     /// What is marked of the next move.
     next_marks: u8,
@@ -369,6 +373,7 @@ impl<'a> Follower<'a> {
             rotary: machine.rotary.iter().map(|axis| axis.index()).collect(),
             searched: 0,
             numbers: BTreeMap::new(),
+            tool: NO_TOOL,
             compensation: None,
             next_marks: 0,
             goes_to: to,
@@ -402,6 +407,22 @@ impl<'a> Follower<'a> {
         self.searched = self.searched.max(end);
     }
 
+    /// The place of a tool among those that are listed: it is added where it is new.
+    fn place_of(&mut self, tool: &Tool) -> u8 {
+        let key = (tool.number, tool.name.clone());
+        if let Some(place) = self.numbers.get(&key) {
+            return *place;
+        }
+        let place = u8::try_from(self.walk.tool_uses.len()).unwrap_or(NO_TOOL);
+        if place == NO_TOOL {
+            return NO_TOOL;
+        }
+        self.numbers.insert(key, place);
+        let (first, time_s) = (self.walk.len(), self.walk.seconds());
+        self.walk.tool_uses.push(ToolUse::new(tool, first, time_s));
+        place
+    }
+
     fn positions(&mut self, axes: &AxisPositions) {
         let before = self.walk.positions.len();
         match axes {
@@ -410,7 +431,8 @@ impl<'a> Follower<'a> {
                 self.walk.positions.extend(self.rotary.iter().map(|axis| rotary[*axis]));
             }
             AxisPositions::Wire { guide, lean } => {
-                self.walk.positions.extend([guide.x, guide.y, lean[0], lean[1]]);
+                self.walk.positions.extend(guide.to_array());
+                self.walk.positions.extend(lean);
             }
             AxisPositions::Arm { joints, rail } => {
                 self.walk.positions.extend(joints);
@@ -434,15 +456,9 @@ impl Observer for Follower<'_> {
         }
         self.operations(motion.record);
         self.walk.push(motion);
+        self.walk.tools.push(self.tool);
         self.walk.marks.push(std::mem::take(&mut self.next_marks));
         self.positions(&motion.axes);
-        if let Some(tool) =
-            self.walk.state(self.walk.len() - 1).and_then(|state| state.tool.as_ref())
-            && let Some(place) = self.numbers.get(&(tool.number, tool.name.clone()))
-        {
-            let last = self.walk.tools.len() - 1;
-            self.walk.tools[last] = *place;
-        }
     }
 
     fn stated(&mut self, state: &MachineState) {
@@ -454,14 +470,7 @@ impl Observer for Follower<'_> {
             self.next_marks |= SWITCHED;
         }
         self.compensation = Some(state.compensation);
-        if let Some(tool) = &state.tool {
-            let key = (tool.number, tool.name.clone());
-            if self.walk.tool_uses.len() < MOST_NAMED && !self.numbers.contains_key(&key) {
-                self.numbers.insert(key, self.walk.tool_uses.len().min(255) as u8);
-                let time_s = self.walk.seconds();
-                self.walk.tool_uses.push(ToolUse::new(tool, at, time_s));
-            }
-        }
+        self.tool = state.tool.as_ref().map_or(NO_TOOL, |tool| self.place_of(tool));
         // What holds for no move is not kept.
         self.walk.states.pop_if(|(from, _)| *from == at);
         self.walk.states.push((at, state.clone()));
@@ -496,7 +505,6 @@ impl Observer for Follower<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use program::Tool;
 
     fn motion(line: u32, tip: [f64; 3]) -> Motion {
         let pose = |tip: [f64; 3]| ToolPose { tip: tip.into(), axis: Vec3::Z };

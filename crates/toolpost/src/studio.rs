@@ -1,8 +1,8 @@
 //! `toolpost studio`: the server of the page, until Ctrl-C.
 
 use crate::answer::Answer;
-use crate::args::{Command, CommandLine, Studio};
-use ::studio::ask::Field;
+use crate::args::{Closeness, Command, CommandLine, Studio};
+use ::studio::ask::{self, Field};
 use ::studio::{Options, Server, Settings};
 use app::{Stop, Verdict};
 use clap::{Arg, ArgAction, CommandFactory, Parser};
@@ -32,7 +32,7 @@ pub fn run(args: &Studio, json: bool) -> Result<Answer, Stop> {
         source,
         machine,
         port: args.port,
-        form: form(),
+        form: Some(form),
         options: Some(options),
     };
     let server = Server::bind(&settings)?;
@@ -77,14 +77,23 @@ fn below(folder: &Path, path: &Path) -> Result<String, Stop> {
     Ok(inner.replace(std::path::MAIN_SEPARATOR, "/"))
 }
 
-/// Arguments of `post` that the page gives by itself.
-const GIVEN: [&str; 4] = ["machine", "output", "path", "help"];
+/// Arguments that the page gives by itself, or does by itself.
+const GIVEN: [&str; 6] = ["machine", "output", "path", "help", "picture", "select"];
 
-/// The form of the options of `post`.
-fn form() -> Vec<Field> {
-    let command = CommandLine::command();
-    let post = command.find_subcommand("post").into_iter().flat_map(|post| post.get_arguments());
-    post.filter(|arg| !GIVEN.contains(&arg.get_id().as_str()) && !arg.is_global_set())
+fn name(command: ask::Command) -> &'static str {
+    match command {
+        ask::Command::Post => "post",
+        ask::Command::Wire => "wire",
+    }
+}
+
+/// The form of the options of a command.
+fn form(command: ask::Command) -> Vec<Field> {
+    let all = CommandLine::command();
+    let own = all.find_subcommand(name(command));
+    let arguments = own.into_iter().flat_map(|command| command.get_arguments());
+    arguments
+        .filter(|arg| !GIVEN.contains(&arg.get_id().as_str()) && !arg.is_global_set())
         .filter_map(field)
         .collect()
 }
@@ -112,10 +121,10 @@ fn field(arg: &Arg) -> Option<Field> {
 ///
 /// # Errors
 /// As there.
-fn options(given: &[(String, String)]) -> Result<Options, Stop> {
-    let form = form();
-    let mut words: Vec<String> =
-        ["toolpost", "post", "--machine=m", "--output=o"].map(str::to_owned).to_vec();
+fn options(command: ask::Command, given: &[(String, String)]) -> Result<Options, Stop> {
+    let form = form(command);
+    let begin = ["toolpost", name(command), "--machine=m", "--output=o"];
+    let mut words: Vec<String> = begin.map(str::to_owned).to_vec();
     for (name, value) in given {
         let field = form.iter().find(|field| field.name == *name).ok_or_else(|| {
             let message =
@@ -134,13 +143,21 @@ fn options(given: &[(String, String)]) -> Result<Options, Stop> {
         let message = first.trim_start_matches("error: ").replace('\n', " ");
         Diagnostic::error(Rule::StudioAsk, message).help("correct the option in the form")
     })?;
-    let Command::Post(post) = parsed.command else { return Ok(Options::default()) };
-    Ok(Options {
-        strict: post.source.strict,
-        origin: post.source.origin.origin(),
-        tolerances: post.closeness.tolerances(),
-        machine: post.option,
-    })
+    let of = |source: &crate::args::Source, closeness: &Closeness, machine, wire| Options {
+        strict: source.strict,
+        origin: source.origin.origin(),
+        tolerances: closeness.tolerances(),
+        machine,
+        wire,
+    };
+    match parsed.command {
+        Command::Post(post) => Ok(of(&post.source, &post.closeness, post.option, None)),
+        Command::Wire(wire) => {
+            let settings = wire.settings()?;
+            Ok(of(&wire.source, &wire.closeness, Vec::new(), Some(settings)))
+        }
+        _ => Ok(Options::default()),
+    }
 }
 
 #[cfg(test)]
@@ -149,7 +166,7 @@ mod tests {
 
     #[test]
     fn the_form_has_the_options_of_post_and_none_that_the_page_gives() {
-        let form = form();
+        let form = form(ask::Command::Post);
         let named = |name: &str| form.iter().find(|field| field.name == name);
         for given in ["machine", "output", "json", "quiet", "help"] {
             assert_eq!(named(given), None);
@@ -168,7 +185,7 @@ mod tests {
     fn options_are_read_as_the_command_line_reads_them() {
         let given = |list: &[(&str, &str)]| {
             let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
-            options(&list)
+            options(ask::Command::Post, &list)
         };
         let read = given(&[
             ("strict", ""),
@@ -191,6 +208,10 @@ mod tests {
             let stop = given(&[wrong]).unwrap_err();
             assert!(stop.findings[0].rule == "studio-ask", "{wrong:?}: {:?}", stop.findings);
         }
+        let side = [(String::from("side"), String::from("inside"))];
+        let wire = options(ask::Command::Wire, &side).unwrap().wire.unwrap();
+        assert_eq!(wire.cutting.side, Some(wire::cutting::Side::Inside));
+        assert!(options(ask::Command::Post, &side).is_err());
         // What looks like another option is a value.
         assert_eq!(
             given(&[("from", "--strict")]).unwrap().origin.from.as_deref(),

@@ -500,9 +500,13 @@ dialect: string,
  */
 axes: Array<Axis>, 
 /**
- * The files that it is made of, the nearest first, as far as its templates stand in them.
+ * The files that it is made of, as far as its templates stand in them.
  */
-files: Array<Text>, };
+files: Array<Text>, 
+/**
+ * What carries what, and the bodies that are drawn.
+ */
+linkage: Linkage, };
 
 /**
  * An axis of a machine.
@@ -563,7 +567,7 @@ box: [[number, number, number], [number, number, number]] | null,
  */
 time_s: number, 
 /**
- * In the order of their first use: vertices name them by their place.
+ * The first 255 in the order of their first use: vertices name them by their place, and by 255 one that is not listed or not known.
  */
 tools: Array<ToolUse>, 
 /**
@@ -987,7 +991,7 @@ export type Saved = {
 files: Array<string>, };
 
 /**
- * A field of the form that is made of the command's own arguments (`form {}`).
+ * A field of the form that is made of the command's own arguments.
  */
 export type Field = { 
 /**

@@ -3,8 +3,8 @@
 use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
-    DraftName, DraftParams, FileOrUpload, FolderParams, Listing, MovesParams, Nothing, Opened,
-    PlaceParams, PlotParams, PostParams, ProveParams, SaveParams, SearchParams, TextParams,
+    DraftName, DraftParams, FileOrUpload, FolderParams, FormParams, Listing, MovesParams, Nothing,
+    Opened, PlaceParams, PlotParams, PostParams, ProveParams, SaveParams, SearchParams, TextParams,
 };
 use crate::job::{Asked, Ended, Job, Waits};
 use crate::machines;
@@ -79,8 +79,8 @@ pub fn answer(
             Answer::of(machines::list(folder))
         }
         "form" => {
-            none(params)?;
-            Answer::of(&studio.form)
+            let FormParams { command } = read(params)?;
+            Answer::of(studio.form.map(|form| form(command)).unwrap_or_default())
         }
         "post" => {
             let PostParams { source, machine, options, file } = read(params)?;
@@ -156,7 +156,6 @@ fn make(
     program: Option<&FileOrUpload>,
     (waits, ended): (&dyn Waits, &Ended),
 ) -> Result<Answer, Stop> {
-    let options = studio.options(options)?;
     let within = |file: &FileOrUpload| match file {
         FileOrUpload::File(path) => studio.folder.target(path).ok(),
         FileOrUpload::Upload(_) => None,
@@ -172,7 +171,7 @@ fn make(
     let asked = Asked {
         source: studio.source(source)?,
         machine,
-        options,
+        options: &|command| studio.options(command, options),
         file: file.or(named),
         program: text,
         folders: beside.into_iter().collect(),

@@ -5,7 +5,7 @@ pub mod closed;
 mod files;
 mod socket;
 
-use crate::ask::{Field, FileOrUpload, Limits};
+use crate::ask::{Command, Field, FileOrUpload, Limits};
 use crate::folder::Folder;
 use crate::job::Options;
 use crate::jobs::{Jobs, MOST_JOBS};
@@ -60,14 +60,17 @@ pub struct Settings {
     pub machine: Option<String>,
     /// The port that it listens on; `None` for one that is free.
     pub port: Option<u16>,
-    /// The form of the command's own options.
-    pub form: Vec<Field>,
+    /// The forms of the commands' own options.
+    pub form: Option<Form>,
     /// What such options, names without dashes and values, mean; `None`: there are none.
     pub options: Option<ReadOptions>,
 }
 
-/// Reads options of the command line.
-pub type ReadOptions = fn(&[(String, String)]) -> Result<Options, Stop>;
+/// Makes a form of the options of a command.
+pub type Form = fn(Command) -> Vec<Field>;
+
+/// Reads options of a command as the command line does.
+pub type ReadOptions = fn(Command, &[(String, String)]) -> Result<Options, Stop>;
 
 /// A server that listens.
 #[derive(Debug)]
@@ -89,15 +92,15 @@ pub(crate) struct Studio {
     sockets: Arc<Semaphore>,
     uploads: files::Uploads,
     jobs: Jobs,
-    form: Vec<Field>,
+    form: Option<Form>,
     options: Option<ReadOptions>,
 }
 
 impl Studio {
     /// What options mean.
-    fn options(&self, given: &[(String, String)]) -> Result<Options, Stop> {
+    fn options(&self, command: Command, given: &[(String, String)]) -> Result<Options, Stop> {
         match self.options {
-            Some(read) => read(given),
+            Some(read) => read(command, given),
             None if given.is_empty() => Ok(Options::default()),
             None => Err(Diagnostic::error(Rule::StudioAsk, "there are no options here").into()),
         }
@@ -147,7 +150,7 @@ impl Server {
             sockets: Arc::new(Semaphore::new(SOCKETS)),
             uploads: files::Uploads::default(),
             jobs: Jobs::new(own),
-            form: settings.form.clone(),
+            form: settings.form,
             options: settings.options,
         });
         Ok(Server { runtime, listener, port, studio })

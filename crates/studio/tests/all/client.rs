@@ -6,6 +6,7 @@ use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use toolpost_studio::message::{self, Array, Frame};
+use toolpost_studio::server::ReadOptions;
 use toolpost_studio::{Server, Settings};
 
 /// A server in a thread of its own, and the folder that it works in, which lies in another one.
@@ -18,6 +19,11 @@ pub struct Studio {
 impl Studio {
     /// One whose folder has the examples of the project.
     pub fn new() -> Studio {
+        Studio::with(None)
+    }
+
+    /// The same, with options.
+    pub fn with(options: Option<ReadOptions>) -> Studio {
         let outside = tempfile::tempdir().unwrap();
         let own = outside.path().join("own");
         std::fs::create_dir(&own).unwrap();
@@ -25,7 +31,7 @@ impl Studio {
             std::fs::copy(root().join("examples").join(name), own.join(name)).unwrap();
         }
         std::fs::write(outside.path().join("secret.cls"), "secret").unwrap();
-        let settings = Settings { folder: own, ..Settings::default() };
+        let settings = Settings { folder: own, options, ..Settings::default() };
         let server = Server::bind(&settings).unwrap();
         let (port, link) = (server.port(), server.link());
         std::thread::spawn(move || server.run());

@@ -1,7 +1,9 @@
 //! Jobs: what is posted and proven, and what is asked of it.
 
-use crate::client::{Said, Studio};
+use crate::client::{Said, Studio, root};
 use serde_json::{Value, json};
+use toolpost_studio::Options;
+use toolpost_studio::ask::Command;
 use toolpost_studio::message::{Array, Values};
 
 fn f32s(bytes: &[u8]) -> Vec<f32> {
@@ -260,4 +262,59 @@ fn uploads_are_posted_and_the_oldest_job_goes() {
     }
     let place = json!({ "revision": job["revision"], "by": "move", "value": 1 });
     assert_eq!(page.refused("place", place), "studio-limit");
+}
+
+#[test]
+fn a_wire_is_posted_by_the_options_of_its_own_command() {
+    use app::wire::{Settings, Sync};
+    fn options(command: Command, given: &[(String, String)]) -> Result<Options, app::Stop> {
+        assert_eq!(command, Command::Wire);
+        let cutting = wire::cutting::Cutting {
+            side: Some(wire::cutting::Side::Inside),
+            wire: 0.25,
+            gap: 0.02,
+            thread: vec![[15.0, 15.0].into()],
+            round_corners: true,
+            feeds: vec![0.1],
+            ..wire::cutting::Cutting::default()
+        };
+        let settings = Settings {
+            layers: Vec::new(),
+            close: 0.01,
+            upper: None,
+            sync: Sync::Block,
+            pairs: Vec::new(),
+            height: None,
+            uv_height: None,
+            cutting,
+            step: None,
+            memory: None,
+            select: None,
+        };
+        let from = given.first().map(|(_, from)| from.clone());
+        let origin = app::Origin { from, ..app::Origin::default() };
+        Ok(Options { origin, wire: Some(settings), ..Options::default() })
+    }
+    let studio = Studio::with(Some(options));
+    std::fs::copy(root().join("examples/sector.nc"), studio.own().join("sector.nc")).unwrap();
+    let mut page = studio.socket();
+    let params = json!({ "source": { "file": "sector.nc" }, "machine": "fanuc-wire", "options": [["from", "fanuc-31i"]] });
+    let job = match page.answer("post", params.clone(), &[]) {
+        Ok(frame) => frame.head["done"].clone(),
+        Err(stop) => panic!("{stop}"),
+    };
+    assert_eq!(
+        (&job["verdict"], &job["machine"]["kind"]),
+        (&json!("done"), &json!("wire")),
+        "{job}"
+    );
+    let place =
+        page.done("place", json!({ "revision": job["revision"], "by": "move", "value": 3 }));
+    assert_eq!(place["axes"].as_array().unwrap().len(), 5);
+    assert!(!place["template"]["name"].as_str().unwrap().is_empty(), "{place}");
+    let saved =
+        page.done("save", json!({ "revision": job["revision"], "path": "w.nc", "replace": false }));
+    assert_eq!(saved["files"], json!(["w.nc", "w.nc.report.json"]));
+    let stop = page.answer("prove", params, &[Array::text("text", "M30\n")]).unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "machine-kind");
 }
