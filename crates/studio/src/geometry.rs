@@ -82,13 +82,17 @@ impl Chunk {
 }
 
 impl Geometry {
-    /// Of a walk.
-    pub fn of(walk: &Walk) -> Geometry {
+    /// Of a walk, for as long as `goes_on` says so, which is told how much is done, 0 to 1.
+    pub fn of(walk: &Walk, mut goes_on: impl FnMut(f64) -> bool) -> Option<Geometry> {
         let mut geometry = Geometry { levels: vec![0], ..Geometry::default() };
-        for chunk in 0..walk.len().div_ceil(CHUNK) {
+        let count = walk.len().div_ceil(CHUNK);
+        for chunk in 0..count {
+            if !goes_on(f64::from(chunk) / f64::from(count)) {
+                return None;
+            }
             geometry.add(polyline(walk, chunk));
         }
-        geometry
+        Some(geometry)
     }
 
     /// Adds the exact polyline of the next chunk. While all are more than the coarsest level may have, all become coarser.
@@ -370,7 +374,7 @@ mod tests {
         let (start, end) = (Vec3::ZERO, Vec3::new(20.0, 0.0, 5.0));
         let arc = Arc::new(start, end, Vec3::new(10.0, 0.0, 0.0), -Vec3::Z, 2, 1e-6).unwrap();
         let walk = walk([(MotionKind::Arc(Box::new(arc)), end)]);
-        let geometry = Geometry::of(&walk);
+        let geometry = Geometry::of(&walk, |_| true).unwrap();
         let points = points(&geometry, &walk, 0, 0);
         // By hand: a chord of a circle of 10 mm that leaves it by 0.002 mm spans 2 acos(1 - 0.0002) = 0.0400 rad; 2.5 turns take 393.
         assert_eq!(points.len(), 1 + (2.5 * TAU / 0.040_000_7_f64).ceil() as usize);
@@ -388,7 +392,7 @@ mod tests {
             (MotionKind::Line, Vec3::new(t.cos(), t.sin(), 0.0) * (10.0 + t / 50.0))
         };
         let walk = walk((0..375_000).map(spiral));
-        let geometry = Geometry::of(&walk);
+        let geometry = Geometry::of(&walk, |_| true).unwrap();
         let levels: Vec<(f64, usize)> = geometry.levels().collect();
         assert!(levels.len() > 1 && levels.len() < MOST_LEVELS, "{levels:?}");
         assert!(levels.last().unwrap().1 <= COARSEST);
@@ -402,6 +406,18 @@ mod tests {
                 assert_eq!((coarse.first(), coarse.last()), (exact.first(), exact.last()));
             }
         }
+    }
+
+    #[test]
+    fn it_ends_between_two_chunks_where_it_shall() {
+        let walk = walk((0..20_000).map(|i| (MotionKind::Line, Vec3::new(f64::from(i), 0.0, 0.0))));
+        let mut told = Vec::new();
+        let made = Geometry::of(&walk, |part| {
+            told.push(part);
+            told.len() < 3
+        });
+        assert!(made.is_none());
+        assert_eq!(told, [0.0, 0.2, 0.4]);
     }
 
     #[test]
@@ -425,10 +441,10 @@ mod tests {
         let vertices = polyline(&walk, 0);
         let kinds: Vec<u8> = vertices.iter().map(|vertex| vertex.kind()).collect();
         assert_eq!(kinds, [GAP, crate::walk::FEED, GAP, crate::walk::FEED]);
-        let geometry = Geometry::of(&walk);
+        let geometry = Geometry::of(&walk, |_| true).unwrap();
         let flags = geometry.index(&walk);
         assert_eq!((flags.len(), flags[60]), (64, 0));
-        let nothing = Geometry::of(&Walk::default());
+        let nothing = Geometry::of(&Walk::default(), |_| true).unwrap();
         assert_eq!((nothing.chunks(), nothing.bounds(), nothing.levels().count()), (0, None, 1));
     }
 

@@ -214,9 +214,20 @@ impl Job {
             }
         };
         follows.step("drawing");
-        let walk = follows.walk.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let walk = follows.walk.lock().unwrap_or_else(PoisonError::into_inner).take();
         let walk = walk.unwrap_or_default();
-        let geometry = Geometry::of(&walk);
+        let goes_on = |part| {
+            follows.waits.reached(part);
+            !follows.ended.is_ended()
+        };
+        let geometry = Geometry::of(&walk, goes_on).ok_or_else(|| {
+            let found =
+                Diagnostic::error(Rule::Cancelled, "the work was cancelled: there is no result");
+            Stop {
+                verdict: Verdict::Cancelled,
+                findings: vec![found.help("start it again for one")],
+            }
+        })?;
         let Made { toolpath, account, text, origins, parts, report } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         inputs.extend(machine.loaded_from.files.iter().cloned());

@@ -278,4 +278,36 @@ mod tests {
             assert_eq!(read(&bytes), Err(why));
         }
     }
+
+    /// A hundred thousand frames in which bytes are other ones, or that end early: none makes `read` panic, and what is read has no more
+    /// than the frame.
+    #[test]
+    fn a_damaged_frame_is_read_or_refused() {
+        let arrays = [
+            Array::text("text", "G1 X1"),
+            Array::new("f64", Values::F64(vec![0.1, f64::NAN])),
+            Array::new("u32", Values::U32(vec![1, 2, 3])),
+        ];
+        let whole = write(&json!({ "id": 7, "ask": "post", "params": { "a": [1, "b"] } }), &arrays);
+        let mut state = 1u64;
+        let mut random = |below: usize| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as usize % below
+        };
+        let mut read_well = 0;
+        for _ in 0..100_000 {
+            let mut bytes = whole.clone();
+            for _ in 0..=random(3) {
+                let at = random(bytes.len());
+                bytes[at] = random(256) as u8;
+            }
+            bytes.truncate(whole.len() - random(4) * random(whole.len() / 4));
+            let Ok(frame) = read(&bytes) else { continue };
+            read_well += 1;
+            let (length, again) = (bytes.len(), read(&write(&frame.head, &frame.arrays)).unwrap());
+            assert_eq!(write(&(), &again.arrays), write(&(), &frame.arrays));
+            assert!(write(&(), &frame.arrays).len() <= 2 * length);
+        }
+        assert!(read_well > 1000, "{read_well}");
+    }
 }
