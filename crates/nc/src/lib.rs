@@ -210,7 +210,7 @@ pub fn read_by(
         let message =
             format!("the blocks behind `/`, which the operator may switch off, are read as {done}");
         let mut found = Diagnostic::warning(Rule::BlockSkip, message).help(other).line(line);
-        found.count += u32::try_from(optional.count()).unwrap_or(u32::MAX - 1);
+        optional.for_each(|(line, _)| found.again(line));
         conversion.warnings.push(found);
     }
     Ok((Reading { program: conversion.program, warnings: conversion.warnings }, conversion.several))

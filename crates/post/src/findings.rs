@@ -1,7 +1,7 @@
 //! What the writer has to say about its work: each kind of lowering once, with how often and from
 //! which source line on.
 
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, MOST_PLACES, Rule};
 
 /// The most lines that are listed of warnings like one before.
 const MOST_LINES: usize = 20;
@@ -22,6 +22,8 @@ struct Lowered {
     rule: Rule,
     what: &'static str,
     line: u32,
+    /// Lines of all others, the first so many.
+    places: Vec<u32>,
     count: usize,
     blocks: usize,
 }
@@ -36,7 +38,7 @@ impl Findings {
                 && (known.message == error.message || known.line == error.line && same_way_out)
         };
         match self.errors.iter_mut().find(same) {
-            Some(known) => known.count = known.count.saturating_add(1),
+            Some(known) => known.again(error.line),
             None => self.errors.push(error),
         }
         self.errors.len() < MOST_ERRORS
@@ -46,7 +48,7 @@ impl Findings {
     pub(crate) fn warn(&mut self, warning: Diagnostic) {
         let same = |w: &&mut Diagnostic| w.rule == warning.rule && w.message == warning.message;
         match self.warnings.iter_mut().find(same) {
-            Some(known) => known.count += 1,
+            Some(known) => known.again(warning.line),
             None => self.warnings.push(warning),
         }
     }
@@ -67,8 +69,14 @@ impl Findings {
             Some(known) => {
                 known.count += 1;
                 known.blocks += blocks;
+                if known.places.len() < MOST_PLACES {
+                    known.places.push(line);
+                }
             }
-            None => self.lowered.push(Lowered { rule, what, line, count: 1, blocks }),
+            None => {
+                let places = Vec::new();
+                self.lowered.push(Lowered { rule, what, line, places, count: 1, blocks });
+            }
         }
     }
 
@@ -81,11 +89,11 @@ impl Findings {
         }
         let mut warnings = self.warnings;
         warnings.extend(self.lowered.iter().map(|l| {
-            let Lowered { rule, what, count, blocks, line } = l;
+            let Lowered { rule, what, count, blocks, line, places } = l;
             let message = format!(
                 "{what}: {count} written as {blocks} lines, tolerance {tolerance} mm, first here"
             );
-            Diagnostic::warning(*rule, message).line(*line)
+            Diagnostic { places: places.clone(), ..Diagnostic::warning(*rule, message).line(*line) }
         }));
         Ok(warnings)
     }

@@ -79,7 +79,7 @@ pub use origins::{Origin, Origins, places};
 pub use template::number_of;
 
 use machine::Machine;
-use program::{Diagnostic, Program, Progress, Rule, Severity};
+use program::{Diagnostic, MOST_PLACES, Program, Progress, Rule, Severity};
 
 /// A written program.
 #[derive(Clone, Debug, Default)]
@@ -196,7 +196,9 @@ fn write_moves(
         "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",
         lines.len()
     );
-    output.warnings.push(Diagnostic::warning(Rule::Sweep, message).line(lines[0]));
+    let mut found = Diagnostic::warning(Rule::Sweep, message).line(lines[0]);
+    found.places.extend(lines.iter().skip(1).take(MOST_PLACES));
+    output.warnings.push(found);
     Ok(output)
 }
 

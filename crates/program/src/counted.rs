@@ -1,5 +1,6 @@
 //! Many findings that are alike, as a few and how many more there are.
 
+use crate::diagnostic::MOST_PLACES;
 use crate::{Diagnostic, Rule, Severity};
 use std::collections::HashMap;
 
@@ -78,6 +79,9 @@ impl FromIterator<Diagnostic> for Findings {
 /// Counts a finding that is not kept.
 fn count(last: &mut Diagnostic, other: &Diagnostic) {
     last.count = last.count.saturating_add(other.count);
+    let line = (other.line > 0).then_some(other.line);
+    let room = MOST_PLACES.saturating_sub(last.places.len());
+    last.places.extend(line.iter().chain(&other.places).take(room));
     if last.lines.len() < LINES && other.line > 0 {
         last.lines.push(other.line);
     }
@@ -145,5 +149,21 @@ mod tests {
         let kept = many.collect::<Findings>().finish();
         assert!(kept.len() <= (KINDS + 1) * MOST, "{}", kept.len());
         assert_eq!(kept.iter().map(|found| found.count).sum::<u32>(), 20_000);
+    }
+
+    #[test]
+    fn the_places_of_those_that_are_counted_are_kept_and_not_reported() {
+        let many =
+            (1..=30).map(|i| found(Rule::MachineWord, format!("no word is called `W{i}`"), i));
+        let kept = many.collect::<Findings>().finish();
+        assert_eq!(counts(&kept), [(1, 1), (2, 1), (3, 28)]);
+        assert_eq!(kept[2].places, (4..=30).collect::<Vec<u32>>());
+        let mut again = found(Rule::MachineWord, "no word".into(), 7);
+        again.again(9);
+        again.again(0);
+        assert_eq!((again.count, &again.places[..]), (3, &[9][..]));
+        let all = (1..=40_000).map(|i| found(Rule::MachineWord, "no word".into(), i));
+        let kept = all.collect::<Findings>().finish();
+        assert_eq!(kept[2].places.len(), MOST_PLACES);
     }
 }

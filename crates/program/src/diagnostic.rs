@@ -43,7 +43,14 @@ pub struct Diagnostic {
     pub count: u32,
     /// Lines of the first few findings like this one that are not listed; see [`crate::Findings`].
     pub lines: Vec<u32>,
+    /// Lines of those that [`Diagnostic::count`] counts besides this one, in the order in which they were found, the first
+    /// [`MOST_PLACES`]: for whoever leads from one to the next. Reports and messages leave them out.
+    #[serde(skip)]
+    pub places: Vec<u32>,
 }
+
+/// So many further lines of a finding are kept.
+pub const MOST_PLACES: usize = 10_000;
 
 /// The longest piece of a line that an excerpt keeps, characters.
 const EXCERPT: usize = 160;
@@ -72,6 +79,15 @@ impl Diagnostic {
             excerpt: String::new(),
             count: 1,
             lines: Vec::new(),
+            places: Vec::new(),
+        }
+    }
+
+    /// It has been found once more, on this line (0 where that has no line).
+    pub fn again(&mut self, line: u32) {
+        self.count = self.count.saturating_add(1);
+        if line > 0 && self.places.len() < MOST_PLACES {
+            self.places.push(line);
         }
     }
 

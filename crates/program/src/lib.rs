@@ -56,8 +56,8 @@ pub use counted::Findings;
 pub use cut_box::CutBox;
 pub use cycle::*;
 pub use diagnostic::{
-    Diagnostic, LEAST_SETTING, MOST_SETTING, Outcome, Severity, line_of, nearest, needs, not_both,
-    within,
+    Diagnostic, LEAST_SETTING, MOST_PLACES, MOST_SETTING, Outcome, Severity, line_of, nearest,
+    needs, not_both, within,
 };
 pub use digest::Digest;
 pub use motion::*;

@@ -392,7 +392,7 @@ fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 fn note(list: &mut Vec<Diagnostic>, found: Diagnostic) {
     if let Some(same) = list.iter_mut().find(|d| d.rule == found.rule) {
-        same.count = same.count.saturating_add(1);
+        same.again(found.line);
     } else if list.len() < MOST {
         list.push(found);
     }

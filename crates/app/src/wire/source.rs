@@ -213,7 +213,7 @@ fn left_out(program: &Program) -> Vec<Diagnostic> {
     let mut all: Vec<Diagnostic> = Vec::new();
     for warning in found {
         match all.iter_mut().find(|known| known.message == warning.message) {
-            Some(known) => known.count += 1,
+            Some(known) => known.again(warning.line),
             None => all.push(warning),
         }
     }

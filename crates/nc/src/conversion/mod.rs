@@ -327,7 +327,7 @@ impl<'a> Conversion<'a> {
         let message = "rotary axes turn in the cut, and a parameter of the control decides which axes F in mm/min counts: it is \
                        taken as the speed of the tool tip";
         if let Some(known) = self.warnings.iter_mut().find(|found| found.rule == Rule::RotaryFeed) {
-            known.count = known.count.saturating_add(1);
+            known.again(line);
             return;
         }
         let help = "set `rotary_feed` in [settings] of the machine file (FANUC: parameter 1408#0)";
@@ -462,7 +462,7 @@ impl<'a> Conversion<'a> {
             found.rule == warning.rule && found.message == warning.message
         };
         match self.warnings.iter_mut().find(same) {
-            Some(found) => found.count = found.count.saturating_add(1),
+            Some(found) => found.again(line),
             None => self.warnings.push(warning.line(line)),
         }
     }

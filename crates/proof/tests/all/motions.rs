@@ -211,6 +211,12 @@ fn the_first_mismatch_is_told_where_the_walk_comes_to_it() {
     // Home, across, down; the cut with the wrong feed is told, since the comparison goes on behind it, and then what is wrong.
     let wrong_feed = told("G1 Z-1 F200\nX5\n", END);
     assert_eq!(wrong_feed, (7, Some((4, "feed", 9)), 1, Some(false)));
+    // The second cut has it too: one finding, which names both lines.
+    let text = format!("{START}G0 X0 Y0\nZ5\nG1 Z-1 F200\nX5\nG0 Z5\n{END}");
+    let tolerances = Tolerances::default();
+    let report = prove_for(&source, &machine, "p", text.as_bytes(), &tolerances, &mut ());
+    let [found] = &report.mismatches[..] else { panic!("{:?}", report.mismatches) };
+    assert_eq!((found.line, found.count, &found.places[..]), (9, 2, &[10][..]));
     // A block beside the path ends it: the walk stops before it.
     assert_eq!(told("G1 Z-1 F300\nX4 Y1\n", END), (4, Some((4, "path", 10)), 1, Some(false)));
     // The control does not understand a block.

@@ -96,7 +96,7 @@ impl Report {
         let known =
             list.iter_mut().find(|d| d.rule == warning.rule && d.message == warning.message);
         match known {
-            Some(known) => known.count += 1,
+            Some(known) => known.again(warning.line),
             None if self.strict => {
                 let severity = program::Severity::Error;
                 self.error(Diagnostic { severity, ..warning });
