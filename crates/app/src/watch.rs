@@ -11,7 +11,7 @@ pub trait Watch: Sync {
     fn step(&self, _what: &'static str) {}
 
     /// So much of the step is done, 0 to 1: of what is read, of the records that are written, of the lines of the program that are
-    /// proven. Not every step tells it.
+    /// proven, of a board of its programs that are made. Not every step tells it.
     fn reached(&self, _part: f64) {}
 
     /// Whether the work shall end. It is asked before each step, and every few milliseconds while a source is read and a program is

@@ -611,3 +611,26 @@ fn the_layers_of_a_board_are_read_from_memory_as_from_a_folder() {
     };
     assert_eq!(lines(&of_files), lines(&of_memory));
 }
+
+/// Of a board it is told how many of its programs are made.
+#[test]
+fn a_board_tells_how_many_of_its_programs_are_made() {
+    #[derive(Default)]
+    struct Parts(Mutex<Vec<f64>>);
+    impl Watch for Parts {
+        fn reached(&self, part: f64) {
+            self.0.lock().unwrap().push(part);
+        }
+    }
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let mut settings = Settings::default();
+    settings.isolation.tool = Some(0.3);
+    let tolerances = Tolerances::default();
+    let job = board::Job::new(&machine, &settings, &tolerances).unwrap();
+    let watch = Parts::default();
+    let made = job.make(&[Source::File(example("lamp.toml"))], &watch).unwrap();
+    let mut parts = watch.0.into_inner().unwrap();
+    parts.sort_by(f64::total_cmp);
+    assert_eq!(made.programs.len(), 4);
+    assert_eq!(parts, [0.25, 0.5, 0.75, 1.0]);
+}

@@ -29,6 +29,7 @@ use proof::{Observer, Tolerances};
 use rayon::prelude::*;
 use serde_json::json;
 use std::borrow::Cow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What is made of a board, and on which machine.
 pub struct Job<'a> {
@@ -105,7 +106,14 @@ impl<'a> Job<'a> {
             }
             programs.push(probing);
         }
-        let made: Vec<_> = tasks.par_iter().map(|task| shop.made(task)).collect();
+        let done = AtomicUsize::new(0);
+        let made = tasks.par_iter().map(|task| {
+            let made = shop.made(task);
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            watch.reached(done as f64 / tasks.len() as f64);
+            made
+        });
+        let made: Vec<_> = made.collect();
         for (made, task) in made.into_iter().zip(tasks) {
             let part = task.part;
             let (posted, picture) = match made {
