@@ -117,7 +117,7 @@ const HALF: f64 = 40.0;
 const BELOW: f64 = 60.0;
 
 /// How far a table is drawn to each side at the most, mm.
-const FARTHEST: f64 = 2000.0;
+const FARTHEST: f64 = 150.0;
 
 impl Linkage {
     /// That of a machine.
@@ -381,12 +381,22 @@ impl Linkage {
         let wrist = near(4, flange);
         let tool = self.tool;
         let end = Vec3::from_array(tool.frame[3]);
+        // Joint 4 turns the forearm about itself, or (Universal Robots) bends what is behind it.
+        let [third, fourth] =
+            [2, 3].map(|joint| Vec3::from_array(self.links[first + joint].direction));
+        let forearm = match third.dot(fourth).abs() > 0.5 {
+            true => [(first + 2, [elbow, near(3, elbow)]), (first + 3, [near(3, elbow), wrist])],
+            false => {
+                let turned = near(3, elbow.lerp(wrist, 0.3));
+                [(first + 2, [elbow, turned]), (first + 3, [turned, wrist])]
+            }
+        };
         let boxes = [
             ("foot", self.links[first].on.unwrap_or(0), [foot, foot.lerp(shoulder, 0.3)]),
             ("shoulder", first, [foot.lerp(shoulder, 0.4), shoulder]),
             ("upper arm", first + 1, [shoulder, elbow]),
-            ("elbow", first + 2, [elbow, elbow.lerp(wrist, 0.3)]),
-            ("forearm", first + 3, [elbow.lerp(wrist, 0.3), wrist]),
+            ("elbow", forearm[0].0, forearm[0].1),
+            ("forearm", forearm[1].0, forearm[1].1),
             ("wrist", first + 4, [wrist, wrist.lerp(flange, 0.7)]),
             ("spindle", tool.on, [flange, end]),
         ];

@@ -187,3 +187,30 @@ fn the_vectors_for_the_page_are_those_of_the_linkage() {
     let kept = serde_json::from_str(&kept).unwrap_or(Value::Null);
     assert!(alike(&vectors, &kept), "{} is stale: TOOLPOST_DOCS=write writes it", file.display());
 }
+
+/// Bodies of neighbouring links touch at every position: where a joint turns, what it carries begins.
+#[test]
+fn the_boxes_of_an_arm_stay_together_whatever_its_joints() {
+    for name in toolpost_machine::library::names(toolpost_machine::library::ROBOTS) {
+        let linkage = Linkage::of(&load(name).unwrap());
+        let first = linkage.links.len() - 6;
+        for joint in 1..6 {
+            let link = &linkage.links[first + joint];
+            let [direction, point] = [link.direction, link.point].map(Vec3::from_array);
+            // How far the line about which the joint turns is from the body of a link, mm.
+            let off = |on: usize| {
+                let bodies = linkage.bodies.iter().filter(|body| body.on == on);
+                let away = bodies.map(|body| {
+                    let [low, high] = [body.low, body.high].map(Vec3::from_array);
+                    let middle = (low + high) / 2.0;
+                    let near = point + direction * (middle - point).dot(direction);
+                    near.distance(near.clamp(low, high))
+                });
+                away.fold(f64::INFINITY, f64::min)
+            };
+            for on in [first + joint - 1, first + joint] {
+                assert!(off(on) < 45.0, "{name}: J{}: {} mm from link {on}", joint + 1, off(on));
+            }
+        }
+    }
+}
