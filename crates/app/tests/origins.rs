@@ -226,3 +226,19 @@ fn what_the_head_has_more_shifts_no_record() {
     assert!(String::from_utf8_lossy(&posted.text).contains("accepted for this run"));
     compare(&machine, &posted, walked);
 }
+
+/// The texts of codes are the machine file's: one that breaks lines makes no program, and harms nothing.
+#[test]
+fn a_code_that_breaks_lines_ends_no_writer() {
+    let many = "N\\n".repeat(100);
+    let file = format!(
+        "extends = \"fanuc-lrmate-200id-mill\"\n[words.wrist]\ncodes = {{ plain = \"{many}\", flipped = \"{many}\" }}\n"
+    );
+    let machine = machine::load_text("odd.toml", &file).unwrap();
+    let source = Source::from(root().join("machines/samples/robot.cls"));
+    let toolpath =
+        toolpath::read(&source, false, &Origin::default(), Some(&machine), Purpose::Program);
+    let tolerances = Tolerances::default();
+    let posted = post::proven(&toolpath.unwrap(), &machine, "odd", &tolerances, &());
+    assert!(posted.is_err() || posted.unwrap().account.verdict != Verdict::Done);
+}

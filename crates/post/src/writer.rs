@@ -181,7 +181,8 @@ impl Writer {
     pub(crate) fn cut(&mut self, from: usize) -> Cutting {
         let text = self.text.split_off(from);
         let lines = text.iter().filter(|byte| **byte == b'\n').count();
-        let origins = self.origins.split_off(self.origins.lines() - lines);
+        // The text of a code may break a line itself.
+        let origins = self.origins.split_off(self.origins.lines().saturating_sub(lines));
         Cutting { text, origins }
     }
 

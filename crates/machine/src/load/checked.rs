@@ -572,6 +572,9 @@ impl CheckedSheet {
                 .collect(),
             bodies: Vec::new(),
         };
+        if bodies.is_empty() {
+            return Ok(machine);
+        }
         let linkage = Linkage::of(&machine);
         for Placed { sheet, place } in &bodies {
             if linkage.link(&sheet.on).is_none() {
