@@ -111,6 +111,19 @@ const KEYS: &str = r#"
 # coolant_flood = "{{N}} M8"
 "#;
 
+/// The same of the cell of a robot.
+const CELL_KEYS: &str = r#"
+# What else a shop states of its cell, with units: put these keys below [cell] above, without the `#`. `toolpost explain NAME` says more
+# of each, docs/machines.md what is taken where one is missing.
+#
+# reentry_feed = 400              # mm/min: a cut that no turn of the tool carries may be left and entered again
+# cable_joint_4 = [-180, 180]     # degrees: what cables and hoses leave to a joint
+# cable_joint_6 = [-180, 180]
+# load_mass = 4                   # kg: what hangs on the flange, with a tool in the spindle
+# load_center = [0, 0, 60]        # mm: its centre of gravity, from the flange
+# tool_change = "CHANGE"          # the operator's program that changes the tool; with a block `tool_change`
+"#;
+
 /// Copies a machine to a new file of this folder.
 fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
@@ -138,8 +151,9 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     };
     let file = path.display().to_string();
     let machine = machine::load_text(&file, &text)?;
+    let keys = if machine.arm.is_some() { CELL_KEYS } else { KEYS };
     let text = match machine.has_control() && !is_file {
-        true => format!("{text}{KEYS}"),
+        true => format!("{text}{keys}"),
         false => text,
     };
     let target = Target::new(&path, &[])?;

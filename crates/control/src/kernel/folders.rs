@@ -62,8 +62,8 @@ impl Folders {
     /// As [`Folders::open`].
     pub(crate) fn called(&self, name: &str, ending: &str) -> Result<Option<CalledFile>, String> {
         let file = format!("{name}.{ending}");
-        let Some(name) = [file.to_ascii_lowercase(), file].into_iter().rfind(|own| self.have(own))
-        else {
+        let spellings = [file.to_ascii_uppercase(), file.to_ascii_lowercase(), file];
+        let Some(name) = spellings.into_iter().rfind(|own| self.have(own)) else {
             return Ok(None);
         };
         let text = self.open(&name)?;

@@ -336,6 +336,16 @@ fn a_file_whose_programs_do_not_end_or_have_names_of_kuka_is_refused_whether_the
 }
 
 #[test]
+fn a_called_program_is_found_in_a_file_whose_name_is_in_capitals() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("JOB_2.SRC"), "DEF job_2()\nHALT\nEND\n").unwrap();
+    let mut settings = settings();
+    settings.setup.folders = vec![folder.path().to_path_buf()].into();
+    let events = run_with(&settings, "DEF job()\njob_2()\nEND\n").unwrap();
+    assert!(events.iter().any(|event| event.action == Action::Stop), "{events:?}");
+}
+
+#[test]
 fn a_tool_is_changed_by_the_program_of_the_operator_behind_which_nothing_is_known() {
     let mut settings = settings();
     settings.tool_change = String::from("Tool_Change");

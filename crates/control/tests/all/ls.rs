@@ -345,3 +345,26 @@ fn every_damage_of_a_job_is_read_or_refused_without_a_panic() {
         }
     }
 }
+
+#[test]
+fn a_position_without_its_group_or_out_of_order_is_refused() {
+    let whole = "/PROG JOB\n/ATTR\nDEFAULT_GROUP = 1,*,*,*,*;\n/MN\n   1:UFRAME_NUM=1 ;\n   2:UTOOL_NUM=1 ;\n   3:J P[1] 20% FINE ;\n/POS\nP[1]{\n   GP1:\n UF : 1, UT : 1,\n \
+        J1= 0.0 deg, J2= 0.0 deg, J3= 0.0 deg,\n J4= 0.0 deg, J5= -90.0 deg, J6= 0.0 deg\n};\n/END\n";
+    let run = |text: &str| run_with(&settings(), text);
+    run(whole).unwrap();
+    for (from, to, what) in [
+        ("   GP1:\n", "", "begins with its motion group"),
+        (
+            "   GP1:\n UF : 1, UT : 1,\n",
+            " UF : 1, UT : 1,\n   GP1:\n",
+            "begins with its motion group",
+        ),
+        ("J1= 0.0 deg, J2= 0.0 deg", "J2= 0.0 deg, J1= 0.0 deg", "in this order"),
+        ("J4= 0.0 deg, J5= -90.0 deg", "J5= -90.0 deg, J4= 0.0 deg", "in this order"),
+    ] {
+        let text = whole.replace(from, to);
+        assert_ne!(text, whole);
+        let found = run(&text).unwrap_err();
+        assert!(found.contains(what), "{from}: {found}");
+    }
+}

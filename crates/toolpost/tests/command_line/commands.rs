@@ -140,6 +140,26 @@ fn every_machine_of_the_library_is_listed_and_has_no_mistake() {
 }
 
 #[test]
+fn a_robot_of_ones_own_is_told_the_keys_of_its_cell() {
+    let folder = Folder::new();
+    let robot = "kuka-kr120-rail";
+    assert_eq!(folder.run(&["machines", "new", "mine", "--from", robot]).code, 0);
+    let (copy, shown) = (folder.read("mine.toml"), folder.run(&["machines", "show", robot]).out);
+    let added = copy.strip_prefix(&shown).unwrap();
+    assert!(added.lines().all(|line| line.is_empty() || line.starts_with('#')), "{added}");
+    assert!(!added.contains("work_zero") && added.contains("below [cell]"), "{added}");
+    // Each of them is taken where it says.
+    let (_, keys) = added.split_once("#\n").unwrap();
+    let keys: Vec<&str> = keys.lines().map(|line| line.strip_prefix("# ").unwrap()).collect();
+    let block = "[blocks]\ntool_change = \"CHANGE ({{T}})\"\n";
+    let text =
+        format!("extends = \"{robot}\"\ntitle = \"A\"\n[cell]\n{}\n{block}", keys.join("\n"));
+    folder.write("keys.toml", text);
+    let said = folder.run(&["machines", "check", "keys.toml"]);
+    assert_eq!(said.code, 0, "{said:?}");
+}
+
+#[test]
 fn a_machine_of_ones_own_starts_as_a_copy() {
     let folder = Folder::new();
     assert_eq!(folder.run(&["machines", "new", "mine", "--from", MACHINE]).code, 0);

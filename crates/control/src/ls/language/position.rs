@@ -80,6 +80,10 @@ pub(crate) fn positions<'t>(
 /// A position of which some entries have been read.
 #[derive(Default)]
 struct Reading {
+    /// Whether its motion group has been named.
+    has_group: bool,
+    /// Which of its coordinates comes next, of the six.
+    next: usize,
     frames: [Option<u32>; 2],
     posture: Option<ArmPosture>,
     pose: [Option<f64>; 6],
@@ -99,8 +103,15 @@ impl Reading {
         let Some(name) = scan.word() else {
             return Err(scan.wrong("an entry of a position is needed here"));
         };
+        if !self.has_group && !name.starts_with("GP") {
+            let message = "a position begins with its motion group: GP1:";
+            return Err(scan.since(from, Rule::Syntax, message));
+        }
         match name {
-            "GP1" => return scan.expect(":"),
+            "GP1" => {
+                self.has_group = true;
+                return scan.expect(":");
+            }
             "UF" | "UT" => {
                 scan.expect(":")?;
                 let number = scan.decimal().filter(|number| (0.0..=10.0).contains(number));
@@ -116,8 +127,10 @@ impl Reading {
             }
             _ => {
                 let places = [(&POSE, &mut self.pose, "mm"), (&JOINTS, &mut self.joints, "deg")];
+                let mut place = None;
                 let found = places.into_iter().find_map(|(names, values, unit)| {
                     let i = names.iter().position(|own| *own == name)?;
+                    place = Some(i);
                     Some((&mut values[i], if *names == POSE && i > 2 { "deg" } else { unit }))
                 });
                 let found = if name == RAIL { Some((&mut self.rail, "mm")) } else { found };
@@ -136,6 +149,15 @@ impl Reading {
                 if value.replace(number).is_some() {
                     let message = format!("{name} stands twice in the position");
                     return Err(scan.since(from, Rule::RepeatedWord, message));
+                }
+                if let Some(place) = place {
+                    if place != self.next {
+                        let message = format!(
+                            "{name} stands where another coordinate is needed: X, Y, Z, W, P, R or J1 to J6 in this order"
+                        );
+                        return Err(scan.since(from, Rule::Syntax, message));
+                    }
+                    self.next += 1;
                 }
             }
         }

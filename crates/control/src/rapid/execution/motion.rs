@@ -250,7 +250,7 @@ fn same_rail(via: &Value, end: Option<f64>) -> Result<(), (Rule, String)> {
 
 /// Mass, kg, and its centre, mm, of a `loaddata`.
 fn load_of(load: &Value) -> Result<[f64; 4], String> {
-    let [mass, center, turn, ..] = load.parts() else {
+    let [mass, center, turn, moments @ ..] = load.parts() else {
         return Err(String::from("a loaddata is needed here"));
     };
     let (Some(mass), Some([x, y, z])) = (mass.number(), center.numbers::<3>()) else {
@@ -258,6 +258,9 @@ fn load_of(load: &Value) -> Result<[f64; 4], String> {
     };
     if mass <= 0.0 {
         return Err(String::from("the mass of a tool is above 0 kg"));
+    }
+    if !moments.iter().all(|moment| moment.number().is_some_and(|moment| moment >= 0.0)) {
+        return Err(String::from("the moments of inertia of a tool are 0 kgm² or above"));
     }
     frame(&[center.clone(), turn.clone()])?;
     Ok([mass, x, y, z])

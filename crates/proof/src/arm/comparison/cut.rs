@@ -6,7 +6,7 @@ use super::{Comparison, Standing, refused};
 use control::Dialect;
 use control::{ArmMove, Corner, Rounding};
 use geom::Frame;
-use program::{Coolant, Outcome, Rule, Spindle};
+use program::{Coolant, Diagnostic, Outcome, Rule, Spindle};
 
 impl Comparison<'_> {
     /// # Errors
@@ -64,7 +64,8 @@ impl Comparison<'_> {
         };
         if (feed - state.feed).abs() > self.feed_step.max(self.feed_part * state.feed.abs()) {
             let message = format!("the feed is {feed:.3} mm/min, the source has {:.3}", state.feed);
-            return refused(Rule::Feed, message);
+            let help = "the feed of the source before this motion, in the unit of the language";
+            return Err(Diagnostic::error(Rule::Feed, message).help(help).into());
         }
         if !self.turns_as(state.spindle) {
             let message =
