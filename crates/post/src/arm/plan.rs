@@ -348,7 +348,12 @@ fn settings(turn_speed: Option<f64>, (home, keeps_posture): (Option<Joints>, boo
     let own = Settings::default();
     let rate = turn_speed.map(f64::to_radians);
     let turn_rate = rate.map_or(own.turn_rate, |rate| rate.min(own.turn_rate));
-    Settings { turn_rate, slows_at: rate.map(|rate| 2.0 * rate), home, keeps_posture, ..own }
+    Settings { turn_rate, slows_at: slows_at(turn_speed), home, keeps_posture, ..own }
+}
+
+/// Fastest turn of the tool, its axis and about it together, radians/s, where `turn_speed`, degrees/s, bounds each.
+pub(super) fn slows_at(turn_speed: Option<f64>) -> Option<f64> {
+    turn_speed.map(|speed| 2.0 * speed.to_radians())
 }
 
 /// What is chosen for the points of a stretch.

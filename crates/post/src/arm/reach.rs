@@ -1,6 +1,6 @@
 //! What an arm makes of a toolpath before anything is written: its joints along the way, its margins, and how it would be elsewhere.
 
-use super::plan::{Act, Kind, Motion, Position, Reentry, Step, stretches};
+use super::plan::{Act, Kind, Motion, Position, Reentry, Step, slows_at, stretches};
 use super::rail::{Stand, groups};
 use crate::arcs::arc_through;
 use crate::center;
@@ -49,7 +49,7 @@ pub struct ArmSample {
     pub cuts: bool,
     /// Whether the tool has left the cut here, and enters it again.
     pub enters_again: bool,
-    /// Seconds from the first sample, at the feeds of the source, slower where the tool would turn faster than `turn_speed` of the options, and the rapid of the cell; without acceleration.
+    /// Seconds from the first sample, at the feeds of the source, slower where the tool would lean over faster than twice `turn_speed` of the options, and the rapid of the cell; without acceleration.
     pub time: f64,
     /// The tool tip in the frame of the part, mm.
     pub tip: Vec3,
@@ -176,8 +176,8 @@ impl Along<'_> {
         if let Some((from, tool)) = between {
             let [a, b] = [&from.tool.matrix3, &motion.end.tool.matrix3].map(Quat::from_mat3);
             let lean = angle_between(from.tool.matrix3.z_axis, motion.end.tool.matrix3.z_axis);
-            // Controllers go slower than the feed where the tool would turn too fast.
-            let whole = whole.max(self.turn_speed.map_or(0.0, |speed| lean.to_degrees() / speed));
+            // As for the choice: controllers go slower than the feed where the tool would turn too fast.
+            let whole = whole.max(slows_at(self.turn_speed).map_or(0.0, |rate| lean / rate));
             let parts = (length / SPACING).max(a.angle_between(b) / LEAN).ceil().clamp(1.0, MOST);
             let tip = path(motion.kind, from.tool.translation, motion.end.tool.translation);
             let posture = self.arm.posture(&motion.end.joints);

@@ -464,3 +464,15 @@ fn a_refusal_within_an_arc_says_that_a_cut_is_left_at_its_end_alone() {
     assert!(found.message.contains("joint 1"), "{found}");
     assert!(found.help.contains("divide the arc there in the source"), "{found}");
 }
+
+#[test]
+fn the_largest_speed_of_a_joint_on_the_way_is_that_of_the_margins() {
+    let dome = source(&dome());
+    for name in ["universal-ur5e", "universal-ur10e"] {
+        let machine = machine::load(name).unwrap();
+        let (samples, margins) = post::arm_samples(&dome, &machine).unwrap();
+        let on_way = samples.iter().flat_map(|sample| sample.speeds).fold(0.0, f64::max);
+        let stated = margins.unwrap().speed / 100.0;
+        assert!((on_way / stated - 1.0).abs() < 0.05, "{name}: {on_way} {stated}");
+    }
+}
