@@ -90,8 +90,10 @@ impl Findings {
         let mut warnings = self.warnings;
         warnings.extend(self.lowered.iter().map(|l| {
             let Lowered { rule, what, count, blocks, line, places } = l;
+            // A board has no lines.
+            let here = if *line == 0 { "" } else { ", first here" };
             let message = format!(
-                "{what}: {count} written as {blocks} lines, tolerance {tolerance} mm, first here"
+                "{what}: {count} written as {blocks} lines, tolerance {tolerance} mm{here}"
             );
             Diagnostic { places: places.clone(), ..Diagnostic::warning(*rule, message).line(*line) }
         }));

@@ -246,7 +246,14 @@ impl<'a> Job<'a> {
         let findings = || left_out.iter().flat_map(|left| &left.account.findings);
         let is_refused = self.strict || findings().any(plan::is_about_settings);
         if works.is_empty() || is_refused && !left_out.is_empty() {
-            return Err(Stop::invalid(findings().cloned().collect()));
+            // What is wrong with both sides is said once.
+            let mut said: Vec<Diagnostic> = Vec::new();
+            for found in findings() {
+                if !said.contains(found) {
+                    said.push(found.clone());
+                }
+            }
+            return Err(Stop::invalid(said));
         }
         Ok((works, left_out))
     }

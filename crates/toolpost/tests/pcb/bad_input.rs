@@ -210,6 +210,16 @@ fn a_tool_wider_than_every_gap() {
     );
 }
 
+/// A board has no lines: what is said of its holes points to none.
+#[test]
+fn holes_written_as_moves_name_no_line() {
+    let folder = small();
+    let said = folder.run(&["pcb", "board", "--only", "drill", "-o", "out", "-m", "grbl-3018"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.out.contains("lines, tolerance 0.005 mm\n"), "{said:?}");
+    assert!(!said.out.contains("first here"), "{said:?}");
+}
+
 #[test]
 fn tools_that_are_none() {
     let folder = small();
@@ -220,7 +230,9 @@ fn tools_that_are_none() {
     }
     let none = ["pcb", "board", "-o", "out", "-m", "grbl-3018"];
     refused(&folder, &[&none[..], &["--tool", "-0.2"]].concat(), 2, &["--tool", "greater than 0"]);
-    refused(&folder, &none, 2, &["error[no-tool]", "--tool", "--vee", "--only"]);
+    // Both sides lack it, and it is said once.
+    let said = refused(&folder, &none, 2, &["error[no-tool]", "--tool", "--vee", "--only"]);
+    assert_eq!(said.err.matches("error[no-tool]").count(), 1, "{said:?}");
     for angle in ["0", "180", "-30"] {
         let angle = format!("--vee={angle}");
         refused(&folder, &[&none[..], &[&angle]].concat(), 2, &["--vee", "below 180 degrees"]);
