@@ -3,7 +3,7 @@
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import { Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Work } from "./protocol/asks.ts";
+import type { Command, Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Work } from "./protocol/asks.ts";
 
 export class Studio {
     readonly link: Signal<State>;
@@ -29,6 +29,7 @@ export class Studio {
     readonly cursor: Cursor;
     /** A machine has to be chosen before anything can be posted. */
     asksMachine: () => void = () => {};
+    private formOf: Command | null = null;
     private abort: AbortController | null = null;
 
     constructor(
@@ -45,12 +46,20 @@ export class Studio {
         this.opened.value = opened;
         this.drafts.value = opened.drafts;
         this.machine.value ??= this.work.value?.machine ?? opened.machine;
-        const [machines, form] = await Promise.all([this.seam.ask("machines", {}), this.seam.ask("form", {})]);
-        this.machines.value = machines.done;
-        this.form.value = form.done;
+        this.machines.value = (await this.seam.ask("machines", {})).done;
+        await this.askForm();
         if (this.edited.value !== null) return this.prove(this.edited.value);
         if (this.work.value !== null) return this.post(this.work.value);
         if (opened.source !== null) await this.open(opened.source);
+    }
+
+    /** The options of the machine's command. */
+    private async askForm(): Promise<void> {
+        const kind = this.machines.value.find(({ name }) => name === this.machine.value)?.kind;
+        const command = kind === "wire" ? "wire" : "post";
+        if (this.formOf === command) return;
+        this.formOf = command;
+        this.form.value = (await this.seam.ask("form", command === "post" ? {} : { command })).done;
     }
 
     open(source: FileOrUpload): Promise<void> {
@@ -62,10 +71,11 @@ export class Studio {
         if (upload !== undefined) await this.open({ upload });
     }
 
-    choose(machine: string): Promise<void> {
+    async choose(machine: string): Promise<void> {
         this.machine.value = machine;
+        await this.askForm();
         const work = this.work.value;
-        return work === null ? Promise.resolve() : this.post({ ...work, machine });
+        if (work !== null) await this.post({ ...work, machine });
     }
 
     /** Posts and proves. Edits by hand are gone: who calls this has asked. */

@@ -39,6 +39,9 @@ export interface Work {
 /** What may be null may be left out. */
 export type Asked<T> = { [K in keyof T as null extends T[K] ? never : K]: T[K] } & { [K in keyof T as null extends T[K] ? K : never]?: T[K] };
 
+/** Whose options the form has: a wire machine cuts with `toolpost wire`. */
+export type Command = "post" | "wire";
+
 type NoParams = Record<string, never>;
 
 /** Ask by ask: what it takes and what it gives. */
@@ -46,7 +49,7 @@ export interface Asks {
     open: [NoParams, Opened];
     folder: [FolderParams, Listing];
     machines: [NoParams, MachineEntry[]];
-    form: [NoParams, Field[]];
+    form: [{ command?: Command }, Field[]];
     post: [Asked<PostParams>, Job];
     prove: [Asked<ProveParams>, Job];
     text: [Asked<TextParams>, TextAbout];
