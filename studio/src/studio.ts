@@ -3,7 +3,7 @@
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import { Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { Command, Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Work } from "./protocol/asks.ts";
+import type { Command, Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
 
 export class Studio {
     readonly link: Signal<State>;
@@ -16,6 +16,8 @@ export class Studio {
     readonly machine: Signal<string | null> = signal(null);
     readonly job: Signal<Job | null> = signal(null);
     readonly running: Signal<Progress | null> = signal(null);
+    /** How the last work ended that gave nothing. */
+    readonly stop: Signal<Verdict | null> = signal(null);
     /** Why there is no job, or why something else was not done. */
     readonly stopped: Signal<Finding[]> = signal([]);
     readonly said: Signal<string> = signal("");
@@ -177,6 +179,7 @@ export class Studio {
         this.abort = abort;
         this.running.value = { step: "reading", part: null };
         this.stopped.value = [];
+        this.stop.value = null;
         try {
             const done = await run(abort.signal, (now) => {
                 if (this.abort === abort) this.running.value = now;
@@ -186,6 +189,7 @@ export class Studio {
             if (this.abort !== abort) return undefined;
             if (!(error instanceof Stopped)) throw error;
             this.stopped.value = error.findings;
+            this.stop.value = error.verdict;
             return undefined;
         } finally {
             if (this.abort === abort) {

@@ -13,7 +13,7 @@ const nameOf = ({ source }: Work): string => ("file" in source ? source.file : s
 
 export function Bar({ screen }: { screen: Screen }) {
     const { studio, dialog } = screen;
-    const { work, machine, job, running, link, stopped } = studio;
+    const { work, machine, job, running, link, stop } = studio;
     const name = work.value === null ? "Open a source…" : nameOf(work.value);
     return (
         <header class="bar">
@@ -28,7 +28,7 @@ export function Bar({ screen }: { screen: Screen }) {
                 Options
             </button>
             <output class="grow" aria-live="polite">
-                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stopped={stopped.value.length > 0} />}
+                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} />}
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
             <span class="soft">{studio.said.value}</span>
@@ -73,8 +73,9 @@ function Running({ screen }: { screen: Screen }) {
     );
 }
 
-function VerdictOf({ job, stopped }: { job: Job | null; stopped: boolean }) {
-    if (job === null) return stopped ? <strong class="invalid">✗ NOT POSTED</strong> : <span class="soft">no program yet</span>;
+function VerdictOf({ job, stop }: { job: Job | null; stop: Verdict | null }) {
+    if (job === null && stop === null) return <span class="soft">no program yet</span>;
+    if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
     const moves = `${job.walk.moves.toLocaleString("en")} moves`;
     return (
         <>

@@ -71,6 +71,21 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         await page.close();
     });
 
+    test("what takes long says how far it is, and is cancelled", async () => {
+        const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
+        const moves = Array.from({ length: 400_000 }, (_, i) => `GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
+        writeFileSync(join(server.folder, "long.cls"), ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...moves, "FINI", ""].join("\n"));
+        const { page, complaints } = await visit(browser, server.link);
+        await page.keyboard.press("Control+o");
+        await page.getByText("long.cls").click();
+        await page.getByRole("progressbar").waitFor();
+        await page.getByText(/reading|writing|proving/).waitFor();
+        await page.getByRole("button", { name: "Cancel" }).click();
+        await page.getByText("■ CANCELLED").waitFor();
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
     test("a killed server loses no edit: the page says that it is gone, the next server offers the edit", async () => {
         const files = [example("plate.cls")];
         const machine = ["-m", "generic-3axis-fanuc"];

@@ -82,6 +82,8 @@ export async function visit(browser: Browser, link: string, more: Parameters<Bro
     page.on("pageerror", (error) => complaints.push(String(error)));
     if (newer !== undefined) await page.route(/\/(assets\/.*)?$/, (route) => serve(route, newer));
     await page.goto(link);
+    // The keys are listened to from here on.
+    await page.getByRole("button", { name: /^Commands/ }).waitFor();
     return { page, complaints };
 }
 

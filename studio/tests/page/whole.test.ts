@@ -39,8 +39,8 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         expect(page.url()).not.toContain(new URL(server.link).hash.slice(1));
     });
 
-    test("a click on a move lights its block and its record, and the axes stand where the record goes", async () => {
-        const page = await begin();
+    test.each([1, 2, 0.5])("a click on a move lights its block and its record, and the axes stand where the record goes; zoom %d", async (deviceScaleFactor) => {
+        const page = await begin({ deviceScaleFactor });
         const view = (await page.locator(".canvas").boundingBox())!;
         const before = await lit(page, "program");
         // A spiral of clicks from the middle, until one meets a line.
