@@ -22,7 +22,7 @@ describe.each(machines)("the chain of $machine", ({ linkage, cases }) => {
 
     test("carries its bodies to where the tool is", () => {
         const { axes, tool_length, tip } = cases[1]!;
-        const bodies = bodiesOf(linkage, axes, tip as Vector, tool_length);
+        const bodies = bodiesOf(linkage, axes, { tip: tip as Vector, length: tool_length });
         expect(bodies.length).toBe(linkage.bodies.length);
         for (const { corners } of bodies) expect([...corners].every(Number.isFinite)).toBe(true);
     });
@@ -39,7 +39,7 @@ const lone: Linkage = {
 };
 
 test("a spindle stands above the tip by the tool's length, also where the axes count from another zero", () => {
-    const { corners } = bodiesOf(lone, [50], [7, 8, 9], 20)[0]!;
+    const { corners } = bodiesOf(lone, [50], { tip: [7, 8, 9], length: 20 })[0]!;
     const heights = Array.from(corners).filter((_, i) => i % 3 === 2);
     expect([Math.min(...heights), Math.max(...heights)]).toEqual([29, 34]);
     const across = Array.from(corners).filter((_, i) => i % 3 === 0);

@@ -132,7 +132,8 @@ test("a part of a strip, found by its moves", () => {
 test("a face covers the pixels whose middles are in it, and hides what is behind", () => {
     const raster = coloured(4, 4, strip([[0.5, 1.5, 5], [3.5, 1.5, 5]]));
     raster.triangles({ corners: Float32Array.from([0, 0, 1, 4, 0, 1, 0, 4, 1]), colour: [200, 100, 50] }, flat);
-    const face = rgb(200, 100, 50);
+    // The lamp stands 0.35 beside and 0.55 above the eye: 0.35 + 0.65 / sqrt(1 + 0.35² + 0.55²) = 0.8945 of the colour.
+    const face = rgb(179, 89, 45);
     const picture = Array.from(raster.seen, (colour) => (colour === face ? "#" : colour === 99 ? "." : "a")).join("");
     expect(picture.match(/.{4}/g)).toEqual(["####", "###a", "##..", "#..."]);
 });

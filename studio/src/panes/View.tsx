@@ -24,7 +24,7 @@ export function View({ screen }: { screen: Screen }) {
                 <Toggle on={four} title="Four views (Q)" text="4" />
                 <Toggle on={rapids} title="Rapids (R)" text="Rapids" />
                 <Toggle on={screen.axes} title="Tool axes (V)" text="Axes" />
-                {screen.linkage !== null && <Toggle on={screen.machine} title="Machine (M)" text="Machine" />}
+                <Toggle on={screen.machine} title="Machine (M)" text="Machine" />
                 <Toggle on={box} title="Box of all moves (B)" text="Box" />
                 <Toggle on={ruler} title="Ruler (L)" text="Ruler" />
                 <label>

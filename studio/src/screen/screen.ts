@@ -2,7 +2,7 @@
 
 import { computed, effect, signal, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { Place, ToolUse } from "../protocol/asks.ts";
+import type { JobMachine, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";
@@ -105,14 +105,10 @@ export class Screen {
 
     /** The machine round the tool, where all its axes are known. */
     private bodiesAt({ axes, tip, tool }: Place): Triangles[] {
-        const linkage = this.linkage;
+        const { linkage, kind } = this.studio.job.value!.machine as JobMachine & { linkage: Linkage };
         const known = axes.filter((position) => position !== null);
-        if (linkage === null || known.length !== axes.length) return [];
-        return bodiesOf(linkage, known, vector(tip), this.toolOf(tool)?.length ?? 0);
-    }
-
-    get linkage(): Linkage | null {
-        return (this.studio.job.value?.machine as { linkage?: Linkage | null } | undefined)?.linkage ?? null;
+        if (known.length !== axes.length) return [];
+        return bodiesOf(linkage, known, kind === "robot" ? null : { tip: vector(tip), length: this.toolOf(tool)?.length ?? 0 });
     }
 
     toolOf(place: number | null): ToolUse | null {

@@ -98,12 +98,15 @@ export function tipOf({ tool, part }: Pick<Linkage, "tool" | "part">, placed: Ma
 
 const FACES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]] as const;
 
-/** The bodies as boxes in the frame of the part: those that carry the tool are moved so that it stands at its tip. */
-export function bodiesOf(linkage: Linkage, axes: number[], tip: Vector, length: number): Triangles[] {
+/**
+ * The bodies as boxes in the frame of the part. The axes of a mill may count from another zero than the machine's: `tool` then moves
+ * what carries the tool so that it stands at its tip.
+ */
+export function bodiesOf(linkage: Linkage, axes: number[], tool: { tip: Vector; length: number } | null): Triangles[] {
     const placed = place(linkage, axes);
     const home = place(linkage, axes.map(() => 0));
     const work = inverse(seat(linkage.part, placed));
-    const off = along(tip, tipOf(linkage, placed, length), -1);
+    const off: Vector = tool === null ? [0, 0, 0] : along(tool.tip, tipOf(linkage, placed, tool.length), -1);
     const carriers = carriersOf(linkage, linkage.part.on);
     return linkage.bodies.map(({ on, low, high }) => {
         const matrix = times(work, times(placed[on]!, inverse(home[on]!)));

@@ -6,7 +6,7 @@
 
 import type { Projection } from "./camera.ts";
 import { Style, type Strip, type Triangles } from "./strip.ts";
-import { cross, dot, unit, type Vector } from "./vector.ts";
+import { along, cross, dot, unit, type Vector } from "./vector.ts";
 
 /** Beyond this a pixel's number is no longer exact, and what is not finite is beyond it. */
 const FAR = 1e7;
@@ -141,9 +141,10 @@ export class Raster {
         this.seen[at] = seen;
     }
 
-    /** Flat faces, lit from the eye. They are no move. */
-    triangles({ corners, colour }: Triangles, { right, down, away, at, scale }: Projection): void {
-        const colours = shaded({ corners, colour }, { away, scale });
+    /** Flat faces. They are no move. */
+    triangles({ corners, colour }: Triangles, projection: Projection): void {
+        const { right, down, away, at } = projection;
+        const colours = shaded({ corners, colour }, projection);
         for (let i = 0; i + 8 < corners.length; i += 9) {
             const points = [0, 3, 6].map((k): Vector => {
                 const [x, y, z] = [corners[i + k]!, corners[i + k + 1]!, corners[i + k + 2]!];
@@ -185,13 +186,14 @@ export function rgb(red: number, green: number, blue: number): number {
     return ((255 << 24) | (Math.round(blue) << 16) | (Math.round(green) << 8) | Math.round(red)) >>> 0;
 }
 
-/** Colours of the corners, from 0 to 1: flat faces, lit from the eye. */
-export function shaded({ corners, colour }: Triangles, { away, scale }: Pick<Projection, "away" | "scale">): Float32Array {
+/** Colours of the corners, from 0 to 1: flat faces, lit from beside and above the eye, so that faces of a box differ. */
+export function shaded({ corners, colour }: Triangles, { right, down, away }: Projection): Float32Array {
+    const lamp = unit(along(along(away, right, 0.35), down, 0.55));
     const colours = new Float32Array(corners.length);
     for (let i = 0; i + 8 < corners.length; i += 9) {
         const edge = (k: number): Vector => [corners[i + k]! - corners[i]!, corners[i + k + 1]! - corners[i + 1]!, corners[i + k + 2]! - corners[i + 2]!];
         const normal = unit(cross(edge(3), edge(6)));
-        const light = 0.35 + (0.65 * Math.abs(dot(normal, away))) / scale;
+        const light = 0.35 + 0.65 * Math.abs(dot(normal, lamp));
         for (let k = 0; k < 9; k++) colours[i + k] = Math.min(1, (colour[k % 3]! * light) / 255);
     }
     return colours;
