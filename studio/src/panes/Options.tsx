@@ -14,6 +14,9 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
         given.value = [...given.value.filter(([one]) => one !== name), ...values.map((value): Given[number] => [name, value])];
     };
     const work = studio.work.value;
+    const found = matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`);
+    // The one that is named comes before those that speak of it.
+    const fields = found.toSorted((a, b) => Number(b.name === search.value) - Number(a.name === search.value));
     return (
         <form
             onSubmit={(event) => {
@@ -24,7 +27,7 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
         >
             <input type="search" aria-label="Search the options" placeholder="Search the options" autofocus value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
             <div class="choices" role="group" aria-label="Options" tabIndex={0}>
-                {matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`).map((field) => (
+                {fields.map((field) => (
                     <Row
                         key={field.name}
                         field={field}

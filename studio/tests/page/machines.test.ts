@@ -34,6 +34,29 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.close();
     });
 
+    test("a wire: what the program leaves open is asked for, and the wire's four axes are read out", async () => {
+        const server = await Server.start([example("sector.nc")], ["-m", "bp-95d"]);
+        const { page, complaints } = await visit(browser, server.link);
+        await page.getByRole("button", { name: "Set --from…" }).click();
+        const given = { from: "fanuc-31i", side: "inside", wire: "0.25", gap: "0.02", thread: "12,12", "round-corners": null };
+        for (const [name, value] of Object.entries(given)) {
+            await page.getByLabel("Search the options").fill(name);
+            const field = page.locator(`#option-${name}`);
+            if (value === null) await field.check();
+            else if (await field.evaluate((one) => one.tagName === "SELECT")) await field.selectOption(value);
+            else await field.fill(value);
+        }
+        await page.getByRole("button", { name: "Post" }).click();
+        await proven(page);
+        for (const axis of ["X", "Y", "U", "V"]) expect(await readout(page)).toHaveProperty(axis);
+        const slider = page.getByLabel("Time of the machine");
+        await slider.focus();
+        await page.keyboard.press("End");
+        await expect.poll(async () => (await readout(page)).Move).not.toMatch(/^1 /);
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
     test("a program without a control leads to the option that it needs", async () => {
         const server = await Server.start([example("flange.nc")], ["-m", "generic-3axis-fanuc"]);
         const { page } = await visit(browser, server.link);
