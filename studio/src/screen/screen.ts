@@ -1,8 +1,8 @@
 /** What is on the screen and not in the work: dialogs, tabs, the views and how they look. */
 
-import { computed, effect, signal, type Signal } from "@preact/signals";
+import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { JobMachine, Place, ToolUse } from "../protocol/asks.ts";
+import type { Job, JobMachine, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";
@@ -70,12 +70,14 @@ export class Screen {
         const dark = matchMedia("(prefers-color-scheme: dark)");
         this.dark.value = dark.matches;
         dark.addEventListener("change", () => (this.dark.value = dark.matches));
-        effect(() => this.begin());
+        effect(() => {
+            const job = studio.job.value;
+            untracked(() => this.begin(job));
+        });
     }
 
     /** The scene of a job that is new. */
-    private begin(): void {
-        const job = this.studio.job.value;
+    private begin(job: Job | null): void {
         if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
             return;

@@ -57,6 +57,17 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         expect(block).toMatch(/[XYZ]/);
     });
 
+    test("what has come of a picture is not fetched again when the cursor moves", async () => {
+        const page = await begin();
+        await page.waitForTimeout(300);
+        const asked: string[] = [];
+        page.on("request", (request) => request.url().includes("/geometry/") && asked.push(request.url()));
+        await goTo(page, "m8");
+        await goTo(page, "m20");
+        await page.waitForTimeout(300);
+        expect(asked).toEqual([]);
+    });
+
     test("a click on a block goes to its move: the axes stand where its words say", async () => {
         const page = await begin();
         const line = page.locator(".program .cm-line", { hasText: /X-?[\d.]+.*Y-?[\d.]+/ }).first();
