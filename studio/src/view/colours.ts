@@ -4,7 +4,7 @@ import { rgb } from "./raster.ts";
 
 export type Mode = "kind" | "tool" | "operation" | "feed";
 export const MODES: { name: Mode; title: string }[] = [
-    { name: "kind", title: "kind of move" },
+    { name: "kind", title: "kind" },
     { name: "tool", title: "tool" },
     { name: "operation", title: "operation" },
     { name: "feed", title: "feed" },
