@@ -5,5 +5,6 @@ mod common;
 mod inverse;
 mod limits;
 mod linearise;
+mod linkage;
 mod plan;
 mod time;
