@@ -131,6 +131,8 @@ pub struct Finding {
     pub count: u32,
     /// Lines of the first few like it.
     pub lines: Vec<u32>,
+    /// Lines of all others that it stands for, the first ten thousand.
+    pub places: Vec<u32>,
 }
 
 /// How bad a finding is.
@@ -159,6 +161,7 @@ impl From<Diagnostic> for Finding {
             excerpt: found.excerpt,
             count: found.count,
             lines: found.lines,
+            places: found.places,
         }
     }
 }

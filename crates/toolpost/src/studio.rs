@@ -218,4 +218,23 @@ mod tests {
             Some("--strict")
         );
     }
+
+    #[test]
+    fn it_does_not_start_without_its_page_nor_with_a_source_elsewhere() {
+        let folder = Some(std::env::temp_dir().join("nothing-of-this-name"));
+        let args = |source: &str| Studio {
+            source: Some(source.into()),
+            machine: None,
+            folder: folder.clone(),
+            port: None,
+            no_open: true,
+        };
+        for (source, rule) in [("missing.cls", Rule::Unreadable), ("Cargo.toml", Rule::FolderReach)]
+        {
+            let expected = if ::studio::has_page() { rule } else { Rule::StudioPage };
+            let found = run(&args(source), false).unwrap_err().findings.remove(0);
+            assert_eq!(found.rule, expected, "{found}");
+            assert!(!found.help.is_empty());
+        }
+    }
 }

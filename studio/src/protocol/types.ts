@@ -134,7 +134,11 @@ count: number,
 /**
  * Lines of the first few like it.
  */
-lines: Array<number>, };
+lines: Array<number>, 
+/**
+ * Lines of all others that it stands for, the first ten thousand.
+ */
+places: Array<number>, };
 
 /**
  * How bad a finding is.

@@ -318,3 +318,24 @@ fn a_wire_is_posted_by_the_options_of_its_own_command() {
     let stop = page.answer("prove", params, &[Array::text("text", "M30\n")]).unwrap_err();
     assert_eq!(stop["findings"][0]["rule"], "machine-kind");
 }
+
+#[test]
+fn a_finding_that_stands_for_many_leads_to_all_of_them() {
+    let studio = Studio::new();
+    let mut source =
+        String::from("UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n");
+    for i in 0..30 {
+        // A word of the CAM system that says nothing to a machine: a warning each.
+        source += &format!("PAINT/COLOR,{i}\nGOTO/{i},0,-1\nNOSUCHWORD/{i}\n");
+    }
+    source += "RAPID\nGOTO/0,0,10\n";
+    std::fs::write(studio.own().join("many.cls"), source).unwrap();
+    let job = studio.socket().post("many.cls", "generic-3axis-linuxcnc");
+    let findings = job["findings"].as_array().unwrap();
+    let many =
+        findings.iter().find(|found| found["count"] == 30).unwrap_or_else(|| panic!("{job}"));
+    let lines: Vec<u64> = (0..30).map(|i| 9 + 3 * i).collect();
+    assert_eq!(many["line"], lines[0]);
+    assert_eq!(many["places"], json!(lines[1..]));
+    assert_eq!(many["of"], "source");
+}
