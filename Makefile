@@ -25,11 +25,11 @@ QUICK := $(patsubst $(CURDIR)/%,%,$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/qui
 MAKEFLAGS += --keep-going
 
 .PHONY: demo install test test-rust test-python freecad tests bench judges judges-long images samples rust python
-.PHONY: deny notices studio test-studio images-studio
+.PHONY: deny notices studio page test-studio images-studio
 .PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python lint-studio
 
 ## Post a part, prove it, draw it, and say what to do next.
-demo: rust
+demo: rust page
 	@echo "Compiling; the first time this takes some minutes."
 	cargo build --locked --profile quick --package toolpost
 	@mkdir -p out
@@ -48,9 +48,10 @@ demo: rust
 	@echo "    make install                         # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
 	@echo "    $(QUICK) machines list   # the machines that it can write for"
 	@echo "    $(QUICK) post $(PART) --machine fanuc-table-bc --output $(DEMO).nc"
+	@echo "    $(QUICK) studio $(PART) --machine $(MACHINE) --folder $(dir $(PART))   # the same in a window of the browser"
 
 ## Put the command toolpost into PREFIX/bin (~/.local/bin), compiled for speed.
-install: rust
+install: rust page
 	cargo install --locked --path crates/toolpost --root "$(PREFIX)" --no-track --force
 	@case ":$(CALLERS_PATH):" in \
 	*":$(PREFIX)/bin:"*) ;; \
@@ -86,6 +87,11 @@ studio/dist/index.html: $(PAGE)
 	@scripts/setup page
 	@rm -rf studio/dist/assets studio/dist/index.html studio/dist/licences.txt
 	npm --prefix studio run --silent build
+
+# For whoever wants the command: without Node it is built all the same, and `toolpost studio` says what it lacks.
+page:
+	@$(MAKE) --no-print-directory studio || \
+		echo "The command is built without the page of \`toolpost studio\`, which needs Node."
 
 ## The tests of the page: its parts, and the whole in Debian's Chromium, with the command as cargo has built it.
 test-studio: rust studio
