@@ -32,13 +32,15 @@ use clap::error::ContextValue;
 use clap::{CommandFactory, Parser};
 use serde_json::json;
 use std::ffi::OsString;
+use std::io::Write;
 
 /// Has Ctrl-C, and whatever else asks the process to end, wait until files that are being saved are whole.
 fn end_cleanly() {
     // A process that has a handler of its own keeps it.
     let _ = ctrlc::set_handler(|| {
         let _whole = files::saved();
-        eprintln!("\ninterrupted");
+        // Where this cannot be printed, nobody is left to read it, and the process ends all the same.
+        let _ = writeln!(std::io::stderr(), "\ninterrupted");
         std::process::exit(INTERRUPTED.into());
     });
 }

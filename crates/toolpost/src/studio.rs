@@ -8,6 +8,7 @@ use app::{Stop, Verdict};
 use clap::{Arg, ArgAction, CommandFactory, Parser};
 use program::{Diagnostic, Rule};
 use serde_json::json;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Starts the server, says its link, and answers until the process ends. Ctrl-C ends it with all its work; files that are being
@@ -43,7 +44,7 @@ pub fn run(args: &Studio, json: bool) -> Result<Answer, Stop> {
     if !args.no_open
         && let Err(why) = server.show()
     {
-        eprintln!("no browser was opened ({why}): open the link in one");
+        let _ = writeln!(std::io::stderr(), "no browser was opened ({why}): open the link in one");
     }
     server.run()
 }
