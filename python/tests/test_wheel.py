@@ -60,7 +60,10 @@ def test_the_source_package_has_all_that_the_package_is_built_from(tmp_path):
     # What cargo has found when it built the package for the other tests.
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     (found,) = target.glob("debug/*_native.d")
-    files = [Path(file).resolve() for file in found.read_text().split()[1:]]
+    paths = [Path(path).resolve() for path in found.read_text().split()[1:]]
+    # A folder stands for the files in it.
+    folders = [file for path in paths if path.is_dir() for file in path.rglob("*")]
+    files = [file for file in paths + folders if file.is_file()]
     needed = {file.relative_to(ROOT.resolve()).as_posix() for file in files}
     assert "python/src/lib.rs" in needed
     assert needed <= names

@@ -1,6 +1,7 @@
 import { readFileSync } from "node:fs";
 import { describe, expect, test } from "vitest";
-import { bodiesOf, place, tipOf, type Linkage } from "../src/view/linkage.ts";
+import type { Linkage } from "../src/protocol/types.ts";
+import { bodiesOf, place, tipOf } from "../src/view/linkage.ts";
 import type { Vector } from "../src/view/vector.ts";
 
 interface Machine {
@@ -29,6 +30,7 @@ describe.each(machines)("the chain of $machine", ({ linkage, cases }) => {
 });
 
 const lone: Linkage = {
+    axes: [{ name: "Z", unit: "mm", low: null, high: null }],
     links: [
         { name: "bed", on: null, kind: "fixed", direction: [0, 0, 0], point: [0, 0, 0], zero: 0, terms: [] },
         { name: "Z", on: 0, kind: "slide", direction: [0, 0, 1], point: [0, 0, 0], zero: 0, terms: [[0, 1]] },

@@ -970,7 +970,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             Saved,
             Field,
         );
-        text
+        text + LINKAGE
     }
 
     #[test]

@@ -49,7 +49,7 @@ const lost = (): Stopped =>
 
 /** A finding of the page's own. */
 const said = (message: string, help: string): Finding => ({
-    severity: "error", rule: "connection", message, help, file: "", of: null, line: 0, column: 0, width: 0, excerpt: "", count: 1, lines: [],
+    severity: "error", rule: "connection", message, help, file: "", of: null, line: 0, column: 0, width: 0, excerpt: "", count: 1, lines: [], places: [],
 });
 
 /** The server's code for a token that is none of its own: no use in trying again. */

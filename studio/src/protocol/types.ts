@@ -1026,3 +1026,13 @@ group: string | null,
  * Whether it may be given several times.
  */
 repeats: boolean, };
+
+/**
+ * What carries what, for drawing a machine.
+ */
+export type Linkage = {
+axes: Array<{ name: string, unit: string, low: number | null, high: number | null, }>,
+links: Array<{ name: string, on: number | null, kind: "fixed" | "slide" | "turn", direction: [number, number, number], point: [number, number, number], zero: number, terms: Array<[number, number]>, }>,
+bodies: Array<{ name: string, on: number, low: [number, number, number], high: [number, number, number], is_given: boolean, }>,
+tool: { on: number, frame: [[number, number, number], [number, number, number], [number, number, number], [number, number, number]], },
+part: { on: number, frame: [[number, number, number], [number, number, number], [number, number, number], [number, number, number]], }, };

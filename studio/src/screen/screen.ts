@@ -2,12 +2,12 @@
 
 import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { Job, JobMachine, Place, ToolUse } from "../protocol/asks.ts";
+import type { Job, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Chunks } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
-import { bodiesOf, type Linkage } from "../view/linkage.ts";
+import { bodiesOf } from "../view/linkage.ts";
 import { Rows } from "../view/rows.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
 import { toolBody } from "../view/solids.ts";
@@ -107,7 +107,7 @@ export class Screen {
 
     /** The machine round the tool, where all its axes are known. */
     private bodiesAt({ axes, tip, tool }: Place): Triangles[] {
-        const { linkage, kind } = this.studio.job.value!.machine as JobMachine & { linkage: Linkage };
+        const { linkage, kind } = this.studio.job.value!.machine;
         const known = axes.filter((position) => position !== null);
         if (known.length !== axes.length) return [];
         return bodiesOf(linkage, known, kind === "robot" ? null : { tip: vector(tip), length: this.toolOf(tool)?.length ?? 0 });

@@ -1,47 +1,16 @@
 /** How a machine's axes carry its bodies, its tool and its part. The core gives the links; here they are only multiplied. */
 
+import type { Linkage } from "../protocol/types.ts";
 import type { Triangles } from "./strip.ts";
 import { along, cross, dot, type Vector } from "./vector.ts";
 
-interface Link {
-    name: string;
-    /** The link that it stands on; null: the floor. */
-    on: number | null;
-    kind: "fixed" | "slide" | "turn";
-    direction: Vector;
-    /** Of a turn: a point of its axis. */
-    point: Vector;
-    /** Millimetres or degrees where all axes are at 0. */
-    zero: number;
-    /** How much each axis adds. */
-    terms: [axis: number, factor: number][];
-}
+type Link = Linkage["links"][number];
 
-interface Body {
-    name: string;
-    on: number;
-    /** Corners, world, all axes at 0. */
-    low: Vector;
-    high: Vector;
-    /** From the machine's file; else made up. */
-    is_given: boolean;
-}
+/** A frame in a link, column by column. */
+type Seat = Linkage["tool"];
 
 /** Columns X, Y, Z and origin, one after the other. */
 export type Matrix = number[];
-
-/** A frame in a link: the same, column by column. */
-interface Seat {
-    on: number;
-    frame: Vector[];
-}
-
-export interface Linkage {
-    links: Link[];
-    bodies: Body[];
-    tool: Seat;
-    part: Seat;
-}
 
 const IDENTITY: Matrix = [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
 
