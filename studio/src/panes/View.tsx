@@ -66,7 +66,8 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             view,
             () => {
                 const place = studio.cursor.place.value;
-                const tip = place === null ? null : { at: vector(place.tip), axis: axisOf(place.axis) };
+                const at = place === null ? null : vector(place.tip);
+                const tip = place === null || at === null ? null : { at, axis: axisOf(place.axis) };
                 return { scene: screen.scene.value, looks: screen.looks.value, marks: screen.marks(), tip, box: screen.all, isBoxShown: screen.box.value };
             },
             (move) => void studio.cursor.toMove(move),

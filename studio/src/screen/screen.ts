@@ -19,9 +19,14 @@ export type Dialog = "commands" | "keys" | "machine" | "source" | "program" | "o
 export type Tab = "findings" | "verdict" | "plots";
 
 /** What is not known of a point counts as 0, where it has to be drawn somewhere. */
-export const vector = ([x, y, z]: (number | null)[]): Vector => [x ?? 0, y ?? 0, z ?? 0];
+/** A point of which nobody knows a coordinate is none. */
+export function vector(coordinates: (number | null)[]): Vector | null {
+    const known = coordinates.filter((coordinate) => coordinate !== null);
+    return known.length === 3 ? (known as Vector) : null;
+}
 
-export const axisOf = (axis: (number | null)[]): Vector => (axis.every((part) => part === null) ? [0, 0, 1] : vector(axis));
+/** Upright where it is not known. */
+export const axisOf = (axis: (number | null)[]): Vector => vector(axis) ?? [0, 0, 1];
 
 export class Screen {
     readonly dialog: Signal<Dialog | null> = signal(null);
@@ -101,8 +106,14 @@ export class Screen {
             ofBlock: cursor.ofBlock.value,
             mismatch: job.value?.walk.mismatch ?? null,
             bodies: place === null || !this.machine.value ? [] : this.bodiesAt(place),
-            tool: place === null ? null : toolBody(this.toolOf(place.tool), vector(place.tip), axisOf(place.axis), size),
+            tool: place === null ? null : this.toolAt(place, size),
         };
+    }
+
+    /** The tool, where it is known where it is. */
+    private toolAt({ tool, tip, axis }: Place, size: number): Triangles | null {
+        const at = vector(tip);
+        return at === null ? null : toolBody(this.toolOf(tool), at, axisOf(axis), size);
     }
 
     /** The machine round the tool, where all its axes are known. */
@@ -110,7 +121,9 @@ export class Screen {
         const { linkage, kind } = this.studio.job.value!.machine;
         const known = axes.filter((position) => position !== null);
         if (known.length !== axes.length) return [];
-        return bodiesOf(linkage, known, kind === "robot" ? null : { tip: vector(tip), length: this.toolOf(tool)?.length ?? 0 });
+        const at = vector(tip);
+        if (kind === "robot") return bodiesOf(linkage, known, null);
+        return at === null ? [] : bodiesOf(linkage, known, { tip: at, length: this.toolOf(tool)?.length ?? 0 });
     }
 
     toolOf(place: number | null): ToolUse | null {
@@ -148,10 +161,10 @@ export class Screen {
     }
 
     zoomToCursor(): void {
-        const tip = this.studio.cursor.place.value?.tip;
-        if (tip === undefined || this.viewer === null) return;
+        const middle = vector(this.studio.cursor.place.value?.tip ?? []);
+        if (middle === null || this.viewer === null) return;
         const { camera } = this.viewer;
-        this.viewer.look({ ...camera, middle: vector(tip), scale: Math.max(camera.scale, 20) });
+        this.viewer.look({ ...camera, middle, scale: Math.max(camera.scale, 20) });
     }
 
     /** The text that has the focus, else the program, is searched. */

@@ -3,7 +3,7 @@
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::header::{HOST, HeaderName, HeaderValue, ORIGIN};
-use axum::http::{HeaderMap, Response, StatusCode};
+use axum::http::{self, Response, StatusCode};
 
 /// The header in which requests bring the token.
 pub const TOKEN: HeaderName = HeaderName::from_static("x-toolpost-token");
@@ -76,7 +76,8 @@ impl Names {
     }
 
     /// Why a request is not answered, whoever brings it.
-    pub fn refuses(&self, headers: &HeaderMap) -> Option<(StatusCode, &'static str)> {
+    pub fn refuses<B>(&self, request: &http::Request<B>) -> Option<(StatusCode, &'static str)> {
+        let headers = request.headers();
         let is_one = |name: HeaderName, known: &[String]| {
             let mut given = headers.get_all(name).iter();
             match (given.next(), given.next()) {
@@ -85,7 +86,10 @@ impl Names {
                 (Some(_), Some(_)) => Some(false),
             }
         };
-        if is_one(HOST, &self.hosts) != Some(true) {
+        // RFC 9112 3.2.2: a target with a host counts before the header.
+        let target = request.uri().authority();
+        let is_target = target.is_none_or(|target| self.hosts.iter().any(|own| target == own));
+        if is_one(HOST, &self.hosts) != Some(true) || !is_target {
             let why = "this server is called 127.0.0.1 or localhost, with its port";
             return Some((StatusCode::MISDIRECTED_REQUEST, why));
         }

@@ -220,7 +220,7 @@ async fn answer(
     request: hyper::Request<Incoming>,
 ) -> Result<Response<Body>, Infallible> {
     let request = request.map(Body::new);
-    let response = match studio.names.refuses(request.headers()) {
+    let response = match studio.names.refuses(&request) {
         Some((status, why)) => say(status, why),
         None => match tokio::time::timeout(PATIENCE.1, route(studio, request)).await {
             Ok(response) => response,

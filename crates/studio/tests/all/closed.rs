@@ -41,6 +41,10 @@ fn a_request_names_this_server_and_comes_from_no_other_page() {
         421
     );
     assert_eq!(get(&own, &format!("Host: evil.example:{port}\r\n")), 421);
+    // Another name in the target, which counts before that of the header.
+    let target =
+        format!("GET http://evil.example/ HTTP/1.1\r\nHost: {own}\r\nConnection: close\r\n\r\n");
+    assert_eq!(studio.raw(target.as_bytes()).0, 421);
     // HTTP/1.0 without a name.
     let (status, ..) = studio.raw(b"GET / HTTP/1.0\r\n\r\n");
     assert_eq!(status, 421);
