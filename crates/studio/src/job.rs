@@ -1,8 +1,8 @@
 //! A job: one source with one machine, its program, its verdict and its walk. What is asked of it is answered here.
 
 use crate::ask::{
-    self, Axis, AxisKind, Command, Finding, Found, JobMachine, Level, Line, MachineKind, Mismatch,
-    Moves, Of, Place, Saved, Template, TextAbout, WalkAbout,
+    self, Command, Finding, Found, JobMachine, Level, Line, Mismatch, Moves, Of, Place, Saved,
+    Template, TextAbout, WalkAbout,
 };
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
@@ -299,7 +299,7 @@ impl Job {
                 title: self.machine.title.clone(),
                 kind: machines::kind(&self.machine),
                 dialect: self.machine.reader.clone(),
-                axes: axes(&self.machine),
+                axes: machines::axes(&self.machine),
                 files: self.machine_files.iter().map(|(file, lines)| text(file, lines)).collect(),
                 linkage: Linkage::of(&self.machine),
             },
@@ -475,7 +475,7 @@ impl Job {
     /// # Errors
     /// There is no such axis.
     pub fn plot(&self, what: &str, times: [f64; 2], pixels: u32) -> Result<Vec<Array>, Stop> {
-        let axis = || axes(&self.machine).iter().position(|axis| axis.name == what);
+        let axis = || machines::axes(&self.machine).iter().position(|axis| axis.name == what);
         let what = match what {
             "feed" => What::Feed,
             _ => What::Axis(axis().ok_or_else(|| {
@@ -628,55 +628,4 @@ fn texts_of(machine: &Machine) -> BTreeMap<String, Lines> {
         }
     }
     texts
-}
-
-/// The axes of a machine, in the order in which their positions are kept.
-pub fn axes(machine: &Machine) -> Vec<Axis> {
-    let known = |value: f64| value.is_finite().then_some(value);
-    let axis = |name: String, kind, unit, low: f64, high: f64| {
-        let (low, high) = (known(low), known(high));
-        Axis { name, kind, unit, low, high }
-    };
-    match machines::kind(machine) {
-        MachineKind::Mill => {
-            // Travels count from the zero of the machine; so do positions where the work zero is known.
-            let counts = machine.work_zero.is_some();
-            let linear = ["X", "Y", "Z"].into_iter().zip(&machine.linear).map(|(name, linear)| {
-                let (low, high) =
-                    if counts { (linear.min, linear.max) } else { (f64::NAN, f64::NAN) };
-                axis(name.to_owned(), AxisKind::Linear, "mm", low, high)
-            });
-            let rotary = machine.rotary.iter().map(|rotary| {
-                let name = rotary.letter.to_string();
-                axis(name, AxisKind::Rotary, "degrees", rotary.min, rotary.max)
-            });
-            linear.chain(rotary).collect()
-        }
-        MachineKind::Wire => {
-            let travel = machine.wire.as_ref().map_or(f64::NAN, |wire| wire.uv_travel);
-            let linear = |name: &str, travel: f64| {
-                axis(name.to_owned(), AxisKind::Linear, "mm", -travel, travel)
-            };
-            let (x, u) = (f64::NAN, travel);
-            [("X", x), ("Y", x), ("Z", x), ("U", u), ("V", u)]
-                .map(|(name, travel)| linear(name, travel))
-                .to_vec()
-        }
-        MachineKind::Robot => {
-            let arm = machine.arm.as_ref();
-            let joints = arm.iter().flat_map(|arm| arm.joints()).zip(1..).map(|(joint, number)| {
-                // How the controller counts joint 3 depends on joint 2, or is not known.
-                let (low, high) = match number {
-                    3 => (f64::NAN, f64::NAN),
-                    _ => (joint.min.to_degrees(), joint.max.to_degrees()),
-                };
-                axis(format!("J{number}"), AxisKind::Joint, "degrees", low, high)
-            });
-            let rail =
-                machine.cell.as_ref().and_then(|cell| cell.rail.as_ref()).map(|rail| {
-                    axis(String::from("rail"), AxisKind::Rail, "mm", rail.min, rail.max)
-                });
-            joints.chain(rail).collect()
-        }
-    }
 }
