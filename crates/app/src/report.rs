@@ -1,10 +1,12 @@
 //! The report of a program: what the program was made of, and whether the two are still a pair.
 
+use crate::account::Account;
 use crate::files;
 use crate::toolpath::Toolpath;
 use machine::Machine;
 use program::{Diagnostic, Digest, Rule};
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 use std::path::Path;
 
 /// The version of the shape of a report. It grows where a key goes or means something else; new keys may come at any
@@ -44,6 +46,16 @@ impl Digests {
         ];
         sides.into_iter().filter(|(differs, _)| *differs).map(|(_, name)| name).collect()
     }
+}
+
+/// The report of a program that was proven and not written, as after an edit by hand: what its account says, and what it was made
+/// of.
+pub fn of_proven(account: &Account, digests: &Digests) -> String {
+    let mut account = account.clone();
+    account.data["schema"] = json!(SCHEMA);
+    account.data["toolpost"] = json!(env!("CARGO_PKG_VERSION"));
+    account.data["sha256"] = json!(digests);
+    account.report()
 }
 
 /// What a report holds, as far as it is read again.

@@ -21,6 +21,9 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Where drafts are kept, in the named folder.
 const DRAFTS: &str = ".toolpost/drafts";
 
+/// The folder within it that is the studio's own.
+const OWN: &str = ".toolpost";
+
 /// The most drafts that are kept, and the largest, bytes.
 const MOST_DRAFTS: usize = 100;
 const LARGEST_DRAFT: usize = 64 << 20;
@@ -118,6 +121,13 @@ impl Folder {
     /// It leads out, also by a link.
     pub fn target(&self, path: &str) -> Result<PathBuf, Box<Diagnostic>> {
         let inner = inner(path)?;
+        let name = inner.file_name().map(|name| name.to_string_lossy().into_owned());
+        let is_blank = name.is_none_or(|name| name.trim().is_empty()) || path.ends_with('/');
+        if is_blank || path.chars().any(char::is_control) || inner.starts_with(OWN) {
+            let message = format!("is no name for a program: {path:?}");
+            let help = "give the name of a file, without signs that cannot be seen and not in the studio's own folder";
+            return Err(Diagnostic::error(Rule::OutputFile, message).help(help).into());
+        }
         let parent = inner.parent().unwrap_or(Path::new(""));
         let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
         let there = |at: &Path| match self.dir.metadata(at) {

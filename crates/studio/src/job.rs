@@ -13,6 +13,7 @@ use crate::place::{self, At};
 use crate::plots::{self, What};
 use crate::walk::{By, Follower, KINDS, NO_TOOL, Walk};
 use ::post::{Origins, Part};
+use app::report::{self, Digests};
 use app::toolpath::{self, Toolpath};
 use app::{Account, Source, Stop, Verdict, Watch, files, post, prove, wire};
 use control::Folders;
@@ -569,8 +570,13 @@ fn compared(
     let toolpath = toolpath_of(source, options, machine, watch)?;
     let program = (file, encoding::without_mark(&text), &folders);
     let account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
+    let called = folders.files_read();
+    let called = called.iter().map(|path| files::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
+    let digests = Digests::of(&text, &called, &toolpath, machine);
+    let report = Some(report::of_proven(&account, &digests));
     let (origins, parts) = (Origins::default(), Vec::new());
-    Ok(Made { toolpath, account, text, origins, parts, report: None })
+    Ok(Made { toolpath, account, text, origins, parts, report })
 }
 
 /// Writes the program of a wire, and proves it.

@@ -169,6 +169,24 @@ fn an_edit_is_proven_and_one_that_cuts_otherwise_is_refused_and_not_saved() {
     page.done("save", save(&job["revision"], "dome.nc", true));
     assert_eq!(page.refused("save", save(&job["revision"], "../dome.nc", true)), "folder-reach");
     assert_eq!(page.refused("save", save(&job["revision"], "dome.cls", true)), "output-file");
+    for name in [".toolpost/dome.nc", ".toolpost/drafts/dome.nc", "a\nb.nc", " ", "dome.nc/", ""] {
+        assert_eq!(
+            page.refused("save", save(&job["revision"], name, true)),
+            "output-file",
+            "{name:?}"
+        );
+    }
+    // An edit that is proven replaces the report too: it belongs to what is saved.
+    let spaced = text.replacen("G90 ", "G90  ", 1);
+    assert_ne!(spaced, text);
+    let edited = prove(&mut page, &spaced);
+    let saved = page.done("save", save(&edited["revision"], "dome.nc", true));
+    assert_eq!(saved["files"], json!(["dome.nc", "dome.nc.report.json"]));
+    let report = std::fs::read(studio.own().join("dome.nc.report.json")).unwrap();
+    let report: Value = serde_json::from_slice(&report).unwrap();
+    let own = program::Digest::of([spaced.as_bytes()]);
+    assert_eq!(report["sha256"]["program"], json!(own));
+    assert_eq!(report["proof"]["proven"], true);
 }
 
 #[test]
