@@ -2,7 +2,7 @@
 
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
-import { Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
+import { said, Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
 import type { Command, Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
 
 export class Studio {
@@ -94,7 +94,7 @@ export class Studio {
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
         this.job.value = job ?? null;
-        this.isCurrent.value = job !== undefined;
+        this.isCurrent.value = job !== undefined && this.edited.value === null;
     }
 
     /** The program is being edited: it is proven when the typing rests. */
@@ -125,13 +125,15 @@ export class Studio {
         if (work === null || work.machine === null) return;
         const { source, machine, options } = work;
         this.edited.value = text;
+        this.isCurrent.value = false;
         const octets = new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
         void this.seam.ask("draft", { name: draftName(work), of: work }, { arrays: { text: octets } }).catch(() => {});
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("prove", { source, machine, options }, { arrays: { text: octets }, signal, progress })).done);
         if (job === undefined) return;
         this.job.value = job;
-        this.isCurrent.value = true;
+        // Somebody may have typed on meanwhile.
+        this.isCurrent.value = this.edited.value === text;
     }
 
     /** Back to the program as posted. */
@@ -157,14 +159,19 @@ export class Studio {
         await this.seam.ask("drop_draft", { name }).catch(() => {});
     }
 
+    /** Saves the program as it stands on the page, which is proven; a proof that runs is not ended for it. */
     async save(path: string, replace: boolean): Promise<boolean> {
         const job = this.job.value;
         const work = this.work.value;
         if (job === null || work === null) return false;
+        if (!this.canSave.value) {
+            this.stopped.value = [said("not-proven", "the program as it stands here is not proven: it is not saved", "wait until its proof has passed")];
+            return false;
+        }
         const saved = await this.told(async () => (await this.seam.ask("save", { revision: job.revision, path, replace })).done);
         if (saved === undefined) return false;
         this.said.value = `saved ${saved.files.join(", ")}`;
-        await this.dropDraft(draftName(work));
+        if (this.isCurrent.value) await this.dropDraft(draftName(work));
         return true;
     }
 

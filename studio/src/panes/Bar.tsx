@@ -28,7 +28,7 @@ export function Bar({ screen }: { screen: Screen }) {
                 Options
             </button>
             <output class="grow" aria-live="polite">
-                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} />}
+                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} isCurrent={studio.isCurrent.value} />}
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
             <span class="soft">{studio.said.value}</span>
@@ -73,9 +73,11 @@ function Running({ screen }: { screen: Screen }) {
     );
 }
 
-function VerdictOf({ job, stop }: { job: Job | null; stop: Verdict | null }) {
+/** The verdict is of the program as it stands on the page, or there is none. */
+function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | null; isCurrent: boolean }) {
     if (job === null && stop === null) return <span class="soft">no program yet</span>;
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
+    if (!isCurrent) return <strong class="warning">▲ TO BE PROVEN</strong>;
     const moves = `${job.walk.moves.toLocaleString("en")} moves`;
     return (
         <>

@@ -45,11 +45,11 @@ interface Pending {
 }
 
 const lost = (): Stopped =>
-    new Stopped("cancelled", [said("the connection was lost", "the page connects again by itself")]);
+    new Stopped("cancelled", [said("connection", "the connection was lost", "the page connects again by itself")]);
 
 /** A finding of the page's own. */
-const said = (message: string, help: string): Finding => ({
-    severity: "error", rule: "connection", message, help, file: "", of: null, line: 0, column: 0, width: 0, excerpt: "", count: 1, lines: [], places: [],
+export const said = (rule: string, message: string, help: string): Finding => ({
+    severity: "error", rule, message, help, file: "", of: null, line: 0, column: 0, width: 0, excerpt: "", count: 1, lines: [], places: [],
 });
 
 /** The server's code for a token that is none of its own: no use in trying again. */
@@ -121,7 +121,7 @@ export class Socket implements Seam {
         const response = await fetch(path, { ...request, cache: "no-store", headers: { "x-toolpost-token": this.token } });
         if (response.ok) return response;
         const message = (await response.text()).slice(0, 500) || `the server answers ${response.status}`;
-        throw new Stopped("invalid", [said(message, "")]);
+        throw new Stopped("invalid", [said("connection", message, "")]);
     }
 
     async octets(path: string, signal?: AbortSignal): Promise<ArrayBuffer> {

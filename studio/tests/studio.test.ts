@@ -1,0 +1,55 @@
+/** What is saved and called proven is the program as it stands on the page. */
+
+import { signal } from "@preact/signals";
+import { expect, test } from "vitest";
+import type { Seam, State } from "../src/protocol/seam.ts";
+import { Studio } from "../src/studio.ts";
+
+const settled = () => new Promise((resolve) => setTimeout(resolve));
+
+/** A server that has answered `post`, and answers `prove` when it is told to. */
+function open() {
+    const asked: string[] = [];
+    const proofs: ((job: object) => void)[] = [];
+    const job = (revision: number) => ({ revision, verdict: "done", findings: [], walk: { moves: 0, mismatch: null } });
+    const seam = {
+        ask: (ask: string, params: object) => {
+            asked.push(ask === "save" ? `save ${(params as { revision: number }).revision}` : ask);
+            if (ask === "post") return Promise.resolve({ done: job(1), arrays: {} });
+            if (ask === "prove") return new Promise((resolve) => proofs.push((done) => resolve({ done, arrays: {} })));
+            return Promise.resolve({ done: { files: ["a.nc"] }, arrays: {} });
+        },
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    return { studio, asked, proved: (revision: number) => proofs.shift()!(job(revision)) };
+}
+
+const work = { source: { file: "a.cls" }, machine: "mill", options: [] };
+
+test("an edit whose proof runs is neither saved nor called proven, and its proof goes on", async () => {
+    const { studio, asked, proved } = open();
+    await studio.post(work as never);
+    expect(studio.canSave.value).toBe(true);
+    const proof = studio.prove("G0 X1\n");
+    expect(await studio.save("a.nc", true)).toBe(false);
+    expect(asked.filter((ask) => ask.startsWith("save"))).toEqual([]);
+    expect(studio.stopped.value[0]!.rule).toBe("not-proven");
+    proved(2);
+    await proof;
+    expect([studio.canSave.value, studio.job.value!.revision]).toEqual([true, 2]);
+    expect(await studio.save("a.nc", true)).toBe(true);
+    expect(asked).toContain("save 2");
+});
+
+test("a proof that ends when somebody has typed on is not that of the text on the page", async () => {
+    const { studio, proved } = open();
+    await studio.post(work as never);
+    studio.typed("G0 X1\n");
+    const proof = studio.prove("G0 X1\n");
+    studio.typed("G0 X2\n");
+    proved(2);
+    await proof;
+    await settled();
+    expect([studio.isCurrent.value, studio.canSave.value]).toEqual([false, false]);
+    expect(await studio.save("a.nc", true)).toBe(false);
+});
