@@ -69,7 +69,7 @@ impl Stop {
     }
 
     /// The caller has ended the work.
-    pub(crate) fn cancelled() -> Stop {
+    pub fn cancelled() -> Stop {
         Stop { verdict: Verdict::Cancelled, findings: vec![program::cancelled()] }
     }
 }

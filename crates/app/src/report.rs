@@ -3,6 +3,7 @@
 use crate::account::Account;
 use crate::files;
 use crate::toolpath::Toolpath;
+use control::Folders;
 use machine::Machine;
 use program::{Diagnostic, Digest, Rule};
 use serde::{Deserialize, Serialize};
@@ -46,6 +47,14 @@ impl Digests {
         ];
         sides.into_iter().filter(|(differs, _)| *differs).map(|(_, name)| name).collect()
     }
+}
+
+/// The texts of the files that a program has called, as [`Digests::of`] takes them.
+///
+/// # Errors
+/// One can no longer be read.
+pub fn called(folders: &Folders) -> Result<Vec<Vec<u8>>, Box<Diagnostic>> {
+    folders.files_read().iter().map(|path| files::read(path)).collect()
 }
 
 /// The report of a program that was proven and not written, as after an edit by hand: what its account says, and what it was made

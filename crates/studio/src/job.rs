@@ -154,7 +154,7 @@ pub struct Asked<'a> {
 #[derive(Debug)]
 pub struct Job {
     account: Account,
-    /// What is saved next to the program, where it is as it was written.
+    /// What is saved next to the program, where it is proven.
     report: Option<String>,
     machine_name: String,
     machine: Machine,
@@ -221,14 +221,7 @@ impl Job {
             follows.waits.reached(part);
             !follows.ended.is_ended()
         };
-        let geometry = Geometry::of(&walk, goes_on).ok_or_else(|| {
-            let found =
-                Diagnostic::error(Rule::Cancelled, "the work was cancelled: there is no result");
-            Stop {
-                verdict: Verdict::Cancelled,
-                findings: vec![found.help("start it again for one")],
-            }
-        })?;
+        let geometry = Geometry::of(&walk, goes_on).ok_or_else(Stop::cancelled)?;
         let Made { toolpath, account, text, origins, parts, report } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         inputs.extend(machine.loaded_from.files.iter().cloned());
@@ -570,11 +563,13 @@ fn compared(
     let toolpath = toolpath_of(source, options, machine, watch)?;
     let program = (file, encoding::without_mark(&text), &folders);
     let account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
-    let called = folders.files_read();
-    let called = called.iter().map(|path| files::read(path)).collect::<Result<Vec<_>, _>>()?;
-    let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
-    let digests = Digests::of(&text, &called, &toolpath, machine);
-    let report = Some(report::of_proven(&account, &digests));
+    let mut report = None;
+    if account.verdict == Verdict::Done {
+        let called = report::called(&folders)?;
+        let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
+        let digests = Digests::of(&text, &called, &toolpath, machine);
+        report = Some(report::of_proven(&account, &digests));
+    }
     let (origins, parts) = (Origins::default(), Vec::new());
     Ok(Made { toolpath, account, text, origins, parts, report })
 }

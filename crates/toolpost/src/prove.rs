@@ -35,8 +35,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let folders = beside(&args.program, &machine);
     let program = (&*file, read, &folders);
     let mut account = compare(&toolpath, &machine, program, &tolerances, &progress)?;
-    let called = folders.files_read();
-    let called = called.iter().map(|path| files::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let called = report::called(&folders)?;
     let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
     match report::pair(&args.program, || Digests::of(&text, &called, &toolpath, &machine)) {
         Ok(pair) => account.rows.extend(pair.map(|text| ("report", text))),
