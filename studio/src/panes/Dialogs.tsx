@@ -1,4 +1,4 @@
-import type { ComponentChildren } from "preact";
+import type { ComponentChildren, RefObject } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Command } from "../commands.ts";
 import type { Dialog, Screen } from "../screen/screen.ts";
@@ -24,13 +24,16 @@ const titles: Record<Dialog, string> = {
 
 export function Dialogs({ screen, commands }: { screen: Screen; commands: Command[] }) {
     const { dialog, studio } = screen;
+    const element = useRef<HTMLDialogElement>(null);
+    // The browser's dialog ends at once and gives the focus back: what runs next may set it elsewhere.
     const close = (): void => {
+        element.current?.close();
         dialog.value = null;
     };
     const open = dialog.value;
     if (open === null) return null;
     return (
-        <Modal key={open} title={titles[open]} close={close}>
+        <Modal key={open} element={element} title={titles[open]} close={close}>
             {open === "commands" && (
                 <Choose
                     label="Search the commands"
@@ -79,13 +82,25 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
 export const shownKey = (key: string | undefined): string =>
     (key ?? "").split(/(?<=.)\+/).map((part) => (part.length === 1 ? part.toUpperCase() : part)).join(" ");
 
+interface ModalProps {
+    element: RefObject<HTMLDialogElement | null>;
+    title: string;
+    close(): void;
+    children: ComponentChildren;
+}
+
 /** The browser's own dialog: it keeps the focus within, and Escape closes it. */
-function Modal({ title, close, children }: { title: string; close(): void; children: ComponentChildren }) {
-    const dialog = useRef<HTMLDialogElement>(null);
+function Modal({ element, title, close, children }: ModalProps) {
     // Before the browser draws, so that no key that is typed next is lost.
-    useLayoutEffect(() => dialog.current?.showModal(), []);
+    useLayoutEffect(() => element.current?.showModal(), []);
     return (
-        <dialog ref={dialog} aria-label={title} onClose={close} onClick={(event) => event.target === dialog.current && close()}>
+        <dialog
+            ref={element}
+            aria-label={title}
+            // Told late: by then another dialog may be open, in the place of this one.
+            onClose={(event) => event.currentTarget.isConnected && close()}
+            onClick={(event) => event.target === element.current && close()}
+        >
             <h2>{title}</h2>
             {children}
         </dialog>

@@ -1,4 +1,4 @@
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, test } from "vitest";
@@ -6,6 +6,12 @@ import { absent, accessible, example, goTo, launch, lit, proven, readout, Server
 
 /** The numbers of a `GOTO/`. */
 const goto = (text: string): number[] => text.replace(/^GOTO\s*\//, "").split(",").map(Number);
+
+/** The files of the edits that the server keeps: of each its text, and what it is of. */
+const drafts = (server: Server): string[] => {
+    const folder = join(server.folder, ".toolpost/drafts");
+    return existsSync(folder) ? readdirSync(folder) : [];
+};
 
 describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
     let browser: Browser;
@@ -49,11 +55,14 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
             await page.mouse.click(view.x + view.width / 2 + radius * Math.cos(step), view.y + view.height / 2 + radius * Math.sin(step));
             await page.waitForTimeout(60);
         }
-        const [block, record] = [await lit(page, "program"), await lit(page, "source")];
+        // The last click may still be on its way.
+        await page.waitForTimeout(300);
+        const block = await lit(page, "program");
         expect(block).not.toBe(before);
-        const { X, Y, Z } = await readout(page);
-        const [x, y, z] = goto(record);
-        expect([X, Y, Z].map((value) => Number.parseFloat(value!))).toEqual([x, y, z].map((value) => expect.closeTo(value!, 3)));
+        await expect.poll(async () => {
+            const { X, Y, Z } = await readout(page);
+            return [X, Y, Z].map((value) => Number.parseFloat(value!));
+        }).toEqual(goto(await lit(page, "source")).slice(0, 3).map((value) => expect.closeTo(value, 3)));
         expect(block).toMatch(/[XYZ]/);
     });
 
@@ -110,7 +119,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.keyboard.press("End");
         await page.keyboard.type(" (mine)");
         await page.getByText("▲ edited").waitFor();
-        await page.waitForTimeout(800);
+        await expect.poll(() => drafts(server)).toHaveLength(2);
         await page.reload();
         await page.getByRole("button", { name: "Continue" }).click();
         await page.locator(".program .cm-line", { hasText: "(mine)" }).waitFor();
@@ -155,6 +164,33 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         const saved = (await page.getByText(/saved /).innerText()).replace("saved ", "").split(", ");
         expect(existsSync(join(server.folder, saved[0]!))).toBe(true);
         expect(readFileSync(join(server.folder, saved[0]!), "utf8")).toContain("G1");
+    });
+
+    test("a dialog that opens right behind Escape stays: the one before tells of its end later", async () => {
+        const page = await begin();
+        await page.locator(".canvas").focus();
+        await page.keyboard.press("?");
+        await page.getByRole("dialog", { name: "Keys" }).waitFor();
+        await page.evaluate(() => {
+            document.querySelector("dialog")!.close();
+            document.dispatchEvent(new KeyboardEvent("keydown", { key: "g", code: "KeyG", ctrlKey: true }));
+        });
+        await page.waitForTimeout(200);
+        await page.keyboard.type("m3");
+        await page.keyboard.press("Enter");
+        await expect.poll(async () => (await readout(page)).Move).toMatch(/^3 /);
+    });
+
+    test("who leaves a dialog is where they were before it", async () => {
+        const page = await begin();
+        await page.locator(".canvas").focus();
+        await goTo(page, "m3");
+        expect(await page.locator(".canvas:focus").count()).toBe(1);
+        await page.keyboard.press("?");
+        await page.getByRole("dialog", { name: "Keys" }).waitFor();
+        await page.keyboard.press("Escape");
+        await page.getByRole("dialog").waitFor({ state: "detached" });
+        expect(await page.locator(".canvas:focus").count()).toBe(1);
     });
 
     test("a program beside its toolpath is proven: from the folder, and dropped on its pane", async () => {
