@@ -121,10 +121,11 @@ lint-format: rust
 lint-rust: rust
 	cargo clippy --locked --workspace --all-targets -- -D warnings
 
-# Nothing is linked: any file stands for libFuzzer, which is not compiled then.
+# Nothing is linked: any file stands for libFuzzer, which is not compiled then. With the profiles and the folder of the
+# main workspace, what it has checked is not checked again.
 lint-fuzz: rust
-	CUSTOM_LIBFUZZER_PATH=$(CURDIR)/fuzz/Cargo.toml \
-		cargo clippy --locked --manifest-path fuzz/Cargo.toml -- -D warnings
+	CUSTOM_LIBFUZZER_PATH=$(CURDIR)/fuzz/Cargo.toml CARGO_TARGET_DIR=$(or $(CARGO_TARGET_DIR),$(CURDIR)/target) \
+		cargo --config Cargo.toml clippy --locked --manifest-path fuzz/Cargo.toml -- -D warnings
 
 lint-docs: rust
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --locked --workspace --no-deps --document-private-items
