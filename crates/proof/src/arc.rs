@@ -51,7 +51,7 @@ pub(crate) fn follow(
     within("turns past the end of the arc", -left_mm, PAST * slack, "mm")?;
     let allowed = ROUNDINGS * slack;
     let steepness = steepness(arc);
-    let mut followed = Followed { t: reached, path_mm: 0.0, left_mm };
+    let mut followed = Followed { t: reached, path_mm: 0.0, axis_degrees: 0.0, left_mm };
     // Four chords of a half circle do not hide a wrong centre; longer arcs get more samples.
     let samples = 4 * (block.sweep / PI).ceil().clamp(1.0, 100.0) as u32;
     for i in 1..=samples {
@@ -61,7 +61,7 @@ pub(crate) fn follow(
         within("is elsewhere on the arc", along, allowed, "mm")?;
         followed.path_mm = followed.path_mm.max(aside);
     }
-    axis(gauge, goal, here, to)?;
+    followed.axis_degrees = axis(gauge, goal, here, to)?;
     Ok(followed)
 }
 
@@ -92,8 +92,8 @@ pub(crate) fn follow_chord(
     let middle = (here.place.tip + to.place.tip) / 2.0;
     let (middle, _) = off(arc, steepness, (t + reached) / 2.0, middle);
     within("cuts the arc off", middle, ROUNDINGS * slack + gauge.allowed.chord_mm, "mm")?;
-    axis(gauge, goal, here, to)?;
-    Ok(Followed { t: reached, path_mm: end.max(middle), left_mm })
+    let axis_degrees = axis(gauge, goal, here, to)?;
+    Ok(Followed { t: reached, path_mm: end.max(middle), axis_degrees, left_mm })
 }
 
 /// The parameter at which the angle of `point` about the axis of `arc` is, in the turn of `near`.
@@ -137,16 +137,17 @@ fn arc_point(arc: &Arc, t: f64) -> Vec3 {
         + arc.normal * (arc.rise() * over)
 }
 
-/// Holds the tool axis against the source, in which it stands still during an arc.
+/// Holds the tool axis against the source, in which it stands still during an arc: how far it is off, degrees.
 fn axis(
     gauge: &Gauge,
     goal: &ExpectedMotion,
     here: &ResolvedPose,
     to: &ResolvedPose,
-) -> Result<(), String> {
+) -> Result<f64, String> {
     if turn(&here.position, &to.position).is_some() {
         return Err("turns a rotary axis during an arc".into());
     }
     let off = goal.to.apart(&to.place).1;
-    within("tilts the tool during an arc", off, gauge.allowed.axis_degrees, "°")
+    within("tilts the tool during an arc", off, gauge.allowed.axis_degrees, "°")?;
+    Ok(off)
 }

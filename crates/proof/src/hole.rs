@@ -63,6 +63,15 @@ impl Hole<'_> {
         aligned(from) && aligned(to) && high - low > slack && (aside(from) || aside(to))
     }
 
+    /// How far a pose in the hole is off, mm and degrees: from its axis, and where it is at the depth of a peck, from that too.
+    pub fn off(&self, run: &Run, pose: &ResolvedPose) -> (f64, f64) {
+        let (height, aside) = self.point.above(pose.place.tip);
+        let deep = height + self.depth_of_peck(run.pecks);
+        let is_deep = deep.abs() <= self.gauge.slack(pose);
+        let tip = if is_deep { aside.hypot(deep) } else { aside };
+        (tip, pose.place.apart(self.point).1)
+    }
+
     /// The height of a pose on the axis of the hole.
     fn height(&self, pose: &ResolvedPose) -> Result<f64, String> {
         let angle = pose.place.apart(self.point).1;
@@ -299,12 +308,13 @@ impl Drilled {
         }
     }
 
-    /// Holds the places of the hole against those of the source; where it ends only where it `ends` there.
+    /// Holds the places of the hole against those of the source; where it ends only where it `ends` there. How far they are apart at
+    /// the most: tip, mm, and axis, degrees.
     ///
     /// # Errors
     /// Which of them is elsewhere.
-    pub fn place(&self, hole: &Hole, ends: bool) -> Result<(), String> {
-        let cycle = hole.cycle;
+    pub fn place(&self, hole: &Hole, ends: bool) -> Result<(f64, f64), String> {
+        let (cycle, mut most) = (hole.cycle, (0.0_f64, 0.0_f64));
         for (what, reached, height) in [
             ("bottom of the hole", &self.bottom, -cycle.depth),
             ("R plane", &self.r_plane, cycle.clearance),
@@ -312,13 +322,18 @@ impl Drilled {
         ] {
             let should = hole.point.lifted(height);
             let counts = ends || height != cycle.retract;
-            if counts && !hole.gauge.at(reached, &should) {
+            if !counts {
+                continue;
+            }
+            if !hole.gauge.at(reached, &should) {
                 let apart = Number(reached.place.tip.distance(should.tip));
                 let (is, should): (&PartialPose, _) = (&reached.place, should);
                 return Err(format!("has the {what} at {is}, but should at {should}: {apart} mm"));
             }
+            let (tip, axis) = reached.place.apart(&should);
+            most = (most.0.max(tip), most.1.max(axis));
         }
-        Ok(())
+        Ok(most)
     }
 
     /// Holds what the tool does in the hole against the source.

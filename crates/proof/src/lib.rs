@@ -89,7 +89,7 @@ mod travel;
 
 pub use accepted::{ACCEPTABLE, Accepted};
 pub use observer::{
-    AxisPositions, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose,
+    AxisPositions, Deviation, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose,
 };
 pub use prover::Prover;
 pub use report::{

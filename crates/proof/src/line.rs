@@ -13,6 +13,8 @@ pub(crate) struct Followed {
     pub t: f64,
     /// Largest distance of the tip from the path, mm.
     pub path_mm: f64,
+    /// Largest angle of the tool axis to where it should be, degrees.
+    pub axis_degrees: f64,
     /// What is left of the path, mm; less than 0 behind its end.
     pub left_mm: f64,
 }
@@ -42,9 +44,9 @@ pub(crate) fn follow(
         true => Some(between(from.axis, goal.to.axis, t)),
         false => None,
     };
-    axis(gauge, &from, &goal.to, || expected(reached), to.place.axis)?;
+    let axis_degrees = axis(gauge, &from, &goal.to, || expected(reached), to.place.axis)?;
     let left_mm = (1.0 - reached) * length;
-    let mut followed = Followed { t: reached, path_mm: aside, left_mm };
+    let mut followed = Followed { t: reached, path_mm: aside, axis_degrees, left_mm };
     if let Some(turn) = turn(&here.position, &to.position) {
         let samples = (turn / SAMPLE).ceil().clamp(1.0, 360.0) as u32;
         for i in 1..=samples {
@@ -58,7 +60,8 @@ pub(crate) fn follow(
                 followed.path_mm = followed.path_mm.max(aside);
             }
             let expected = || expected(t + (reached - t) * part);
-            axis(gauge, &from, &goal.to, expected, place.axis)?;
+            let off = axis(gauge, &from, &goal.to, expected, place.axis)?;
+            followed.axis_degrees = followed.axis_degrees.max(off);
         }
     } else if unlike(here, to) {
         return Err("turns the tool while the kind of coordinates changes".into());
@@ -67,16 +70,16 @@ pub(crate) fn follow(
 }
 
 /// Holds the tool axis on the way between the axes of `from` and `to` against where it should be, or
-/// against the great circle where the tip stands still.
+/// against the great circle where the tip stands still: how far it is off, degrees.
 fn axis(
     gauge: &Gauge,
     from: &PartialPose,
     to: &PartialPose,
     expected: impl FnOnce() -> Option<Vec3>,
     axis: Vec3,
-) -> Result<(), String> {
+) -> Result<f64, String> {
     if from.axis == to.axis && axis == to.axis {
-        return Ok(());
+        return Ok(0.0);
     }
     let off = match expected() {
         Some(expected) => geom::angle_between(expected, axis).to_degrees(),
@@ -84,7 +87,8 @@ fn axis(
     };
     let swept = from.apart(to).1 > gauge.allowed.axis_degrees;
     let sweep = if swept { gauge.allowed.sweep_degrees } else { 0.0 };
-    within("turns the tool axis off its way", off, gauge.allowed.axis_degrees + sweep, "°")
+    within("turns the tool axis off its way", off, gauge.allowed.axis_degrees + sweep, "°")?;
+    Ok(off)
 }
 
 /// The largest turn of a rotary axis between two poses, degrees, where one turns and both say so in

@@ -128,6 +128,32 @@ pub struct Motion {
     pub seconds: f64,
     /// How long the machine waits before it, s: dwells, and [`machine::time::TOOL_CHANGE`] for each tool change.
     pub waited: f64,
+    /// How far it is from the motion of the source; none where nothing is compared in it alone: on the way to a record by several
+    /// rapids, in an excursion, to home, and along a contour on which an arm compensates, which is compared as a whole.
+    pub deviation: Option<Deviation>,
+}
+
+/// How far the tool is from where the source has it, at the most. Of a cut anywhere along it but at its start, which is the end of
+/// the motion before; of a rapid at the end of its record alone; in a hole from the axis and the depths of the hole. Of a canned cycle, which
+/// the control makes in one block, each motion has the largest of all.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// Of the tip, mm.
+    pub tip_mm: f64,
+    /// Of the axis, degrees.
+    pub axis_degrees: f64,
+}
+
+impl Deviation {
+    /// Takes a further place of the motion in, which is so far apart, mm and degrees.
+    #[inline]
+    pub(crate) fn widen(most: &mut Option<Deviation>, (tip_mm, axis_degrees): (f64, f64)) {
+        let before = most.unwrap_or_default();
+        *most = Some(Deviation {
+            tip_mm: before.tip_mm.max(tip_mm),
+            axis_degrees: before.axis_degrees.max(axis_degrees),
+        });
+    }
 }
 
 /// What holds while the tool moves, as the control has read it.

@@ -343,6 +343,7 @@ mod tests {
                 feed: None,
                 seconds: 1.0,
                 waited: 0.0,
+                deviation: None,
             });
             before = behind;
         }

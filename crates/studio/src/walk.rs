@@ -519,6 +519,7 @@ mod tests {
             feed: Some(Feed::PerMinute(100.0)),
             seconds: 2.0,
             waited: 0.0,
+            deviation: None,
         }
     }
 

@@ -10,7 +10,7 @@ mod reentry;
 
 use super::expected::{Expected, Step};
 use super::follow::Lost;
-use crate::observer::Walk;
+use crate::observer::{Deviation, Walk};
 use crate::report::{ArmChecked, Report, SourceLine};
 use ::arm::{Arm, Joints};
 use control::kernel::arc::through;
@@ -96,6 +96,10 @@ pub(super) struct Comparison<'a> {
     motions: Option<Walk>,
     /// The record that the motion at hand has made.
     made: Option<usize>,
+    /// How far that motion is from the source.
+    deviation: Option<Deviation>,
+    /// Whether it is one of a contour that has been compared as a whole.
+    follows_contour: bool,
     /// The called files in which it has been.
     files: Vec<Box<str>>,
     ended: bool,
@@ -156,6 +160,8 @@ impl<'a> Comparison<'a> {
             file: None,
             motions: None,
             made: None,
+            deviation: None,
+            follows_contour: false,
             files: Vec::new(),
             ended: false,
             failed: false,
@@ -212,7 +218,7 @@ impl<'a> Comparison<'a> {
 
     fn take(&mut self, event: &Event) -> Outcome {
         let before = self.standing;
-        self.made = None;
+        (self.made, self.deviation) = (None, None);
         self.obey(event)?;
         self.keep_motion(event, before);
         Ok(())
@@ -599,6 +605,7 @@ impl<'a> Comparison<'a> {
         let place = (self.file.as_deref(), line);
         self.report.deviations.tip_mm.note(tip, source, place);
         self.report.deviations.axis_degrees.note(axis, source, place);
+        Deviation::widen(&mut self.deviation, (tip, axis));
         Ok(())
     }
 }

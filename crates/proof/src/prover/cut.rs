@@ -21,7 +21,7 @@ impl Prover<'_> {
             (_, Some(_)) => Err("makes an arc where the source has a line".into()),
             (_, None) => line::follow(&self.gauge, goal, self.progress.t, &here, to),
         };
-        let Followed { t, path_mm, left_mm } = followed.map_err(|how| {
+        let Followed { t, path_mm, axis_degrees, left_mm } = followed.map_err(|how| {
             let message = format!("goes to {} and {how}; the source goes to {}", to.place, goal.to);
             self.lost_at(to.line, Rule::Path, &message)
         })?;
@@ -33,6 +33,7 @@ impl Prover<'_> {
         let feed = self.feed_of(to, block.map(Arc::length), way, source);
         self.check_cut(to, feed, block.is_some());
         self.report.deviations.path_mm.note(path_mm, self.cursor.line, to.line);
+        self.has_compared((path_mm, axis_degrees));
         if done {
             self.arrive(to);
         }

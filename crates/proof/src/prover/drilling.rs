@@ -38,6 +38,8 @@ impl Prover<'_> {
             MotionKind::Feed => run.feed(&hole, &here, to),
         }
         .map_err(|how| self.lost_at(to.line, Rule::Hole, &how))?;
+        let off = hole.off(&self.progress.hole, to);
+        self.has_compared(off);
         if motion == MotionKind::Feed {
             self.check_drilling(to.line, cycle.feed, self.running.feed);
         }
@@ -76,7 +78,9 @@ impl Prover<'_> {
         }
         // A cycle may end at the R plane: then the way up to the retract level is still to come.
         let below = own.retract == own.clearance && cycle.retract > cycle.clearance;
-        drilled.place(&hole, !below).map_err(|how| self.lost_at(line, Rule::Hole, &how))?;
+        let apart =
+            drilled.place(&hole, !below).map_err(|how| self.lost_at(line, Rule::Hole, &how))?;
+        self.has_compared(apart);
         let wrong_way = self.wrong_cycle(&drilled.r_plane);
         self.approached(&drilled.r_plane)?;
         if let Some(found) = wrong_way {

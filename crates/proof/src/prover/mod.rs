@@ -672,6 +672,7 @@ impl<'a> Prover<'a> {
             let (tip, axis) = to.place.apart(&goal.end());
             self.report.deviations.tip_mm.note(tip, goal.line, to.line);
             self.report.deviations.axis_degrees.note(axis, goal.line, to.line);
+            self.has_compared((tip, axis));
         }
         self.here = *to;
         self.has_arrived();

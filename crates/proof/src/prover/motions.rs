@@ -1,7 +1,9 @@
 //! The motions of the program for whoever follows the proof.
 
 use super::*;
-use crate::observer::{AxisPositions, Motion, MotionKind as Kind, Observer, ToolPose, Walk};
+use crate::observer::{
+    AxisPositions, Deviation, Motion, MotionKind as Kind, Observer, ToolPose, Walk,
+};
 use machine::time;
 use program::lowering::{self, HoleMove};
 use program::{Cycle, CycleKind, Pose};
@@ -20,6 +22,8 @@ pub(super) struct Motions {
     changed: bool,
     /// The record that it has made.
     made: Option<usize>,
+    /// How far it is from the source.
+    deviation: Option<Deviation>,
 }
 
 impl Prover<'_> {
@@ -38,7 +42,14 @@ impl Prover<'_> {
     /// Before an event.
     pub(super) fn begin_motion(&mut self) {
         if let Some(motions) = &mut self.motions {
-            (motions.start, motions.made) = (Some(self.here), None);
+            (motions.start, motions.made, motions.deviation) = (Some(self.here), None, None);
+        }
+    }
+
+    /// The event has been compared with the source: so far, mm and degrees, it is from it.
+    pub(super) fn has_compared(&mut self, apart: (f64, f64)) {
+        if let Some(motions) = &mut self.motions {
+            Deviation::widen(&mut motions.deviation, apart);
         }
     }
 
@@ -55,7 +66,7 @@ impl Prover<'_> {
         let Some(start) = motions.start.take() else { return };
         let record = motions.made.unwrap_or_else(|| self.cursor.record());
         let source_line = self.source.records.get(record).map_or(0, |record| record.line);
-        let mut from = ToolPose::from(start.place);
+        let (deviation, mut from) = (motions.deviation, ToolPose::from(start.place));
         if motions.changed {
             from.tip = Vec3::NAN;
         }
@@ -74,6 +85,7 @@ impl Prover<'_> {
                 feed: prover.running.feed,
                 seconds,
                 waited: 0.0,
+                deviation,
             };
             (from, before) = (end, to.position);
             if let Some(motions) = &mut prover.motions {

@@ -61,7 +61,9 @@ impl Prover<'_> {
             self.check(line, difference);
         }
         self.check_compensation(line, true, false);
-        self.report.deviations.tip_mm.note(to.place.apart(&goes_to).0, self.cursor.line, line);
+        let apart = to.place.apart(&goes_to);
+        self.report.deviations.tip_mm.note(apart.0, self.cursor.line, line);
+        self.has_compared(apart);
         let mut end = to;
         if matches!(is, Kind::Probe { .. }) {
             let (from, moved) = (here.position.point, &mut end.position.point);

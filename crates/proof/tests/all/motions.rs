@@ -291,3 +291,149 @@ fn each_motion_takes_what_the_axes_and_the_feed_need() {
         assert!(off < 1e-9 && motion.waited == waited, "{seconds} {waited}: {motion:?}");
     }
 }
+
+/// What the motions of a program are off, mm and degrees, by its lines.
+fn deviations(
+    (source, machine): (&Program, &machine::Machine),
+    text: &str,
+    tolerances: &Tolerances,
+) -> Vec<(u32, Option<[f64; 2]>)> {
+    let mut motions: Vec<Motion> = Vec::new();
+    let report = prove_for(source, machine, "p.ngc", text.as_bytes(), tolerances, &mut motions);
+    assert!(report.proven, "{:#?}", report.mismatches);
+    let found = motions.iter().map(|motion| {
+        let off = motion.deviation.map(|off| [off.tip_mm, off.axis_degrees]);
+        (motion.line, off)
+    });
+    found.collect()
+}
+
+fn assert_deviations(found: &[(u32, Option<[f64; 2]>)], should: &[(u32, Option<[f64; 2]>)]) {
+    let near = |a: Option<[f64; 2]>, b: Option<[f64; 2]>| match (a, b) {
+        (Some(a), Some(b)) => a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-8),
+        (a, b) => a == b,
+    };
+    let alike = |(a, b): (&(u32, _), &(u32, _))| a.0 == b.0 && near(a.1, b.1);
+    assert!(found.len() == should.len() && found.iter().zip(should).all(alike), "{found:#?}");
+}
+
+#[test]
+fn each_motion_says_how_far_it_is_from_that_of_the_source() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    source.line([0.0, 0.0, -1.0], None).unwrap();
+    source.line([20.0, 0.0, -1.0], None).unwrap();
+    source.arc([30.0, 0.0, -1.0], [25.0, 0.0, -1.0], [0.0, 0.0, 1.0], 0).unwrap();
+    source.line([40.0, 0.0, -1.0], None).unwrap();
+    source.rapid([40.0, 0.0, 5.0], None).unwrap();
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let source = (&source.build(), &machine);
+    let tolerances = Tolerances { position: Some(0.01), ..Tolerances::default() };
+    let off = |tip: f64| Some([tip, 0.0]);
+    let found = |cuts: &str| {
+        let text = format!("{START}G0 X0 Y0\nZ5\nG1 Z-1 F300\n{cuts}G0 Z5\n{END}");
+        deviations(source, &text, &tolerances)
+    };
+    // The way to a record by several rapids, and home, are compared with nothing alone.
+    let none = None;
+    assert_deviations(
+        &found("X10\nX20\nG3 X30 Y0 I5 J0\nG1 X40\n"),
+        &[
+            (3, none),
+            (7, none),
+            (8, off(0.0)),
+            (9, off(0.0)),
+            (10, off(0.0)),
+            (11, off(0.0)),
+            (12, off(0.0)),
+            (13, off(0.0)),
+            (14, off(0.0)),
+            (16, none),
+        ],
+    );
+    // A point on the line of the source is 0.004 mm beside it; the next cut comes back, and ends where it shall. The centre of the arc is 0.003 mm
+    // aside: both ends are kept, so the radius is 5.0000009 mm, and the point opposite is 0.0029991 mm off. The last cut ends 0.003 mm
+    // short and 0.004 mm aside, and the rapid above it stays aside.
+    let arc = 0.003 - ((25.0_f64 + 9e-6).sqrt() - 5.0);
+    assert_deviations(
+        &found("X10 Y0.004\nX20 Y0\nG3 X30 Y0 I5 J0.003\nG1 X39.997 Y0.004\n"),
+        &[
+            (3, none),
+            (7, none),
+            (8, off(0.0)),
+            (9, off(0.0)),
+            (10, off(0.004)),
+            (11, off(0.0)),
+            (12, off(arc)),
+            (13, off(0.005)),
+            (14, off(0.005)),
+            (16, none),
+        ],
+    );
+}
+
+#[test]
+fn the_tool_axis_of_each_motion_says_how_far_it_is_off() {
+    let mut source = job(Some(50.0));
+    let at = |degrees: f64| Some([degrees.to_radians().sin(), 0.0, degrees.to_radians().cos()]);
+    source.rapid([0.0, 0.0, 50.0], at(0.0)).unwrap();
+    source.line([0.0, 0.0, 10.0], at(0.0)).unwrap();
+    source.line([10.0, 0.0, 10.0], at(10.0)).unwrap();
+    source.line([20.0, 0.0, 10.0], at(20.0)).unwrap();
+    source.rapid([20.0, 0.0, 60.0], at(20.0)).unwrap();
+    let (source, machine) = (source.build(), machine::load("fanuc-table-bc").unwrap());
+    let text = |tilt: &str| {
+        format!(
+            "G21\nG0 G17 G40 G49 G69 G80 G90 G94 G54\nG91 G28 Z0\nG90\nT1 M6\nS5000 M3\nG0 B0. C0.\nG43.4 X0. Y0. Z50. H1\nG1 Z10. F300.\nX10. B{tilt}\n\
+             X20. B20.\nG0 Z60.\nG91 G28 Z0\nG90\nG49\nM5\nG0 B0.\nM30\n"
+        )
+    };
+    let tolerances = Tolerances { angle: Some(0.1), ..Tolerances::default() };
+    let found = |tilt: &str| {
+        let mut found = deviations((&source, &machine), &text(tilt), &tolerances);
+        found.retain(|(line, _)| (8..13).contains(line));
+        found
+    };
+    let off = |axis: f64| Some([0.0, axis]);
+    let exact = [(8, off(0.0)), (9, off(0.0)), (10, off(0.0)), (11, off(0.0)), (12, off(0.0))];
+    assert_deviations(&found("10."), &exact);
+    // 0.05 degrees too far, the tip kept. The next cut comes back evenly: B turns by 9.95 degrees, which are looked at each 3 degrees or
+    // less, so 0.04 degrees are left at a fifth of the way, the first of four places between the ends.
+    let tilted = [(8, off(0.0)), (9, off(0.0)), (10, off(0.05)), (11, off(0.04)), (12, off(0.0))];
+    assert_deviations(&found("10.05"), &tilted);
+}
+
+#[test]
+fn a_hole_says_how_far_it_is_off() {
+    let mut source = job(None);
+    source.rapid([0.0, 0.0, 20.0], None).unwrap();
+    let cycle = Cycle {
+        kind: CycleKind::Drill,
+        depth: 5.0,
+        clearance: 2.0,
+        retract: 20.0,
+        feed: Some(Feed::PerMinute(100.0)),
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    };
+    source.drill(cycle, &[[10.0, 0.0, 0.0]], None).unwrap();
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let source = (&source.build(), &machine);
+    let tolerances = Tolerances { position: Some(0.01), ..Tolerances::default() };
+    let found = |hole: &str| {
+        let text = format!("{START}G0 X0 Y0\nZ20\n{hole}\n{END}");
+        let mut found = deviations(source, &text, &tolerances);
+        found.retain(|(line, _)| *line > 8);
+        found.pop();
+        found
+    };
+    // The bottom is 0.003 mm too deep and 0.004 mm aside; the cycle is one block.
+    let most = Some([0.005, 0.0]);
+    let cycle = found("G98 G81 X10 Y0.004 Z-5.003 R2 F100\nG80");
+    assert_deviations(&cycle, &[(9, most), (9, most), (9, most), (9, most)]);
+    // By moves: across, down to the R plane, the hole, and up.
+    let aside = Some([0.004, 0.0]);
+    let moves = found("G0 X10 Y0.004\nZ2\nG1 Z-5.003 F100\nG0 Z20");
+    assert_deviations(&moves, &[(9, None), (10, aside), (11, most), (12, aside)]);
+}

@@ -253,3 +253,39 @@ fn the_links_of_each_robot_bring_the_tip_to_where_the_motion_ends() {
     }
     assert!(compared > 60, "{compared}");
 }
+
+/// The largest deviations of the motions are those of the report, on mills and on robots.
+#[test]
+fn deviations_of_the_motions_are_those_of_the_report() {
+    let robots = names(ROBOTS).map(|name| machine::load(name).unwrap());
+    for machine in mills().chain(robots) {
+        let sample = match (&machine.arm, machine.rotary.is_empty()) {
+            (Some(_), _) => "robot.cls",
+            (None, true) => "three-axes.cls",
+            (None, false) => "five-axes.cls",
+        };
+        let text = std::fs::read(root().join("machines/samples").join(sample)).unwrap();
+        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let text = post::write(&source, &machine).unwrap().text;
+        let (mut motions, tolerances) = (Vec::<Motion>::new(), Tolerances::default());
+        let report = proof::prove_for(&source, &machine, "p", &text, &tolerances, &mut motions);
+        let deviations = motions.iter().filter_map(|motion| motion.deviation);
+        let (tip, axis) = deviations.fold((0.0, 0.0), |(tip, axis): (f64, f64), of| {
+            (tip.max(of.tip_mm), axis.max(of.axis_degrees))
+        });
+        let reported = &report.deviations;
+        let (name, tip_mm) = (&machine.name, reported.tip_mm.value.max(reported.path_mm.value));
+        // The report has no ends of rapids of an arm.
+        let is_alike = if machine.arm.is_some() { tip >= tip_mm } else { tip == tip_mm };
+        assert!(is_alike, "{name}: {tip} mm, {tip_mm} mm in the report");
+        // Between the ends of a cut the axis is no nearer than at its end.
+        let allowed = &report.tolerances;
+        let most = allowed.axis_degrees + allowed.sweep_degrees;
+        let least = reported.axis_degrees.value;
+        assert!((least..=most).contains(&axis), "{name}: {axis} degrees, {least} in the report");
+        // Of an arm, corrections of its pose and retracts have none.
+        let mut cuts = motions.iter().filter(|motion| motion.kind != MotionKind::Rapid);
+        let is_told = cuts.all(|motion| motion.deviation.is_some());
+        assert!(is_told || machine.arm.is_some(), "{name}: {motions:?}");
+    }
+}

@@ -135,7 +135,13 @@ impl Comparison<'_> {
             0 => Box::new(found.line(line)),
             _ => found,
         };
-        events.iter().try_for_each(|event| self.take(event).map_err(|found| at(found, event.line)))
+        // Each is compared with itself from here on.
+        self.follows_contour = true;
+        let taken = events
+            .iter()
+            .try_for_each(|event| self.take(event).map_err(|found| at(found, event.line)));
+        self.follows_contour = false;
+        taken
     }
 
     /// # Errors

@@ -3,6 +3,7 @@
 use super::super::expected::{REENTRY, Step};
 use super::super::follow::limit;
 use super::{Comparison, STRIDE, Standing, refused};
+use crate::observer::Deviation;
 use ::arm::Joints;
 use geom::{Frame, Vec3, angle_between, nearest_on_segment};
 use program::{Diagnostic, Outcome, Pose, Rule};
@@ -45,6 +46,10 @@ impl Comparison<'_> {
         let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));
         match arrives {
             true => {
+                if let Some((_, to)) = rapid {
+                    let off = self.off(&at, &to);
+                    Deviation::widen(&mut self.deviation, off);
+                }
                 self.report.compared.rapids += 1;
                 self.make_next();
                 Ok(())

@@ -59,9 +59,21 @@ impl Comparison<'_> {
         let (file, line) = (self.file.clone(), event.line);
         let feed = self.running.feed.map(Feed::PerMinute);
         let seconds = self.seconds(&kind, before.as_ref(), [start, end]);
-        let (tool, waited) = ([start, end], 0.0);
-        let motion =
-            Motion { file, line, record, source_line, kind, tool, axes, feed, seconds, waited };
+        let (tool, waited, deviation) =
+            ([start, end], 0.0, self.deviation.filter(|_| !self.follows_contour));
+        let motion = Motion {
+            file,
+            line,
+            record,
+            source_line,
+            kind,
+            tool,
+            axes,
+            feed,
+            seconds,
+            waited,
+            deviation,
+        };
         let state = self.state();
         if let Some(motions) = &mut self.motions {
             motions.state(state);

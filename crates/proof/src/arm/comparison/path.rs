@@ -3,6 +3,7 @@
 use super::super::expected::{Expected, REENTRY, Step};
 use super::super::follow::{Followed, Path, angle, follow, turned};
 use super::{Comparison, STRIDE, Standing, arc_through, refused};
+use crate::observer::Deviation;
 use crate::report::Excursion;
 use ::arm::Joints;
 use control::{ArmMove, ArmPosture, Corner, Dialect, Rounding, Turning};
@@ -64,6 +65,8 @@ impl Comparison<'_> {
                     return self.retract(line, motion, (start, path), from_corner);
                 }
                 self.is_rapid_path(&start, &at, (from.as_ref(), to), length)?;
+                let off = self.off(end, to);
+                Deviation::widen(&mut self.deviation, off);
                 self.report.compared.rapids += 1;
                 false
             }
@@ -426,6 +429,7 @@ impl Comparison<'_> {
             }
             let place = (self.file.as_deref(), line);
             self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
+            Deviation::widen(&mut self.deviation, (aside, lean));
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
@@ -485,6 +489,7 @@ impl Comparison<'_> {
             }
             let place = (self.file.as_deref(), line);
             self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
+            Deviation::widen(&mut self.deviation, (aside, lean));
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
@@ -533,6 +538,7 @@ impl Comparison<'_> {
         }
         let source = self.expected.get(self.next).map_or(0, |expected| expected.line);
         self.report.deviations.tip_mm.note(worst, source, (self.file.as_deref(), line));
+        Deviation::widen(&mut self.deviation, (worst, 0.0));
         Ok(())
     }
 
@@ -571,6 +577,7 @@ impl Comparison<'_> {
                     format!("the chord is {off:.4} mm off the arc of the source"),
                 );
             }
+            Deviation::widen(&mut self.deviation, (off, lean));
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
