@@ -673,7 +673,7 @@ pub enum By {
     Time,
     /// Number of a move, from 0: the place is at its end.
     Move,
-    /// Line of the program: its first move, or that of the next line that moves.
+    /// Line of the program, from 1: its first move, or that of the next line that moves.
     Block,
     /// Line of the source, the same.
     Source,
@@ -735,8 +735,14 @@ pub struct Place {
     pub marks: u8,
     /// The block that makes it.
     pub block: Line,
+    /// All moves of that block, as in [`Moves`].
+    pub block_moves: Vec<[u32; 2]>,
     /// The record that it makes.
     pub source: Option<Line>,
+    /// All moves of that record's line, as in [`Moves`]; where there is none, this move.
+    pub source_moves: Vec<[u32; 2]>,
+    /// All blocks that the record's line has become, the first ten thousand.
+    pub blocks: Vec<Blocks>,
     /// The template that wrote the block.
     pub template: Option<Template>,
     /// Place of its tool in `walk.tools`.
@@ -759,6 +765,30 @@ pub struct Place {
     pub cycle: Option<&'static str>,
     /// The work offset, as `G54` counts them; null where it is not known.
     pub work_offset: Option<u32>,
+}
+
+/// Blocks of a file.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Blocks {
+    /// The called file that they stand in; null for the program itself.
+    pub file: Option<String>,
+    /// Their lines as ranges: first, and behind the last.
+    pub ranges: Vec<[u32; 2]>,
+}
+
+impl Blocks {
+    /// Of lines that go up.
+    pub fn of(file: Option<&str>, lines: impl IntoIterator<Item = u32>) -> Blocks {
+        let mut ranges: Vec<[u32; 2]> = Vec::new();
+        for line in lines {
+            match ranges.last_mut() {
+                Some([_, behind]) if *behind == line => *behind += 1,
+                _ => ranges.push([line, line + 1]),
+            }
+        }
+        Blocks { file: file.map(str::to_owned), ranges }
+    }
 }
 
 /// A line of a text.
@@ -961,6 +991,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             MovesParams,
             Moves,
             Place,
+            Blocks,
             Line,
             Template,
             FeedAbout,

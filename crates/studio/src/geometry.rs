@@ -87,16 +87,18 @@ impl Geometry {
         let mut geometry = Geometry { levels: vec![0], ..Geometry::default() };
         let count = walk.len().div_ceil(CHUNK);
         for chunk in 0..count {
-            if !goes_on(f64::from(chunk) / f64::from(count)) {
-                return None;
-            }
-            geometry.add(polyline(walk, chunk));
+            let part = f64::from(chunk) / f64::from(count);
+            geometry.add(polyline(walk, chunk), &mut || goes_on(part))?;
         }
         Some(geometry)
     }
 
-    /// Adds the exact polyline of the next chunk. While all are more than the coarsest level may have, all become coarser.
-    fn add(&mut self, exact: Vec<Vertex>) {
+    /// Adds the exact polyline of the next chunk. While all are more than the coarsest level may have, all become coarser, for as long as
+    /// `goes_on` says so, which is asked for each of them.
+    fn add(&mut self, exact: Vec<Vertex>, goes_on: &mut impl FnMut() -> bool) -> Option<()> {
+        if !goes_on() {
+            return None;
+        }
         let bounds = bounds_of(&exact);
         let [low, high] = bounds.unwrap_or_default();
         self.bounds = match (self.bounds, bounds) {
@@ -115,12 +117,15 @@ impl Geometry {
         self.chunks.push(chunk);
         while self.levels.len() < MOST_LEVELS && self.levels.last().is_some_and(|l| *l > COARSEST) {
             let vertices = self.chunks.iter_mut().map(|chunk| {
-                chunk.coarsen();
-                chunk.coarsest.len()
+                goes_on().then(|| {
+                    chunk.coarsen();
+                    chunk.coarsest.len()
+                })
             });
-            let vertices = vertices.sum();
-            self.levels.push(vertices);
+            let vertices: Option<usize> = vertices.sum();
+            self.levels.push(vertices?);
         }
+        Some(())
     }
 
     /// How many chunks there are.
@@ -317,6 +322,7 @@ fn distance(point: Vec3, a: Vec3, b: Vec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::Ended;
     use crate::walk::Follower;
     use geom::Arc;
     use program::Program;
@@ -327,8 +333,8 @@ mod tests {
     /// A walk of moves that each end at a point; an arc goes there where one is given.
     fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
-        let (source, handed) = (Program::new("x"), Mutex::new(None));
-        let mut follower = Follower::new(&source, &machine, &handed);
+        let (source, ended, handed) = (Program::new("x"), Ended::default(), Mutex::new(None));
+        let mut follower = Follower::new(&source, &machine, &ended, &handed);
         let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
         for (line, (kind, tip)) in (1..).zip(moves) {
             let behind = ToolPose { tip, axis: Vec3::Z };
@@ -419,6 +425,23 @@ mod tests {
         });
         assert!(made.is_none());
         assert_eq!(told, [0.0, 0.2, 0.4]);
+    }
+
+    /// Chunks of 4,097 vertices: with the 62nd there are more than 250,000, and all become coarser, each between two asks.
+    #[test]
+    fn it_ends_between_two_chunks_that_become_coarser() {
+        let walk =
+            walk((0..300_000).map(|i| (MotionKind::Line, Vec3::new(f64::from(i), 0.0, 0.0))));
+        let asks = |most: u32| {
+            let mut asked = 0;
+            let made = Geometry::of(&walk, |_| {
+                asked += 1;
+                asked <= most
+            });
+            (asked, made.is_some())
+        };
+        assert_eq!(asks(u32::MAX), (74 + 62, true));
+        assert_eq!(asks(100), (101, false));
     }
 
     #[test]

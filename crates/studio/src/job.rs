@@ -1,8 +1,8 @@
 //! A job: one source with one machine, its program, its verdict and its walk. What is asked of it is answered here.
 
 use crate::ask::{
-    self, Command, Finding, Found, JobMachine, Level, Line, Mismatch, Moves, Of, Place, Saved,
-    Template, TextAbout, WalkAbout,
+    self, Blocks, Command, Finding, Found, JobMachine, Level, Line, Mismatch, Moves, Of, Place,
+    Saved, Template, TextAbout, WalkAbout,
 };
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
@@ -21,7 +21,7 @@ use machine::linkage::Linkage;
 use machine::{Machine, Reach, library};
 use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
 use proof::{Observer, Tolerances};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -31,6 +31,9 @@ const MOST_TEXT: usize = 4 << 20;
 
 /// The most ranges of moves that are answered.
 const MOST_RANGES: usize = 1000;
+
+/// The most blocks of a record that are answered.
+const MOST_BLOCKS: usize = 10_000;
 
 /// What the command's options say of a job.
 #[derive(Clone, Debug, Default)]
@@ -128,7 +131,7 @@ impl Watch for Follows<'_> {
         source: &'a Program,
         machine: &'a Machine,
     ) -> Box<dyn Observer + 'a> {
-        Box::new(Follower::new(source, machine, &self.walk))
+        Box::new(Follower::new(source, machine, self.ended, &self.walk))
     }
 }
 
@@ -217,6 +220,9 @@ impl Job {
         follows.step("drawing");
         let walk = follows.walk.lock().unwrap_or_else(PoisonError::into_inner).take();
         let walk = walk.unwrap_or_default();
+        if ended.is_ended() {
+            return Err(Stop::cancelled());
+        }
         let goes_on = |part| {
             follows.waits.reached(part);
             !follows.ended.is_ended()
@@ -393,6 +399,8 @@ impl Job {
         let at = match by {
             ask::By::Time => place::at_time(walk, value),
             ask::By::Move => place::at_move(walk, whole),
+            // Lines count from 1.
+            ask::By::Block | ask::By::Source if whole == 0 => None,
             ask::By::Block => place::at_line(walk, By::Block(file), whole),
             ask::By::Source => place::at_line(walk, By::Source, whole),
         }?;
@@ -425,7 +433,14 @@ impl Job {
             line: source_line,
             text: shown(&self.source, source_line),
         });
+        let source_moves = match source_line {
+            0 => vec![[number, number + 1]],
+            line => walk.moves_of(By::Source, line, MOST_RANGES),
+        };
         Place {
+            block_moves: walk.moves_of(By::Block(file), line, MOST_RANGES),
+            blocks: self.blocks_of(&source_moves, source_line),
+            source_moves,
             time_s: at.seconds,
             r#move: number,
             part: at.part,
@@ -449,6 +464,36 @@ impl Job {
             cycle: state.and_then(|state| Some(place::cycle(state.cycle.as_ref()?.kind))),
             work_offset: state.and_then(|state| state.work_offset).map(|offset| offset.number()),
         }
+    }
+
+    /// The blocks that a record of the source has become: those of its moves, and those beside them that were written for the same line.
+    fn blocks_of(&self, moves: &[[u32; 2]], source_line: u32) -> Vec<Blocks> {
+        let walk = &self.walk;
+        let mut lines: BTreeMap<Option<&str>, BTreeSet<u32>> = BTreeMap::new();
+        for at in moves.iter().flat_map(|[first, behind]| *first..*behind).take(MOST_BLOCKS) {
+            lines.entry(walk.file(at)).or_default().insert(walk.line(at));
+        }
+        let records = &self.toolpath.program.records;
+        for (file, lines) in &mut lines {
+            let origins = match file {
+                Some(file) => self.parts.get(*file).map(|(_, origins)| origins),
+                None => Some(&self.origins),
+            };
+            let is_of_it = |line: u32| {
+                let record = origins.and_then(|origins| origins.of(line)?.record);
+                record.and_then(|at| records.get(at)).is_some_and(|own| own.line == source_line)
+            };
+            for line in lines.iter().copied().collect::<Vec<_>>() {
+                let above = (1..line).rev().take_while(|line| is_of_it(*line));
+                let below = (line + 1..).take_while(|line| is_of_it(*line));
+                for line in above.chain(below).take(MOST_BLOCKS) {
+                    if !lines.insert(line) {
+                        break;
+                    }
+                }
+            }
+        }
+        lines.into_iter().map(|(file, lines)| Blocks::of(file, lines)).collect()
     }
 
     /// The moves that a line makes.

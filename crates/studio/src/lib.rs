@@ -26,6 +26,7 @@
 pub mod ask;
 pub mod folder;
 pub mod geometry;
+mod index;
 pub mod job;
 pub mod jobs;
 pub mod lines;

@@ -1,9 +1,12 @@
 //! The walk: all moves of a program in the control's order, as columns. Whatever the page asks is looked up here.
 //!
-//! A move takes 67 bytes on three axes (8 more for each further axis, 24 where any tool leans), and what changes seldom is kept where
-//! it changes: feeds, states, arcs, waits, and where a move does not begin where the one before it ended.
+//! A move takes 67 bytes on three axes (8 more for each further axis, 24 where any tool leans, 4 where its lines do not go up with the
+//! moves), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
+//! before it ended.
 
 use crate::ask::{Operation, ToolUse};
+use crate::index::Index;
+use crate::job::Ended;
 use geom::{Arc, Vec3};
 use machine::Machine;
 use program::{Compensation, Diagnostic, Feed, Op, Program, Tool};
@@ -52,6 +55,9 @@ pub struct Walk {
     marks: Vec<u8>,
     lines: Vec<u32>,
     source_lines: Vec<u32>,
+    /// The moves by their blocks, and by the lines of the source.
+    by_block: Index,
+    by_source: Index,
     /// Time behind the move, s.
     ends: Vec<f64>,
     tips: Vec<Vec3>,
@@ -234,22 +240,23 @@ impl Walk {
         u32::try_from(at.min(self.kinds.len().checked_sub(1)?)).ok()
     }
 
+    /// The lines from one on that make moves, in their order, each with its moves.
+    fn lines_from(&self, by: By, line: u32) -> impl Iterator<Item = (u32, u32)> {
+        let (index, column) = match by {
+            By::Block(_) => (&self.by_block, &self.lines),
+            By::Source => (&self.by_source, &self.source_lines),
+        };
+        // No record and no block stands on line 0.
+        index.from(column, line.max(1)).filter(move |(_, at)| match by {
+            By::Block(file) => self.file(*at) == file,
+            By::Source => true,
+        })
+    }
+
     /// The moves that a line makes, as ranges (first, behind the last), up to so many.
     pub fn moves_of(&self, by: By, line: u32, most: usize) -> Vec<[u32; 2]> {
-        let column = match by {
-            By::Block(_) => &self.lines,
-            By::Source => &self.source_lines,
-        };
-        let is_of = |at: u32| match by {
-            By::Block(file) => self.file(at) == file,
-            By::Source => true,
-        };
         let mut ranges: Vec<[u32; 2]> = Vec::new();
-        for (at, _) in column.iter().enumerate().filter(|(_, of)| **of == line) {
-            let at = at as u32;
-            if !is_of(at) {
-                continue;
-            }
+        for (_, at) in self.lines_from(by, line).take_while(|(own, _)| *own == line) {
             let is_full = ranges.len() == most;
             match ranges.last_mut() {
                 Some([_, end]) if *end == at => *end += 1,
@@ -262,16 +269,7 @@ impl Walk {
 
     /// The first move of the first line behind `line` that makes some.
     pub fn next_line(&self, by: By, line: u32) -> Option<u32> {
-        let column = match by {
-            By::Block(_) => &self.lines,
-            By::Source => &self.source_lines,
-        };
-        let is_of = |at: u32| match by {
-            By::Block(file) => self.file(at) == file,
-            By::Source => true,
-        };
-        let behind = column.iter().zip(0..).filter(|(of, at)| **of > line && is_of(*at));
-        behind.min().map(|(_, at)| at)
+        self.lines_from(by, line.checked_add(1)?).next().map(|(_, at)| at)
     }
 
     /// How much memory it takes, bytes.
@@ -282,7 +280,7 @@ impl Walk {
             + self.feeds.len() * size_of::<(u32, Option<Feed>)>()
             + self.states.len() * size_of::<(u32, MachineState)>();
         let axes = self.axes.len() * size_of::<Vec3>() + self.positions.len() * size_of::<f64>();
-        self.kinds.len() * each + axes + rare
+        self.kinds.len() * each + axes + rare + self.by_block.bytes() + self.by_source.bytes()
     }
 
     fn push(&mut self, motion: &Motion) {
@@ -357,14 +355,17 @@ pub struct Follower<'a> {
     compensation: Option<Compensation>,
     /// What is marked of the next move.
     next_marks: u8,
+    ended: &'a Ended,
     goes_to: &'a Mutex<Option<Walk>>,
 }
 
 impl<'a> Follower<'a> {
-    /// Follows the proof of a program that is to make the motions of `source`, and hands the walk over at its end.
+    /// Follows the proof of a program that is to make the motions of `source`, and hands the walk over at its end, unless the work
+    /// is ended.
     pub fn new(
         source: &'a Program,
         machine: &Machine,
+        ended: &'a Ended,
         to: &'a Mutex<Option<Walk>>,
     ) -> Follower<'a> {
         Follower {
@@ -376,6 +377,7 @@ impl<'a> Follower<'a> {
             tool: NO_TOOL,
             compensation: None,
             next_marks: 0,
+            ended,
             goes_to: to,
         }
     }
@@ -498,6 +500,12 @@ impl Observer for Follower<'_> {
                 walk.marks[at as usize] |= EXCURSION;
             }
         }
+        let index = |lines| Index::of(lines, &|| !self.ended.is_ended());
+        let (Some(by_block), Some(by_source)) = (index(&walk.lines), index(&walk.source_lines))
+        else {
+            return;
+        };
+        (walk.by_block, walk.by_source) = (by_block, by_source);
         *self.goes_to.lock().unwrap_or_else(PoisonError::into_inner) = Some(walk);
     }
 }
@@ -525,8 +533,8 @@ mod tests {
 
     fn followed(tell: impl Fn(&mut Follower)) -> Walk {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
-        let (source, handed) = (Program::new("x"), Mutex::new(None));
-        let mut follower = Follower::new(&source, &machine, &handed);
+        let (source, ended, handed) = (Program::new("x"), Ended::default(), Mutex::new(None));
+        let mut follower = Follower::new(&source, &machine, &ended, &handed);
         tell(&mut follower);
         follower.ended(&Report::default());
         handed.into_inner().unwrap().unwrap()

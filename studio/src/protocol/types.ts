@@ -831,9 +831,21 @@ marks: number,
  */
 block: Line, 
 /**
+ * All moves of that block, as in [`Moves`].
+ */
+block_moves: Array<[number, number]>, 
+/**
  * The record that it makes.
  */
 source: Line | null, 
+/**
+ * All moves of that record's line, as in [`Moves`]; where there is none, this move.
+ */
+source_moves: Array<[number, number]>, 
+/**
+ * All blocks that the record's line has become, the first ten thousand.
+ */
+blocks: Array<Blocks>, 
 /**
  * The template that wrote the block.
  */
@@ -878,6 +890,19 @@ cycle: string | null,
  * The work offset, as `G54` counts them; null where it is not known.
  */
 work_offset: number | null, };
+
+/**
+ * Blocks of a file.
+ */
+export type Blocks = { 
+/**
+ * The called file that they stand in; null for the program itself.
+ */
+file: string | null, 
+/**
+ * Their lines as ranges: first, and behind the last.
+ */
+ranges: Array<[number, number]>, };
 
 /**
  * A line of a text.

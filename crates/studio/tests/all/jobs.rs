@@ -55,6 +55,36 @@ fn a_source_is_posted_and_every_place_of_it_is_one() {
     assert_eq!(place("time", &json!(-5))["time_s"], 0.0);
 }
 
+/// HEIDENHAIN: a circle takes two blocks, its centre and its end (Klartext, `CC` and `C`).
+#[test]
+fn a_place_has_all_blocks_of_its_record_and_all_moves_of_both() {
+    let studio = Studio::new();
+    let text = "UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/30,0,10\nFEDRAT/90\nGOTO/30,0,-1\nCIRCLE/0,0,-1,0,0,1,30,0.03,0.5,16,0\nGOTO/0,30,-1\nGOTO/-5,30,-1\nRAPID\nGOTO/0,30,10\n";
+    std::fs::write(studio.own().join("arc.cls"), text).unwrap();
+    let mut page = studio.socket();
+    let job = page.post("arc.cls", "generic-3axis-heidenhain");
+    assert_eq!(job["verdict"], "done", "{job}");
+    let revision = &job["revision"];
+    let mut place = |by: &str, value: &Value| {
+        page.done("place", json!({ "revision": revision, "by": by, "value": value }))
+    };
+    let arc = place("source", &json!(9));
+    assert_eq!((&arc["kind"], &arc["source"]["line"]), (&json!("arc"), &json!(9)), "{arc}");
+    let line = arc["block"]["line"].as_u64().unwrap();
+    assert!(arc["block"]["text"].as_str().unwrap().contains(" C X+0 Y+30"), "{arc}");
+    // The centre stands in the block before.
+    assert_eq!(arc["blocks"], json!([{ "file": null, "ranges": [[line - 1, line + 1]] }]));
+    let at = arc["move"].as_u64().unwrap();
+    assert_eq!(arc["block_moves"], json!([[at, at + 1]]));
+    assert_eq!(arc["source_moves"], json!([[at, at + 1]]));
+    let next = place("source", &json!(10));
+    assert_eq!(next["blocks"], json!([{ "file": null, "ranges": [[line + 1, line + 2]] }]));
+    // Lines count from 1: there is nothing on line 0.
+    assert_eq!(place("source", &json!(0)), Value::Null);
+    assert_eq!(place("block", &json!(0)), Value::Null);
+    assert_eq!(place("block", &json!(1))["move"], 0);
+}
+
 /// The axes of a place, through the forward chain of the machine, are its tip.
 #[test]
 fn between_the_ends_of_a_cut_the_axes_lead_the_tip() {
