@@ -612,6 +612,58 @@ fn the_layers_of_a_board_are_read_from_memory_as_from_a_folder() {
     assert_eq!(lines(&of_files), lines(&of_memory));
 }
 
+/// All that is in a folder, in memory: settings and copies that KiCad makes are none of the board, and the folder is its name.
+#[test]
+fn a_folder_in_memory_is_a_board_as_on_disk() {
+    let text = std::fs::read(example("lamp.toml")).unwrap();
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let mut settings = Settings::default();
+    settings.isolation.tool = Some(0.3);
+    let tolerances = Tolerances::default();
+    let files = [
+        Source::memory("lamp.toml", text),
+        Source::memory("toolpost.toml", &b"passes = 2\n"[..]),
+        Source::memory("_autosave-lamp.kicad_pcb", &b"(kicad_pcb)"[..]),
+    ];
+    let made = |folder: Option<&str>| {
+        let mut job = board::Job::new(&machine, &settings, &tolerances).unwrap();
+        job.folder = folder.map(str::to_owned);
+        job.make(&files, &())
+    };
+    let whole = made(Some("lights")).unwrap();
+    assert_eq!((whole.programs.len(), whole.files.len()), (4, 1));
+    // Files that are given by themselves are all meant.
+    assert_eq!(made(None).err().unwrap().findings[0].rule, "board");
+    // Each program knows the board as it lies for it, and how wide it cuts.
+    let [front, _, back, _] = &whole.programs[..] else { panic!() };
+    assert_eq!(front.widths().map(|(_, width)| width).collect::<Vec<_>>(), [0.3]);
+    let copper = |program| {
+        let areas = whole.areas(program);
+        let copper = areas.areas.iter().filter(|area| area.kind == drawing::AreaKind::Copper);
+        let low = |area: &drawing::Area| {
+            let own = &areas.trapezoids[area.first..area.first + area.count];
+            own.iter().map(|own| own[2].min(own[4])).fold(f64::INFINITY, f64::min)
+        };
+        (copper.clone().count(), copper.map(low).fold(f64::INFINITY, f64::min))
+    };
+    assert_ne!(copper(front), copper(back));
+    assert!(copper(front).0 > 1 && copper(front).1.is_finite());
+}
+
+#[test]
+fn a_board_is_known_by_its_name_and_in_json_by_what_it_says() {
+    let is = |name: &str, text: &str| board::is_board(&Source::memory(name, text.as_bytes()));
+    for name in ["a.kicad_pcb", "F.Cu.GBR", "holes.drl", "lamp.toml", "x.gtl"] {
+        assert!(is(name, ""), "{name}");
+    }
+    for name in ["dome.cls", "a.nc", "a.txt", "folder", "a.json"] {
+        assert!(!is(name, ""), "{name}");
+    }
+    assert!(is("a.json", r#"{ "nodes": {}, "tracks": [] }"#));
+    let job = std::fs::read_to_string(example("bracket.json")).unwrap();
+    assert!(!is("bracket.json", &job));
+}
+
 /// Of a board it is told how many of its programs are made.
 #[test]
 fn a_board_tells_how_many_of_its_programs_are_made() {

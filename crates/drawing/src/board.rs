@@ -1,8 +1,10 @@
 //! A board from above and what a program does to it: copper by net, cuts as wide as their tools, holes,
 //! rapids, places with a problem.
 
+mod areas;
 mod sheet;
 
+pub use areas::{Area, AreaKind, BoardAreas, MOST_AREAS, Trapezoid};
 pub use sheet::{BoardSheet, BoardSide, board_sheet};
 
 use crate::lettering;

@@ -41,7 +41,10 @@ mod walk;
 mod wire_path;
 
 pub use arm_path::{ArmPicture, ArmSample, arm_path};
-pub use board::{BoardPicture, BoardSheet, BoardSide, board, board_sheet};
+pub use board::{
+    Area, AreaKind, BoardAreas, BoardPicture, BoardSheet, BoardSide, MOST_AREAS, Trapezoid, board,
+    board_sheet,
+};
 pub use chart::{Chart, Curve, charts};
 pub use glass::{GlassPicture, GlassView, glass};
 pub use reach::{ReachPicture, reach};

@@ -4,7 +4,10 @@
 mod report;
 mod source;
 
-pub use source::SETTINGS;
+pub use ::pcb::board::{Axis, Layer};
+pub use ::pcb::plan::{Problem, Settings};
+pub use drawing::{Area, AreaKind, BoardAreas};
+pub use source::{SETTINGS, is_board};
 
 use crate::account::{Account, Stop, Verdict};
 use crate::input;
@@ -13,9 +16,9 @@ use crate::prove;
 use crate::summary::number;
 use crate::toolpath::{self, Toolpath};
 use crate::watch::Watch;
-use ::pcb::board::{Axis, Face, Layer};
+use ::pcb::board::Face;
 use ::pcb::job::{self, Heights};
-use ::pcb::plan::{self, Part, Running, Settings, Setup, Work};
+use ::pcb::plan::{self, Part, Running, Setup, Work};
 use ::pcb::{Board, Operation};
 use control::Folders;
 use drawing::{BoardPicture, BoardSheet, BoardSide, Format};
@@ -41,6 +44,9 @@ pub struct Job<'a> {
     pub surface: Option<input::Source>,
     /// Files of the board of which the caller says what they hold.
     pub named: Vec<(input::Source, Layer)>,
+    /// The name of a folder of which the board's files are all that are in it, where a caller has them in memory: what is no file of
+    /// a board is left out then, and not refused.
+    pub folder: Option<String>,
     /// How a picture is drawn next to each program; `None`: not at all.
     pub picture: Option<Format>,
     /// Whether a warning about the board, or a program that cannot be made, stops the work.
@@ -58,9 +64,10 @@ pub struct Made {
     /// The files that were read.
     pub files: Vec<input::Source>,
     layers: Vec<(String, String)>,
-    front: Board,
-    /// The line about which it is turned over.
-    axis: Axis,
+    /// The board with its front up, and with its back up.
+    setups: [Setup; 2],
+    /// Whether it is turned over for one of the programs.
+    is_turned: bool,
     warnings: Vec<Diagnostic>,
     /// Both sides on a sheet to print, where the caller wants pictures.
     sheet: Option<Vec<u8>>,
@@ -83,9 +90,20 @@ impl<'a> Job<'a> {
         }
         settings.check()?;
         let heights = heights(&settings.running)?;
-        let (surface, picture, strict) = (None, None, false);
+        let (surface, folder, picture, strict) = (None, None, None, false);
         let (named, options) = (Vec::new(), Vec::new());
-        Ok(Job { machine, settings, tolerances, heights, surface, named, picture, strict, options })
+        Ok(Job {
+            machine,
+            settings,
+            tolerances,
+            heights,
+            surface,
+            named,
+            folder,
+            picture,
+            strict,
+            options,
+        })
     }
 
     /// Writes the programs of the board that `board` is (a folder of files, some files, a board of KiCad's, a model) and
@@ -116,7 +134,7 @@ impl<'a> Job<'a> {
         let made: Vec<_> = made.collect();
         for (made, task) in made.into_iter().zip(tasks) {
             let part = task.part;
-            let (posted, picture) = match made {
+            let Cut { toolpath, machine, posted, picture } = match made {
                 Ok(made) => made,
                 Err(stop) if stop.verdict == Verdict::Cancelled => return Err(stop),
                 Err(stop) => {
@@ -138,6 +156,8 @@ impl<'a> Job<'a> {
                 part: Some(part),
                 up,
                 work,
+                toolpath,
+                machine,
                 posted,
                 picture,
                 probes,
@@ -150,8 +170,9 @@ impl<'a> Job<'a> {
             warnings = toolpath::held(warnings, self.strict)?;
         }
         let sheet = self.picture.map(|format| format.bytes(shop.sheet())).transpose()?;
-        let Setup { board: front, axis, .. } = shop.front;
-        Ok(Made { programs, left_out, files, layers, front, axis, warnings, sheet })
+        let Shop { front, back, is_turned, .. } = shop;
+        let setups = [front, back];
+        Ok(Made { programs, left_out, files, layers, setups, is_turned, warnings, sheet })
     }
 
     /// Proves the text of the program `name` (`front`, `drill`), which is called `file` and may call those of `folders`, against what
@@ -196,7 +217,7 @@ impl<'a> Job<'a> {
         let measured = settings.running.on_control && self.surface.is_some();
         not_both("on_control", "heights", measured)?;
         watch.begin("reading")?;
-        let source = source::read(board, &self.named, settings)?;
+        let source = source::read(board, &self.named, self.folder.as_deref(), settings)?;
         let parts = plan::parts(&source.artwork, settings)?;
         can_run(&parts, settings, machine)?;
         let surface = surface(&parts, settings, self.surface.as_ref())?;
@@ -205,8 +226,9 @@ impl<'a> Job<'a> {
             can_probe(&parts, places, machine)?;
         }
         watch.begin("planning")?;
-        let side =
-            |face: Face, board: Board| planned(face, board, &parts, settings, machine.spindle.max);
+        let side = |face: Face, board: Board| {
+            planned(face, board, &parts, settings, machine.spindle.max, watch)
+        };
         let ([front, back], mut warnings) = source.artwork.each_side(side)?;
         let ((front, mut planned), (back, more)) = (front?, back?);
         planned.extend(more);
@@ -305,6 +327,24 @@ impl Made {
 }
 
 impl Made {
+    /// The board as it lies for one of its programs, as areas.
+    pub fn areas(&self, program: &Program) -> BoardAreas {
+        let [front, back] = &self.setups;
+        let setup = if program.up == Some(Face::Back) { back } else { front };
+        let Program { work, toolpath, .. } = program;
+        BoardAreas::of(&picture(setup, work, &toolpath.program, self.is_turned))
+    }
+
+    /// What the board is called.
+    pub fn name(&self) -> &str {
+        &self.setups[0].board.name
+    }
+
+    /// The files that were read, and what each was taken for.
+    pub fn layers(&self) -> &[(String, String)] {
+        &self.layers
+    }
+
     /// All files that are saved, by their names: the report first, pictures, and the programs at last.
     pub fn contents<'a>(&'a self, job: &Job, report: &'a str) -> Vec<(String, &'a [u8])> {
         let ending = if matches!(job.picture, Some(Format::Png)) { "png" } else { "svg" };
@@ -396,11 +436,16 @@ fn planned(
     parts: &[Part],
     settings: &Settings,
     fastest: f64,
+    watch: &dyn Watch,
 ) -> Result<(Setup, Vec<Planned>), Stop> {
+    watch.go_on()?;
     let setup = Setup::of(face, board, settings)?;
     let parts = parts.par_iter().filter(|part| plan::face(**part, settings) == face);
-    let works = parts.map(|part| (*part, Work::of(*part, &setup, settings, fastest)));
-    let works = works.collect();
+    let works = parts.map(|part| {
+        watch.go_on()?;
+        Ok((*part, Work::of(*part, &setup, settings, fastest)))
+    });
+    let works = works.collect::<Result<_, Stop>>()?;
     Ok((setup, works))
 }
 
@@ -551,12 +596,24 @@ pub struct Program {
     /// The side of the board that is up when it runs; `None` where it is run for either.
     up: Option<Face>,
     work: Work,
+    /// What it is to do.
+    pub toolpath: Toolpath,
+    /// The machine that it is for, with the program's own number.
+    pub machine: Machine,
     /// The program, and what is reported of it.
     pub posted: Posted,
     /// Its picture, where the caller wants one.
     pub picture: Option<Vec<u8>>,
     /// Columns and rows of the heights that it measures itself.
     probes: Option<[u32; 2]>,
+}
+
+impl Program {
+    /// The names of its tools, and how wide each cuts where it goes deepest, mm.
+    pub fn widths(&self) -> impl Iterator<Item = (&str, f64)> {
+        let operations = self.work.operations.iter();
+        operations.map(|operation| (operation.tool.name.as_str(), operation.width()))
+    }
 }
 
 /// A program that is not made.
@@ -653,30 +710,25 @@ impl Shop<'_> {
     }
 
     /// The program of a part of the board, proven, and its picture.
-    fn made(&self, task: &Task) -> Result<(Posted, Option<Vec<u8>>), Stop> {
+    fn made(&self, task: &Task) -> Result<Cut, Stop> {
         let Task { part, work, .. } = task;
-        let Setup { board, axis, .. } = self.setup(*part);
+        let setup = self.setup(*part);
         let toolpath = self.toolpath(task)?;
         let format = self.job.picture;
         let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
         let picture = BoardPicture {
-            outline: board.outline.as_ref(),
-            copper: board.front.copper.as_ref(),
-            holes: &board.holes,
-            program: &toolpath.program,
             widths: &widths,
-            problems: &work.problems,
-            rest: &work.rest,
-            turning: self.is_turned.then_some(*axis),
-            tabs: &work.tabs,
-            stock: Some(self.setup(*part).stock(self.job.settings)),
+            stock: Some(setup.stock(self.job.settings)),
+            ..picture(setup, work, &toolpath.program, self.is_turned)
         };
         let name = &toolpath.program.name;
         let (posted, picture) = rayon::join(
             || self.proven(&toolpath, &task.name, task.place),
             || format.map(|format| format.bytes(drawing::board(name, &picture))).transpose(),
         );
-        Ok((posted?, picture?))
+        let (machine, posted) = posted?;
+        let picture = picture?;
+        Ok(Cut { toolpath, machine, posted, picture })
     }
 
     /// Columns and rows of the heights that the program of a part measures itself, where it cuts anything.
@@ -726,10 +778,12 @@ impl Shop<'_> {
 
     /// The program that measures the height of the board.
     fn probing(&self, places: [u32; 2]) -> Result<Program, Stop> {
-        let posted = self.proven(&self.probe_path(places)?, PROBE, Part::ALL.len())?;
+        let toolpath = self.probe_path(places)?;
+        let (machine, posted) = self.proven(&toolpath, PROBE, Part::ALL.len())?;
         let (work, picture, probes) = (Work::default(), None, None);
         let (name, file) = (String::from(PROBE), self.job.file(PROBE));
-        Ok(Program { name, file, part: None, up: None, work, posted, picture, probes })
+        let (part, up) = (None, None);
+        Ok(Program { name, file, part, up, work, toolpath, machine, posted, picture, probes })
     }
 
     /// Controllers of robots know a program by the name of its file.
@@ -739,12 +793,49 @@ impl Shop<'_> {
         }
     }
 
-    /// The text of a program, proven, that is so many places behind the first of all programs that a board can have.
-    fn proven(&self, toolpath: &Toolpath, name: &str, place: usize) -> Result<Posted, Stop> {
+    /// The text of a program, proven, that is so many places behind the first of all programs that a board can have, and the
+    /// machine that it is for.
+    fn proven(
+        &self,
+        toolpath: &Toolpath,
+        name: &str,
+        place: usize,
+    ) -> Result<(Machine, Posted), Stop> {
         let file = self.job.file(name);
         let Job { machine, tolerances, .. } = self.job;
         let machine = self.job.shaped(numbered(machine, place));
-        post::proven(toolpath, &machine, &file, tolerances, &Quiet(self.watch))
+        let posted = post::proven(toolpath, &machine, &file, tolerances, &Quiet(self.watch))?;
+        Ok((machine.into_owned(), posted))
+    }
+}
+
+/// What a part of the board is cut by.
+struct Cut {
+    toolpath: Toolpath,
+    machine: Machine,
+    posted: Posted,
+    picture: Option<Vec<u8>>,
+}
+
+/// A board that lies so, and what a program does to it.
+fn picture<'a>(
+    setup: &'a Setup,
+    work: &'a Work,
+    program: &'a ::program::Program,
+    is_turned: bool,
+) -> BoardPicture<'a> {
+    let Setup { board, axis, .. } = setup;
+    BoardPicture {
+        outline: board.outline.as_ref(),
+        copper: board.front.copper.as_ref(),
+        holes: &board.holes,
+        program,
+        widths: &[],
+        problems: &work.problems,
+        rest: &work.rest,
+        turning: is_turned.then_some(*axis),
+        tabs: &work.tabs,
+        stock: None,
     }
 }
 

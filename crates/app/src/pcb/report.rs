@@ -5,7 +5,7 @@ use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
 use pcb::board::{Axis, Face};
-use pcb::plan::{Part, Problem, Settings};
+use pcb::plan::{Part, Problem, Settings, Setup};
 use program::Diagnostic;
 use serde_json::{Value, json};
 
@@ -20,7 +20,7 @@ pub struct Report {
 
 /// The report of programs that are all proven.
 pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagnostic]) -> Report {
-    let Made { layers, front: board, programs, .. } = made;
+    let Made { layers, setups: [Setup { board, axis, .. }, _], programs, .. } = made;
     let (low, high) = board.extents().unwrap_or_default();
     let size = high - low;
     let mut rows = vec![
@@ -42,7 +42,7 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
     let mut up = Face::Front;
     for program in programs {
         if let Some(face) = program.up.filter(|face| *face != up) {
-            let (along, across, at) = turning(made.axis);
+            let (along, across, at) = turning(*axis);
             let text = format!(
                 "the board over, about the line {across} {} (along {along}): its {face} is up",
                 number(at, 3)
@@ -67,7 +67,7 @@ pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagn
     if more > 0 {
         rows.push(("", format!("{more} places more, in the report and the pictures")));
     }
-    let (along, _, at) = turning(made.axis);
+    let (along, _, at) = turning(*axis);
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
         "board": {

@@ -4,8 +4,10 @@ use crate::account::Stop;
 use crate::files;
 use crate::input;
 use pcb::board::{Artwork, File, Layer};
+use pcb::model::LONGEST;
 use pcb::plan::{self, Settings};
 use program::{Diagnostic, Rule};
+use serde_json::{Map, Value};
 use std::path::Path;
 
 /// The most files of a folder that are looked at.
@@ -21,23 +23,27 @@ pub struct Source {
     pub files: Vec<input::Source>,
 }
 
-/// Reads the board that `given` is, and the files `named` of which the caller says what they hold, with the layers that programs
-/// need for which `settings` ask.
+/// Reads the board that `given` is (all that is in a folder of the name `folder`, where there is one), and the files `named` of which
+/// the caller says what they hold, with the layers that programs need for which `settings` ask.
 ///
 /// # Errors
 /// What is wrong with a file, or with all of them together.
 pub fn read(
     given: &[input::Source],
     named: &[(input::Source, Layer)],
+    folder: Option<&str>,
     settings: &Settings,
 ) -> Result<Source, Stop> {
     let first = named.first().map(|(file, _)| file.clone());
-    let name = name(given.first().or(first.as_ref()));
-    let all = match given {
-        [input::Source::File(folder)] if folder.is_dir() => within(folder)?,
-        files => files.to_vec(),
+    let name = folder.map_or_else(|| name(given.first().or(first.as_ref())), str::to_owned);
+    let mut files = match (given, folder) {
+        (files, Some(folder)) => {
+            let files = files.iter().filter(|file| may_be_of_board(&file.name())).cloned();
+            chosen(&[], counted(files.collect(), folder)?)?
+        }
+        ([input::Source::File(folder)], None) if folder.is_dir() => chosen(given, within(folder)?)?,
+        (files, None) => chosen(given, files.to_vec())?,
     };
-    let mut files = chosen(given, all)?;
     files.retain(|file| named.iter().all(|(other, _)| !is_same(other, file)));
     if let Some(board) =
         files.iter().find(|file| ending(file) == "kicad_pcb").filter(|_| !named.is_empty())
@@ -155,21 +161,49 @@ fn within(folder: &Path) -> Result<Vec<input::Source>, Stop> {
         let path =
             entry.map_err(|error| about(format!("the folder cannot be read: {error}")))?.path();
         let name = files::name(&path);
-        if path.is_file() && !name.starts_with(COPY) && !SETTINGS.contains(&name.as_str()) {
+        if path.is_file() && may_be_of_board(&name) {
             files.push(path);
         }
     }
-    if files.is_empty() || files.len() > MOST_FILES {
-        let message = match files.len() {
-            0 => String::from("there is no file in this folder"),
-            _ => format!("there are more than {MOST_FILES} files in this folder"),
-        };
-        let help = "give the folder of the Gerber and Excellon files of one board";
-        return Err(about(message).help(help).into());
-    }
     files.sort();
-    Ok(files.into_iter().map(input::Source::File).collect())
+    let files = files.into_iter().map(input::Source::File).collect();
+    counted(files, &folder.display().to_string())
 }
+
+/// Whether a file of a folder may be one of a board, by its name.
+fn may_be_of_board(name: &str) -> bool {
+    !name.starts_with(COPY) && !SETTINGS.contains(&name)
+}
+
+/// # Errors
+/// There are no files in the folder, or too many.
+fn counted(files: Vec<input::Source>, folder: &str) -> Result<Vec<input::Source>, Stop> {
+    let message = match files.len() {
+        0 => String::from("there is no file in this folder"),
+        1..=MOST_FILES => return Ok(files),
+        _ => format!("there are more than {MOST_FILES} files in this folder"),
+    };
+    let help = "give the folder of the Gerber and Excellon files of one board";
+    Err(Diagnostic::error(Rule::Folder, message).help(help).file(folder).into())
+}
+
+/// Whether a file is a board, or a part of one: what it holds is not looked at but in JSON, which toolpaths are written in too.
+pub fn is_board(file: &input::Source) -> bool {
+    let ending = ending(file);
+    match ending.as_str() {
+        "json" => {
+            let text = file.text().unwrap_or_default();
+            let text = &text[..text.len().min(LONGEST)];
+            let keys = serde_json::from_slice::<Map<String, Value>>(text).unwrap_or_default();
+            IN_MODELS.iter().any(|key| keys.contains_key(*key))
+        }
+        "kicad_pcb" => true,
+        ending => MODEL.contains(&ending) || PLOTS.contains(&ending),
+    }
+}
+
+/// Keys that a board as a model has and a job of FreeCAD has not.
+const IN_MODELS: [&str; 5] = ["nodes", "tracks", "pads", "edges", "groups"];
 
 fn not_alone(board: &input::Source) -> Stop {
     let message = "it is a whole board, and other files are given with it";
