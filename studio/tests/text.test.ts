@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { familyOf, tokens } from "../src/text/dialects.ts";
-import { isNearEnd, windowAround } from "../src/text/window.ts";
+import { isNearEnd, missing, windowAround } from "../src/text/window.ts";
 
 test("a short text is kept whole, of a long one as much as is allowed, with the line in the middle", () => {
     expect(windowAround(500, 1000, 1000)).toEqual({ from: 1, to: 1001 });
@@ -15,6 +15,14 @@ test("lines near the end of a window ask for more, unless it is the end of the t
     expect(isNearEnd(window, 4550, 4600, 10_000, 100)).toBe(true);
     expect(isNearEnd(window, 5390, 5440, 10_000, 100)).toBe(true);
     expect(isNearEnd({ from: 1, to: 1001 }, 1, 1000, 1000, 100)).toBe(false);
+});
+
+test("a window grows by parts, first above and then below, until it has all lines that are kept", () => {
+    const kept = { from: 100, to: 700 };
+    expect(missing({ from: 450, to: 500 }, kept, 250)).toEqual({ from: 200, to: 450 });
+    expect(missing({ from: 200, to: 500 }, kept, 250)).toEqual({ from: 100, to: 200 });
+    expect(missing({ from: 100, to: 500 }, kept, 250)).toEqual({ from: 500, to: 700 });
+    expect(missing({ from: 100, to: 700 }, kept, 250)).toBe(null);
 });
 
 test.each([

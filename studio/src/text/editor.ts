@@ -4,10 +4,10 @@
  */
 
 import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
-import { Compartment, EditorState, StateEffect, StateField, Transaction, type Extension, type Text } from "@codemirror/state";
+import { Compartment, EditorState, StateEffect, StateField, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
-import { FIRST, isNearEnd, isWithin, KEPT, windowAround, type Window } from "./window.ts";
+import { FIRST, isNearEnd, isWithin, KEPT, missing, windowAround, type Window } from "./window.ts";
 
 /** Between two jumps to lines that are not here, ms. */
 const JUMPS = 250;
@@ -77,8 +77,9 @@ export class Editor {
     private shown: Origin | null = null;
     private marked: { at: number | null; wrong: number[] } = { at: null, wrong: [] };
     private reading = 0;
-    /** The window that is on its way. */
+    /** The lines that are on their way for a jump. */
     private coming: Window | null = null;
+    private isGrowing = false;
     private isSetting = false;
     private jumping: ReturnType<typeof setTimeout> | undefined;
     private resting: ReturnType<typeof setTimeout> | undefined;
@@ -129,17 +130,20 @@ export class Editor {
         if (this.text !== text) this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
     }
 
-    private async fetch(line: number, kept = FIRST): Promise<void> {
+    /** All lines of a text, or of a long one those round `line`; the others come when the cursor rests. */
+    private async fetch(line: number): Promise<void> {
         const { origin } = this;
         if (origin === null) return;
         const reading = ++this.reading;
         clearTimeout(this.resting);
-        const window = windowAround(line, origin.lines, origin.lines <= KEPT ? KEPT : kept);
-        if (window.to - window.from < Math.min(KEPT, origin.lines)) this.resting = setTimeout(() => void this.widen(), REST);
+        const isLong = origin.lines > KEPT;
+        const window = windowAround(line, origin.lines, isLong ? FIRST : KEPT);
         this.coming = window;
         try {
             const text = await origin.read(window.from, window.to);
-            if (reading === this.reading) this.move(text, window);
+            if (reading !== this.reading) return;
+            this.move(text, window);
+            if (isLong) this.resting = setTimeout(() => void this.grow(), REST);
         } finally {
             if (reading === this.reading) this.coming = null;
         }
@@ -148,12 +152,59 @@ export class Editor {
     /** Other lines of the same text take the place of these; those of another text begin anew. */
     private move(text: string, window: Window): void {
         if (this.shown !== this.origin || this.origin === null || this.origin.lines <= KEPT) return this.set(text, window);
+        const { length } = this.view.state.doc;
+        this.change({ from: 0, to: length, insert: text }, window, { anchor: 0 });
+        this.draw(true);
+    }
+
+    /** As many lines as are kept, round those in sight. They come in parts, so that a jump need not wait for all of them. */
+    private async grow(): Promise<void> {
+        const { origin } = this;
+        if (origin === null) return;
+        const reading = ++this.reading;
+        const kept = windowAround(this.inSight.from, origin.lines);
+        this.isGrowing = true;
+        this.drop(kept);
+        try {
+            for (let part = missing(this.window, kept); part !== null; part = missing(this.window, kept)) {
+                const text = await origin.read(part.from, part.to);
+                if (reading !== this.reading) return;
+                this.add(text, part);
+            }
+        } finally {
+            if (reading === this.reading) this.isGrowing = false;
+        }
+    }
+
+    /** The lines between those that are here and the next ones on either side. */
+    private add(text: string, part: Window): void {
+        const { from, to } = this.window;
+        const isAbove = part.to === from;
+        const at = isAbove ? 0 : this.view.state.doc.length;
+        this.change({ from: at, insert: isAbove ? `${text}\n` : `\n${text}` }, { from: Math.min(from, part.from), to: Math.max(to, part.to) });
+        this.draw(false);
+    }
+
+    /** The lines that are not among the kept ones. */
+    private drop(kept: Window): void {
+        const { from, to } = this.window;
+        const { doc } = this.view.state;
+        if (to > kept.to) this.change({ from: doc.line(kept.to - from).to, to: doc.length }, { from, to: kept.to });
+        if (from < kept.from) this.change({ from: 0, to: doc.line(kept.from - from + 1).from }, { from: kept.from, to: Math.min(to, kept.to) });
+    }
+
+    private change(changes: ChangeSpec, window: Window, selection?: { anchor: number }): void {
         this.window = window;
         this.isSetting = true;
-        const { length } = this.view.state.doc;
-        this.view.dispatch({ changes: { from: 0, to: length, insert: text }, annotations: Transaction.addToHistory.of(false), selection: { anchor: 0 } });
+        this.view.dispatch({ changes, annotations: Transaction.addToHistory.of(false), ...(selection && { selection }) });
         this.isSetting = false;
-        this.draw(true);
+    }
+
+    /** Lines of the file. */
+    private get inSight(): Window {
+        const { state, viewport } = this.view;
+        const line = (position: number): number => state.doc.lineAt(position).number + this.window.from - 1;
+        return { from: line(viewport.from), to: line(viewport.to) };
     }
 
     private set(text: string, window: Window): void {
@@ -212,27 +263,16 @@ export class Editor {
             this.listener.edited(this.text);
             return;
         }
-        const { state, viewport } = update.view;
+        const { state } = update.view;
         if (update.selectionSet && update.transactions.some((change) => change.isUserEvent("select"))) {
             const line = state.doc.lineAt(state.selection.main.head).number + this.window.from - 1;
             if (line !== this.marked.at) this.listener.picked(line);
         }
         if (update.viewportChanged && this.origin !== null && !this.isWhole) {
-            const line = (position: number): number => state.doc.lineAt(position).number + this.window.from - 1;
-            const [first, last] = [line(viewport.from), line(viewport.to)];
-            const isResting = this.window.to - this.window.from >= KEPT && this.coming === null;
-            if (isResting && isNearEnd(this.window, first, last, this.origin.lines)) void this.widen();
+            const { from, to } = this.inSight;
+            const isResting = this.window.to - this.window.from >= KEPT && this.coming === null && !this.isGrowing;
+            if (isResting && isNearEnd(this.window, from, to, this.origin.lines)) void this.grow();
         }
-    }
-
-    /** As many lines as are kept, with the same ones in sight. */
-    private async widen(): Promise<void> {
-        const { view } = this;
-        const first = view.state.doc.lineAt(view.lineBlockAtHeight(view.scrollDOM.scrollTop).from).number + this.window.from - 1;
-        await this.fetch(first, KEPT);
-        const { doc } = view.state;
-        const at = Math.max(1, Math.min(doc.lines, first - this.window.from + 1));
-        view.dispatch({ effects: EditorView.scrollIntoView(doc.line(at).from, { y: "start" }) });
     }
 
     /** Puts the selection on a line of the file, as if it were clicked. */

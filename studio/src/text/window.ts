@@ -11,6 +11,9 @@ export const KEPT = 200_000;
 /** Of a text that is not kept whole: as many lines are fetched first, the others when the cursor rests. */
 export const FIRST = 500;
 
+/** Lines of one answer to be added: more would hold the page up. */
+const PART = 20_000;
+
 /** All of a text, or as many lines as are kept, with `line` in the middle. */
 export function windowAround(line: number, lines: number, kept = KEPT): Window {
     if (lines <= kept) return { from: 1, to: lines + 1 };
@@ -23,4 +26,10 @@ export const isWithin = ({ from, to }: Window, line: number): boolean => from <=
 /** Whether the lines in sight come so near to an end of the window that more has to be fetched. */
 export function isNearEnd(window: Window, first: number, last: number, lines: number, margin = 1000): boolean {
     return (window.from > 1 && first - window.from < margin) || (window.to <= lines && window.to - last < margin);
+}
+
+/** The next lines to fetch, at most `part`, so that `here` grows to all of `kept`; null when it has. */
+export function missing(here: Window, kept: Window, part = PART): Window | null {
+    if (here.from > kept.from) return { from: Math.max(kept.from, here.from - part), to: here.from };
+    return here.to < kept.to ? { from: here.to, to: Math.min(kept.to, here.to + part) } : null;
 }
