@@ -1,9 +1,10 @@
-import { expect, test } from "vitest";
+import { expect, test, vi } from "vitest";
 import type { WalkAbout } from "../src/protocol/asks.ts";
 import { project, VIEWS } from "../src/view/camera.ts";
 import { Chunks, inSight, levelFor, readIndex } from "../src/view/chunks.ts";
 import { MARKED, theme } from "../src/view/colours.ts";
 import { Raster } from "../src/view/raster.ts";
+import { Painting } from "../src/view/renderer.ts";
 import type { Rows } from "../src/view/rows.ts";
 import { Scene, type Looks, type Marks } from "../src/view/scene.ts";
 import { wordOf } from "../src/view/strip.ts";
@@ -106,13 +107,32 @@ test("behind the cursor's move all is pale, and the moves of its block are marke
     const near = { ...above, scale: 1000 };
     one.picture(near, size, looks, marks);
     await settled();
-    const { strips } = one.picture(near, size, looks, { ...marks, now: 0, pale: true, ofBlock: [[2, 3]] });
-    const first = strips.filter((strip) => strip.first === 0).map(({ from, to, paint }) => [from, to, paint.palette]);
+    const { strips, over } = one.picture(near, size, looks, { ...marks, now: 0, pale: true, ofBlock: [[2, 3]] });
+    const first = [...strips, ...over].filter((strip) => strip.first === 0).map(({ from, to, paint }) => [from, to, paint.palette]);
     const { done, ahead } = looks.theme;
     const mark = new Uint32Array([done[MARKED]!]);
     expect(first).toEqual([[1, 2, done], [2, 4, ahead], [3, 4, mark], [1, 2, mark]]);
     const raster = new Raster(size.width, size.height);
     raster.clear(0);
-    for (const strip of strips) raster.strip(strip, above);
+    for (const strip of [...strips, ...over]) raster.strip(strip, above);
     expect([20, 50, 80].map((x) => raster.seen[25 * 100 + x])).toEqual([done[MARKED], 0, done[MARKED]]);
+});
+
+test("while the cursor moves, only what is marked is drawn anew; the picture is as if all were", async () => {
+    const one = await scene();
+    one.picture(above, size, looks, marks);
+    await settled();
+    const painting = new Painting(size.width, size.height);
+    const drawn = vi.spyOn(Raster.prototype, "strip");
+    const draw = (on: Painting, now: number, by = looks) => on.draw(one.picture(above, size, by, { ...marks, now }), above, 7).slice();
+    const first = draw(painting, 0);
+    expect(drawn).toHaveBeenCalledTimes(3);
+    const second = draw(painting, 4096);
+    expect(drawn).toHaveBeenCalledTimes(4);
+    expect(second).not.toEqual(first);
+    expect(second).toEqual(draw(new Painting(size.width, size.height), 4096));
+    drawn.mockClear();
+    draw(painting, 4096, { ...looks, width: 2 });
+    expect(drawn).toHaveBeenCalledTimes(3);
+    drawn.mockRestore();
 });

@@ -35,6 +35,8 @@ export interface Marks {
 
 export interface Picture {
     strips: Strip[];
+    /** What is picked out, over the others. */
+    over: Strip[];
     bodies: Triangles[];
     symbols: Symbol[];
 }
@@ -57,6 +59,7 @@ export class Scene {
 
     picture(projection: Projection, size: Size, looks: Looks, marks: Marks): Picture {
         const strips: Strip[] = [];
+        const over: Strip[] = [];
         const symbols: Symbol[] = [];
         const level = levelFor(this.walk.levels, projection.scale);
         for (const chunk of this.chunks.chunks) {
@@ -65,10 +68,11 @@ export class Scene {
             if (best === null) continue;
             const { vertices } = best;
             this.lines(strips, chunk, best, looks, marks);
+            this.picked(over, chunk, best, looks, marks);
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
-        return { strips, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+        return { strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
     }
 
     private needles(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, { scale }: Projection): void {
@@ -79,31 +83,30 @@ export class Scene {
         if (needles !== null) strips.push(needles);
     }
 
-    private lines(strips: Strip[], chunk: Chunk, best: Best, looks: Looks, marks: Marks): void {
-        const { vertices } = best;
-        const { origin, first } = chunk;
+    private lines(strips: Strip[], chunk: Chunk, { vertices }: Pick<Best, "vertices">, looks: Looks, { now, pale }: Pick<Marks, "now" | "pale">): void {
+        const { first } = chunk;
         const count = vertices.byteLength / 16;
-        const part = (from: number, to: number, paint: Paint): void => {
-            if (from < to) strips.push({ vertices, origin, first, from, to, paint });
-        };
         const { done, ahead } = looks.theme;
-        const now = marks.now === null || marks.now >= first + CHUNK_MOVES ? count : marks.now < first ? 1 : vertexOf(vertices, marks.now - first + 1);
-        part(1, now, this.paint(chunk, looks, done));
-        part(now, count, this.paint(chunk, looks, marks.pale ? ahead : done));
-
-        const { mismatch } = marks;
-        if (mismatch !== null) this.marked(part, chunk, best, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
-        for (const range of marks.ofBlock) this.marked(part, chunk, best, range, this.plain(MARKED, looks, 2, 2));
-        if (marks.now !== null) this.marked(part, chunk, best, [marks.now, marks.now + 1], this.plain(MARKED, looks, 3, 3));
+        const isDone = !pale || now === null || now >= first + CHUNK_MOVES;
+        const border = isDone ? count : now < first ? 1 : vertexOf(vertices, now - first + 1);
+        add(strips, chunk, vertices, [1, border], this.paint(chunk, looks, done));
+        add(strips, chunk, vertices, [border, count], this.paint(chunk, looks, ahead));
     }
 
-    private marked(part: (from: number, to: number, paint: Paint) => void, chunk: Chunk, { vertices, isExact }: Best, [from, to]: Range, paint: Paint): void {
+    /** The first mismatch, the moves of the cursor's block, and the move that it is at. */
+    private picked(over: Strip[], chunk: Chunk, best: Best, looks: Looks, { now, ofBlock, mismatch }: Marks): void {
+        if (mismatch !== null) this.marked(over, chunk, best, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
+        for (const range of ofBlock) this.marked(over, chunk, best, range, this.plain(MARKED, looks, 2, 2));
+        if (now !== null) this.marked(over, chunk, best, [now, now + 1], this.plain(MARKED, looks, 3, 3));
+    }
+
+    private marked(over: Strip[], chunk: Chunk, { vertices, isExact }: Best, [from, to]: Range, paint: Paint): void {
         const [low, high] = [Math.max(from - chunk.first, 0), Math.min(to - chunk.first, CHUNK_MOVES)];
         if (low >= high) return;
         const begin = vertexOf(vertices, low);
         // At a coarse level a move may have no vertex of its own: the one that it is in is marked.
         const least = isExact ? begin : Math.min(begin + 1, vertices.byteLength / 16);
-        part(begin, Math.max(vertexOf(vertices, high), least), paint);
+        add(over, chunk, vertices, [begin, Math.max(vertexOf(vertices, high), least)], paint);
     }
 
     private paint(chunk: Chunk, looks: Looks, palette: Uint32Array): Paint {
@@ -150,9 +153,13 @@ export class Scene {
         const vertices = await this.chunks.exact(0, chunk.number);
         if (vertices === null) return rough;
         const exact: Strip[] = [];
-        this.lines(exact, chunk, { vertices, isExact: true }, { ...looks, width: 1 }, none);
+        this.lines(exact, chunk, { vertices }, { ...looks, width: 1 }, none);
         return nearest(exact, camera, x, y) ?? rough;
     }
+}
+
+function add(strips: Strip[], { origin, first }: Chunk, vertices: ArrayBuffer, [from, to]: Range, paint: Paint): void {
+    if (from < to) strips.push({ vertices, origin, first, from, to, paint });
 }
 
 /** The move whose line is nearest to the pixel, and of those the one that is seen. */

@@ -133,7 +133,7 @@ export class Gl implements Renderer {
         return { program, at };
     }
 
-    draw({ strips, bodies }: Picture, projection: Projection, size: Size, { paper }: Theme): void {
+    draw({ strips, over, bodies }: Picture, projection: Projection, size: Size, { paper }: Theme): void {
         const { gl, canvas } = this;
         if (gl.isContextLost()) return;
         this.frame++;
@@ -149,7 +149,7 @@ export class Gl implements Renderer {
         gl.uniform1i(this.lines.at("vertices"), 0);
         gl.uniform1i(this.lines.at("palette"), 1);
         gl.uniform1i(this.lines.at("moves"), 2);
-        for (const strip of strips) this.strip(strip, projection);
+        for (const strip of [...strips, ...over]) this.strip(strip, projection);
         this.use(this.faces, projection, size, reach);
         gl.uniform3f(this.faces.at("at"), ...projection.at);
         for (const body of bodies) this.body(body, projection);
