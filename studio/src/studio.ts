@@ -3,7 +3,7 @@
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import { said, Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { Command, Draft, Field, FileOrUpload, Finding, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
+import type { Command, Draft, Field, Given, Finding, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
 
 export class Studio {
     readonly link: Signal<State>;
@@ -64,7 +64,7 @@ export class Studio {
         this.form.value = (await this.seam.ask("form", command === "post" ? {} : { command })).done;
     }
 
-    open(source: FileOrUpload): Promise<void> {
+    open(source: Given): Promise<void> {
         return this.post({ source, machine: this.machine.value, options: [] });
     }
 
@@ -208,6 +208,6 @@ export class Studio {
 }
 
 export function draftName({ source, machine }: Work): string {
-    const name = "file" in source ? source.file : source.upload;
+    const name = Object.values(source).flat().join("-");
     return `${name}.${machine ?? "no-machine"}`.replaceAll(/[^\w.-]+/g, "_");
 }

@@ -175,7 +175,7 @@ pub struct Opened {
     /// Name of the folder.
     pub folder: String,
     /// What the command line named.
-    pub source: Option<FileOrUpload>,
+    pub source: Option<Given>,
     /// The same.
     pub machine: Option<String>,
     /// Drafts that are kept.
@@ -207,6 +207,21 @@ pub enum FileOrUpload {
     File(String),
     /// The id that the upload was answered with.
     Upload(String),
+}
+
+/// What programs are made of: a file, or a board of several.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum Given {
+    /// The path of a file in the folder.
+    File(String),
+    /// The id that an upload was answered with.
+    Upload(String),
+    /// The path of a folder in the folder, whose files are those of a board.
+    Folder(String),
+    /// The ids of the files of a board.
+    Uploads(Vec<String>),
 }
 
 /// `folder { path }`.
@@ -348,8 +363,8 @@ pub struct Uploaded {
     pub bytes: u64,
 }
 
-/// Whose options a form has: a source is cut by a wire where the machine is one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+/// What programs are written by: that says whose options a form has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "lowercase")]
 pub enum Command {
@@ -358,6 +373,20 @@ pub enum Command {
     Post,
     /// Wire EDM.
     Wire,
+    /// Circuit boards.
+    Pcb,
+}
+
+/// `command { source, machine }`: answers the [`Command`] that writes programs of a source for a machine.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct CommandParams {
+    /// What is made.
+    pub source: Given,
+    /// The machine; null where none is chosen yet.
+    #[serde(default)]
+    pub machine: Option<String>,
 }
 
 /// `form { command }`: answers the fields.
@@ -371,14 +400,14 @@ pub struct FormParams {
     pub command: Command,
 }
 
-/// `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`]; a newer `post` or `prove` of the same page
+/// `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`], of a board by that of its first program; a newer `post` or `prove` of the same page
 /// ends an older one.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(deny_unknown_fields)]
 pub struct PostParams {
-    /// The toolpath.
-    pub source: FileOrUpload,
+    /// The toolpath, or the board.
+    pub source: Given,
     /// A name of the library, or the path of a file of the folder.
     pub machine: String,
     /// Options as the command line has them, without dashes: `[["from", "fanuc-31i"], ["strict", ""]]`.
@@ -395,8 +424,8 @@ pub struct PostParams {
 #[cfg_attr(test, derive(TS))]
 #[serde(deny_unknown_fields)]
 pub struct ProveParams {
-    /// The toolpath.
-    pub source: FileOrUpload,
+    /// The toolpath, or the board.
+    pub source: Given,
     /// As in `post`.
     pub machine: String,
     /// As in `post`.
@@ -434,6 +463,124 @@ pub struct Job {
     pub walk: WalkAbout,
     /// Where a failed proof first differs.
     pub mismatch: Option<Mismatch>,
+    /// All programs of the board that it is one of; null where it is of no board.
+    pub board: Option<BoardAbout>,
+}
+
+/// `job { revision }`: answers the [`Job`] again, as another program of a board.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct JobParams {
+    /// Of the job.
+    pub revision: u64,
+}
+
+/// A board, and all that is made of it.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardAbout {
+    /// What it is called.
+    pub name: String,
+    /// `done`, or `partly` where a program is left out.
+    pub verdict: Verdict,
+    /// What is reported of all programs together.
+    pub rows: Vec<(String, String)>,
+    /// The programs, in the order in which they are run.
+    pub programs: Vec<BoardProgram>,
+    /// Those that could not be made.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A program of a board.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardProgram {
+    /// What it does: `front`, `drill`.
+    pub name: String,
+    /// Its file.
+    pub file: String,
+    /// By which its job is asked for.
+    pub revision: u64,
+}
+
+/// A program of a board that could not be made.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct LeftOut {
+    /// Its file.
+    pub file: String,
+    /// Why.
+    pub findings: Vec<Finding>,
+}
+
+/// `board { revision }`: what the board is drawn with below the cuts of a program, the lowest first. Answered with the arrays `areas` (f32, six for
+/// each trapezoid between two lines along X: the lower and the upper Y, left and right X at the lower, left and right X at the upper one),
+/// `holes` (f32, five for each stroke with round ends: X, Y, X, Y, width) and `tabs` (f32, four for each line: X, Y, X, Y), all mm.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardPicture {
+    /// What the trapezoids are, in their order.
+    pub areas: Vec<BoardArea>,
+    /// Places to look at: gaps that are not cut, copper that is taken, the worst first.
+    pub places: Vec<BoardPlace>,
+    /// The line about which the board is turned over, where it is.
+    pub turning: Option<Turning>,
+    /// How far the areas may be from what they are of, mm.
+    pub error: f64,
+    /// Whether these are all areas.
+    pub is_whole: bool,
+}
+
+/// An area of a board.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardArea {
+    /// What it is.
+    pub kind: BoardAreaKind,
+    /// The name of its net, where a file says it.
+    pub net: Option<String>,
+    /// The number of its conductor: islands of one net are one.
+    pub conductor: u32,
+    /// How many trapezoids it has.
+    pub count: u32,
+}
+
+/// What an area of a board is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "lowercase")]
+pub enum BoardAreaKind {
+    /// The board without its copper.
+    Board,
+    /// Copper.
+    Copper,
+    /// What stays that should not.
+    Rest,
+}
+
+/// A place of a board to be looked at.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardPlace {
+    /// mm.
+    pub x: f64,
+    /// mm.
+    pub y: f64,
+    /// `joined`, `slot`, `bitten`, `severed` or `not-made`.
+    pub kind: &'static str,
+    /// What is there.
+    pub what: String,
+}
+
+/// The line about which a board is turned over.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Turning {
+    /// The axis that it runs along: `X` or `Y`.
+    pub along: &'static str,
+    /// Where it is on the other axis, mm.
+    pub at: f64,
 }
 
 /// The first mismatch, side by side.
@@ -568,6 +715,8 @@ pub struct ToolUse {
     pub length: Option<f64>,
     /// Whether its side or end leans.
     pub tapered: bool,
+    /// How wide it cuts where it goes deepest, mm, where that is known: a board says it.
+    pub width: Option<f64>,
     /// The first move with it.
     pub r#move: u32,
     /// When that begins, s.
@@ -584,6 +733,7 @@ impl ToolUse {
             corner: tool.corner_radius,
             length: tool.length,
             tapered: tool.tapered,
+            width: None,
             r#move: first,
             time_s,
         }
@@ -854,14 +1004,15 @@ pub struct PlotParams {
     pub pixels: u32,
 }
 
-/// `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused.
+/// `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused. Of a board all programs
+/// and their report are saved, all or none.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(deny_unknown_fields)]
 pub struct SaveParams {
     /// Of the job.
     pub revision: u64,
-    /// Where, in the folder.
+    /// Where, in the folder: the file, or for a board the folder of its programs.
     pub path: String,
     /// Whether it may take the place of a file that is there.
     pub replace: bool,
@@ -958,6 +1109,9 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             Opened,
             Limits,
             FileOrUpload,
+            Given,
+            Command,
+            CommandParams,
             FolderParams,
             Listing,
             Entry,
@@ -973,6 +1127,15 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             PostParams,
             ProveParams,
             Job,
+            JobParams,
+            BoardAbout,
+            BoardProgram,
+            LeftOut,
+            BoardPicture,
+            BoardArea,
+            BoardAreaKind,
+            BoardPlace,
+            Turning,
             Mismatch,
             Text,
             JobMachine,

@@ -115,6 +115,38 @@ impl Folder {
         self.bytes(&inner(path)?, MOST_BYTES).map_err(|error| unreadable(path, &error))
     }
 
+    /// The files of one of its folders, each with its path and its bytes: no more than so many files and bytes.
+    ///
+    /// # Errors
+    /// It leads out, is no folder that may be read, has more, or one of its files may not be read.
+    pub fn read_all(
+        &self,
+        path: &str,
+        files: usize,
+        bytes: u64,
+    ) -> Result<Vec<(String, Vec<u8>)>, Box<Diagnostic>> {
+        let (entries, is_whole) = self.list(path)?;
+        let own = entries.into_iter().filter(|entry| entry.kind == EntryKind::File);
+        let own: Vec<Entry> = own.collect();
+        let all: u64 = own.iter().filter_map(|entry| entry.bytes).sum();
+        if !is_whole || own.len() > files || all > bytes {
+            let message =
+                format!("there are more than {files} files or {} MB in this folder", bytes >> 20);
+            let found = Diagnostic::error(Rule::Folder, message).file(path);
+            return Err(found.help("give a folder with the files of one board alone").into());
+        }
+        let read = own.into_iter().map(|Entry { path, .. }| {
+            let bytes = self.read(&path)?;
+            Ok((path, bytes))
+        });
+        read.collect()
+    }
+
+    /// Whether a path is one of its folders.
+    pub fn is_folder(&self, path: &str) -> bool {
+        inner(path).is_ok_and(|inner| self.dir.metadata(inner).is_ok_and(|at| at.is_dir()))
+    }
+
     /// The whole path of a file of the folder that is to be written, or of one that is there.
     ///
     /// # Errors

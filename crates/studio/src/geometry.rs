@@ -324,17 +324,17 @@ mod tests {
     use super::*;
     use crate::job::Ended;
     use crate::walk::Follower;
+    use crate::walk::Slot;
     use geom::Arc;
     use program::Program;
     use proof::{AxisPositions, Motion, MotionKind, Observer, Report, ToolPose};
     use std::f64::consts::TAU;
-    use std::sync::Mutex;
 
     /// A walk of moves that each end at a point; an arc goes there where one is given.
     fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
-        let (source, ended, handed) = (Program::new("x"), Ended::default(), Mutex::new(None));
-        let mut follower = Follower::new(&source, &machine, &ended, &handed);
+        let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
+        let mut follower = Follower::new(&source, &machine, &ended, Slot::clone(&handed));
         let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
         for (line, (kind, tip)) in (1..).zip(moves) {
             let behind = ToolPose { tip, axis: Vec3::Z };
@@ -354,7 +354,7 @@ mod tests {
             before = behind;
         }
         follower.ended(&Report::default());
-        handed.into_inner().unwrap().unwrap()
+        handed.lock().unwrap().take().unwrap()
     }
 
     fn points(geometry: &Geometry, walk: &Walk, level: usize, chunk: usize) -> Vec<Vec3> {

@@ -4,6 +4,7 @@ use crate::ask::{
     self, Blocks, Command, Finding, Found, JobMachine, Level, Line, Mismatch, Moves, Of, Place,
     Saved, Template, TextAbout, WalkAbout,
 };
+use crate::board;
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
 use crate::lines::{Lines, readable};
@@ -11,7 +12,7 @@ use crate::machines;
 use crate::message::{Array, Values};
 use crate::place::{self, At};
 use crate::plots::{self, What};
-use crate::walk::{By, Follower, KINDS, NO_TOOL, Walk};
+use crate::walk::{By, Follower, KINDS, NO_TOOL, Slot, Walk};
 use ::post::{Origins, Part};
 use app::report::{self, Digests};
 use app::toolpath::{self, Toolpath};
@@ -48,6 +49,8 @@ pub struct Options {
     pub machine: Vec<(String, String)>,
     /// How a wire cuts, where the machine is one.
     pub wire: Option<wire::Settings>,
+    /// How a board is made.
+    pub board: Option<Box<board::Settings>>,
 }
 
 impl Options {
@@ -59,17 +62,18 @@ impl Options {
         let origin = &mut self.origin;
         origin.reach = Reach::Folder(folder.path().to_owned());
         let mut read = Vec::new();
-        let mut in_memory = |source: &mut Option<Source>| {
-            if let Some(Source::File(path)) = source {
+        let mut in_memory = |source: &mut Source| {
+            if let Source::File(path) = source {
                 let name = path.to_string_lossy();
                 read.push(folder.target(&name)?);
-                *source = Some(Source::memory(&*path, folder.read(&name)?));
+                *source = Source::memory(&*path, folder.read(&name)?);
             }
             Ok::<(), Stop>(())
         };
-        in_memory(&mut origin.tools)?;
-        if let Some(wire) = &mut self.wire {
-            in_memory(&mut wire.upper)?;
+        let upper = self.wire.as_mut().and_then(|wire| wire.upper.as_mut());
+        let named = self.board.iter_mut().flat_map(|board| board.files());
+        for source in origin.tools.iter_mut().chain(upper).chain(named) {
+            in_memory(source)?;
         }
         if let Some(from) = origin.from.as_deref().filter(|from| machine::is_path(from)) {
             origin.from = Some(folder.target(from)?.to_string_lossy().into_owned());
@@ -105,11 +109,22 @@ impl Ended {
     }
 }
 
-/// Follows the work on a job.
-struct Follows<'a> {
+/// Follows the work on a job, or on all those of a board at the same time.
+pub(crate) struct Follows<'a> {
     waits: &'a dyn Waits,
     ended: &'a Ended,
-    walk: Mutex<Option<Walk>>,
+    /// The walks, by the files of their programs.
+    walks: Mutex<Vec<(String, Slot)>>,
+}
+
+impl Follows<'_> {
+    /// The walk of the program that is called `file`.
+    fn walk(&self, file: &str) -> Walk {
+        let walks = self.walks.lock().unwrap_or_else(PoisonError::into_inner);
+        let slot = walks.iter().find(|(of, _)| of == file).map(|(_, slot)| slot);
+        let walk = |slot: &Slot| slot.lock().unwrap_or_else(PoisonError::into_inner).take();
+        slot.and_then(walk).unwrap_or_default()
+    }
 }
 
 impl Watch for Follows<'_> {
@@ -127,18 +142,21 @@ impl Watch for Follows<'_> {
 
     fn follow<'a>(
         &'a self,
-        _file: &str,
+        file: &str,
         source: &'a Program,
         machine: &'a Machine,
     ) -> Box<dyn Observer + 'a> {
-        Box::new(Follower::new(source, machine, self.ended, &self.walk))
+        let slot = Slot::default();
+        let mut walks = self.walks.lock().unwrap_or_else(PoisonError::into_inner);
+        walks.push((file.to_owned(), Slot::clone(&slot)));
+        Box::new(Follower::new(source, machine, self.ended, slot))
     }
 }
 
 /// What a job is made of.
 pub struct Asked<'a> {
-    /// The toolpath.
-    pub source: Source,
+    /// The toolpath, or the board.
+    pub source: Sources,
     /// Name of the machine, as it was asked for.
     pub machine: &'a str,
     /// What the options say, as options of that command.
@@ -151,6 +169,30 @@ pub struct Asked<'a> {
     pub folders: Vec<PathBuf>,
     /// The files that it is made of, which nothing is saved over.
     pub inputs: Vec<PathBuf>,
+}
+
+/// What programs are made of, read.
+#[derive(Debug)]
+pub enum Sources {
+    /// A file.
+    One(Source),
+    /// The files of a board.
+    Several(Vec<Source>),
+    /// All files of a folder of this name, which is a board.
+    Folder(String, Vec<Source>),
+}
+
+impl Sources {
+    /// What writes the programs.
+    pub fn command(&self, machine: Option<&Machine>) -> Command {
+        match self {
+            Sources::One(file) if !app::pcb::is_board(file) => match machine {
+                Some(machine) if machine.wire.is_some() => Command::Wire,
+                _ => Command::Post,
+            },
+            Sources::One(_) | Sources::Several(_) | Sources::Folder(..) => Command::Pcb,
+        }
+    }
 }
 
 /// A program with its verdict and its moves.
@@ -172,10 +214,12 @@ pub struct Job {
     inputs: Vec<PathBuf>,
     walk: Walk,
     geometry: Geometry,
+    /// The board that it is one of the programs of.
+    board: Option<board::Place>,
 }
 
 impl Job {
-    /// Does the work.
+    /// Does the work: a job, or one for each program of a board.
     ///
     /// # Errors
     /// Why there is no program; or that the work was ended.
@@ -184,25 +228,38 @@ impl Job {
         folder: &Folder,
         waits: &dyn Waits,
         ended: &Ended,
-    ) -> Result<Job, Stop> {
-        let follows = Follows { waits, ended, walk: Mutex::new(None) };
+    ) -> Result<Vec<Job>, Stop> {
+        let follows = Follows { waits, ended, walks: Mutex::default() };
         follows.step("reading");
         let mut machine = machines::open(asked.machine, folder)?;
-        let command = if machine.wire.is_some() { Command::Wire } else { Command::Post };
+        let command = asked.source.command(Some(&machine));
         let (options, read) = (asked.options)(command)?.within(folder)?;
         let mut inputs = asked.inputs;
         inputs.extend(read);
         for (name, value) in &options.machine {
             machine.set_option(name, value)?;
         }
+        let source = match asked.source {
+            Sources::One(source) if command != Command::Pcb => source,
+            board => {
+                if asked.program.is_some() {
+                    let message =
+                        "a program of a board is proven as it was written, not after an edit";
+                    let found = Diagnostic::error(Rule::Board, message);
+                    let help =
+                        "`toolpost prove` proves it, with the report that is saved beside it";
+                    return Err(found.help(help).into());
+                }
+                let machine = (asked.machine, &machine);
+                return board::make(board, &options, machine, inputs, &follows);
+            }
+        };
         let file = asked.file.unwrap_or_else(|| {
-            let name = asked.source.path().with_extension(&machine.extension);
+            let name = source.path().with_extension(&machine.extension);
             files::name(&name)
         });
         let made = match (&options.wire, asked.program) {
-            (Some(settings), None) => {
-                cut(&asked.source, &options, &machine, settings, &file, &follows)?
-            }
+            (Some(settings), None) => cut(&source, &options, &machine, settings, &file, &follows)?,
             (Some(_), Some(_)) => {
                 let message = "a program of a wire is proven as it was written, not after an edit";
                 let found = Diagnostic::error(Rule::MachineKind, message);
@@ -210,34 +267,50 @@ impl Job {
                     .help("change the contour or an option, and post it again")
                     .into());
             }
-            (None, None) => posted(&asked.source, &options, &machine, &file, &follows)?,
+            (None, None) => posted(&source, &options, &machine, &file, &follows)?,
             (None, Some(text)) => {
                 let folders = if machine.arm.is_some() { asked.folders } else { Vec::new() };
                 let program = (&*file, text, Folders::from(folders));
-                compared(&asked.source, &options, &machine, program, &follows)?
+                compared(&source, &options, &machine, program, &follows)?
             }
         };
         follows.step("drawing");
-        let walk = follows.walk.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let walk = walk.unwrap_or_default();
-        if ended.is_ended() {
+        let machine = (asked.machine, machine);
+        let text = source_lines(&made.toolpath, &source);
+        Ok(vec![Job::of(made, text, (file, machine), inputs, &follows)?])
+    }
+
+    /// The job of a program that is called `file`, on a machine that was asked for by a name.
+    ///
+    /// # Errors
+    /// The work was ended.
+    pub(crate) fn of(
+        made: Made,
+        source: Lines,
+        (file, (machine_name, machine)): (String, (&str, Machine)),
+        mut inputs: Vec<PathBuf>,
+        follows: &Follows,
+    ) -> Result<Job, Stop> {
+        let mut walk = follows.walk(&file);
+        if follows.ended.is_ended() {
             return Err(Stop::cancelled());
         }
+        walk.set_widths(&made.widths);
         let goes_on = |part| {
             follows.waits.reached(part);
             !follows.ended.is_ended()
         };
         let geometry = Geometry::of(&walk, goes_on).ok_or_else(Stop::cancelled)?;
-        let Made { toolpath, account, text, origins, parts, report } = made;
+        let Made { toolpath, account, text, origins, parts, report, board, .. } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         inputs.extend(machine.loaded_from.files.iter().cloned());
         let part = |Part { file, text, origins }| (file, (Lines::of(text), origins));
         Ok(Job {
             account,
             report,
-            machine_name: asked.machine.to_owned(),
+            machine_name: machine_name.to_owned(),
             machine_files: texts_of(&machine),
-            source: source_lines(&toolpath, &asked.source),
+            source,
             toolpath,
             machine,
             file,
@@ -247,6 +320,7 @@ impl Job {
             inputs,
             walk,
             geometry,
+            board,
         })
     }
 
@@ -255,7 +329,18 @@ impl Job {
         let records = size_of_val(&self.toolpath.program.records[..]);
         let parts: usize = self.parts.values().map(|(lines, _)| lines.bytes()).sum();
         let texts = self.source.bytes() + self.program.bytes() + parts;
-        texts + records + 5 * self.origins.lines() + self.walk.bytes() + self.geometry.bytes()
+        let board = self.board.as_ref().map_or(0, board::Place::bytes);
+        texts
+            + records
+            + 5 * self.origins.lines()
+            + self.walk.bytes()
+            + self.geometry.bytes()
+            + board
+    }
+
+    /// The board that it is one of the programs of.
+    pub fn board(&self) -> Option<&board::Place> {
+        self.board.as_ref()
     }
 
     /// The walk.
@@ -279,17 +364,17 @@ impl Job {
             );
             findings.push(Diagnostic::warning(Rule::StudioLimit, message));
         }
+        findings.extend(self.board.iter().flat_map(|board| board.findings()).cloned());
         let findings = findings.into_iter().collect::<Findings>().finish();
         let text = |file: &str, lines: &Lines| ask::Text {
             file: file.to_owned(),
             lines: lines.count(),
             bytes: lines.text().len() as u64,
         };
-        let rows = self.account.rows.iter().map(|(head, text)| ((*head).to_owned(), text.clone()));
         ask::Job {
             revision,
             verdict: self.account.verdict.into(),
-            rows: rows.collect(),
+            rows: rows(&self.account),
             findings: findings.into_iter().map(|found| self.finding(found)).collect(),
             program: Some(text(&self.file, &self.program)),
             parts: self.parts.iter().map(|(file, (lines, _))| text(file, lines)).collect(),
@@ -305,6 +390,7 @@ impl Job {
             },
             walk: self.walk_about(),
             mismatch: self.mismatch(),
+            board: self.board.as_ref().map(|board| board.about(revision)),
         }
     }
 
@@ -539,6 +625,9 @@ impl Job {
             let message = "the program is not proven: it is not saved";
             return Err(refused(message, "correct what the findings name, and prove it again"));
         }
+        if let Some(board) = &self.board {
+            return board.save(folder, path, replace);
+        }
         let target = folder.target(path)?;
         if target.exists() && !replace {
             return Err(refused("it is there already", "give another name, or replace it"));
@@ -569,14 +658,22 @@ impl Job {
     }
 }
 
+/// What is reported of something, as the page shows it.
+pub(crate) fn rows(account: &Account) -> Vec<(String, String)> {
+    account.rows.iter().map(|(head, text)| ((*head).to_owned(), text.clone())).collect()
+}
+
 /// What was made of a source.
-struct Made {
-    toolpath: Toolpath,
-    account: Account,
-    text: Vec<u8>,
-    origins: Origins,
-    parts: Vec<Part>,
-    report: Option<String>,
+pub(crate) struct Made {
+    pub toolpath: Toolpath,
+    pub account: Account,
+    pub text: Vec<u8>,
+    pub origins: Origins,
+    pub parts: Vec<Part>,
+    pub report: Option<String>,
+    /// Numbers and names of tools, and how wide they cut, mm, where that is known.
+    pub widths: Vec<(u32, String, f64)>,
+    pub board: Option<board::Place>,
 }
 
 /// Writes the program for a mill or a robot, and proves it.
@@ -591,7 +688,7 @@ fn posted(
     let posted = post::proven(&toolpath, machine, file, &options.tolerances, watch)?;
     let post::Posted { text, origins, parts, account } = posted;
     let report = Some(account.report());
-    Ok(Made { toolpath, account, text, origins, parts, report })
+    Ok(Made { toolpath, account, text, origins, parts, report, widths: Vec::new(), board: None })
 }
 
 /// Proves a program that is there already.
@@ -615,8 +712,8 @@ fn compared(
         let digests = Digests::of(&text, &called, &toolpath, machine);
         report = Some(report::of_proven(&account, &digests));
     }
-    let (origins, parts) = (Origins::default(), Vec::new());
-    Ok(Made { toolpath, account, text, origins, parts, report })
+    let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
+    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
 }
 
 /// Writes the program of a wire, and proves it.
@@ -633,7 +730,8 @@ fn cut(
     let made = wire::make(source, *strict, origin, machine, settings, file, tolerances, watch)?;
     let wire::Made { posted, report, toolpath, .. } = made;
     let post::Posted { text, origins, parts, account } = posted;
-    Ok(Made { toolpath, account, text, origins, parts, report: Some(report) })
+    let (report, widths) = (Some(report), Vec::new());
+    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
 }
 
 fn toolpath_of(

@@ -24,6 +24,7 @@
 //! what a file says as markup.
 
 pub mod ask;
+pub mod board;
 pub mod folder;
 pub mod geometry;
 mod index;

@@ -12,7 +12,7 @@ use machine::Machine;
 use program::{Compensation, Diagnostic, Feed, Op, Program, Tool};
 use proof::{AxisPositions, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{self, Mutex, PoisonError};
 
 /// How a move goes, by its number in vertices and rows.
 pub const KINDS: [&str; 5] = ["gap", "rapid", "feed", "arc", "joints"];
@@ -127,6 +127,18 @@ impl Walk {
     /// The tools in the order of their first use.
     pub fn tool_uses(&self) -> &[ToolUse] {
         &self.tool_uses
+    }
+
+    /// Says what tools of these numbers are called, where the control does not know it, and how wide they cut, mm.
+    pub fn set_widths(&mut self, widths: &[(u32, String, f64)]) {
+        for (number, name, width) in widths {
+            for tool in self.tool_uses.iter_mut().filter(|tool| tool.number == *number) {
+                if tool.name.is_empty() {
+                    tool.name.clone_from(name);
+                }
+                tool.width = Some(tool.width.map_or(*width, |known| known.max(*width)));
+            }
+        }
     }
 
     /// The operations of the source.
@@ -356,18 +368,16 @@ pub struct Follower<'a> {
     /// What is marked of the next move.
     next_marks: u8,
     ended: &'a Ended,
-    goes_to: &'a Mutex<Option<Walk>>,
+    goes_to: Slot,
 }
+
+/// Where a walk is put when its proof is over.
+pub type Slot = sync::Arc<Mutex<Option<Walk>>>;
 
 impl<'a> Follower<'a> {
     /// Follows the proof of a program that is to make the motions of `source`, and hands the walk over at its end, unless the work
     /// is ended.
-    pub fn new(
-        source: &'a Program,
-        machine: &Machine,
-        ended: &'a Ended,
-        to: &'a Mutex<Option<Walk>>,
-    ) -> Follower<'a> {
+    pub fn new(source: &'a Program, machine: &Machine, ended: &'a Ended, to: Slot) -> Follower<'a> {
         Follower {
             walk: Walk::default(),
             source,
@@ -533,11 +543,11 @@ mod tests {
 
     fn followed(tell: impl Fn(&mut Follower)) -> Walk {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
-        let (source, ended, handed) = (Program::new("x"), Ended::default(), Mutex::new(None));
-        let mut follower = Follower::new(&source, &machine, &ended, &handed);
+        let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
+        let mut follower = Follower::new(&source, &machine, &ended, Slot::clone(&handed));
         tell(&mut follower);
         follower.ended(&Report::default());
-        handed.into_inner().unwrap().unwrap()
+        handed.lock().unwrap().take().unwrap()
     }
 
     #[test]

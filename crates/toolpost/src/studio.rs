@@ -3,11 +3,13 @@
 use crate::answer::Answer;
 use crate::args::{Closeness, Command, CommandLine, Studio};
 use ::studio::ask::{self, Field};
-use ::studio::{Options, Server, Settings};
-use app::{Stop, Verdict};
+use ::studio::board::Settings;
+use ::studio::{Options, Server};
+use app::{Source, Stop, Verdict};
 use clap::{Arg, ArgAction, CommandFactory, Parser};
 use program::{Diagnostic, Rule};
 use serde_json::json;
+use std::ffi::OsString;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -28,7 +30,7 @@ pub fn run(args: &Studio, json: bool) -> Result<Answer, Stop> {
         name => name.clone(),
     };
     let source = args.source.as_deref().map(within).transpose()?;
-    let settings = Settings {
+    let settings = ::studio::Settings {
         folder: folder.clone(),
         source,
         machine,
@@ -79,12 +81,14 @@ fn below(folder: &Path, path: &Path) -> Result<String, Stop> {
 }
 
 /// Arguments that the page gives by itself, or does by itself.
-const GIVEN: [&str; 6] = ["machine", "output", "path", "help", "picture", "select"];
+const GIVEN: [&str; 8] =
+    ["machine", "output", "path", "board", "help", "picture", "select", "settings"];
 
 fn name(command: ask::Command) -> &'static str {
     match command {
         ask::Command::Post => "post",
         ask::Command::Wire => "wire",
+        ask::Command::Pcb => "pcb",
     }
 }
 
@@ -138,7 +142,7 @@ fn options(command: ask::Command, given: &[(String, String)]) -> Result<Options,
         });
     }
     words.extend(["--", "source"].map(str::to_owned));
-    let parsed = CommandLine::try_parse_from(words).map_err(|usage| {
+    let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
         let message = crate::shortened(usage).render().to_string();
         let first = message.split("\n\n").next().unwrap_or_default();
         let message = first.trim_start_matches("error: ").replace('\n', " ");
@@ -150,12 +154,30 @@ fn options(command: ask::Command, given: &[(String, String)]) -> Result<Options,
         tolerances: closeness.tolerances(),
         machine,
         wire,
+        board: None,
     };
     match parsed.command {
         Command::Post(post) => Ok(of(&post.source, &post.closeness, post.option, None)),
         Command::Wire(wire) => {
             let settings = wire.settings()?;
             Ok(of(&wire.source, &wire.closeness, Vec::new(), Some(settings)))
+        }
+        Command::Pcb(pcb) => {
+            let named = pcb.files.named().into_iter();
+            let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
+            let board = Settings {
+                plan: pcb.plan(),
+                heights: pcb.running.heights.clone().map(Source::File),
+                named: named.map(|(file, layer)| (Source::File(file), layer)).collect(),
+                typed: crate::settings::options(&words),
+            };
+            Ok(Options {
+                strict: pcb.strict,
+                tolerances: pcb.closeness.tolerances(),
+                machine: pcb.option,
+                board: Some(Box::new(board)),
+                ..Options::default()
+            })
         }
         _ => Ok(Options::default()),
     }
@@ -208,6 +230,19 @@ mod tests {
         ] {
             let stop = given(&[wrong]).unwrap_err();
             assert!(stop.findings[0].rule == "studio-ask", "{wrong:?}: {:?}", stop.findings);
+        }
+        let list = [("tool", "8mil"), ("only", "front,drill"), ("drill", "b.drl"), ("strict", "")];
+        let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
+        let read = options(ask::Command::Pcb, &list).unwrap();
+        let board = read.board.unwrap();
+        assert!(read.strict);
+        assert_eq!(board.plan.isolation.tool, Some(0.2032));
+        assert_eq!(board.plan.only.len(), 2);
+        assert_eq!(board.named[0].0.path(), Path::new("b.drl"));
+        // As the report keeps them for a later proof.
+        assert_eq!(board.typed, ["--drill=b.drl", "--only=front", "--only=drill", "--tool=8mil"]);
+        for given in ["settings", "output", "picture", "machine"] {
+            assert!(options(ask::Command::Pcb, &[(given.to_owned(), "x".to_owned())]).is_err());
         }
         let side = [(String::from("side"), String::from("inside"))];
         let wire = options(ask::Command::Wire, &side).unwrap().wire.unwrap();

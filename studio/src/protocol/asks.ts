@@ -1,14 +1,18 @@
 /** What is asked of the server, and what it answers: each ask with its params and its answer. The types are the server's own. */
 
 import type {
+    BoardPicture,
+    Command,
+    CommandParams,
     Draft,
     DraftName,
     DraftParams,
     Field,
-    FileOrUpload,
     FolderParams,
     Found,
+    Given,
     Job,
+    JobParams,
     Listing,
     MachineEntry,
     Moves,
@@ -31,16 +35,13 @@ export type * from "./types.ts";
 
 /** What is worked on: enough to post it again. */
 export interface Work {
-    source: FileOrUpload;
+    source: Given;
     machine: string | null;
     options: [name: string, value: string][];
 }
 
 /** What may be null may be left out. */
 export type Asked<T> = { [K in keyof T as null extends T[K] ? never : K]: T[K] } & { [K in keyof T as null extends T[K] ? K : never]?: T[K] };
-
-/** Whose options the form has: a wire machine cuts with `toolpost wire`. */
-export type Command = "post" | "wire";
 
 type NoParams = Record<string, never>;
 
@@ -49,9 +50,12 @@ export interface Asks {
     open: [NoParams, Opened];
     folder: [FolderParams, Listing];
     machines: [NoParams, MachineEntry[]];
+    command: [Asked<CommandParams>, Command];
     form: [{ command?: Command }, Field[]];
     post: [Asked<PostParams>, Job];
     prove: [Asked<ProveParams>, Job];
+    job: [JobParams, Job];
+    board: [JobParams, BoardPicture];
     text: [Asked<TextParams>, TextAbout];
     search: [Asked<SearchParams>, Found];
     place: [Asked<PlaceParams>, Place | null];

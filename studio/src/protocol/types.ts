@@ -160,7 +160,7 @@ folder: string,
 /**
  * What the command line named.
  */
-source: FileOrUpload | null, 
+source: Given | null, 
 /**
  * The same.
  */
@@ -199,6 +199,29 @@ sockets: number, };
  * A file of the folder, or what was uploaded.
  */
 export type FileOrUpload = { "file": string } | { "upload": string };
+
+/**
+ * What programs are made of: a file, or a board of several.
+ */
+export type Given = { "file": string } | { "upload": string } | { "folder": string } | { "uploads": Array<string> };
+
+/**
+ * What programs are written by: that says whose options a form has.
+ */
+export type Command = "post" | "wire" | "pcb";
+
+/**
+ * `command { source, machine }`: answers the [`Command`] that writes programs of a source for a machine.
+ */
+export type CommandParams = { 
+/**
+ * What is made.
+ */
+source: Given, 
+/**
+ * The machine; null where none is chosen yet.
+ */
+machine: string | null, };
 
 /**
  * `folder { path }`.
@@ -349,14 +372,14 @@ upload: string,
 bytes: number, };
 
 /**
- * `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`]; a newer `post` or `prove` of the same page
+ * `post { source, machine, options }`: writes the program and proves it. Answered by a [`Job`], of a board by that of its first program; a newer `post` or `prove` of the same page
  * ends an older one.
  */
 export type PostParams = { 
 /**
- * The toolpath.
+ * The toolpath, or the board.
  */
-source: FileOrUpload, 
+source: Given, 
 /**
  * A name of the library, or the path of a file of the folder.
  */
@@ -376,9 +399,9 @@ file: string | null, };
  */
 export type ProveParams = { 
 /**
- * The toolpath.
+ * The toolpath, or the board.
  */
-source: FileOrUpload, 
+source: Given, 
 /**
  * As in `post`.
  */
@@ -439,7 +462,162 @@ walk: WalkAbout,
 /**
  * Where a failed proof first differs.
  */
-mismatch: Mismatch | null, };
+mismatch: Mismatch | null, 
+/**
+ * All programs of the board that it is one of; null where it is of no board.
+ */
+board: BoardAbout | null, };
+
+/**
+ * `job { revision }`: answers the [`Job`] again, as another program of a board.
+ */
+export type JobParams = { 
+/**
+ * Of the job.
+ */
+revision: number, };
+
+/**
+ * A board, and all that is made of it.
+ */
+export type BoardAbout = { 
+/**
+ * What it is called.
+ */
+name: string, 
+/**
+ * `done`, or `partly` where a program is left out.
+ */
+verdict: Verdict, 
+/**
+ * What is reported of all programs together.
+ */
+rows: Array<[string, string]>, 
+/**
+ * The programs, in the order in which they are run.
+ */
+programs: Array<BoardProgram>, 
+/**
+ * Those that could not be made.
+ */
+left_out: Array<LeftOut>, };
+
+/**
+ * A program of a board.
+ */
+export type BoardProgram = { 
+/**
+ * What it does: `front`, `drill`.
+ */
+name: string, 
+/**
+ * Its file.
+ */
+file: string, 
+/**
+ * By which its job is asked for.
+ */
+revision: number, };
+
+/**
+ * A program of a board that could not be made.
+ */
+export type LeftOut = { 
+/**
+ * Its file.
+ */
+file: string, 
+/**
+ * Why.
+ */
+findings: Array<Finding>, };
+
+/**
+ * `board { revision }`: what the board is drawn with below the cuts of a program, the lowest first. Answered with the arrays `areas` (f32, six for
+ * each trapezoid between two lines along X: the lower and the upper Y, left and right X at the lower, left and right X at the upper one),
+ * `holes` (f32, five for each stroke with round ends: X, Y, X, Y, width) and `tabs` (f32, four for each line: X, Y, X, Y), all mm.
+ */
+export type BoardPicture = { 
+/**
+ * What the trapezoids are, in their order.
+ */
+areas: Array<BoardArea>, 
+/**
+ * Places to look at: gaps that are not cut, copper that is taken, the worst first.
+ */
+places: Array<BoardPlace>, 
+/**
+ * The line about which the board is turned over, where it is.
+ */
+turning: Turning | null, 
+/**
+ * How far the areas may be from what they are of, mm.
+ */
+error: number, 
+/**
+ * Whether these are all areas.
+ */
+is_whole: boolean, };
+
+/**
+ * An area of a board.
+ */
+export type BoardArea = { 
+/**
+ * What it is.
+ */
+kind: BoardAreaKind, 
+/**
+ * The name of its net, where a file says it.
+ */
+net: string | null, 
+/**
+ * The number of its conductor: islands of one net are one.
+ */
+conductor: number, 
+/**
+ * How many trapezoids it has.
+ */
+count: number, };
+
+/**
+ * What an area of a board is.
+ */
+export type BoardAreaKind = "board" | "copper" | "rest";
+
+/**
+ * A place of a board to be looked at.
+ */
+export type BoardPlace = { 
+/**
+ * mm.
+ */
+x: number, 
+/**
+ * mm.
+ */
+y: number, 
+/**
+ * `joined`, `slot`, `bitten`, `severed` or `not-made`.
+ */
+kind: string, 
+/**
+ * What is there.
+ */
+what: string, };
+
+/**
+ * The line about which a board is turned over.
+ */
+export type Turning = { 
+/**
+ * The axis that it runs along: `X` or `Y`.
+ */
+along: string, 
+/**
+ * Where it is on the other axis, mm.
+ */
+at: number, };
 
 /**
  * The first mismatch, side by side.
@@ -632,6 +810,10 @@ length: number | null,
  * Whether its side or end leans.
  */
 tapered: boolean, 
+/**
+ * How wide it cuts where it goes deepest, mm, where that is known: a board says it.
+ */
+width: number | null, 
 /**
  * The first move with it.
  */
@@ -994,7 +1176,8 @@ to: number,
 pixels: number, };
 
 /**
- * `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused.
+ * `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused. Of a board all programs
+ * and their report are saved, all or none.
  */
 export type SaveParams = { 
 /**
@@ -1002,7 +1185,7 @@ export type SaveParams = {
  */
 revision: number, 
 /**
- * Where, in the folder.
+ * Where, in the folder: the file, or for a board the folder of its programs.
  */
 path: string, 
 /**

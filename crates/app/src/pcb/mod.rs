@@ -609,10 +609,14 @@ pub struct Program {
 }
 
 impl Program {
-    /// The names of its tools, and how wide each cuts where it goes deepest, mm.
-    pub fn widths(&self) -> impl Iterator<Item = (&str, f64)> {
-        let operations = self.work.operations.iter();
-        operations.map(|operation| (operation.tool.name.as_str(), operation.width()))
+    /// Its tools, by number and name, and how wide each cuts where it goes deepest, mm; one that is called twice comes twice.
+    pub fn widths(&self) -> impl Iterator<Item = (u32, &str, f64)> {
+        let tools = self.toolpath.program.records.iter().filter_map(|record| match &record.op {
+            Op::Tool(tool) => Some((tool.number, &*tool.name)),
+            _ => None,
+        });
+        let widths = self.work.operations.iter().map(Operation::width);
+        tools.zip(widths).map(|((number, name), width)| (number, name, width))
     }
 }
 

@@ -3,8 +3,9 @@
 use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
-    DraftName, DraftParams, FileOrUpload, FolderParams, FormParams, Listing, MovesParams, Nothing,
-    Opened, PlaceParams, PlotParams, PostParams, ProveParams, SaveParams, SearchParams, TextParams,
+    CommandParams, DraftName, DraftParams, FileOrUpload, FolderParams, FormParams, Given,
+    JobParams, Listing, MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams,
+    ProveParams, SaveParams, SearchParams, TextParams,
 };
 use crate::job::{Asked, Ended, Job, Waits};
 use crate::machines;
@@ -14,11 +15,10 @@ use program::{Diagnostic, Rule};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// All asks there are.
-const ASKS: &str = "open, folder, machines, form, post, prove, text, search, place, moves, plot, save, drafts, draft, draft_text, drop_draft";
+const ASKS: &str = "open, folder, machines, command, form, post, prove, job, board, text, search, place, moves, plot, save, drafts, draft, draft_text, drop_draft";
 
 /// What an ask is answered: a head and arrays.
 pub struct Answer {
@@ -78,6 +78,11 @@ pub fn answer(
             none(params)?;
             Answer::of(machines::list(folder))
         }
+        "command" => {
+            let CommandParams { source, machine } = read(params)?;
+            let machine = machine.map(|name| machines::open(&name, folder)).transpose()?;
+            Answer::of(studio.command(&source, machine.as_ref())?)
+        }
         "form" => {
             let FormParams { command } = read(params)?;
             Answer::of(studio.form.map(|form| form(command)).unwrap_or_default())
@@ -96,6 +101,17 @@ pub fn answer(
             };
             let asked = (&source, &*machine, &*options, file);
             make(studio, asked, Some(text), program.as_ref(), work)
+        }
+        "job" => {
+            let JobParams { revision } = read(params)?;
+            Answer::of(studio.jobs.find(revision)?.about(revision))
+        }
+        "board" => {
+            let JobParams { revision } = read(params)?;
+            let job = studio.jobs.find(revision)?;
+            let board = job.board().ok_or_else(|| wrong("this is no program of a board"))?;
+            let (about, arrays) = board.picture();
+            Answer::with(about, arrays)
         }
         "text" => {
             let TextParams { revision, of, file, from, to } = read(params)?;
@@ -151,7 +167,7 @@ pub fn answer(
 /// Makes a job, and keeps it.
 fn make(
     studio: &Studio,
-    (source, machine, options, file): (&FileOrUpload, &str, &[(String, String)], Option<String>),
+    (source, machine, options, file): (&Given, &str, &[(String, String)], Option<String>),
     text: Option<Vec<u8>>,
     program: Option<&FileOrUpload>,
     (waits, ended): (&dyn Waits, &Ended),
@@ -160,8 +176,8 @@ fn make(
         FileOrUpload::File(path) => studio.folder.target(path).ok(),
         FileOrUpload::Upload(_) => None,
     };
-    let inputs: Vec<PathBuf> =
-        [within(source), program.and_then(within)].into_iter().flatten().collect();
+    let (source, mut inputs) = studio.sources(source)?;
+    inputs.extend(program.and_then(within));
     let beside = program.and_then(within).and_then(|path| Some(path.parent()?.to_owned()));
     // A program of the folder keeps its name.
     let named = match program {
@@ -169,7 +185,7 @@ fn make(
         Some(FileOrUpload::Upload(_)) | None => None,
     };
     let asked = Asked {
-        source: studio.source(source)?,
+        source,
         machine,
         options: &|command| studio.options(command, options),
         file: file.or(named),
@@ -177,9 +193,9 @@ fn make(
         folders: beside.into_iter().collect(),
         inputs,
     };
-    let job = Arc::new(Job::make(asked, &studio.folder, waits, ended)?);
-    let revision = studio.jobs.keep(Arc::clone(&job));
-    Answer::of(job.about(revision))
+    let jobs = Job::make(asked, &studio.folder, waits, ended)?;
+    let revision = studio.jobs.keep(jobs.into_iter().map(Arc::new).collect());
+    Answer::of(studio.jobs.find(revision)?.about(revision))
 }
 
 /// The parameters of an ask.

@@ -5,9 +5,9 @@ pub mod closed;
 mod files;
 mod socket;
 
-use crate::ask::{Command, Field, FileOrUpload, Limits};
+use crate::ask::{Command, Field, FileOrUpload, Given, Limits};
 use crate::folder::Folder;
-use crate::job::Options;
+use crate::job::{Options, Sources};
 use crate::jobs::{Jobs, MOST_JOBS};
 use crate::message;
 use crate::page;
@@ -20,6 +20,7 @@ use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
+use machine::Machine;
 use program::{Diagnostic, Rule};
 use std::convert::Infallible;
 use std::net::{Ipv4Addr, TcpListener};
@@ -38,6 +39,10 @@ const SOCKETS: usize = 16;
 /// The largest upload, bytes.
 const UPLOAD: usize = 256 << 20;
 
+/// The most files of a folder that is a board, and all of them together, bytes.
+const BOARD_FILES: usize = 1000;
+const BOARD_BYTES: u64 = 256 << 20;
+
 /// How long a connection may take to say what it wants, and a request to be answered.
 const PATIENCE: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
 
@@ -54,7 +59,7 @@ const LIMITS: Limits = Limits {
 pub struct Settings {
     /// The folder in which it reads and writes.
     pub folder: PathBuf,
-    /// A toolpath that is opened at once: its path in the folder.
+    /// What is opened at once: the path of a file in the folder, or of a folder with a board.
     pub source: Option<String>,
     /// The machine that is picked for it.
     pub machine: Option<String>,
@@ -85,7 +90,7 @@ pub struct Server {
 #[derive(Debug)]
 pub(crate) struct Studio {
     folder: Folder,
-    source: Option<FileOrUpload>,
+    source: Option<Given>,
     machine: Option<String>,
     token: Token,
     names: Names,
@@ -103,6 +108,40 @@ impl Studio {
             Some(read) => read(command, given),
             None if given.is_empty() => Ok(Options::default()),
             None => Err(Diagnostic::error(Rule::StudioAsk, "there are no options here").into()),
+        }
+    }
+
+    /// What programs are made of, read, and the files of the folder that it is.
+    fn sources(&self, given: &Given) -> Result<(Sources, Vec<PathBuf>), Stop> {
+        let mut inputs = Vec::new();
+        let sources = match given {
+            Given::File(path) => {
+                inputs.extend(self.folder.target(path).ok());
+                Sources::One(self.source(&FileOrUpload::File(path.clone()))?)
+            }
+            Given::Upload(id) => Sources::One(self.uploads.find(id)?),
+            Given::Uploads(ids) => {
+                let each = ids.iter().map(|id| self.uploads.find(id));
+                Sources::Several(each.collect::<Result<_, _>>()?)
+            }
+            Given::Folder(path) => {
+                let files = self.folder.read_all(path, BOARD_FILES, BOARD_BYTES)?;
+                inputs.extend(files.iter().filter_map(|(path, _)| self.folder.target(path).ok()));
+                let name =
+                    path.trim_matches('/').rsplit('/').next().filter(|name| !name.is_empty());
+                let name = name.map_or_else(|| self.folder.name(), str::to_owned);
+                let files = files.into_iter().map(|(path, bytes)| Source::memory(path, bytes));
+                Sources::Folder(name, files.collect())
+            }
+        };
+        Ok((sources, inputs))
+    }
+
+    /// What writes the programs of something: a file is read where its name does not say it.
+    fn command(&self, given: &Given, machine: Option<&Machine>) -> Result<Command, Stop> {
+        match given {
+            Given::Folder(_) | Given::Uploads(_) => Ok(Command::Pcb),
+            Given::File(_) | Given::Upload(_) => Ok(self.sources(given)?.0.command(machine)),
         }
     }
 
@@ -141,9 +180,13 @@ impl Server {
         let own = getrandom::u32().map_err(no_token)?;
         let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(64).build();
         let runtime = runtime.map_err(|error| refused("the server cannot start", &error))?;
+        let given = |path: String| match folder.is_folder(&path) {
+            true => Given::Folder(path),
+            false => Given::File(path),
+        };
         let studio = Arc::new(Studio {
+            source: settings.source.clone().map(given),
             folder,
-            source: settings.source.clone().map(FileOrUpload::File),
             machine: settings.machine.clone(),
             token,
             names: Names::of(port),

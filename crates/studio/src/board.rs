@@ -1,0 +1,245 @@
+//! Boards: several programs that are made of one source and saved together, and what a board is drawn with.
+
+use crate::ask::{
+    BoardAbout, BoardArea, BoardAreaKind, BoardPicture, BoardPlace, BoardProgram, LeftOut, Saved,
+    Turning,
+};
+use crate::folder::Folder;
+use crate::job::{Follows, Job, Made, Options, Sources, rows};
+use crate::lines::Lines;
+use crate::message::{Array, Values};
+use app::pcb::{AreaKind, Axis, BoardAreas, Layer};
+use app::{Account, Source, Stop, Verdict, Watch, files, pcb, post};
+use machine::Machine;
+use program::{Diagnostic, Rule};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// How a board is made, as the options of the command say it.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// What is cut, and with what.
+    pub plan: pcb::Settings,
+    /// Measured heights that the programs follow.
+    pub heights: Option<Source>,
+    /// Files of which the options say what they hold.
+    pub named: Vec<(Source, Layer)>,
+    /// The options as they are typed: the report keeps them.
+    pub typed: Vec<String>,
+}
+
+impl Settings {
+    /// The files that it names.
+    pub(crate) fn files(&mut self) -> impl Iterator<Item = &mut Source> {
+        self.heights.iter_mut().chain(self.named.iter_mut().map(|(file, _)| file))
+    }
+}
+
+/// All that is made of a board.
+#[derive(Debug)]
+struct Whole {
+    name: String,
+    account: Account,
+    /// Names and files of the programs.
+    programs: Vec<(String, String)>,
+    left_out: Vec<(String, Vec<Diagnostic>)>,
+    /// What is saved: the report, and the programs.
+    contents: Vec<(String, Vec<u8>)>,
+    /// The files that it is made of, which nothing is saved over.
+    inputs: Vec<PathBuf>,
+}
+
+/// A program's place in its board.
+#[derive(Debug)]
+pub struct Place {
+    whole: Arc<Whole>,
+    /// Which of the programs it is.
+    number: usize,
+    areas: BoardAreas,
+}
+
+/// Writes the programs of a board and proves them: a job for each.
+///
+/// # Errors
+/// Why there is none, or that the work was ended.
+pub(crate) fn make(
+    source: Sources,
+    options: &Options,
+    (machine_name, machine): (&str, &Machine),
+    mut inputs: Vec<PathBuf>,
+    follows: &Follows,
+) -> Result<Vec<Job>, Stop> {
+    let Settings { plan, heights, named, typed } =
+        options.board.as_deref().cloned().unwrap_or_default();
+    let mut job = pcb::Job::new(machine, &plan, &options.tolerances)?;
+    (job.surface, job.named) = (heights, named);
+    (job.strict, job.options) = (options.strict, typed);
+    let board = match source {
+        Sources::One(file) => vec![file],
+        Sources::Several(files) => files,
+        Sources::Folder(name, files) => {
+            job.folder = Some(name);
+            files
+        }
+    };
+    let made = job.make(&board, follows)?;
+    let account = made.account(&job, Vec::new());
+    if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
+        return Err(account.into());
+    }
+    follows.step("drawing");
+    let report = format!("{:#}\n", account.data);
+    let contents = made.contents(&job, &report);
+    let contents = contents.into_iter().map(|(name, bytes)| (name, bytes.to_vec())).collect();
+    let left_out = made.left_out.iter().map(|left| (left.file.clone(), left.findings().collect()));
+    inputs.extend(made.files.iter().filter_map(Source::file).map(Path::to_owned));
+    let whole = Arc::new(Whole {
+        name: made.name().to_owned(),
+        programs: made.programs.iter().map(|made| (made.name.clone(), made.file.clone())).collect(),
+        left_out: left_out.collect(),
+        contents,
+        inputs,
+        account,
+    });
+    let (text_name, text) = shown(&made);
+    let areas: Vec<BoardAreas> = made.programs.iter().map(|program| made.areas(program)).collect();
+    let programs = made.programs.into_iter().zip(areas).enumerate();
+    let job = |(number, (program, areas)): (usize, (pcb::Program, BoardAreas))| {
+        let widths = program.widths();
+        let widths = widths.map(|(number, name, width)| (number, name.to_owned(), width)).collect();
+        let pcb::Program { file, mut toolpath, machine, posted, .. } = program;
+        let post::Posted { text: written, origins, parts, account } = posted;
+        toolpath.file.clone_from(&text_name);
+        let board = Some(Place { whole: Arc::clone(&whole), number, areas });
+        let made =
+            Made { toolpath, account, text: written, origins, parts, report: None, widths, board };
+        Job::of(made, Lines::of(text.clone()), (file, (machine_name, machine)), Vec::new(), follows)
+    };
+    programs.map(job).collect()
+}
+
+/// What is shown as the source: the file of a board that is one file, of others what each was taken for. No line of a program is made by a
+/// line of it.
+fn shown(made: &pcb::Made) -> (String, Vec<u8>) {
+    match &made.files[..] {
+        [file] => (file.name(), file.text().unwrap_or_default()),
+        _ => {
+            let line = |(file, layer): &(String, String)| format!("{file}: {layer}\n");
+            (
+                made.name().to_owned(),
+                made.layers().iter().map(line).collect::<String>().into_bytes(),
+            )
+        }
+    }
+}
+
+impl Place {
+    /// How much memory it takes, bytes: its share of what all programs have together.
+    pub fn bytes(&self) -> usize {
+        let contents: usize = self.whole.contents.iter().map(|(_, bytes)| bytes.len()).sum();
+        size_of_val(&self.areas.trapezoids[..])
+            + size_of_val(&self.areas.holes[..])
+            + contents / self.whole.programs.len().max(1)
+    }
+
+    /// What is wrong with the board, or worth knowing.
+    pub fn findings(&self) -> &[Diagnostic] {
+        &self.whole.account.findings
+    }
+
+    /// What is said of the board, where the job of this program has the revision.
+    pub fn about(&self, revision: u64) -> BoardAbout {
+        let Whole { name, account, programs, left_out, .. } = &*self.whole;
+        let first = revision - self.number as u64;
+        let program = |((name, file), revision): (&(String, String), u64)| BoardProgram {
+            name: name.clone(),
+            file: file.clone(),
+            revision,
+        };
+        let left = |(file, findings): &(String, Vec<Diagnostic>)| LeftOut {
+            file: file.clone(),
+            findings: findings.iter().cloned().map(Into::into).collect(),
+        };
+        BoardAbout {
+            name: name.clone(),
+            verdict: account.verdict.into(),
+            rows: rows(account),
+            programs: programs.iter().zip(first..).map(program).collect(),
+            left_out: left_out.iter().map(left).collect(),
+        }
+    }
+
+    /// What the board is drawn with below the cuts of this program.
+    pub fn picture(&self) -> (BoardPicture, Vec<Array>) {
+        let BoardAreas { areas, trapezoids, holes, tabs, problems, turning, chord, is_whole } =
+            &self.areas;
+        let area = |area: &pcb::Area| BoardArea {
+            kind: match area.kind {
+                AreaKind::Board => BoardAreaKind::Board,
+                AreaKind::Copper => BoardAreaKind::Copper,
+                AreaKind::Rest => BoardAreaKind::Rest,
+            },
+            net: area.net.clone(),
+            conductor: area.conductor as u32,
+            count: area.count as u32,
+        };
+        let place = |problem: &pcb::Problem| BoardPlace {
+            x: problem.at.x,
+            y: problem.at.y,
+            kind: problem.kind.name(),
+            what: problem.what.clone(),
+        };
+        let turned = |axis: Axis| match axis {
+            Axis::X(at) => Turning { along: "Y", at },
+            Axis::Y(at) => Turning { along: "X", at },
+        };
+        let about = BoardPicture {
+            areas: areas.iter().map(area).collect(),
+            places: problems.iter().map(place).collect(),
+            turning: turning.map(turned),
+            error: *chord,
+            is_whole: *is_whole,
+        };
+        fn array(name: &str, numbers: impl Iterator<Item = f64>) -> Array {
+            Array::new(name, Values::F32(numbers.map(|number| number as f32).collect()))
+        }
+        let arrays = vec![
+            array("areas", trapezoids.iter().flatten().copied()),
+            array("holes", holes.iter().flatten().copied()),
+            array("tabs", tabs.iter().flatten().copied()),
+        ];
+        (about, arrays)
+    }
+
+    /// Saves all programs of the board and their report in a folder, all or none.
+    ///
+    /// # Errors
+    /// The path leads out of the folder, one of the files is there already, or cannot be saved; nothing is changed then.
+    pub fn save(&self, folder: &Folder, path: &str, replace: bool) -> Result<Saved, Stop> {
+        let Whole { contents, inputs, .. } = &*self.whole;
+        let target = folder.target(path)?;
+        let refused = |message: String, help: &str| {
+            Stop::from(Diagnostic::error(Rule::OutputFolder, message).help(help).file(path))
+        };
+        if inputs.iter().any(|input| input.parent() == Some(&target)) {
+            let message = String::from("the programs would be saved among the files of the board");
+            return Err(refused(message, "give a folder of its own"));
+        }
+        let mut saved = Vec::with_capacity(contents.len());
+        for (name, _) in contents {
+            let path = format!("{path}/{name}");
+            if folder.target(&path)?.exists() && !replace {
+                let message = format!("{name} is there already");
+                return Err(refused(message, "give another folder, or replace what is there"));
+            }
+            saved.push(path);
+        }
+        let contents: Vec<(String, &[u8])> =
+            contents.iter().map(|(name, bytes)| (name.clone(), &bytes[..])).collect();
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+        files::save_in(&target, &contents, &inputs)?;
+        // The programs first.
+        saved.rotate_left(1);
+        Ok(Saved { files: saved })
+    }
+}

@@ -1,0 +1,317 @@
+//! Boards: several programs of one source.
+
+use crate::client::{Said, Socket, Studio, root};
+use app::pcb::Job;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+use toolpost_studio::Options;
+use toolpost_studio::ask::Command;
+use toolpost_studio::board::Settings;
+use toolpost_studio::message::Values;
+
+const MACHINE: &str = "grbl-3018";
+
+fn plan() -> app::pcb::Settings {
+    let mut plan = app::pcb::Settings::default();
+    plan.isolation.tool = Some(0.3);
+    plan
+}
+
+fn options(command: Command, given: &[(String, String)]) -> Result<Options, app::Stop> {
+    assert_eq!(command, Command::Pcb);
+    let heights = given.first().map(|(_, file)| app::Source::File(file.into()));
+    let board = Settings { plan: plan(), heights, ..Settings::default() };
+    Ok(Options { board: Some(Box::new(board)), ..Options::default() })
+}
+
+/// A studio whose folder has the board of the examples in a folder of its own.
+fn studio() -> Studio {
+    let studio = Studio::with(Some(options));
+    fs::create_dir(studio.own().join("lamp")).unwrap();
+    fs::copy(root().join("examples/lamp.toml"), studio.own().join("lamp/lamp.toml")).unwrap();
+    studio
+}
+
+fn params(source: Value) -> Value {
+    json!({ "source": source, "machine": MACHINE })
+}
+
+fn post(page: &mut Socket, source: Value) -> Value {
+    match page.answer("post", params(source), &[]) {
+        Ok(frame) => frame.head["done"].clone(),
+        Err(stop) => panic!("{stop}"),
+    }
+}
+
+/// Why a board is not made.
+fn refused(page: &mut Socket, source: Value) -> Value {
+    page.answer("post", params(source), &[]).map(|frame| frame.head).unwrap_err()
+}
+
+fn names(list: &Value) -> Vec<&str> {
+    list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect()
+}
+
+fn text_of(page: &mut Socket, job: &Value) -> String {
+    let params =
+        json!({ "revision": job["revision"], "of": "program", "from": 1, "to": 1_000_000 });
+    let mut frame = page.answer("text", params, &[]).unwrap();
+    String::from_utf8(frame.take_text("text").unwrap()).unwrap()
+}
+
+const HEAD: &str = "%FSLAX46Y46*%\n%MOMM*%\n";
+
+/// A track 6 mm long, on a layer of its own, and a board of 10 x 5 mm around it.
+fn track() -> String {
+    format!("{HEAD}%ADD10C,1.0*%\nD10*\nX2000000Y2000000D02*\nX8000000Y2000000D01*\nM02*\n")
+}
+
+fn edge(last: &str) -> String {
+    format!(
+        "{HEAD}%ADD10C,0.1*%\nD10*\nX0Y0D02*\nX10000000Y0D01*\nX10000000Y5000000D01*\nX0Y5000000D01*\n{last}M02*\n"
+    )
+}
+
+const CLOSED: &str = "X0Y0D01*\n";
+
+/// Writes the files of a board into a folder.
+fn plots(folder: &Path, files: &[(&str, &str)]) {
+    fs::create_dir_all(folder).unwrap();
+    for (name, text) in files {
+        fs::write(folder.join(name), text).unwrap();
+    }
+}
+
+#[test]
+fn a_board_is_several_programs_each_a_job_of_its_own() {
+    let studio = studio();
+    let mut page = studio.socket();
+    let front = post(&mut page, json!({ "folder": "lamp" }));
+    let board = &front["board"];
+    assert_eq!((&board["name"], &board["verdict"]), (&json!("lamp"), &json!("done")), "{board}");
+    assert_eq!(names(&board["programs"]), ["front", "drill", "back", "outline"]);
+    assert_eq!(board["programs"][0]["revision"], front["revision"]);
+    assert_eq!(board["left_out"], json!([]));
+    // The same as the command writes.
+    let machine = app::toolpath::machine(MACHINE).unwrap();
+    let (settings, tolerances) = (plan(), proof::Tolerances::default());
+    let job = Job::new(&machine, &settings, &tolerances).unwrap();
+    let file = app::Source::File(studio.own().join("lamp"));
+    let made = job.make(&[file], &()).unwrap();
+    let mut revisions = Vec::new();
+    for (program, known) in made.programs.iter().zip(board["programs"].as_array().unwrap()) {
+        let job = page.done("job", json!({ "revision": known["revision"] }));
+        assert_eq!(job["verdict"], "done", "{job}");
+        assert_eq!(job["program"]["file"], program.file);
+        assert_eq!(job["board"], *board);
+        assert_eq!(text_of(&mut page, &job).as_bytes(), program.posted.text);
+        let moves = job["walk"]["moves"].as_u64().unwrap();
+        let params = json!({ "revision": job["revision"], "by": "move", "value": moves / 2 });
+        let place = page.done("place", params);
+        let again =
+            json!({ "revision": job["revision"], "by": "block", "value": place["block"]["line"] });
+        assert_eq!(page.done("place", again)["block"], place["block"]);
+        assert!(!place["template"]["name"].as_str().unwrap().is_empty(), "{place}");
+        assert!(!studio.get(&format!("/geometry/{}/index", job["revision"])).is_empty());
+        revisions.push(job["revision"].clone());
+    }
+    let width = |revision: &Value, page: &mut Socket| {
+        let job = page.done("job", json!({ "revision": revision }));
+        let tool = &job["walk"]["tools"][0];
+        assert_ne!(tool["name"], "");
+        tool["width"].as_f64()
+    };
+    assert_eq!(width(&revisions[0], &mut page), Some(0.3));
+    // The mill that cuts boards out is 2 mm wide where nothing else is said.
+    assert_eq!(width(&revisions[3], &mut page), Some(2.0));
+    // A source that is no board is of none.
+    assert_eq!(page.refused("job", json!({ "revision": 1 })), "studio-limit");
+}
+
+#[test]
+fn all_programs_of_a_board_are_saved_together_as_the_command_saves_them() {
+    let studio = studio();
+    let mut page = studio.socket();
+    let front = post(&mut page, json!({ "file": "lamp/lamp.toml" }));
+    let drill = front["board"]["programs"][1]["revision"].clone();
+    let save =
+        |path: &str, replace: bool| json!({ "revision": drill, "path": path, "replace": replace });
+    // Not among the files of the board, not outside of the folder.
+    assert_eq!(page.refused("save", save("lamp", true)), "output-folder");
+    assert_eq!(page.refused("save", save("../out", true)), "folder-reach");
+    assert_eq!(fs::read_dir(studio.own().join("lamp")).unwrap().count(), 1);
+    let saved = page.done("save", save("out", false));
+    let files = ["front", "drill", "back", "outline"].map(|name| format!("out/{name}.gcode"));
+    let mut expected: Vec<String> = files.to_vec();
+    expected.push(String::from("out/report.json"));
+    assert_eq!(saved["files"], json!(expected));
+    let machine = app::toolpath::machine(MACHINE).unwrap();
+    let (settings, tolerances) = (plan(), proof::Tolerances::default());
+    let job = Job::new(&machine, &settings, &tolerances).unwrap();
+    let made = job.make(&[app::Source::File(studio.own().join("lamp/lamp.toml"))], &()).unwrap();
+    let report = format!("{:#}\n", made.account(&job, Vec::new()).data);
+    for (name, bytes) in made.contents(&job, &report) {
+        assert!(fs::read(studio.own().join("out").join(&name)).unwrap() == bytes, "{name}");
+    }
+    assert_eq!(page.refused("save", save("out", false)), "output-folder");
+    page.done("save", save("out", true));
+}
+
+#[test]
+fn a_board_is_drawn_by_its_nets_as_it_lies_for_each_program() {
+    let studio = studio();
+    let mut page = studio.socket();
+    let front = post(&mut page, json!({ "folder": "lamp" }));
+    let mut picture = |number: usize| {
+        let revision = &front["board"]["programs"][number]["revision"];
+        let frame = page.answer("board", json!({ "revision": revision }), &[]).unwrap();
+        let array = |name: &str| {
+            let array = frame.arrays.iter().find(|array| array.name == name).unwrap();
+            let Values::F32(values) = &array.values else { panic!() };
+            values.clone()
+        };
+        (frame.head["done"].clone(), array("areas"), array("holes"), array("tabs"))
+    };
+    let (about, areas, holes, tabs) = picture(0);
+    let listed = about["areas"].as_array().unwrap();
+    let count: u64 = listed.iter().map(|area| area["count"].as_u64().unwrap()).sum();
+    assert_eq!(areas.len() as u64, 6 * count);
+    assert_eq!(listed[0]["kind"], "board");
+    assert!(listed.iter().any(|area| area["kind"] == "copper" && area["net"].is_string()));
+    assert_eq!((holes.len() % 5, tabs.len()), (0, 0));
+    assert!(!holes.is_empty());
+    let (back, other, ..) = picture(2);
+    assert!(other != areas);
+    assert_eq!(back["turning"]["along"], "Y");
+    let (.., tabs) = picture(3);
+    // Four tabs, as where nothing else is said.
+    assert_eq!(tabs.len(), 16);
+    assert_eq!(page.refused("board", json!({ "revision": 0 })), "studio-limit");
+}
+
+#[test]
+fn layers_are_posted_from_a_folder_and_from_uploads_and_nothing_else_is_read() {
+    let studio = studio();
+    let (track, edge) = (track(), edge(CLOSED));
+    let folder = studio.own().join("plots");
+    plots(&folder, &[("b.gtl", &track), ("b.gko", &edge)]);
+    // What leads out is none of the board.
+    #[cfg(unix)]
+    {
+        fs::write(studio.outside.path().join("secret.gbl"), &track).unwrap();
+        std::os::unix::fs::symlink("../../secret.gbl", folder.join("b.gbl")).unwrap();
+    }
+    let mut page = studio.socket();
+    let of_folder = post(&mut page, json!({ "folder": "plots" }));
+    assert_eq!(names(&of_folder["board"]["programs"]), ["front", "outline"]);
+    assert_eq!(of_folder["board"]["name"], "plots");
+    let upload = |name: &str, text: &str| {
+        let (_, _, body) = studio.request(&format!("PUT /upload/{name}"), "", text.as_bytes());
+        serde_json::from_slice::<Value>(&body).unwrap()["upload"].clone()
+    };
+    let ids = [upload("b.gtl", &track), upload("b.gko", &edge)];
+    let of_uploads = post(&mut page, json!({ "uploads": ids }));
+    assert_eq!(names(&of_uploads["board"]["programs"]), ["front", "outline"]);
+    let cuts = |text: String| {
+        let cuts = text.lines().filter(|line| line.starts_with(['G', 'X', 'Y', 'Z']));
+        cuts.map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(cuts(text_of(&mut page, &of_folder)), cuts(text_of(&mut page, &of_uploads)));
+    assert_eq!(
+        refused(&mut page, json!({ "folder": ".." }))["findings"][0]["rule"],
+        "folder-reach"
+    );
+    assert_eq!(refused(&mut page, json!({ "folder": "no" }))["verdict"], "invalid");
+    // Files that the options name are those of the folder.
+    let named = json!({ "source": { "folder": "plots" }, "machine": MACHINE, "options": [["heights", "../secret.gbl"]] });
+    assert_eq!(page.refused("post", named), "folder-reach");
+}
+
+#[test]
+fn what_cannot_be_made_is_left_out_and_the_rest_is_saved() {
+    let studio = studio();
+    plots(&studio.own().join("open"), &[("b.gtl", &track()), ("b.gko", &edge(""))]);
+    let mut page = studio.socket();
+    let job = post(&mut page, json!({ "folder": "open" }));
+    let board = &job["board"];
+    assert_eq!((&job["verdict"], &board["verdict"]), (&json!("done"), &json!("partly")), "{board}");
+    assert_eq!(names(&board["programs"]), ["front"]);
+    assert_eq!(board["left_out"][0]["file"], "outline.gcode");
+    assert_eq!(board["left_out"][0]["findings"][0]["rule"], "outline-open");
+    let findings = job["findings"].as_array().unwrap();
+    assert!(findings.iter().any(|found| found["rule"] == "outline-open"), "{findings:?}");
+    let params = json!({ "revision": job["revision"], "path": "out", "replace": false });
+    assert_eq!(page.done("save", params)["files"], json!(["out/front.gcode", "out/report.json"]));
+}
+
+#[test]
+fn what_is_no_board_is_refused_with_the_way_out() {
+    let studio = studio();
+    let own = studio.own();
+    let board = "(kicad_pcb (version 20221018))";
+    plots(&own.join("two"), &[("a.kicad_pcb", board), ("b.kicad_pcb", board)]);
+    plots(&own.join("none"), &[("readme.md", "nothing")]);
+    plots(&own.join("empty"), &[]);
+    let mut page = studio.socket();
+    for (folder, rule) in [("two", "board"), ("none", "no-board"), ("empty", "folder")] {
+        let stop = refused(&mut page, json!({ "folder": folder }));
+        assert_eq!(
+            (&stop["verdict"], &stop["findings"][0]["rule"]),
+            (&json!("invalid"), &json!(rule))
+        );
+        assert_ne!(stop["findings"][0]["help"], "", "{stop}");
+    }
+    let on_wire = json!({ "source": { "folder": "lamp" }, "machine": "bp-95d" });
+    assert_eq!(page.refused("post", on_wire), "machine-kind");
+    for uploads in [json!([]), json!(["99"])] {
+        refused(&mut page, json!({ "uploads": uploads }));
+    }
+}
+
+#[test]
+fn the_server_says_which_command_makes_a_source() {
+    let studio = studio();
+    let mut page = studio.socket();
+    for (source, machine, command) in [
+        (json!({ "file": "dome.cls" }), json!(null), "post"),
+        (json!({ "file": "dome.cls" }), json!("bp-95d"), "wire"),
+        (json!({ "file": "lamp/lamp.toml" }), json!(null), "pcb"),
+        (json!({ "folder": "lamp" }), json!("bp-95d"), "pcb"),
+    ] {
+        let params = json!({ "source": source, "machine": machine });
+        assert_eq!(page.done("command", params), command, "{source}");
+    }
+}
+
+#[test]
+fn a_board_tells_its_steps_and_is_ended_in_the_midst_of_them() {
+    let studio = studio();
+    let mut page = studio.socket();
+    let id = page.ask("post", params(json!({ "folder": "lamp" })), &[]);
+    let mut steps = Vec::new();
+    loop {
+        let Said::Frame(frame) = page.next() else { panic!() };
+        if frame.head["id"] != id {
+            continue;
+        }
+        match frame.head.get("step") {
+            Some(step) if frame.head["part"].is_null() => {
+                steps.push(step.as_str().unwrap().to_owned());
+            }
+            Some(_) => {}
+            None => break,
+        }
+    }
+    steps.dedup();
+    assert_eq!(steps, ["reading", "planning", "writing and proving", "drawing"]);
+    let id = page.ask("post", params(json!({ "folder": "lamp" })), &[]);
+    loop {
+        let Said::Frame(frame) = page.next() else { panic!() };
+        if frame.head.get("step").is_some_and(|step| step == "planning") {
+            break;
+        }
+    }
+    page.send(&json!({ "cancel": id }), &[]);
+    assert_eq!(page.answer_of(id).unwrap_err()["verdict"], "cancelled");
+}
