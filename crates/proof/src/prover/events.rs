@@ -24,7 +24,7 @@ impl Prover<'_> {
             let message =
                 "changes the first tool wherever Z stands: nothing before it has sent Z home";
             let message = format!("{}the program {message}", SourceLine(self.cursor.line));
-            match self.gauge.machine.retract_height() {
+            match self.retract_height {
                 // Z 0 is set with the tool after it: up before the start is not up then.
                 Some(height) => {
                     let help = format!("raise Z to {} mm by rapid before it", Number(height));

@@ -78,8 +78,11 @@ pub struct Prover<'a> {
     top: f64,
     /// Whether the operator has set up a machine without switches, or the tool has moved.
     is_set_up: bool,
-    /// The plate on which tools are touched off, where there is one.
+    /// The plate on which tools are touched off, where there is one. Options of the machine's file are looked up once for a proof, not for
+    /// each event.
     plate: Option<TouchPlate>,
+    /// How high a machine without switches retracts in place of home, mm.
+    retract_height: Option<f64>,
     /// How far the touch-off of the tool is that has been put in by hand.
     touch: touch_off::Touch,
     /// The length register of the last cut with the tool before.
@@ -167,6 +170,7 @@ impl<'a> Prover<'a> {
             top: f64::NEG_INFINITY,
             is_set_up: false,
             plate: machine.touch_plate(),
+            retract_height: machine.retract_height(),
             touch: touch_off::Touch::default(),
             length_before_tool: None,
             swivelled: false,

@@ -224,7 +224,7 @@ impl Prover<'_> {
     /// the source goes.
     pub(super) fn retracts(&self, to: &Position) -> bool {
         let machine = self.gauge.machine;
-        let Some(height) = machine.retract_height() else { return false };
+        let Some(height) = self.retract_height else { return false };
         let (from, at) = (self.here.position.point, to.point);
         let same = |a: f64, b: f64| (a - b).abs() <= SAME || a.is_nan() && b.is_nan();
         // Where the tool stands there already, it counts before a stop, a tool and the end alone. Any other rapid that goes as high is
@@ -248,12 +248,11 @@ impl Prover<'_> {
     /// A machine without switches waits for the operator before it first moves: its Z is where it was switched on until a tool has
     /// set it. One with a touch plate waits before it first leaves home: no table knows how long its first tool is.
     pub(super) fn awaits_set_up(&mut self, event: &Event) {
-        let machine = self.gauge.machine;
         let homes = matches!(event.action, Action::Home(_) | Action::MachineMove(_));
         let moves = matches!(event.action, Action::Probe(_)) || event.action.position().is_some();
-        let why = if machine.retract_height().is_some() && (homes || moves) {
+        let why = if self.retract_height.is_some() && (homes || moves) {
             "the machine has no switches"
-        } else if machine.touch_plate().is_some() && moves {
+        } else if self.plate.is_some() && moves {
             "the machine has a touch plate, and no table of tools that are measured"
         } else {
             self.is_set_up |= event.action == Action::Stop;

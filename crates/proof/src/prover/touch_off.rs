@@ -103,7 +103,7 @@ impl Prover<'_> {
         }
         self.hold_travel(&self.gauge.resolve(line, *to), None);
         let room = self.gauge.machine.capabilities.rapid_clearance;
-        if self.gauge.machine.retract_height().is_some() && self.top < plate.height + room {
+        if self.retract_height.is_some() && self.top < plate.height + room {
             let what = format!(
                 "goes over the touch plate at Z{}, whose top is at Z{}: {} mm of room are needed",
                 Number(self.top),
