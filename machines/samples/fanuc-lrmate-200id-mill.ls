@@ -39,7 +39,7 @@ CONTROL_CODE = 00000000 00000000;
 18:UTOOL_NUM=9 ;
 19:J P[1] 20% FINE ;
 20:J P[2] 20% FINE ;
-21:J P[3] 20% FINE ;
+21:L P[3] 600cm/min FINE ;
 22:AO[1]=500 ;
 23:DO[1]=ON ;
 24:WAIT 3.00(sec) ;
@@ -60,15 +60,15 @@ CONTROL_CODE = 00000000 00000000;
 36:WAIT 0.50(sec) ;
 37:!TILTED ;
 38:J P[17] 20% FINE ;
-39:J P[18] 20% FINE ;
+39:L P[18] 600cm/min FINE ;
 40:L P[19] 60cm/min FINE ;
 41:L P[20] 60cm/min FINE ;
 42:L P[21] 60cm/min FINE ;
-43:J P[22] 20% FINE ;
+43:L P[22] 600cm/min FINE ;
 44:DO[2]=OFF ;
 45:!HOLES ;
 46:J P[23] 20% FINE ;
-47:J P[24] 20% FINE ;
+47:L P[24] 600cm/min FINE ;
 48:L P[25] 15cm/min FINE ;
 49:L P[26] 600cm/min FINE ;
 50:J P[27] 20% FINE ;
@@ -99,9 +99,9 @@ J4= 0.0000 deg, J5= -43.8151 deg, J6= 0.0000 deg
 };
 P[3]{
 GP1:
-UF : 9, UT : 9,
-J1= 0.0000 deg, J2= 29.0394 deg, J3= -50.5676 deg,
-J4= 0.0000 deg, J5= -39.4324 deg, J6= 0.0000 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[4]{
 GP1:
@@ -189,9 +189,9 @@ J4= 0.0000 deg, J5= -44.1204 deg, J6= -7.5946 deg
 };
 P[18]{
 GP1:
-UF : 9, UT : 9,
-J1= 7.5946 deg, J2= 29.1767 deg, J3= -49.7644 deg,
-J4= 0.0000 deg, J5= -40.2356 deg, J6= -7.5946 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 60.000 mm, Z = 5.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[19]{
 GP1:
@@ -213,9 +213,9 @@ W = 160.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[22]{
 GP1:
-UF : 9, UT : 9,
-J1= 15.3516 deg, J2= 42.1293 deg, J3= -40.2659 deg,
-J4= 23.0382 deg, J5= -57.4344 deg, J6= -29.1792 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 80.000 mm, Y = 66.840 mm, Z = 18.794 mm,
+W = 160.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[23]{
 GP1:
@@ -225,9 +225,9 @@ J4= 0.0000 deg, J5= -45.4325 deg, J6= -2.4366 deg
 };
 P[24]{
 GP1:
-UF : 9, UT : 9,
-J1= 2.4366 deg, J2= 31.6746 deg, J3= -48.7628 deg,
-J4= 0.0000 deg, J5= -41.2372 deg, J6= -2.4366 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 20.000 mm, Y = 20.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[25]{
 GP1:

@@ -39,7 +39,7 @@ CONTROL_CODE = 00000000 00000000;
 18:UTOOL_NUM=9 ;
 19:J P[1] 20% FINE ;
 20:J P[2] 20% FINE ;
-21:J P[3] 20% FINE ;
+21:L P[3] 600cm/min FINE ;
 22:AO[1]=500 ;
 23:DO[1]=ON ;
 24:WAIT 3.00(sec) ;
@@ -60,15 +60,15 @@ CONTROL_CODE = 00000000 00000000;
 36:WAIT 0.50(sec) ;
 37:!TILTED ;
 38:J P[17] 20% FINE ;
-39:J P[18] 20% FINE ;
+39:L P[18] 600cm/min FINE ;
 40:L P[19] 60cm/min FINE ;
 41:L P[20] 60cm/min FINE ;
 42:L P[21] 60cm/min FINE ;
-43:J P[22] 20% FINE ;
+43:L P[22] 600cm/min FINE ;
 44:DO[2]=OFF ;
 45:!HOLES ;
 46:J P[23] 20% FINE ;
-47:J P[24] 20% FINE ;
+47:L P[24] 600cm/min FINE ;
 48:L P[25] 15cm/min FINE ;
 49:J P[26] 20% FINE ;
 50:J P[27] 20% FINE ;
@@ -99,9 +99,9 @@ J4= 0.0000 deg, J5= -38.4565 deg, J6= 0.0000 deg
 };
 P[3]{
 GP1:
-UF : 9, UT : 9,
-J1= 0.0000 deg, J2= 11.1513 deg, J3= -53.5468 deg,
-J4= 0.0000 deg, J5= -36.4532 deg, J6= 0.0000 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[4]{
 GP1:
@@ -189,9 +189,9 @@ J4= 0.0000 deg, J5= -38.4789 deg, J6= -3.4336 deg
 };
 P[18]{
 GP1:
-UF : 9, UT : 9,
-J1= 3.4336 deg, J2= 11.1228 deg, J3= -53.3069 deg,
-J4= 0.0000 deg, J5= -36.6931 deg, J6= -3.4336 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 60.000 mm, Z = 5.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[19]{
 GP1:
@@ -213,9 +213,9 @@ W = 160.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[22]{
 GP1:
-UF : 9, UT : 9,
-J1= 8.0292 deg, J2= 16.8131 deg, J3= -51.8744 deg,
-J4= 28.7333 deg, J5= -44.7876 deg, J6= -29.7980 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 80.000 mm, Y = 66.840 mm, Z = 18.794 mm,
+W = 160.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[23]{
 GP1:
@@ -225,9 +225,9 @@ J4= 0.0000 deg, J5= -38.7217 deg, J6= -1.1233 deg
 };
 P[24]{
 GP1:
-UF : 9, UT : 9,
-J1= 1.1233 deg, J2= 12.4459 deg, J3= -53.2475 deg,
-J4= 0.0000 deg, J5= -36.7525 deg, J6= -1.1233 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 20.000 mm, Y = 20.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[25]{
 GP1:

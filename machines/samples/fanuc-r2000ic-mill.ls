@@ -39,7 +39,7 @@ CONTROL_CODE = 00000000 00000000;
 18:UTOOL_NUM=9 ;
 19:J P[1] 20% FINE ;
 20:J P[2] 20% FINE ;
-21:J P[3] 20% FINE ;
+21:L P[3] 600cm/min FINE ;
 22:AO[1]=500 ;
 23:DO[1]=ON ;
 24:WAIT 3.00(sec) ;
@@ -56,11 +56,11 @@ CONTROL_CODE = 00000000 00000000;
 32:L P[13] 30cm/min FINE ;
 33:L P[14] 120cm/min FINE ;
 34:L P[15] 120cm/min FINE ;
-35:J P[16] 20% FINE ;
+35:L P[16] 600cm/min FINE ;
 36:WAIT 0.50(sec) ;
 37:!TILTED ;
 38:J P[17] 20% FINE ;
-39:J P[18] 20% FINE ;
+39:L P[18] 600cm/min FINE ;
 40:L P[19] 60cm/min FINE ;
 41:L P[20] 60cm/min FINE ;
 42:L P[21] 60cm/min FINE ;
@@ -68,7 +68,7 @@ CONTROL_CODE = 00000000 00000000;
 44:DO[2]=OFF ;
 45:!HOLES ;
 46:J P[23] 20% FINE ;
-47:J P[24] 20% FINE ;
+47:L P[24] 600cm/min FINE ;
 48:L P[25] 15cm/min FINE ;
 49:J P[26] 20% FINE ;
 50:J P[27] 20% FINE ;
@@ -99,9 +99,9 @@ J4= 0.0000 deg, J5= -32.4710 deg, J6= 0.0000 deg
 };
 P[3]{
 GP1:
-UF : 9, UT : 9,
-J1= 0.0000 deg, J2= 12.7011 deg, J3= -59.0272 deg,
-J4= 0.0000 deg, J5= -30.9728 deg, J6= 0.0000 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[4]{
 GP1:
@@ -177,9 +177,9 @@ W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[16]{
 GP1:
-UF : 9, UT : 9,
-J1= 0.0000 deg, J2= 11.3183 deg, J3= -57.5290 deg,
-J4= 0.0000 deg, J5= -32.4710 deg, J6= 0.0000 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = 30.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[17]{
 GP1:
@@ -189,9 +189,9 @@ J4= 0.0000 deg, J5= -32.4848 deg, J6= -2.4540 deg
 };
 P[18]{
 GP1:
-UF : 9, UT : 9,
-J1= 2.4540 deg, J2= 12.6072 deg, J3= -58.8517 deg,
-J4= 0.0000 deg, J5= -31.1483 deg, J6= -2.4540 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 60.000 mm, Z = 5.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[19]{
 GP1:
@@ -225,9 +225,9 @@ J4= 0.0000 deg, J5= -32.6939 deg, J6= -0.8069 deg
 };
 P[24]{
 GP1:
-UF : 9, UT : 9,
-J1= 0.8069 deg, J2= 13.5706 deg, J3= -58.7784 deg,
-J4= 0.0000 deg, J5= -31.2216 deg, J6= -0.8069 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 20.000 mm, Y = 20.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[25]{
 GP1:

@@ -271,6 +271,7 @@ impl<'a> Walk<'a> {
                 can: &machine.capabilities,
                 turn_rate: machine.turn_speed().map(|speed| 2.0 * speed),
                 cuts: CutBox::of(program),
+                fed: CutBox::fed(program),
             },
             sent: Sent { feed: None, corner: None, spindle: Spindle::Off, coolant: Coolant::Off },
             offsets: false,
@@ -507,7 +508,7 @@ impl<'a> Walk<'a> {
             route.last().is_some_and(|last| last.path == RapidPath::Joints)
         };
         let Some(route) = route.filter(by_joints) else {
-            let message = "the way home by the joints comes too near to what is cut";
+            let message = "the way home by the joints comes too near to what is cut, or below where a feed begins";
             let help =
                 "end with a rapid that lifts the tool off the part, or change `home` below [cell]";
             return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
@@ -597,7 +598,7 @@ impl<'a> Walk<'a> {
         // From home no line of the source leads.
         let free = self.is_home();
         let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, free) else {
-            let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut, and straight the \
+            let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut or fed through, and straight the \
                            posture or a turn of a joint would not fit";
             let own = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";
             let [from, to] = [&self.here, &motion.end].map(|at| self.arm.posture(&at.joints));

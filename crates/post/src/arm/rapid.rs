@@ -1,4 +1,4 @@
-//! How a rapid of an arm goes: by its joints where the tool is then beyond all cuts, else straight.
+//! How a rapid of an arm goes: by its joints where the tool is then beyond all cuts and above where feeds begin, else straight.
 
 use super::plan::Position;
 use ::arm::{Arm, Joints, Posture};
@@ -27,6 +27,8 @@ pub(super) struct RapidPlanner<'a> {
     /// How fast the tool turns where it turns on the spot, its axis and about it together, degrees/s; `None` where it cannot be said.
     pub(super) turn_rate: Option<f64>,
     pub(super) cuts: CutBox,
+    /// All that the source feeds through: what is below the start of a plunge may be material.
+    pub(super) fed: CutBox,
 }
 
 /// How a rapid goes.
@@ -58,17 +60,23 @@ impl RapidPlanner<'_> {
         to: &Position,
         free: bool,
     ) -> Option<Vec<RapidSegment>> {
-        let line = [from.tool.translation, to.tool.translation];
-        if self.is_clear(tool, [from, to], (!free).then_some(line)) {
+        let line = (!free).then_some([from, to].map(|end| end.tool.translation));
+        // A rapid into the part or out of it is made straight up to its higher end.
+        let leads_in = [from, to].into_iter().any(|end| {
+            let axis = -end.tool.matrix3.z_axis;
+            end.tool.translation.dot(axis) < self.fed.reach(axis) + self.can.rapid_clearance
+        });
+        let way = line.filter(|_| leads_in);
+        if self.is_clear(tool, [from, to], line, way) {
             return Some(vec![RapidSegment { path: RapidPath::Joints, end: *to }]);
         }
         if !free && let Some(feed) = self.straight(tool, from, to) {
             return Some(vec![RapidSegment { path: RapidPath::Straight(feed), end: *to }]);
         }
         RETRACTS.into_iter().find_map(|height| {
-            let (start, up) = self.retracted(tool, from, height)?;
-            let (end, down) = self.retracted(tool, to, height)?;
-            if !self.is_clear(tool, [&start, &end], None) {
+            let (start, up) = self.retracted(tool, from, way, height)?;
+            let (end, down) = self.retracted(tool, to, way, height)?;
+            if !self.is_clear(tool, [&start, &end], None, way) {
                 return None;
             }
             let up = up.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: start });
@@ -93,9 +101,10 @@ impl RapidPlanner<'_> {
             |end: Position, feed: f64| RapidSegment { path: RapidPath::Straight(feed), end };
         let joints = |end: Position| RapidSegment { path: RapidPath::Joints, end };
         RETRACTS.into_iter().find_map(|height| {
-            let (start, up) = self.retracted(tool, &out, height)?;
-            let (end, down) = self.retracted(tool, &over, height)?;
-            let is_clear = |from: &Position, to: &Position| self.is_clear(tool, [from, to], None);
+            let (start, up) = self.retracted(tool, &out, None, height)?;
+            let (end, down) = self.retracted(tool, &over, None, height)?;
+            let is_clear =
+                |from: &Position, to: &Position| self.is_clear(tool, [from, to], None, None);
             // Where the joints go from one posture into the other in one motion the tool may tilt too far.
             let through = match is_clear(&start, &end) {
                 true => None,
@@ -111,21 +120,33 @@ impl RapidPlanner<'_> {
         })
     }
 
-    /// How far the tool has to be beyond all cuts where joints lead it, mm.
-    fn clearance(&self) -> f64 {
-        self.can.rapid_clearance + self.arm.unmeasured()
+    /// How high along `axis` the tool has to be where joints lead it, which may leave it `unmeasured` mm off, mm: beyond all cuts by the clearance, and as high
+    /// as all feeds begin; of a rapid into the part or out of it, whose ends are given, as high as these.
+    fn floor(&self, axis: Vec3, way: Option<[Vec3; 2]>, unmeasured: f64) -> f64 {
+        let ends = way.into_iter().flatten().map(|end| end.dot(axis));
+        let begins = ends.fold(self.fed.reach(axis), f64::max);
+        (self.cuts.reach(axis) + self.can.rapid_clearance).max(begins) + unmeasured
     }
 
-    /// The position beyond all cuts along the tool's own axis, and the feed to go between it and `at`; none where it is that.
+    /// Whether the tool is as high as [`RapidPlanner::floor`] asks for, but for what a path may be off.
+    fn is_free(&self, tool: &Frame, way: Option<[Vec3; 2]>, unmeasured: f64) -> bool {
+        let axis = -tool.matrix3.z_axis;
+        let floor = self.floor(axis, way, unmeasured);
+        tool.translation.dot(axis) >= floor - self.can.rapid_corridor / 2.0
+    }
+
+    /// The position so far above what [`RapidPlanner::floor`] asks for along the tool's own axis, and the feed to go between it and `at`; none where it is
+    /// that.
     fn retracted(
         &self,
         tool: &Frame,
         at: &Position,
-        beyond_cuts: f64,
+        way: Option<[Vec3; 2]>,
+        above: f64,
     ) -> Option<(Position, Option<f64>)> {
         let axis = -at.tool.matrix3.z_axis;
-        let beyond = self.cuts.reach(axis) + self.clearance() + beyond_cuts;
-        let height = beyond - at.tool.translation.dot(axis);
+        let floor = self.floor(axis, way, self.arm.unmeasured()) + above;
+        let height = floor - at.tool.translation.dot(axis);
         if height <= 0.0 || height.is_nan() {
             return Some((*at, None));
         }
@@ -144,15 +165,17 @@ impl RapidPlanner<'_> {
         self.straight(tool, at, &raised).map(|feed| (raised, feed))
     }
 
-    /// Whether the tool is beyond all cuts along its own axis while the joints go, or near the line.
+    /// Whether the tool is free of the part while the joints go, or near the line.
     pub(super) fn is_clear(
         &self,
         tool: &Frame,
         [from, to]: [&Position; 2],
         line: Option<[Vec3; 2]>,
+        way: Option<[Vec3; 2]>,
     ) -> bool {
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
+        let unmeasured = self.arm.unmeasured();
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
         (0..=count as usize).all(|step| {
@@ -161,11 +184,10 @@ impl RapidPlanner<'_> {
                 std::array::from_fn(|i| from.joints[i] + part * (to.joints[i] - from.joints[i]));
             let world = self.cell.part_from(from.rail + part * (to.rail - from.rail)).inverse();
             let at = world * self.arm.flange(&joints) * *tool;
-            let (tip, axis) = (at.translation, -at.matrix3.z_axis);
-            let near = line.filter(|_| self.arm.unmeasured() == 0.0).is_some_and(|[from, to]| {
-                nearest_on_segment(from, to, tip).1 <= self.can.rapid_corridor / 2.0
+            let near = line.filter(|_| unmeasured == 0.0).is_some_and(|[from, to]| {
+                nearest_on_segment(from, to, at.translation).1 <= self.can.rapid_corridor / 2.0
             });
-            near || tip.dot(axis) - self.cuts.reach(axis) >= self.clearance()
+            near || self.is_free(&at, way, unmeasured)
         })
     }
 

@@ -3,6 +3,7 @@
 mod between;
 mod contour;
 mod cut;
+mod free;
 mod joints;
 mod motions;
 mod path;
@@ -73,6 +74,8 @@ pub(super) struct Comparison<'a> {
     arm: &'a Arm,
     cell: &'a Cell,
     cuts: CutBox,
+    /// What the source reaches by feed, with the places where its feeds begin.
+    fed: CutBox,
     expected: Vec<Expected>,
     next: usize,
     /// How much of the next step is done, 0 to 1.
@@ -128,6 +131,7 @@ impl<'a> Comparison<'a> {
             arm,
             cell,
             cuts: CutBox::of(source),
+            fed: CutBox::fed(source),
             expected,
             next: 0,
             done: 0.0,

@@ -8,8 +8,8 @@
 //! 1. Each motion of the source in its order, with tip and axis within the tolerances: a line by lines on it, an arc by arcs through points
 //!    of it or by chords, a rapid by a straight line or by the joints.
 //! 2. Along each line and arc: one posture, every joint within its limits and within its speed at the feed.
-//! 3. A motion of the joints only where the tool is beyond all cuts along its own axis on the whole path, or within `rapid_corridor` of the
-//!    straight line of the source.
+//! 3. A motion of the joints only where the tool is free of the part on the whole path (beyond all cuts along its own axis, not below where a feed begins, and
+//!    on a rapid into the part or out of it not below its higher end), or within `rapid_corridor` of the straight line of the source.
 //! 4. Corners that are passed within a cut, by no more than `path_tolerance`.
 //! 5. In every cut feed, spindle, coolant; base and tool as the cell states them.
 //! 6. Home by joints at the beginning, at tool changes, and at the end; spindle and coolant are off at tool changes and at the end, and may

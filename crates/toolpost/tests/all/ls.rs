@@ -48,7 +48,7 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("UTOOL_NUM=9", "UTOOL_NUM=0", "frame"),
     ("15:UFRAME_NUM=9 ;\r\n", "", "frame"),
     ("UF : 9, UT : 9, CONFIG", "UF : 1, UT : 9, CONFIG", "frame"),
-    ("J2= 23.4083", "J2= 24.4083", "end-point"),
+    ("J2= 23.4083", "J2= 22.4083", "end-point"),
     ("J3= -42.9932", "J3= -19.5849", "end-point"),
     ("17:J P[1] 20% FINE ;\r\n", "", "home"),
     ("18:J P[2] 20% FINE ;\r\n", "", "extra-motion"),

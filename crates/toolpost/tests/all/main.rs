@@ -29,6 +29,7 @@ mod moved_lengths;
 mod mutations;
 mod nc;
 mod operator;
+mod plunges;
 mod poles;
 mod preparation;
 mod production;

@@ -131,8 +131,8 @@ fn an_arm_tells_its_joints_and_the_block_of_each_motion() {
         assert!(line.trim_start().starts_with(word), "{motion:?}: {line}");
         made.push((motion.record, way));
     }
-    // Records 5, 6 and 7 of the source; the half circle is one arc.
-    for should in [(5, 'L'), (6, 'A'), (7, 'J')] {
+    // Records 3 and 5 to 7 of the source; the half circle is one arc, and out of the slot the tool goes straight.
+    for should in [(3, 'J'), (5, 'L'), (6, 'A'), (7, 'L')] {
         assert!(made.contains(&should), "{should:?} is not in {made:?}");
     }
     assert!(made.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{made:?}");

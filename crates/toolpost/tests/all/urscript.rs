@@ -28,13 +28,14 @@ fn measured() -> Machine {
 
 #[test]
 fn the_job_of_the_specification_is_posted_with_its_joints_and_proven() {
-    let text = proven(&source(JOB), &ur5e());
-    let paths = crate::robot::paths(Dialect::UrScript, &text);
+    let measured = crate::robot::paths(Dialect::UrScript, &proven(&source(JOB), &measured()));
     // The joints that the specification has calculated for the tool at (0, 0, 50), radians; how it is turned about its axis is free.
-    let ArmPath::Joints(start) = paths[1] else { panic!("{text}") };
+    let ArmPath::Joints(start) = measured[1] else { panic!("{measured:?}") };
     for (at, expected) in start.iter().zip([2.84086, -1.65957, 2.0143, -1.92553, -FRAC_PI_2]) {
         assert!((at.to_radians() - expected).abs() < 1e-5, "{start:?}");
     }
+    let text = proven(&source(JOB), &ur5e());
+    let paths = crate::robot::paths(Dialect::UrScript, &text);
     let ends: Vec<Vec3> = paths
         .iter()
         .filter_map(|path| match path {
@@ -42,9 +43,16 @@ fn the_job_of_the_specification_is_posted_with_its_joints_and_proven() {
             _ => None,
         })
         .collect();
-    // The part lies at (450, 0, 150). The first line corrects what the joints leave of an arm that is not measured.
-    let expected =
-        [[450.0, 0.0, 200.0], [450.0, 0.0, 148.0], [510.0, 0.0, 148.0], [530.0, 20.0, 200.0]];
+    // The part lies at (450, 0, 150). Of an arm that is not measured the joints lead 20 mm higher than where the feed begins, and the first line corrects
+    // what they leave.
+    let expected = [
+        [450.0, 0.0, 222.0],
+        [450.0, 0.0, 200.0],
+        [450.0, 0.0, 148.0],
+        [510.0, 0.0, 148.0],
+        [530.0, 20.0, 200.0],
+        [530.0, 20.0, 222.0],
+    ];
     assert_eq!(ends.len(), expected.len());
     for (end, expected) in ends.iter().zip(expected) {
         assert!(end.distance(Vec3::from(expected)) < 1e-9, "{ends:?}");
@@ -84,9 +92,14 @@ fn the_program_of_the_specification_comes_to_the_stated_points() {
   movej([3.141593,-1.570796,1.570796,-1.570796,-1.570796,0],a=1.4,v=0.5)
 end
 ";
-    let machine = ur5e();
-    let report = proof_of(&source(JOB), &machine, PROGRAM);
+    let machine = measured();
+    // An arm that is measured has nothing to correct.
+    let correcting = "  movel(pose_trans(part,p[0,0,0.05,3.1415927,0,0]),a=1.2,v=0.1)\n";
+    let report = proof_of(&source(JOB), &machine, &PROGRAM.replacen(correcting, "", 1));
     assert!(report.proven, "{:#?}", report.mismatches);
+    // The joints of an arm that is not measured lead up to 20 mm beside and below where its feed begins.
+    let report = proof_of(&source(JOB), &ur5e(), PROGRAM);
+    assert_eq!(report.mismatches[0].rule.name(), "rapid-path", "{:?}", report.mismatches);
     let arm = machine.arm.as_ref().unwrap();
     let ArmPath::Joints(start) = crate::robot::paths(Dialect::UrScript, PROGRAM)[1] else {
         panic!()
@@ -116,16 +129,17 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ),
     ("movej([2.840858", "movej([2.850858", "end-point"),
     (
-        "movej([2.840858,-1.659567,2.014299,-1.925529,-1.570796",
-        "movej([2.840858,-1.659567,2.014299,-1.925529,-1.560796",
+        "movej([2.840858,-1.677638,1.971169,-1.864327,-1.570796",
+        "movej([2.840858,-1.677638,1.971169,-1.864327,-1.560796",
         "end-point",
     ),
     (
-        "movel(pose_trans(part,p[0.000000,0.000000,0.050000",
-        "#movel(pose_trans(part,p[0.000000,0.000000,0.050000",
+        "movel(pose_trans(part,p[0.000000,0.000000,0.072000",
+        "#movel(pose_trans(part,p[0.000000,0.000000,0.072000",
         "unknown-position",
     ),
-    ("p[0.000000,0.000000,0.050000", "p[0.000000,0.000000,0.040000", "unknown-position"),
+    ("p[0.000000,0.000000,0.072000", "p[0.000000,0.000000,0.062000", "unknown-position"),
+    ("p[0.000000,0.000000,0.050000", "p[0.000000,0.000000,0.040000", "extra-motion"),
     ("p[0.060000", "p[0.061000", "path"),
     ("p[0.060000", "p[60.00000", "path"),
     ("p[0.000000,0.000000,-0.002000", "p[0.000000,0.000000,-0.002010", "path"),
@@ -133,13 +147,13 @@ const DAMAGES: &[(&str, &str, &str)] = &[
     ("p[0.060000,0.000000,-0.002000", "p[0.060000,0.000000,0.002000", "path"),
     ("pose_trans(part,p[0.060000", "pose_trans(pose_inv(part),p[0.060000", "path"),
     (
-        "pose_trans(part,p[0.060000,0.000000,-0.002000,2.2214415,-2.2214415,0.0000000])",
-        "p[0.060000,0.000000,-0.002000,2.2214415,-2.2214415,0.0000000]",
+        "pose_trans(part,p[0.060000,0.000000,-0.002000,-2.2214415,2.2214415,0.0000000])",
+        "p[0.060000,0.000000,-0.002000,-2.2214415,2.2214415,0.0000000]",
         "path",
     ),
     (
-        "p[0.080000,0.020000,0.050000,2.2214415",
-        "p[0.080000,0.020000,0.050000,2.2414415",
+        "p[0.080000,0.020000,0.050000,-2.2214415",
+        "p[0.080000,0.020000,0.050000,-2.2414415",
         "extra-motion",
     ),
     ("p[0.074142", "p[0.074242", "arc"),

@@ -41,7 +41,11 @@ impl Comparison<'_> {
             (_, Some((Some(from), to))) => Some([from.point(), to.point()]),
             (_, _) => None,
         };
-        self.clear(&before, &now, line.filter(|_| arrives))?;
+        let part_way = match rapid {
+            Some((Some(from), to)) => self.part_way(&from, &to),
+            _ => None,
+        };
+        self.clear([&before, &now], line.filter(|_| arrives), part_way)?;
         // From above the end of a rapid the tool goes down to it along its axis.
         let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));
         match arrives {
@@ -194,17 +198,21 @@ impl Comparison<'_> {
     }
 
     /// # Errors
-    /// On the way of the joints the tool is neither beyond all cuts along its axis nor near the line of the source.
-    pub(super) fn clear(&self, from: &Standing, to: &Standing, line: Option<[Vec3; 2]>) -> Outcome {
+    /// On the way of the joints the tool is neither near the line of the source nor free of the part: see [`Comparison::off_line`].
+    pub(super) fn clear(
+        &self,
+        [from, to]: [&Standing; 2],
+        line: Option<[Vec3; 2]>,
+        part_way: Option<[Vec3; 2]>,
+    ) -> Outcome {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let along = (to.rail - from.rail).abs();
         let count = ((turns * self.lever() + along) / STRIDE).ceil().clamp(1.0, 1e6);
-        let unmeasured = self.arm.unmeasured();
-        let clearance = self.machine.capabilities.rapid_clearance + unmeasured;
         let corridor = self.machine.capabilities.rapid_corridor;
+        let unmeasured = self.arm.unmeasured();
         let line = line.filter(|_| unmeasured == 0.0);
         for step in 0..=count as usize {
             let part = step as f64 / count;
@@ -213,17 +221,10 @@ impl Comparison<'_> {
             let foot = self.cell.foot(from.rail + part * (to.rail - from.rail));
             let at = self.in_part(&(base.inverse() * foot * self.arm.flange(&joints) * tool));
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
-            let beyond = tip.dot(axis) - self.cuts.reach(axis);
             let near =
                 line.is_some_and(|[start, end]| nearest_on_segment(start, end, tip).1 <= corridor);
-            if beyond < clearance - STRIDE / 2.0 && !near {
-                let message = format!(
-                    "on the way of the joints the tip comes to X{:.1} Y{:.1} Z{:.1}, {beyond:.2} mm beyond the cuts along the tool: \
-                     {clearance} mm are asked for",
-                    tip.x, tip.y, tip.z
-                );
-                let help = "go there by a straight line, or higher";
-                return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
+            if !near {
+                self.off_line((tip, axis), part_way, ("on the way of the joints", unmeasured))?;
             }
         }
         Ok(())

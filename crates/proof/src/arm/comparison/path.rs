@@ -163,7 +163,7 @@ impl Comparison<'_> {
     }
 
     /// # Errors
-    /// A straight rapid is neither on the line of the source, nor down along the tool to its end, nor beyond all cuts.
+    /// A straight rapid is neither on the line of the source, nor down along the tool to its end, nor free of the part.
     fn is_rapid_path(
         &self,
         start: &Standing,
@@ -176,15 +176,13 @@ impl Comparison<'_> {
         if is_own || self.is_above(&start.tool, to, f64::INFINITY) {
             return Ok(());
         }
-        let clearance = self.machine.capabilities.rapid_clearance;
+        let part_way = from.and_then(|from| self.part_way(from, to));
         let count = (length / STRIDE).ceil().clamp(1.0, 1e6);
         for step in 0..=count as usize {
             let tool = self.in_part(&at(step as f64 / count));
-            let (tip, axis) = (tool.translation, -tool.matrix3.z_axis);
-            if tip.dot(axis) - self.cuts.reach(axis) < clearance - STRIDE / 2.0 {
-                let message = "a straight rapid begins elsewhere than that of the source, and comes near to what is cut";
-                return refused(Rule::RapidPath, message);
-            }
+            let place = (tool.translation, -tool.matrix3.z_axis);
+            let what = "on a straight rapid that begins elsewhere than that of the source";
+            self.off_line(place, part_way, (what, 0.0))?;
         }
         Ok(())
     }

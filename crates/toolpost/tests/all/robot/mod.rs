@@ -2,8 +2,9 @@
 
 use crate::dice::Dice;
 use crate::files::root;
+use arm::Joints;
 use control::{Action, ArmAction, ArmPath, Dialect, Event, Settings};
-use geom::{Frame, Vec3};
+use geom::{Euler, Frame, Mat3, Vec3};
 use machine::Machine;
 use program::{Feed, OutputValue, Program};
 use proof::Report;
@@ -100,6 +101,20 @@ pub fn proven(source: &Program, machine: &Machine) -> String {
     text
 }
 
+/// The joints, as the controller shows them, that put the tool straight down at a point, turned by `turn` degrees about its axis.
+pub fn joints(machine: &Machine, tip: [f64; 3], turn: f64) -> Joints {
+    let (arm, cell) = (machine.arm.as_ref().unwrap(), machine.cell.as_ref().unwrap());
+    let turns = [180.0_f64, 0.0, turn].map(f64::to_radians);
+    let turned: Mat3 = Euler::FixedXyz.matrix(turns);
+    let at = Frame::from_mat3_translation(turned, Vec3::from_array(tip));
+    let flange = cell.part * at * cell.tool(None).unwrap().inverse();
+    let found = arm.inverse(&flange, 0.0);
+    let home = arm.model(&cell.home.map(f64::to_radians)).unwrap();
+    let posture = arm.posture(&home);
+    let (_, joints) = found.iter().find(|(of, _)| *of == posture).unwrap();
+    arm.shown(joints).unwrap().map(f64::to_degrees)
+}
+
 /// What a control of `dialect` does.
 pub fn events(dialect: Dialect, text: &str) -> Vec<Event> {
     let mut events = Vec::new();
@@ -134,7 +149,8 @@ fn alike((machine, dialect): (&Machine, Dialect), a: &str, b: &str) -> bool {
                 _ => from,
             };
             // The speed of a straight rapid is free.
-            same(machine, here, (a, b)) && ((fast - other).abs() < 0.1 || *fast == 6000.0)
+            same(machine, here, (a, b))
+                && ((fast - other).abs() < 0.1 || *fast == machine.cell.as_ref().unwrap().rapid)
         })
 }
 
