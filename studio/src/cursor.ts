@@ -1,6 +1,6 @@
 /** The one cursor: where every pane is. A place is a time, a move, a block, a line of the source and a template at once. */
 
-import { effect, signal, untracked, type Signal } from "@preact/signals";
+import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
 import { Newest } from "./newest.ts";
 import type { Seam } from "./protocol/seam.ts";
 import type { Asked, Job, Place, PlaceParams } from "./protocol/asks.ts";
@@ -14,12 +14,11 @@ export type Range = [number, number];
 export class Cursor {
     readonly place: Signal<Place | null> = signal(null);
     /** The moves that the block of the place makes: several where it stands in a loop or a cycle. */
-    readonly ofBlock: Signal<Range[]> = signal([]);
+    readonly ofBlock = computed((): Range[] => this.place.value?.block_moves ?? []);
     /** What the place was asked by. */
     readonly by: Signal<Where["by"]> = signal("move");
     private readonly asked: Newest<Where>;
-    private readonly askedMoves: Newest<number>;
-    private block = "";
+    private steps: Promise<void> = Promise.resolve();
     /** Of which job the place is. */
     private revision = 0;
 
@@ -28,7 +27,6 @@ export class Cursor {
         private readonly job: Signal<Job | null>,
     ) {
         this.asked = new Newest((by) => this.find(by));
-        this.askedMoves = new Newest((move) => this.findMoves(move));
         effect(() => {
             const now = this.job.value;
             untracked(() => this.again(now));
@@ -45,11 +43,20 @@ export class Cursor {
         return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) });
     }
 
+    /** A step from the place that was asked for last, as soon as that is known: of two that come fast none is lost. */
+    step(to: (place: Place) => number): Promise<void> {
+        const step = async (): Promise<void> => {
+            await this.asked.rest();
+            const place = this.place.value;
+            if (place !== null) await this.toMove(to(place));
+        };
+        this.steps = this.steps.then(step, step);
+        return this.steps;
+    }
+
     /** The next or the last move of the same block, in turn. */
-    turn(step: 1 | -1): Promise<void> {
-        const move = this.place.value?.move;
-        if (move === undefined) return Promise.resolve();
-        return this.toMove(neighbour(this.ofBlock.value, move, step));
+    turn(by: 1 | -1): Promise<void> {
+        return this.step(({ block_moves, move }) => neighbour(block_moves, move, by));
     }
 
     private async find(by: Where): Promise<void> {
@@ -64,30 +71,14 @@ export class Cursor {
         }
         this.revision = job.revision;
         this.place.value = done;
-        const block = `${job.revision} ${done.block.file ?? ""} ${done.block.line}`;
-        if (block === this.block) return;
-        this.block = block;
-        void this.askedMoves.ask(job.revision);
-    }
-
-    private async findMoves(revision: number): Promise<void> {
-        const block = this.place.value?.block;
-        if (!block) {
-            this.ofBlock.value = [];
-            return;
-        }
-        const of = { revision, by: "block" as const, value: block.line, file: block.file };
-        this.ofBlock.value = (await this.seam.ask("moves", of)).done.ranges;
     }
 
     /** After a new posting: the same record of the source, or the same time where there is none. */
     private again(job: Job | null): void {
         const place = this.place.value;
-        this.block = "";
         const walk = job?.walk ?? null;
         if (walk === null || walk.moves === 0) {
             this.place.value = null;
-            this.ofBlock.value = [];
         } else if (place?.source) {
             void this.to({ by: "source", value: place.source.line });
         } else {

@@ -1,14 +1,24 @@
 /** Asks one after the other: of those that come meanwhile only the newest is asked. */
 export class Newest<T> {
-    private busy = false;
     private waiting: T | undefined;
+    private running: Promise<void> | null = null;
 
     constructor(private readonly run: (value: T) => Promise<void>) {}
 
     async ask(value: T): Promise<void> {
         this.waiting = value;
-        if (this.busy) return;
-        this.busy = true;
+        if (this.running === null) {
+            this.running = this.work();
+            await this.running;
+        }
+    }
+
+    /** When nothing is asked any more, whatever came of it. */
+    async rest(): Promise<void> {
+        await this.running?.catch(() => {});
+    }
+
+    private async work(): Promise<void> {
         try {
             while (this.waiting !== undefined) {
                 const next = this.waiting;
@@ -16,7 +26,7 @@ export class Newest<T> {
                 await this.run(next);
             }
         } finally {
-            this.busy = false;
+            this.running = null;
         }
     }
 }

@@ -68,17 +68,17 @@ export class Player {
     /** A move, or the next or last beginning of something. */
     stepTo(step: 1 | -1, of: "move" | "block" | "operation" | "tool"): void {
         this.playing.value = false;
-        const { place, ofBlock } = this.cursor;
-        const move = place.value?.move;
         const walk = this.job.value?.walk;
-        if (move === undefined || !walk) return;
-        if (of === "move") return void this.cursor.toMove(move + step);
-        if (of === "block") {
-            const range = ofBlock.value.find(([from, to]) => from <= move && move < to) ?? [move, move + 1];
-            return void this.cursor.toMove(step === 1 ? range[1] : range[0] - 1);
-        }
-        const starts = (of === "tool" ? walk.tools : walk.operations).map((one) => one.move);
-        void this.cursor.toMove(nextStart(starts, move, step, walk.moves));
+        if (!walk) return;
+        void this.cursor.step(({ move, block_moves }) => {
+            if (of === "move") return move + step;
+            if (of === "block") {
+                const [from, behind] = block_moves.find(([from, to]) => from <= move && move < to) ?? [move, move + 1];
+                return step === 1 ? behind : from - 1;
+            }
+            const starts = (of === "tool" ? walk.tools : walk.operations).map((one) => one.move);
+            return nextStart(starts, move, step, walk.moves);
+        });
     }
 
     end(step: 1 | -1): void {

@@ -1,6 +1,7 @@
 import { signal } from "@preact/signals";
 import { expect, test } from "vitest";
 import { Cursor, neighbour } from "../src/cursor.ts";
+import { Player } from "../src/player.ts";
 import { Newest } from "../src/newest.ts";
 import type { Seam } from "../src/protocol/seam.ts";
 import type { Job, Place, PlaceParams } from "../src/protocol/asks.ts";
@@ -33,8 +34,7 @@ const job = (revision: number): Job =>
 test("where a new job does not come as far as the record, the cursor is at its end", async () => {
     const asked: PlaceParams[] = [];
     const seam = {
-        async ask(ask: string, params: PlaceParams) {
-            if (ask === "moves") return { done: { ranges: [] }, arrays: {} };
+        async ask(_: string, params: PlaceParams) {
             asked.push(params);
             const place = { move: params.value, block: { file: null, line: 1, text: "" }, source: { file: null, line: 40, text: "" } };
             return { done: params.by === "source" ? null : place, arrays: {} };
@@ -52,8 +52,7 @@ test("where a new job does not come as far as the record, the cursor is at its e
 test("the cursor is at the same record of the source after a new posting", async () => {
     const asked: PlaceParams[] = [];
     const seam = {
-        async ask(ask: string, params: PlaceParams) {
-            if (ask === "moves") return { done: { ranges: [] }, arrays: {} };
+        async ask(_: string, params: PlaceParams) {
             asked.push(params);
             return { done: { move: params.value, block: { file: null, line: 1, text: "" }, source: { file: null, line: 40, text: "" } } as unknown as Place, arrays: {} };
         },
@@ -68,4 +67,28 @@ test("the cursor is at the same record of the source after a new posting", async
     expect(asked.at(-2)).toEqual({ revision: 1, by: "move", value: 8 });
     now.value = null;
     expect(cursor.place.value).toBe(null);
+});
+
+test("steps that come before the answer to the one before are all made", async () => {
+    const now = signal<Job | null>(job(1));
+    // Blocks of two moves each.
+    const seam = {
+        async ask(_: string, { value: move }: PlaceParams) {
+            await settled();
+            const first = move - (move % 2);
+            return { done: { move, block: { file: null, line: 1, text: "" }, block_moves: [[first, first + 2]], source: null }, arrays: {} };
+        },
+    } as unknown as Seam;
+    const cursor = new Cursor(seam, now);
+    const player = new Player(cursor, now);
+    await settled();
+    player.stepTo(1, "block");
+    player.stepTo(1, "block");
+    player.stepTo(1, "move");
+    player.stepTo(-1, "block");
+    await cursor.step(({ move }) => move);
+    expect(cursor.place.value?.move).toBe(3);
+    void cursor.toMove(6);
+    await cursor.turn(1);
+    expect(cursor.place.value?.move).toBe(7);
 });

@@ -1,7 +1,7 @@
 import { effect, untracked, useSignal, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { readText } from "../protocol/text.ts";
-import type { Job, Text } from "../protocol/asks.ts";
+import type { Blocks, Job, Text } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { familyOf } from "../text/dialects.ts";
 import { Editor, type Origin } from "../text/editor.ts";
@@ -93,6 +93,12 @@ function Template({ screen }: { screen: Screen }) {
     );
 }
 
+/** The lines of a file. */
+function linesOf(blocks: Blocks[], file: string | null): number[] {
+    const ranges = blocks.filter((one) => one.file === file).flatMap((one) => one.ranges);
+    return ranges.flatMap(([from, to]) => Array.from({ length: to - from }, (_, i) => from + i));
+}
+
 /** The editor in the host, as long as the pane is there. */
 function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string | null>, compared: Signal<boolean>): () => void {
     const { studio } = screen;
@@ -133,7 +139,8 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
             if (line !== null) file.value = line.file;
             const name = file.value ?? studio.job.value?.[of]?.file;
             const wrong = studio.findings.value.filter((finding) => finding.of === of && finding.line > 0 && finding.file === name).flatMap(({ line, lines }) => [line, ...lines]);
-            editor.mark(line?.line ?? null, wrong.slice(0, 1000));
+            const also = of === "program" ? linesOf(place?.blocks ?? [], file.value) : [];
+            editor.mark({ at: line?.line ?? null, also, wrong: wrong.slice(0, 1000) });
         }),
         effect(() => {
             const on = compared.value && studio.edited.value !== null;

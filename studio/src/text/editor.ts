@@ -28,18 +28,21 @@ export interface Listener {
     edited(text: string): void;
 }
 
-interface Marked {
-    /** Lines in the editor, from 1. */
+/** Lines, from 1: that of the cursor, all that belong to it, those with findings. */
+export interface Marked {
     at: number | null;
+    also: number[];
     wrong: number[];
 }
 
 const setMarked = StateEffect.define<Marked>();
 const atLine = Decoration.line({ class: "at", attributes: { "aria-current": "true" } });
+const alsoLine = Decoration.line({ class: "also" });
 const wrongLine = Decoration.line({ class: "wrong" });
 
-function decorations(text: Text, { at, wrong }: Marked): DecorationSet {
-    const lines = [...wrong.map((line) => ({ line, mark: wrongLine })), ...(at === null ? [] : [{ line: at, mark: atLine }])];
+function decorations(text: Text, { at, also, wrong }: Marked): DecorationSet {
+    const marked = (lines: number[], mark: Decoration) => lines.map((line) => ({ line, mark }));
+    const lines = [...marked(wrong, wrongLine), ...marked(also, alsoLine), ...(at === null ? [] : [{ line: at, mark: atLine }])];
     const within = lines.filter(({ line }) => line >= 1 && line <= text.lines);
     return Decoration.set(within.map(({ line, mark }) => mark.range(text.line(line).from)), true);
 }
@@ -64,6 +67,7 @@ const look = EditorView.theme({
     "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground": { backgroundColor: "var(--selected)" },
     ".cm-selectionBackground": { backgroundColor: "var(--selected)" },
     ".at": { backgroundColor: "var(--lit)", boxShadow: "inset 3px 0 var(--accent)" },
+    ".also": { boxShadow: "inset 3px 0 var(--accent)" },
     ".wrong": { textDecoration: "underline wavy var(--bad)" },
 });
 
@@ -75,7 +79,7 @@ export class Editor {
     private origin: Origin | null = null;
     /** Of which text the lines in the editor are. */
     private shown: Origin | null = null;
-    private marked: { at: number | null; wrong: number[] } = { at: null, wrong: [] };
+    private marked: Marked = { at: null, also: [], wrong: [] };
     private reading = 0;
     /** The lines that are on their way for a jump. */
     private coming: Window | null = null;
@@ -153,7 +157,10 @@ export class Editor {
     private move(text: string, window: Window): void {
         if (this.shown !== this.origin || this.origin === null || this.origin.lines <= KEPT) return this.set(text, window);
         const { length } = this.view.state.doc;
-        this.change({ from: 0, to: length, insert: text }, window, { anchor: 0 });
+        this.window = window;
+        this.isSetting = true;
+        this.view.dispatch({ changes: { from: 0, to: length, insert: text }, annotations: Transaction.addToHistory.of(false), selection: { anchor: 0 } });
+        this.isSetting = false;
         this.draw(true);
     }
 
@@ -166,10 +173,12 @@ export class Editor {
         this.isGrowing = true;
         this.drop(kept);
         try {
-            for (let part = missing(this.window, kept); part !== null; part = missing(this.window, kept)) {
+            for (let part = missing(this.window, kept); part !== null && reading === this.reading; part = missing(this.window, kept)) {
                 const text = await origin.read(part.from, part.to);
                 if (reading !== this.reading) return;
                 this.add(text, part);
+                // The editor measures what was added once a frame.
+                await new Promise(requestAnimationFrame);
             }
         } finally {
             if (reading === this.reading) this.isGrowing = false;
@@ -182,7 +191,6 @@ export class Editor {
         const isAbove = part.to === from;
         const at = isAbove ? 0 : this.view.state.doc.length;
         this.change({ from: at, insert: isAbove ? `${text}\n` : `\n${text}` }, { from: Math.min(from, part.from), to: Math.max(to, part.to) });
-        this.draw(false);
     }
 
     /** The lines that are not among the kept ones. */
@@ -193,10 +201,15 @@ export class Editor {
         if (from < kept.from) this.change({ from: 0, to: doc.line(kept.from - from + 1).from }, { from: kept.from, to: Math.min(to, kept.to) });
     }
 
-    private change(changes: ChangeSpec, window: Window, selection?: { anchor: number }): void {
+    /** What is in sight stays there. */
+    private change(change: ChangeSpec, window: Window): void {
+        const changes = this.view.state.changes(change);
+        const scrolled = this.view.scrollSnapshot().map(changes);
         this.window = window;
         this.isSetting = true;
-        this.view.dispatch({ changes, annotations: Transaction.addToHistory.of(false), ...(selection && { selection }) });
+        this.view.dispatch({ changes, annotations: Transaction.addToHistory.of(false) });
+        // Behind the change: the editor would not scroll beyond the end that it had before.
+        if (scrolled !== undefined) this.view.dispatch({ effects: scrolled });
         this.isSetting = false;
     }
 
@@ -223,10 +236,10 @@ export class Editor {
         this.draw(true);
     }
 
-    /** The line of the cursor, which comes into sight, and the lines with findings; numbered as in the file. */
-    mark(at: number | null, wrong: number[]): void {
-        const isNew = at !== this.marked.at;
-        this.marked = { at, wrong };
+    /** Lines as they are numbered in the file; that of the cursor comes into sight. */
+    mark(marked: Marked): void {
+        const isNew = marked.at !== this.marked.at;
+        this.marked = marked;
         if (isNew && this.isElsewhere) this.jump();
         else this.draw(isNew);
     }
@@ -248,10 +261,10 @@ export class Editor {
     }
 
     private draw(isNew: boolean): void {
-        const { at, wrong } = this.marked;
-        const shift = (line: number): number => line - this.window.from + 1;
-        const line = at === null || !isWithin(this.window, at) ? null : shift(at);
-        const effects: StateEffect<unknown>[] = [setMarked.of({ at: line, wrong: wrong.filter((one) => isWithin(this.window, one)).map(shift) })];
+        const { at, also, wrong } = this.marked;
+        const here = (lines: number[]): number[] => lines.filter((one) => isWithin(this.window, one)).map((one) => one - this.window.from + 1);
+        const [line = null] = at === null ? [] : here([at]);
+        const effects: StateEffect<unknown>[] = [setMarked.of({ at: line, also: here(also), wrong: here(wrong) })];
         const { doc } = this.view.state;
         if (isNew && line !== null && line <= doc.lines) effects.push(EditorView.scrollIntoView(doc.line(line).from, { y: "nearest", yMargin: 60 }));
         this.view.dispatch({ effects });

@@ -34,6 +34,19 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.close();
     });
 
+    test("all blocks of a record are marked: on a HEIDENHAIN the centre of an arc has a block of its own", async () => {
+        const server = await Server.start([example("plate.cls")], ["-m", "generic-3axis-heidenhain"]);
+        const { page, complaints } = await visit(browser, server.link);
+        await proven(page);
+        // The way of `CIRCLE/72,40,-6,0,0,1,3` to its end.
+        await goTo(page, "s47");
+        await page.locator(".source .cm-line.at", { hasText: "GOTO/72,43,-6" }).waitFor();
+        const marked = await page.locator(".program .cm-line.also").allInnerTexts();
+        expect(marked.filter((block) => /^\d+ (CC|C) /.test(block)).map((block) => block.replace(/^\d+ /, "").replace(/ (F|M).*/, ""))).toEqual(["CC X+72 Y+40", "C Y+43 DR+"]);
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
     test("a wire: what the program leaves open is asked for, and the wire's four axes are read out", async () => {
         const server = await Server.start([example("sector.nc")], ["-m", "bp-95d"]);
         const { page, complaints } = await visit(browser, server.link);

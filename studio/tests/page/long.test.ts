@@ -1,0 +1,49 @@
+/** A program of more lines than the page keeps. */
+
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Browser } from "playwright-core";
+import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { absent, goTo, launch, proven, Server, visit } from "./harness.ts";
+
+const MOVES = 210_000;
+
+describe.skipIf(absent() !== null)("a long program", () => {
+    let browser: Browser;
+    beforeAll(async () => {
+        browser = await launch();
+    });
+    afterAll(async () => {
+        await browser.close();
+        await Server.stopAll();
+    });
+
+    test("the place is lit and stays in sight, also while the lines round the one before are on their way", async () => {
+        const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
+        const moves = Array.from({ length: MOVES }, (_, i) => `GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
+        writeFileSync(join(server.folder, "long.cls"), ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...moves, "FINI", ""].join("\n"));
+        const { page, complaints } = await visit(browser, server.link);
+        await page.keyboard.press("Control+o");
+        await page.getByText("long.cls").click();
+        await proven(page);
+        const lit = page.locator(".source .cm-line.at");
+        // All but the first two moves are lines of the source behind its seventh.
+        for (const line of [150_000, 60_000, 62_000]) {
+            await goTo(page, `s${line}`);
+            const i = line - 7;
+            await expect.poll(() => lit.innerText()).toBe(`GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
+            await page.waitForTimeout(750);
+        }
+        await page.waitForTimeout(2500);
+        expect(await lit.isVisible()).toBe(true);
+        const { y, height } = (await page.locator(".source > .body").boundingBox())!;
+        const box = (await lit.boundingBox())!;
+        expect(box.y).toBeGreaterThanOrEqual(y);
+        expect(box.y + box.height).toBeLessThanOrEqual(y + height);
+        // The numbers of the lines are those of the file.
+        const numbers = await page.locator(".source .cm-lineNumbers .cm-gutterElement").allInnerTexts();
+        expect(numbers).toContain("62000");
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+});
