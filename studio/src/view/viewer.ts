@@ -24,6 +24,8 @@ interface Drag {
     from: [number, number];
     last: [number, number];
     moved: boolean;
+    /** The move where the button was pressed: looked for before it is known whether this is a click. */
+    picked: Promise<number | null>;
 }
 
 export class Viewer {
@@ -171,7 +173,7 @@ export class Viewer {
     private down(event: PointerEvent): void {
         const from = this.at(event);
         const kind = this.ruler ? "ruler" : event.ctrlKey ? "zoom" : event.button !== 0 || event.shiftKey ? "pan" : "orbit";
-        this.drag = { kind, from, last: from, moved: false };
+        this.drag = { kind, from, last: from, moved: false, picked: this.pick(...from) };
         this.measured = null;
         this.host.setPointerCapture(event.pointerId);
     }
@@ -196,7 +198,7 @@ export class Viewer {
         const { drag } = this;
         this.drag = null;
         if (drag === null) return;
-        if (!drag.moved) void this.pick(...this.at(event));
+        if (!drag.moved) void drag.picked.then((move) => move !== null && this.picked(move));
         else if (drag.kind === "zoom") {
             this.measured = null;
             this.look(zoomTo(this.camera, drag.from, this.at(event), this.size));
@@ -209,10 +211,9 @@ export class Viewer {
         this.look(zoom(this.camera, Math.exp(-event.deltaY * 0.0015), x, y, this.size));
     }
 
-    private async pick(x: number, y: number): Promise<void> {
+    private async pick(x: number, y: number): Promise<number | null> {
         const { scene, looks } = this.shown();
-        const move = await scene?.pick(this.projection, this.size, looks, x, y);
-        if (move !== null && move !== undefined) this.picked(move);
+        return (await scene?.pick(this.projection, this.size, looks, x, y)) ?? null;
     }
 
     /** The point under the pixel, in the plane of the view through the camera's middle. */
