@@ -30,14 +30,15 @@ export function Page({ studio }: { studio: Studio }) {
         return () => document.removeEventListener("keydown", press);
     }, [commands]);
 
-    /** A file dropped on the program is a program for the source that is open; any other is a source. */
+    /** A file dropped on the program is a program for the source that is open; any other is a source, and several are those of a board. */
     const drop = async (event: DragEvent): Promise<void> => {
         event.preventDefault();
-        const file = event.dataTransfer?.files[0];
+        const files = [...(event.dataTransfer?.files ?? [])];
+        const [file] = files;
         if (file === undefined) return;
         const onProgram = event.target instanceof Element && event.target.closest(".program") !== null;
         if (onProgram && studio.work.value !== null) await studio.prove(await file.text());
-        else await studio.drop(file);
+        else await studio.drop(files);
     };
 
     const { program, source, low } = sizes.value;

@@ -58,26 +58,36 @@ export class Studio {
     /** The options of the machine's command. */
     private async askForm(): Promise<void> {
         const kind = this.machines.value.find(({ name }) => name === this.machine.value)?.kind;
-        const command = kind === "wire" ? "wire" : "post";
+        const ofMachine: Command = kind === "wire" ? "wire" : "post";
+        const work = this.work.value;
+        // What cannot be read says so when it is posted.
+        const command = work === null ? ofMachine : await this.seam.ask("command", { source: work.source, machine: this.machine.value })
+            .then(({ done }) => done, () => ofMachine);
         if (this.formOf === command) return;
         this.formOf = command;
-        this.form.value = (await this.seam.ask("form", command === "post" ? {} : { command })).done;
+        this.form.value = (await this.seam.ask("form", { command })).done;
     }
 
     open(source: Given): Promise<void> {
         return this.post({ source, machine: this.machine.value, options: [] });
     }
 
-    async drop(file: File): Promise<void> {
-        const upload = await this.told(async (signal) => this.seam.upload(file, signal));
-        if (upload !== undefined) await this.open({ upload });
+    /** A file is a toolpath or a board; several are the files of a board. */
+    async drop(files: File[]): Promise<void> {
+        const uploads = await this.told(async (signal) => {
+            const ids: string[] = [];
+            for (const file of files) ids.push(await this.seam.upload(file, signal));
+            return ids;
+        });
+        if (uploads === undefined) return;
+        await this.open(uploads.length === 1 ? { upload: uploads[0]! } : { uploads });
     }
 
     async choose(machine: string): Promise<void> {
         this.machine.value = machine;
-        await this.askForm();
         const work = this.work.value;
-        if (work !== null) await this.post({ ...work, machine });
+        if (work === null) await this.askForm();
+        else await this.post({ ...work, machine });
     }
 
     /** Posts and proves. Edits by hand are gone: who calls this has asked. */
@@ -87,6 +97,7 @@ export class Studio {
         this.edited.value = null;
         this.isCurrent.value = false;
         const { source, machine, options } = work;
+        void this.askForm();
         if (machine === null) {
             this.job.value = null;
             return this.asksMachine();
@@ -95,6 +106,16 @@ export class Studio {
             (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
         this.job.value = job ?? null;
         this.isCurrent.value = job !== undefined && this.edited.value === null;
+    }
+
+    /** Another program of the board. */
+    async chooseProgram(revision: number): Promise<void> {
+        const job = await this.told(async () => (await this.seam.ask("job", { revision })).done);
+        if (job === undefined) return;
+        clearTimeout(this.typing);
+        this.edited.value = null;
+        this.job.value = job;
+        this.isCurrent.value = true;
     }
 
     /** The program is being edited: it is proven when the typing rests. */

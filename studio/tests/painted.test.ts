@@ -34,7 +34,7 @@ test("a needle stands at the tip and goes along the tool", () => {
     new Uint32Array(vertices)[7] = wordOf(0, 1, 0);
     new Uint32Array(vertices)[11] = wordOf(1, 1, 0);
     const rows = { width: 9, of: () => Float32Array.of(0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0.6, 0, 0.8, 0, 0) } as unknown as Rows;
-    const paint = { palette: new Uint32Array(1), byMove: null, shift: 0, mask: 0, styles: new Uint8Array(16), dashed: -1, width: 1, lift: 0 };
+    const paint = { palette: new Uint32Array(1), byMove: null, shift: 0, mask: 0, styles: new Uint8Array(16), dashed: -1, width: 1, tool: -1, round: false, lift: 0 };
     const strip = needlesOf(chunk(0), vertices, rows, 1, 10, paint)!;
     const numbers = new Float32Array(strip.vertices);
     const points = [1, 2, 3, 4].map((i) => Array.from(numbers.slice(i * 4, i * 4 + 3)));

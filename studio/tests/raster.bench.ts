@@ -15,6 +15,8 @@ const paint = {
     styles: new Uint8Array(16),
     dashed: -1,
     width: 1,
+    tool: -1,
+    round: false,
     lift: 0,
 };
 

@@ -19,6 +19,8 @@ const paint = (more: Partial<Paint> = {}): Paint => ({
     styles: new Uint8Array(16),
     dashed: -1,
     width: 1,
+    tool: -1,
+    round: false,
     lift: 0,
     ...more,
 });

@@ -78,10 +78,11 @@ function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | 
     if (job === null && stop === null) return <span class="soft">no program yet</span>;
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
     if (!isCurrent) return <strong class="warning">▲ TO BE PROVEN</strong>;
+    const isPartly = job.board?.verdict === "partly" && job.verdict === "done";
     const moves = `${job.walk.moves.toLocaleString("en")} moves`;
     return (
         <>
-            <strong class={job.verdict}>{verdicts[job.verdict]}</strong> {moves}
+            <strong class={isPartly ? "partly" : job.verdict}>{isPartly ? "◐ PROVEN, PARTLY MADE" : verdicts[job.verdict]}</strong> {moves}
         </>
     );
 }

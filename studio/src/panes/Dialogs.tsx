@@ -59,7 +59,8 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
                     screen={screen}
                     close={close}
                     take={(file) => void studio.open({ file })}
-                    takeOther={(file) => void studio.drop(file)}
+                    takeFolder={(folder) => void studio.open({ folder })}
+                    takeOther={(files) => void studio.drop(files)}
                 />
             )}
             {open === "program" && (
@@ -67,7 +68,7 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
                     screen={screen}
                     close={close}
                     take={(file) => void studio.proveFile(file)}
-                    takeOther={(file) => void file.text().then((text) => studio.prove(text))}
+                    takeOther={([file]) => void file?.text().then((text) => studio.prove(text))}
                 />
             )}
             {open === "options" && <Options screen={screen} close={close} />}

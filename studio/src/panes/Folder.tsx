@@ -8,11 +8,13 @@ interface Props {
     screen: Screen;
     close(): void;
     take(path: string): void;
-    takeOther(file: File): void;
+    /** A folder whose files are those of a board. */
+    takeFolder?: (path: string) => void;
+    takeOther(files: File[]): void;
 }
 
 /** The files of the named folder; any other file is picked or dropped. */
-export function Folder({ screen, close, take, takeOther }: Props) {
+export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
     const { studio } = screen;
     const path = useSignal("");
     const entries = useSignal<Entry[]>([]);
@@ -23,6 +25,19 @@ export function Folder({ screen, close, take, takeOther }: Props) {
         path.value === ""
             ? []
             : [{ name: "..", title: "..", more: "folder above", run: () => (path.value = path.value.replace(/\/?[^/]*$/, "")) }];
+    const whole: Choice[] =
+        takeFolder === undefined
+            ? []
+            : [
+                  {
+                      name: ".",
+                      title: `All files of ${path.value === "" ? "this folder" : path.value} as a circuit board`,
+                      run: () => {
+                          close();
+                          takeFolder(path.value);
+                      },
+                  },
+              ];
     const choices = entries.value.map(({ name, path: to, kind, bytes }) => ({
         name: to,
         title: kind === "folder" ? `${name}/` : name,
@@ -39,18 +54,19 @@ export function Folder({ screen, close, take, takeOther }: Props) {
         <>
             <p>
                 <label>
-                    A file from elsewhere{" "}
+                    {takeFolder === undefined ? "A file from elsewhere" : "A file from elsewhere, or those of a board"}{" "}
                     <input
                         type="file"
+                        multiple={takeFolder !== undefined}
                         onChange={(event) => {
-                            const file = event.currentTarget.files?.[0];
+                            const files = [...(event.currentTarget.files ?? [])];
                             close();
-                            if (file) takeOther(file);
+                            if (files.length > 0) takeOther(files);
                         }}
                     />
                 </label>
             </p>
-            <Choose key={path.value} label={`Search the folder ${path.value}`} choices={[...up, ...choices]} close={() => {}} />
+            <Choose key={path.value} label={`Search the folder ${path.value}`} choices={[...up, ...whole, ...choices]} close={() => {}} />
         </>
     );
 }

@@ -9,6 +9,7 @@ export function Readout({ screen }: { screen: Screen }) {
     const axes = screen.studio.job.value?.machine?.axes ?? [];
     const tool = screen.toolOf(place?.tool ?? null);
     const pointer = screen.pointer.value;
+    const { net } = screen;
     const parts: [string, string, string][] = place === null ? [] : [
         ...axes.map(({ name, unit }, i): [string, string, string] => [name, number(place.axes[i]), unit]),
         ["Tip", place.tip.map((part) => number(part)).join("  "), "mm"],
@@ -34,6 +35,12 @@ export function Readout({ screen }: { screen: Screen }) {
                 <div class="soft">
                     <dt>Pointer</dt>
                     <dd>{pointer.map((value) => value.toFixed(3)).join(" ")}</dd>
+                </div>
+            )}
+            {net !== null && (
+                <div>
+                    <dt>Net</dt>
+                    <dd>{net}</dd>
                 </div>
             )}
         </dl>

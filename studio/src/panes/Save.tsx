@@ -3,7 +3,8 @@ import type { Screen } from "../screen/screen.ts";
 
 export function Save({ screen, close }: { screen: Screen; close(): void }) {
     const { studio } = screen;
-    const path = useSignal(studio.job.value?.program?.file.replace(/^.*\//, "") ?? "");
+    const board = studio.job.value?.board ?? null;
+    const path = useSignal(board === null ? (studio.job.value?.program?.file.replace(/^.*\//, "") ?? "") : `${board.name}-programs`);
     const replace = useSignal(false);
     const why = useSignal<string | null>(null);
     const save = async (event: Event): Promise<void> => {
@@ -14,7 +15,9 @@ export function Save({ screen, close }: { screen: Screen; close(): void }) {
     return (
         <form onSubmit={(event) => void save(event)}>
             <p>
-                <label for="save-path">File, in {studio.opened.value?.folder}</label>
+                <label for="save-path">
+                    {board === null ? "File" : `Folder for ${board.programs.map(({ file }) => file).join(", ")} and the report`}, in {studio.opened.value?.folder}
+                </label>
                 <input id="save-path" type="text" value={path.value} onInput={(event) => (path.value = event.currentTarget.value)} />
             </p>
             <p>

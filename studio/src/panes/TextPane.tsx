@@ -2,6 +2,7 @@ import { effect, untracked, useSignal, type Signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { readText } from "../protocol/text.ts";
 import type { Blocks, Job, Text } from "../protocol/asks.ts";
+import { Programs } from "./Programs.tsx";
 import type { Screen } from "../screen/screen.ts";
 import { familyOf } from "../text/dialects.ts";
 import { Editor, type Origin } from "../text/editor.ts";
@@ -38,6 +39,7 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
                         ))}
                     </select>
                 )}
+                {of === "program" && <Programs screen={screen} />}
                 {of === "program" && <Turns screen={screen} />}
                 {isEdited && (
                     <>
@@ -117,7 +119,7 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
     const origin = (job: Job, text: Text): Origin => ({
         lines: job.parts.find((part) => part.file === file.value)?.lines ?? text.lines,
         family: of === "source" ? familyOf(null, text.file) : familyOf(job.machine.dialect, text.file),
-        isEditable: of === "program" && job.parts.length === 0,
+        isEditable: of === "program" && job.parts.length === 0 && job.board === null,
         read: (from, to) => readText(seam, { revision: job.revision, of, file: file.value, from, to }),
     });
 

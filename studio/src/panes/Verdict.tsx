@@ -4,6 +4,9 @@ import type { Job, Mismatch } from "../protocol/asks.ts";
 import { readText } from "../protocol/text.ts";
 import type { Screen } from "../screen/screen.ts";
 
+/** The most places that are listed. */
+const SHOWN = 400;
+
 /** The rows of the command's summary, and where a failed proof first differs. */
 export function Verdict({ screen }: { screen: Screen }) {
     const job = screen.studio.job.value;
@@ -11,9 +14,10 @@ export function Verdict({ screen }: { screen: Screen }) {
     return (
         <div class="hint">
             {job.mismatch !== null && <SideBySide screen={screen} job={job} mismatch={job.mismatch} />}
+            {job.board !== null && <Places screen={screen} />}
             <table>
                 <tbody>
-                    {job.rows.map(([head, text], row) => (
+                    {[...(job.board?.rows ?? []), ...job.rows].map(([head, text], row) => (
                         <tr key={row}>
                             {head === "" ? <td /> : <th scope="row">{head}</th>}
                             <td>{text}</td>
@@ -22,6 +26,24 @@ export function Verdict({ screen }: { screen: Screen }) {
                 </tbody>
             </table>
         </div>
+    );
+}
+
+/** What is to be looked at on the board: gaps that are not cut, copper that is taken. */
+function Places({ screen }: { screen: Screen }) {
+    const places = screen.board.value?.about.places ?? [];
+    if (places.length === 0) return null;
+    return (
+        <ol class="findings" aria-label="Places to look at">
+            {places.slice(0, SHOWN).map(({ x, y, what }, number) => (
+                <li key={number}>
+                    <button type="button" onClick={() => screen.toPlace(x, y)}>
+                        ✗ X{x.toFixed(3)} Y{y.toFixed(3)}: {what}
+                    </button>
+                </li>
+            ))}
+            {places.length > SHOWN && <li class="soft">and {(places.length - SHOWN).toLocaleString("en")} more</li>}
+        </ol>
     );
 }
 

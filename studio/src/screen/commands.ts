@@ -26,6 +26,8 @@ function general(screen: Screen): Command[] {
         { name: "machine", title: "Choose the machine", keys: ["Ctrl+m"], run: show("machine") },
         { name: "options", title: "Options of posting", run: () => screen.toOption("") },
         { name: "save", title: "Save the program", keys: ["Ctrl+s"], run: show("save") },
+        { name: "next-program", title: "Next program of the board", run: () => screen.nextProgram(1) },
+        { name: "last-program", title: "Previous program of the board", run: () => screen.nextProgram(-1) },
         { name: "discard", title: "Discard the edits by hand", run: () => void studio.discard() },
         { name: "go", title: "Go to a block, source line, move or time", keys: ["Ctrl+g"], run: show("go") },
         { name: "find", title: "Find a text", keys: ["Ctrl+f"], run: () => screen.find() },

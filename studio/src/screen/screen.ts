@@ -5,6 +5,8 @@ import { Player } from "../player.ts";
 import type { Job, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
+import { Board } from "../view/board.ts";
+import { axes } from "../view/camera.ts";
 import { Chunks } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
 import { bodiesOf } from "../view/linkage.ts";
@@ -12,13 +14,12 @@ import { Rows } from "../view/rows.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
 import { toolBody } from "../view/solids.ts";
 import type { Triangles } from "../view/strip.ts";
-import type { Vector } from "../view/vector.ts";
+import { along, type Vector } from "../view/vector.ts";
 import type { Drawing, Viewer } from "../view/viewer.ts";
 
 export type Dialog = "commands" | "keys" | "machine" | "source" | "program" | "options" | "save" | "go" | "find";
 export type Tab = "findings" | "verdict" | "plots";
 
-/** What is not known of a point counts as 0, where it has to be drawn somewhere. */
 /** A point of which nobody knows a coordinate is none. */
 export function vector(coordinates: (number | null)[]): Vector | null {
     const known = coordinates.filter((coordinate) => coordinate !== null);
@@ -61,6 +62,8 @@ export class Screen {
         theme: theme(this.dark.value),
     }));
     readonly scene: Signal<Scene | null> = signal(null);
+    /** The board that the program is of. */
+    readonly board: Signal<Board | null> = signal(null);
     /** Grows with each chunk that comes. */
     readonly news: Signal<number> = signal(0);
     /** The source that the views were fitted to. */
@@ -83,6 +86,7 @@ export class Screen {
 
     /** The scene of a job that is new. */
     private begin(job: Job | null): void {
+        this.board.value = null;
         if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
             return;
@@ -91,9 +95,34 @@ export class Screen {
         const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++);
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++));
         void chunks.load().catch(() => {});
+        if (job.board !== null) void this.askBoard(job).catch(() => {});
         const isOther = this.fitted !== job.source.file;
         this.fitted = job.source.file;
         for (const viewer of this.viewers) viewer.refit(isOther);
+    }
+
+    /** The board below the cuts. */
+    private async askBoard({ revision, walk }: Job): Promise<void> {
+        const { done, arrays } = await this.studio.seam.ask("board", { revision });
+        if (this.studio.job.value?.revision !== revision || this.scene.value === null) return;
+        const { areas, holes, tabs } = arrays as Record<string, Float32Array>;
+        const width = walk.tools.find((tool) => tool.width !== null)?.width ?? 1;
+        const board = new Board(done, areas!, holes!, tabs!, width);
+        this.scene.value.board = board;
+        this.board.value = board;
+        this.news.value++;
+        for (const viewer of this.viewers) viewer.refit(false);
+    }
+
+    /** The net of the copper under the pointer. */
+    get net(): string | null {
+        const at = this.pointer.value;
+        const board = this.board.value;
+        const away = this.viewer === null ? null : axes(this.viewer.camera).away;
+        if (at === null || board === null || away === null || Math.abs(away[2]) < 0.05) return null;
+        // Along the look to the surface, which is at Z 0.
+        const [x, y] = along(at, away, -at[2] / away[2]);
+        return board.netAt(x, y);
     }
 
     marks(): Marks {
@@ -132,7 +161,10 @@ export class Screen {
 
     get all(): { low: Vector; high: Vector } | null {
         const [low, high] = this.studio.job.value?.walk.box ?? [];
-        return low === undefined || high === undefined ? null : { low, high };
+        if (low === undefined || high === undefined) return null;
+        const board = this.board.value?.box ?? { low, high };
+        const of = (way: (...parts: number[]) => number, a: Vector, b: Vector): Vector => [way(a[0], b[0]), way(a[1], b[1]), way(a[2], b[2])];
+        return { low: of(Math.min, low, board.low), high: of(Math.max, high, board.high) };
     }
 
     /** Leads to the finding's place, in every pane. */
@@ -158,6 +190,22 @@ export class Screen {
         const place = this.studio.cursor.place.value;
         const line = of === "program" ? place?.block : place?.source;
         if (line) void this.editors[of]?.go(line.line);
+    }
+
+    /** The programs of a board in turn. */
+    nextProgram(step: number): void {
+        const { job } = this.studio;
+        const programs = job.value?.board?.programs ?? [];
+        const at = programs.findIndex(({ revision }) => revision === job.value?.revision);
+        const next = programs[(at + step + programs.length) % programs.length];
+        if (next !== undefined) void this.studio.chooseProgram(next.revision);
+    }
+
+    /** Leads to a place of the board. */
+    toPlace(x: number, y: number): void {
+        if (this.viewer === null) return;
+        const { camera } = this.viewer;
+        this.viewer.look({ ...camera, middle: [x, y, 0], scale: Math.max(camera.scale, 40) });
     }
 
     zoomToCursor(): void {

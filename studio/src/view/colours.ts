@@ -22,6 +22,7 @@ export const RAMP = 128;
 export const RAMP_STEPS = 64;
 
 export interface Theme {
+    isDark: boolean;
     paper: Colour;
     ink: string;
     soft: string;
@@ -30,6 +31,8 @@ export interface Theme {
     /** What has been run, what is ahead of the cursor, and what is picked out. */
     done: Uint32Array;
     ahead: Uint32Array;
+    /** What a tool has cut, as wide as it is: the lines are seen on it. */
+    cut: Uint32Array;
 }
 
 const light: Colour[] = [[0, 114, 178], [213, 94, 0], [0, 130, 95], [170, 70, 130], [150, 110, 0], [40, 120, 190], [90, 60, 160], [110, 75, 40]];
@@ -66,6 +69,7 @@ export function theme(isDark: boolean): Theme {
     });
     const words = (part: number): Uint32Array => Uint32Array.from(palette, (colour) => rgb(...mix(colour, paper, part)));
     return {
+        isDark,
         paper,
         ink: isDark ? "#e6e9ed" : "#1a1d21",
         soft: isDark ? "#a9b3bf" : "#4f5863",
@@ -73,6 +77,7 @@ export function theme(isDark: boolean): Theme {
         bad: isDark ? "#ff8f8f" : "#b3141d",
         done: words(0),
         ahead: words(0.72),
+        cut: words(0.5),
     };
 }
 

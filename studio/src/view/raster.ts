@@ -4,6 +4,7 @@
  * what is there.
  */
 
+import type { Flat } from "./board.ts";
 import type { Projection } from "./camera.ts";
 import { Style, type Strip, type Triangles } from "./strip.ts";
 import { along, cross, dot, unit, type Vector } from "./vector.ts";
@@ -31,7 +32,7 @@ export class Raster {
 
     strip(strip: Strip, { right, down, away, at }: Projection): void {
         const { origin, paint, first } = strip;
-        const { palette, byMove, shift, mask, styles, dashed, width, lift } = paint;
+        const { palette, byMove, shift, mask, styles, dashed, width, tool, round, lift } = paint;
         const isMoves = this.planes.sees === "moves";
         const numbers = new Float32Array(strip.vertices);
         const words = new Uint32Array(strip.vertices);
@@ -56,11 +57,12 @@ export class Raster {
             if (vertex >= strip.from) {
                 const word = words[i + 3]!;
                 const style = styles[(word >>> 12) & 15];
-                if (style !== Style.hidden) {
+                if (style !== Style.hidden && (tool < 0 || ((word >>> 16) & 255) === tool)) {
                     const dash = style === Style.dashed;
                     const index = dash && dashed >= 0 ? dashed : byMove === null ? (word >>> shift) & mask : byMove[word & 4095]!;
                     const seen = isMoves ? first + (word & 4095) + 1 : palette[index]!;
-                    this.line(x0, y0, z0, x1, y1, z1, seen, width, dash);
+                    if (round) this.stroke([x0, y0, z0], [x1, y1, z1], seen, width / 2);
+                    else this.line(x0, y0, z0, x1, y1, z1, seen, width, dash);
                 }
             }
             x0 = x1;
@@ -120,6 +122,80 @@ export class Raster {
             if (dashed && (step & 7) >= 5) continue;
             const [x, y, z] = [x0 + step * sx, y0 + step * sy, z0 + step * sz];
             for (let side = -half; side <= half; side++) this.dot(isWide ? x : x + side, isWide ? y + side : y, z, seen);
+        }
+    }
+
+    /** All that is within a radius of a line, in pixels. */
+    private stroke(a: Vector, b: Vector, seen: number, radius: number): void {
+        const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+        const top = Math.max(0, Math.ceil(Math.min(a[1], b[1]) - radius - 0.5));
+        const bottom = Math.min(this.height - 1, Math.floor(Math.max(a[1], b[1]) + radius - 0.5));
+        if (Math.max(a[0], b[0]) + radius < 0 || Math.min(a[0], b[0]) - radius > this.width) return;
+        if (![a[0], a[1], b[0], b[1]].every((part) => Math.abs(part) < FAR)) return;
+        const squared = dx * dx + dy * dy;
+        const length = Math.sqrt(squared);
+        const [nx, ny] = length > 0 ? [(-dy / length) * radius, (dx / length) * radius] : [0, 0];
+        for (let y = top; y <= bottom; y++) {
+            const row = y + 0.5;
+            let [left, right] = [Infinity, -Infinity];
+            for (const end of [a, b]) {
+                const off = row - end[1];
+                if (Math.abs(off) > radius) continue;
+                const half = Math.sqrt(radius * radius - off * off);
+                left = Math.min(left, end[0] - half);
+                right = Math.max(right, end[0] + half);
+            }
+            // The sides of what lies between the ends.
+            for (const way of [-1, 1]) {
+                const part = dy === 0 ? -1 : (row - a[1] - way * ny) / dy;
+                if (part < 0 || part > 1) continue;
+                const x = a[0] + way * nx + dx * part;
+                left = Math.min(left, x);
+                right = Math.max(right, x);
+            }
+            const last = Math.min(this.width - 1, Math.floor(right - 0.5));
+            for (let x = Math.max(0, Math.ceil(left - 0.5)); x <= last; x++) {
+                const along = squared > 0 ? Math.max(0, Math.min(1, ((x + 0.5 - a[0]) * dx + (row - a[1]) * dy) / squared)) : 0;
+                const z = a[2] + (b[2] - a[2]) * along;
+                const at = y * this.width + x;
+                if (z > this.depth[at]!) continue;
+                this.depth[at] = z;
+                this.seen[at] = seen;
+            }
+        }
+    }
+
+    /** Areas below all else: they have no depth. */
+    flat({ corners, colour }: Flat, { right, down, at }: Projection): void {
+        const [ax, ay] = [at[0] - this.planes.left, at[1] - this.planes.top];
+        const xs = new Float64Array(4);
+        const ys = new Float64Array(4);
+        for (let i = 0; i + 7 < corners.length; i += 8) {
+            let [top, bottom] = [Infinity, -Infinity];
+            for (let k = 0; k < 4; k++) {
+                const [x, y] = [corners[i + 2 * k]!, corners[i + 2 * k + 1]!];
+                xs[k] = right[0] * x + right[1] * y + ax;
+                ys[k] = down[0] * x + down[1] * y + ay;
+                top = Math.min(top, ys[k]!);
+                bottom = Math.max(bottom, ys[k]!);
+            }
+            const last = Math.min(this.height - 1, Math.ceil(bottom - 0.5) - 1);
+            for (let y = Math.max(0, Math.ceil(top - 0.5)); y <= last; y++) {
+                const row = y + 0.5;
+                let [from, to] = [Infinity, -Infinity];
+                for (let k = 0; k < 4; k++) {
+                    const next = (k + 1) & 3;
+                    const [ya, yb] = [ys[k]!, ys[next]!];
+                    if (ya <= row === yb <= row) continue;
+                    const x = xs[k]! + ((xs[next]! - xs[k]!) * (row - ya)) / (yb - ya);
+                    from = Math.min(from, x);
+                    to = Math.max(to, x);
+                }
+                // Half open: of areas side by side each pixel is in one.
+                const begin = Math.max(0, Math.ceil(from - 0.5));
+                const end = Math.min(this.width, Math.ceil(to - 0.5));
+                if (begin < end) this.seen.fill(colour, y * this.width + begin, y * this.width + end);
+            }
         }
     }
 

@@ -1,3 +1,4 @@
+import type { Flat } from "./board.ts";
 import type { Projection, Size } from "./camera.ts";
 import type { Theme } from "./colours.ts";
 import { Raster, rgb } from "./raster.ts";
@@ -13,7 +14,7 @@ export interface Renderer {
 /** Pictures by the rasteriser. While only what lies over the lines changes, the lines are not drawn again. */
 export class Painting {
     private readonly raster: Raster;
-    private lines: { strips: Strip[]; projection: Projection; paper: number; seen: Uint32Array; depth: Float32Array } | null = null;
+    private lines: { flats: Flat[]; strips: Strip[]; projection: Projection; paper: number; seen: Uint32Array; depth: Float32Array } | null = null;
 
     constructor(
         readonly width: number,
@@ -23,24 +24,27 @@ export class Painting {
     }
 
     /** The colours of all pixels. */
-    draw({ strips, over, bodies }: Omit<Picture, "symbols">, projection: Projection, paper: number): Uint32Array<ArrayBuffer> {
+    draw({ flats, strips, over, bodies }: Omit<Picture, "symbols">, projection: Projection, paper: number): Uint32Array<ArrayBuffer> {
         const { raster, lines } = this;
-        if (lines !== null && lines.paper === paper && isSame(lines.projection, projection) && areSame(lines.strips, strips)) {
+        if (lines !== null && lines.paper === paper && areAlike(lines.flats, flats) && isSame(lines.projection, projection) && areSame(lines.strips, strips)) {
             raster.seen.set(lines.seen);
             raster.depth.set(lines.depth);
         } else {
             raster.clear(paper);
+            for (const flat of flats) raster.flat(flat, projection);
             for (const strip of strips) raster.strip(strip, projection);
             const { seen, depth } = lines ?? { seen: raster.seen.slice(), depth: raster.depth.slice() };
             seen.set(raster.seen);
             depth.set(raster.depth);
-            this.lines = { strips, projection, paper, seen, depth };
+            this.lines = { flats, strips, projection, paper, seen, depth };
         }
         for (const strip of over) raster.strip(strip, projection);
         for (const body of bodies) raster.triangles(body, projection);
         return raster.seen;
     }
 }
+
+const areAlike = (a: Flat[], b: Flat[]): boolean => a.length === b.length && a.every((flat, i) => flat === b[i]);
 
 const areSame = (a: Strip[], b: Strip[]): boolean =>
     a.length === b.length && a.every(({ vertices, from, to, paint }, i) => {

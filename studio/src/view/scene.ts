@@ -2,14 +2,15 @@
 
 import type { Range } from "../cursor.ts";
 import type { WalkAbout } from "../protocol/asks.ts";
-import type { Projection, Size } from "./camera.ts";
+import type { Board, Flat } from "./board.ts";
+import { toScreen, type Projection, type Size } from "./camera.ts";
 import { inSight, levelFor, type Chunk, type Chunks } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
 import { GAP, NEEDLES, needlesOf } from "./needles.ts";
 import { painterOf, type Painter } from "./painted.ts";
 import { Raster } from "./raster.ts";
 import type { Rows } from "./rows.ts";
-import { symbolsOf, type Symbol } from "./symbols.ts";
+import { Mark, symbolsOf, type Symbol } from "./symbols.ts";
 import { CHUNK_MOVES, Style, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
 
 export interface Looks {
@@ -34,6 +35,8 @@ export interface Marks {
 }
 
 export interface Picture {
+    /** What lies below all else. */
+    flats: Flat[];
     strips: Strip[];
     /** What is picked out, over the others. */
     over: Strip[];
@@ -43,6 +46,9 @@ export interface Picture {
 
 type Best = NonNullable<ReturnType<Chunks["best"]>>;
 
+/** The most places of a board that are marked. */
+const PLACES = 400;
+
 /** Pixels round the pointer in which a line is looked for. */
 const REACH = 6;
 
@@ -50,6 +56,11 @@ export class Scene {
     private painter: { mode: Mode; paint: Painter | null } = { mode: "kind", paint: null };
 
     private alike: { looks: Looks | null; paints: Map<Uint32Array, Paint> } = { looks: null, paints: new Map() };
+
+    /** The board that the program is of, when it has come. */
+    board: Board | null = null;
+
+    private widths: { looks: Looks | null; scale: number; paints: Paint[] } = { looks: null, scale: 0, paints: [] };
 
     constructor(
         readonly walk: WalkAbout,
@@ -67,18 +78,51 @@ export class Scene {
             const best = this.chunks.best(level, chunk.number);
             if (best === null) continue;
             const { vertices } = best;
+            this.bands(strips, chunk, best, looks, marks, projection.scale);
             this.lines(strips, chunk, best, looks, marks);
             this.picked(over, chunk, best, looks, marks);
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
-        return { strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+        const flats = this.board?.flats(looks.theme) ?? [];
+        this.places(symbols, projection, size);
+        return { flats, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+    }
+
+    /** Places of the board that are to be looked at. */
+    private places(symbols: Symbol[], projection: Projection, { width, height }: Size): void {
+        for (const { x, y } of this.board?.about.places.slice(0, PLACES) ?? []) {
+            const [px, py] = toScreen(projection, [x, y, 0]);
+            if (px >= 0 && py >= 0 && px < width && py < height) symbols.push({ x: px, y: py, marks: Mark.finding });
+        }
+    }
+
+    /** What has been cut, as wide as the tool: of what is ahead nothing, while that is pale. */
+    private bands(strips: Strip[], chunk: Chunk, { vertices }: Pick<Best, "vertices">, looks: Looks, { now, pale }: Pick<Marks, "now" | "pale">, scale: number): void {
+        const { first } = chunk;
+        const count = vertices.byteLength / 16;
+        const isDone = !pale || now === null || now >= first + CHUNK_MOVES;
+        const border = isDone ? count : now < first ? 1 : vertexOf(vertices, now - first + 1);
+        for (const paint of this.bandPaints(looks, scale)) add(strips, chunk, vertices, [1, border], paint);
+    }
+
+    /** A paint for each tool whose width is known and is seen at this scale. */
+    private bandPaints(looks: Looks, scale: number): Paint[] {
+        if (this.widths.looks === looks && this.widths.scale === scale) return this.widths.paints;
+        const { kinds, tools } = this.walk;
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => (kinds[kind] === "feed" || kinds[kind] === "arc" ? Style.line : Style.hidden));
+        const paints = tools.flatMap(({ width }, tool): Paint[] => {
+            const pixels = (width ?? 0) * scale;
+            return pixels < 2 ? [] : [{ palette: looks.theme.cut, byMove: null, shift: 16, mask: 63, styles, dashed: -1, width: pixels, tool, round: true, lift: -1 }];
+        });
+        this.widths = { looks, scale, paints };
+        return paints;
     }
 
     private needles(strips: Strip[], chunk: Chunk, vertices: ArrayBuffer, looks: Looks, { scale }: Projection): void {
         const stride = Math.max(1, Math.ceil(((vertices.byteLength / 16) * this.chunks.chunks.length) / NEEDLES));
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => (kind === GAP ? Style.hidden : Style.line));
-        const paint = { palette: new Uint32Array([looks.theme.done[UNKNOWN]!]), byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: 1, lift: 0 };
+        const paint = { palette: new Uint32Array([looks.theme.done[UNKNOWN]!]), byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: 1, tool: -1, round: false, lift: 0 };
         const needles = needlesOf(chunk, vertices, this.rows, stride, 18 / scale, paint);
         if (needles !== null) strips.push(needles);
     }
@@ -124,7 +168,7 @@ export class Scene {
         if (known !== undefined) return known;
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, looks.rapids));
         const bits = looks.mode === "tool" ? { shift: 16, mask: 63 } : { shift: 12, mask: 15 };
-        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width: looks.width, lift: 0 };
+        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width: looks.width, tool: -1, round: false, lift: 0 };
         this.alike.paints.set(palette, paint);
         return paint;
     }
@@ -132,7 +176,7 @@ export class Scene {
     private plain(place: number, looks: Looks, wider: number, lift: number): Paint {
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => (this.walk.kinds[kind] === "gap" ? Style.hidden : Style.line));
         const palette = new Uint32Array([looks.theme.done[place]!]);
-        return { palette, byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: looks.width + wider, lift };
+        return { palette, byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: looks.width + wider, tool: -1, round: false, lift };
     }
 
     private styleOf(kind: number, rapids: boolean): number {
@@ -145,17 +189,25 @@ export class Scene {
     /** The move under the pixel: found in what is drawn, then among the exact lines of that chunk. */
     async pick(camera: Projection, size: Size, looks: Looks, x: number, y: number): Promise<number | null> {
         const none: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null, bodies: [] };
-        const { strips } = this.picture(camera, size, { ...looks, width: 1 }, none);
-        const rough = nearest(strips, camera, x, y);
+        const thin = { ...looks, width: 1 };
+        const { strips } = this.picture(camera, size, thin, none);
+        const rough = seen(strips, camera, x, y);
         if (rough === null) return null;
         const chunk = this.chunks.chunks[Math.floor(rough / CHUNK_MOVES)];
         if (chunk === undefined) return rough;
         const vertices = await this.chunks.exact(0, chunk.number);
         if (vertices === null) return rough;
         const exact: Strip[] = [];
-        this.lines(exact, chunk, { vertices }, { ...looks, width: 1 }, none);
-        return nearest(exact, camera, x, y) ?? rough;
+        this.bands(exact, chunk, { vertices }, thin, none, camera.scale);
+        this.lines(exact, chunk, { vertices }, thin, none);
+        return seen(exact, camera, x, y) ?? rough;
     }
+}
+
+/** The move of the nearest line, or of the cut that the pixel is in. */
+function seen(strips: Strip[], projection: Projection, x: number, y: number): number | null {
+    const ofKind = (isBand: boolean): Strip[] => strips.filter(({ paint }) => paint.round === isBand);
+    return nearest(ofKind(false), projection, x, y) ?? nearest(ofKind(true), projection, x, y);
 }
 
 function add(strips: Strip[], { origin, first }: Chunk, vertices: ArrayBuffer, [from, to]: Range, paint: Paint): void {

@@ -27,6 +27,10 @@ export interface Paint {
     /** Colour in the palette of what is dashed, whatever else it is; -1: that of the others. */
     dashed: number;
     width: number;
+    /** Place of the only tool whose lines are drawn; -1: all. */
+    tool: number;
+    /** Ends are round, and the width is exact: what a round tool covers. */
+    round: boolean;
     /** Pixels that the lines are nearer than they are, to lie on top of the same lines. */
     lift: number;
 }

@@ -118,7 +118,7 @@ export class Viewer {
         const { size, projection } = this;
         const { scene, looks, marks, tip, box, isBoxShown } = this.shown();
         scene?.chunks.begin();
-        const picture = scene?.picture(projection, size, looks, marks) ?? { strips: [], over: [], bodies: [], symbols: [] };
+        const picture = scene?.picture(projection, size, looks, marks) ?? { flats: [], strips: [], over: [], bodies: [], symbols: [] };
         this.renderer.draw(picture, projection, size, looks.theme);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
         overlay(this.context, { box: isBoxShown ? box : null, tip, symbols: picture.symbols, drag: this.measured }, projection, size, looks.theme, this.ratio);

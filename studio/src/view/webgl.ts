@@ -1,5 +1,6 @@
 /** The same pictures by the graphics processor: vertices are pulled from a texture, and a line is two triangles of its width. */
 
+import type { Flat } from "./board.ts";
 import type { Projection, Size } from "./camera.ts";
 import type { Theme } from "./colours.ts";
 import { shaded } from "./raster.ts";
@@ -23,11 +24,14 @@ uniform vec3 right, down, away, at;
 uniform vec2 size;
 uniform float reach, lift, width;
 uniform uint shift, mask, hidden, dashes;
-uniform int dashed;
-uniform bool byMove;
+uniform int dashed, tool;
+uniform bool byMove, rounded;
 out vec4 colour;
 out float along;
+out vec2 place_;
 flat out float broken;
+flat out vec4 ends;
+flat out float radius;
 
 uvec4 vertex(int number) { return texelFetch(vertices, ivec2(number % ${ROW}, number / ${ROW}), 0); }
 
@@ -42,7 +46,7 @@ void main() {
     uvec4 end = vertex(segment + 1);
     vec3 a = pixel(vertex(segment)), b = pixel(end);
     uint kind = (end.w >> 12u) & 15u;
-    if (((hidden >> kind) & 1u) == 1u) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+    if (((hidden >> kind) & 1u) == 1u || (tool >= 0 && int((end.w >> 16u) & 255u) != tool)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
     bool dash = ((dashes >> kind) & 1u) == 1u;
     uint place = byMove ? texelFetch(moves, ivec2(int(end.w & 4095u), 0), 0).r : (end.w >> shift) & mask;
     if (dash && dashed >= 0) place = uint(dashed);
@@ -52,7 +56,11 @@ void main() {
     way = length_ > 0.0 ? way / length_ : vec2(1.0, 0.0);
     bool last = corner == 1 || corner == 2 || corner == 4;
     float side = (corner == 0 || corner == 1 || corner == 3) ? -0.5 : 0.5;
-    vec2 p = (last ? b.xy + way * 0.5 : a.xy - way * 0.5) + vec2(-way.y, way.x) * side * max(width, 1.0);
+    float beyond = rounded ? width * 0.5 : 0.5;
+    vec2 p = (last ? b.xy + way * beyond : a.xy - way * beyond) + vec2(-way.y, way.x) * side * max(width, 1.0);
+    place_ = p;
+    ends = vec4(a.xy, b.xy);
+    radius = rounded ? width * 0.5 : 0.0;
     along = last ? length_ : 0.0;
     broken = dash ? 1.0 : 0.0;
     float z = (last ? b.z : a.z) - lift;
@@ -68,22 +76,36 @@ layout(location = 0) in vec3 point;
 layout(location = 1) in vec3 shade;
 out vec4 colour;
 out float along;
+out vec2 place_;
 flat out float broken;
+flat out vec4 ends;
+flat out float radius;
 void main() {
     vec3 p = vec3(dot(right, point), dot(down, point), dot(away, point)) + at;
     gl_Position = vec4(p.x / size.x * 2.0 - 1.0, 1.0 - p.y / size.y * 2.0, p.z / reach, 1.0);
     colour = vec4(shade, 1.0);
     along = 0.0;
     broken = 0.0;
+    place_ = vec2(0.0);
+    ends = vec4(0.0);
+    radius = 0.0;
 }`;
 
 const FRAGMENT = `#version 300 es
 precision highp float;
 in vec4 colour;
 in float along;
+in vec2 place_;
 flat in float broken;
+flat in vec4 ends;
+flat in float radius;
 out vec4 seen;
 void main() {
+    if (radius > 0.0) {
+        vec2 way = ends.zw - ends.xy;
+        float part = clamp(dot(place_ - ends.xy, way) / max(dot(way, way), 1e-12), 0.0, 1.0);
+        if (distance(place_, ends.xy + way * part) > radius) discard;
+    }
     if (broken > 0.5 && mod(along, 8.0) >= 5.0) discard;
     seen = colour;
 }`;
@@ -100,6 +122,7 @@ export class Gl implements Renderer {
     private readonly faces: Program;
     private readonly empty: WebGLVertexArrayObject;
     private readonly kept = new Map<object, { texture: WebGLTexture; frame: number }>();
+    private readonly areas = new Map<Flat, { array: WebGLVertexArrayObject; buffers: WebGLBuffer[]; frame: number }>();
     private frame = 0;
 
     /** Throws where there is no WebGL 2, or only one that is slower than the rasteriser. */
@@ -133,7 +156,7 @@ export class Gl implements Renderer {
         return { program, at };
     }
 
-    draw({ strips, over, bodies }: Picture, projection: Projection, size: Size, { paper }: Theme): void {
+    draw({ flats, strips, over, bodies }: Picture, projection: Projection, size: Size, { paper }: Theme): void {
         const { gl, canvas } = this;
         if (gl.isContextLost()) return;
         this.frame++;
@@ -141,8 +164,13 @@ export class Gl implements Renderer {
         gl.viewport(0, 0, size.width, size.height);
         gl.clearColor(paper[0] / 255, paper[1] / 255, paper[2] / 255, 1);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-        gl.enable(gl.DEPTH_TEST);
         gl.depthFunc(gl.LEQUAL);
+        this.use(this.faces, projection, size, 1);
+        gl.uniform3f(this.faces.at("at"), projection.at[0], projection.at[1], 0);
+        gl.uniform3f(this.faces.at("away"), 0, 0, 0);
+        gl.disable(gl.DEPTH_TEST);
+        for (const flat of flats) this.flat(flat);
+        gl.enable(gl.DEPTH_TEST);
         const reach = reachOf(strips, projection);
         this.use(this.lines, projection, size, reach);
         gl.bindVertexArray(this.empty);
@@ -178,6 +206,8 @@ export class Gl implements Renderer {
         gl.uniform1i(lines.at("byMove"), byMove === null ? 0 : 1);
         gl.uniform1f(lines.at("lift"), paint.lift);
         gl.uniform1f(lines.at("width"), paint.width);
+        gl.uniform1i(lines.at("tool"), paint.tool);
+        gl.uniform1i(lines.at("rounded"), paint.round ? 1 : 0);
         gl.uniform1ui(lines.at("shift"), paint.shift);
         gl.uniform1ui(lines.at("mask"), paint.mask);
         gl.uniform1ui(lines.at("hidden"), bits(paint, Style.hidden));
@@ -249,7 +279,45 @@ export class Gl implements Renderer {
         gl.deleteVertexArray(array);
     }
 
+    /** Areas in the plane Z 0: their corners stay on the graphics processor. */
+    private flat(flat: Flat): void {
+        const { gl } = this;
+        let kept = this.areas.get(flat);
+        if (kept === undefined) {
+            kept = { ...this.areasOf(flat), frame: 0 };
+            this.areas.set(flat, kept);
+        }
+        kept.frame = this.frame;
+        gl.bindVertexArray(kept.array);
+        const { colour } = flat;
+        gl.vertexAttrib3f(1, (colour & 255) / 255, ((colour >> 8) & 255) / 255, ((colour >> 16) & 255) / 255);
+        gl.drawElements(gl.TRIANGLES, (flat.corners.length / 8) * 6, gl.UNSIGNED_INT, 0);
+    }
+
+    private areasOf({ corners }: Flat): { array: WebGLVertexArrayObject; buffers: WebGLBuffer[] } {
+        const { gl } = this;
+        const array = gl.createVertexArray();
+        gl.bindVertexArray(array);
+        const points = gl.createBuffer();
+        gl.bindBuffer(gl.ARRAY_BUFFER, points);
+        gl.bufferData(gl.ARRAY_BUFFER, corners, gl.STATIC_DRAW);
+        gl.enableVertexAttribArray(0);
+        gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
+        const order = gl.createBuffer();
+        gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, order);
+        const places = new Uint32Array((corners.length / 8) * 6);
+        for (let area = 0; area * 8 < corners.length; area++) places.set([0, 1, 2, 0, 2, 3].map((corner) => area * 4 + corner), area * 6);
+        gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, places, gl.STATIC_DRAW);
+        return { array, buffers: [points, order] };
+    }
+
     private forget(): void {
+        for (const [flat, { array, buffers, frame }] of this.areas) {
+            if (this.frame - frame < IDLE) continue;
+            this.gl.deleteVertexArray(array);
+            for (const buffer of buffers) this.gl.deleteBuffer(buffer);
+            this.areas.delete(flat);
+        }
         for (const [key, { texture, frame }] of this.kept) {
             if (this.frame - frame < IDLE) continue;
             this.gl.deleteTexture(texture);
