@@ -21,7 +21,7 @@ function board(): Board {
         is_whole: true,
     };
     const areas = Float32Array.from([0, 6, 0, 10, 0, 10, 1, 3, 1, 4, 1, 4, 1, 5, 6, 7, 8, 9]);
-    return new Board(about, areas, Float32Array.from([2.5, 2.5, 2.5, 2.5, 2.2]), Float32Array.from([0.2, 0, 0.2, 6]), 1);
+    return new Board(about, areas, Float32Array.from([2.5, 2.5, 2.5, 2.5, 2.2]), Float32Array.from([1, 0.5, 4, 0.5, 1, 5.5, 4, 5.5]));
 }
 
 test("the net under a place is that of its copper", () => {
@@ -43,18 +43,34 @@ test("areas are filled in their order, and lie below all that has depth", () => 
     raster.clear(0);
     const flats = board().flats(theme(false));
     for (const one of flats) raster.flat(one, flat);
-    const names = ["b", "1", "2", "h", "t"];
+    const names = ["b", "1", "2", "h"];
     const letters = new Map(flats.map(({ colour }, i) => [colour, names[i]!]));
-    // The hole reaches 1.1 mm about X 2.5 Y 2.5, the tab from X -0.3 to X 0.7.
+    // The hole reaches 1.1 mm about X 2.5 Y 2.5.
     expect(shown(raster, letters)).toEqual([
-        "tbbbbbbbbb",
-        "t1h1bb2bbb",
-        "thhhbbb2bb",
-        "tbhbbbb2bb",
-        "tbbbbbbb2b",
-        "tbbbbbbbbb",
+        "bbbbbbbbbb",
+        "b1h1bb2bbb",
+        "bhhhbbb2bb",
+        "bbhbbbb2bb",
+        "bbbbbbbb2b",
+        "bbbbbbbbbb",
     ]);
     expect(raster.depth.every((depth) => depth === Number.POSITIVE_INFINITY)).toBe(true);
+});
+
+test("tabs lie over the cuts, each by itself, and are no moves", () => {
+    const strip = board().tabLines(theme(false))!;
+    const tab = { ...strip, paint: { ...strip.paint, width: 1 } };
+    const raster = new Raster(6, 6);
+    raster.clear(0);
+    raster.strip(cut([[0, 0.5], [6, 0.5]], { width: 2 }), flat);
+    raster.strip(tab, flat);
+    const black = rgb(17, 17, 17);
+    expect(Array.from(raster.seen.slice(0, 6))).toEqual([1, black, black, black, black, 1]);
+    expect(Array.from(raster.seen.slice(12, 24)).every((seen) => seen === 0)).toBe(true);
+    const moves = new Raster(6, 6, { sees: "moves", left: 0, top: 0 });
+    moves.clear(0);
+    moves.strip(tab, flat);
+    expect(moves.seen.every((seen) => seen === 0)).toBe(true);
 });
 
 function cut(points: number[][], more: Partial<Paint>): Strip {

@@ -102,12 +102,11 @@ export class Screen {
     }
 
     /** The board below the cuts. */
-    private async askBoard({ revision, walk }: Job): Promise<void> {
+    private async askBoard({ revision }: Job): Promise<void> {
         const { done, arrays } = await this.studio.seam.ask("board", { revision });
         if (this.studio.job.value?.revision !== revision || this.scene.value === null) return;
         const { areas, holes, tabs } = arrays as Record<string, Float32Array>;
-        const width = walk.tools.find((tool) => tool.width !== null)?.width ?? 1;
-        const board = new Board(done, areas!, holes!, tabs!, width);
+        const board = new Board(done, areas!, holes!, tabs!);
         this.scene.value.board = board;
         this.board.value = board;
         this.news.value++;

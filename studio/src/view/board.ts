@@ -1,8 +1,9 @@
-/** A board below the cuts of its program: areas of copper by net, holes, tabs, and places to look at. */
+/** A board below the cuts of its program: areas of copper by net, holes, and places to look at; tabs lie over the cuts. */
 
 import type { BoardPicture } from "../protocol/asks.ts";
 import type { Theme } from "./colours.ts";
 import { rgb } from "./raster.ts";
+import { Style, VERTEX_BYTES, wordOf, type Paint, type Strip } from "./strip.ts";
 import type { Vector } from "./vector.ts";
 
 /** Convex areas with four corners in the plane Z 0, of one colour: they lie below all that is drawn. */
@@ -17,6 +18,9 @@ export interface Flat {
 const TRAPEZOID = 6;
 const STROKE = 5;
 const SIDES = 24;
+
+/** How wide the line of a tab is, pixels. */
+const TAB = 5;
 
 /** How many colours conductors have. */
 const COLOURS = 8;
@@ -40,6 +44,8 @@ const dark: typeof light = {
 };
 
 export class Board {
+    private lines: { theme: Theme; strip: Strip } | null = null;
+
     private painted: { theme: Theme; flats: Flat[] } | null = null;
 
     constructor(
@@ -47,9 +53,27 @@ export class Board {
         private readonly trapezoids: Float32Array,
         private readonly holes: Float32Array,
         private readonly tabs: Float32Array,
-        /** How wide the tool is that leaves the tabs, mm. */
-        private readonly width: number,
     ) {}
+
+    /** Where tabs stay, over the cuts: they are no moves. */
+    tabLines(theme: Theme): Strip | null {
+        const count = this.tabs.length / 4;
+        if (count === 0) return null;
+        if (this.lines?.theme === theme) return this.lines.strip;
+        const vertices = new ArrayBuffer(count * 2 * VERTEX_BYTES);
+        const numbers = new Float32Array(vertices);
+        const words = new Uint32Array(vertices);
+        for (let end = 0; end < count * 2; end++) {
+            numbers.set(this.tabs.subarray(end * 2, end * 2 + 2), end * 4);
+            words[end * 4 + 3] = wordOf(0, end % 2, 0);
+        }
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => (kind === 0 ? Style.hidden : Style.line));
+        const palette = new Uint32Array([rgb(...(theme.isDark ? dark : light).tab)]);
+        const paint: Paint = { palette, byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: TAB, tool: -1, round: false, lift: 1000 };
+        const strip: Strip = { vertices, origin: [0, 0, 0], first: -1, from: 1, to: count * 2, paint };
+        this.lines = { theme, strip };
+        return strip;
+    }
 
     /** The areas, the lowest first. */
     flats(theme: Theme): Flat[] {
@@ -67,12 +91,10 @@ export class Board {
         });
         const rest = by.pop()!;
         const holes: number[] = [];
-        for (let i = 0; i < this.holes.length; i += STROKE) stroke(holes, this.holes.subarray(i, i + STROKE), true);
-        const tabs: number[] = [];
-        for (let i = 0; i < this.tabs.length; i += 4) stroke(tabs, [...this.tabs.subarray(i, i + 4), this.width], false);
+        for (let i = 0; i < this.holes.length; i += STROKE) stroke(holes, this.holes.subarray(i, i + STROKE));
         const flat = (corners: number[], colour: Colour): Flat => ({ corners: Float32Array.from(corners), colour: rgb(...colour) });
         const areas = by.map((corners, look) => flat(corners, looks[look]!));
-        return [...areas, flat(holes, colours.hole), flat(rest, colours.rest), flat(tabs, colours.tab)].filter(({ corners }) => corners.length > 0);
+        return [...areas, flat(holes, colours.hole), flat(rest, colours.rest)].filter(({ corners }) => corners.length > 0);
     }
 
     /** Each trapezoid with the area that it is part of. */
@@ -121,14 +143,13 @@ export class Board {
     }
 }
 
-/** A stroke from x, y to x, y of a width as convex areas: the middle, and at round ends halves of discs. */
-function stroke(corners: number[], [x0, y0, x1, y1, width]: ArrayLike<number> & Iterable<number>, isRound: boolean): void {
+/** A stroke from x, y to x, y of a width as convex areas: the middle, and at its ends halves of discs. */
+function stroke(corners: number[], [x0, y0, x1, y1, width]: ArrayLike<number> & Iterable<number>): void {
     const length = Math.hypot(x1! - x0!, y1! - y0!);
     const [ux, uy] = length > 0 ? [(x1! - x0!) / length, (y1! - y0!) / length] : [1, 0];
     const r = width! / 2;
     const [nx, ny] = [-uy * r, ux * r];
     if (length > 0) corners.push(x0! + nx, y0! + ny, x0! - nx, y0! - ny, x1! - nx, y1! - ny, x1! + nx, y1! + ny);
-    if (!isRound) return;
     // Strips of a disc across the stroke.
     const end = (x: number, y: number, way: number): void => {
         const at = (angle: number, side: number): [number, number] => {

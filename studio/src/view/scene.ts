@@ -84,6 +84,8 @@ export class Scene {
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
+        const tabs = this.board?.tabLines(looks.theme) ?? null;
+        if (tabs !== null) strips.push(tabs);
         const flats = this.board?.flats(looks.theme) ?? [];
         this.places(symbols, projection, size);
         return { flats, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
