@@ -147,6 +147,11 @@ impl Folder {
         inner(path).is_ok_and(|inner| self.dir.metadata(inner).is_ok_and(|at| at.is_dir()))
     }
 
+    /// Whether a path is one of its files.
+    pub fn is_file(&self, path: &str) -> bool {
+        inner(path).is_ok_and(|inner| self.dir.metadata(inner).is_ok_and(|at| at.is_file()))
+    }
+
     /// The whole path of a file of the folder that is to be written, or of one that is there.
     ///
     /// # Errors

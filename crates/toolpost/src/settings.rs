@@ -68,16 +68,31 @@ const ELSEWHERE: [&str; 9] =
 /// # Errors
 /// What is wrong with the file.
 pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
-    let command = CommandLine::command().ignore_errors(true);
     let as_typed = |words| Ok(Expanded { words, found: Vec::new(), origins: Vec::new() });
-    let Ok(matches) = command.try_get_matches_from(&words) else { return as_typed(words) };
-    let Some(("pcb", typed)) = matches.subcommand() else { return as_typed(words) };
-    let Some(file) = file(typed) else {
-        let found = lies_beside(typed, SETTINGS[1]).map(|file| unused(&file));
+    let Some(typed) = of_board(&words) else { return as_typed(words) };
+    let Some(file) = file(&typed) else {
+        let found = lies_beside(&typed, SETTINGS[1]).map(|file| unused(&file));
         let found = found.into_iter().collect();
         return Ok(Expanded { words, found, origins: Vec::new() });
     };
-    let text = Source::File(file.clone()).text()?;
+    with(words, &Source::File(file))
+}
+
+/// What is typed after `pcb`, where that is the command.
+fn of_board(words: &[OsString]) -> Option<ArgMatches> {
+    let command = CommandLine::command().ignore_errors(true);
+    let (name, typed) = command.try_get_matches_from(words).ok()?.remove_subcommand()?;
+    (name == "pcb").then_some(typed)
+}
+
+/// The command line of a board with what this file says; files that it names lie where it does.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn with(words: Vec<OsString>, file: &Source) -> Result<Expanded, Stop> {
+    let text = file.text()?;
+    let file = file.path();
+    let typed = of_board(&words).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);
     let is_toml = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     let name = file.display().to_string();
@@ -86,7 +101,7 @@ pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
         false => import_millproject(&text).map_err(|found| (*found).file(&name))?,
     };
     let found = found.into_iter().map(|found: Diagnostic| found.file(&name)).collect();
-    let more = spelled(&stated, typed, &file).map_err(|found| {
+    let more = spelled(&stated, &typed, file).map_err(|found| {
         Stop::invalid(found.into_iter().map(|found| found.file(&name)).collect())
     })?;
     let mut all = Vec::with_capacity(words.len() + more.len());

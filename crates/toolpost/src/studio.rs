@@ -122,11 +122,15 @@ fn field(arg: &Arg) -> Option<Field> {
     })
 }
 
-/// What options of the form mean: they are read as the command line reads them.
+/// What options of the form mean, with those of a file beside the board: they are read as the command line reads them.
 ///
 /// # Errors
 /// As there.
-fn options(command: ask::Command, given: &[(String, String)]) -> Result<Options, Stop> {
+fn options(
+    command: ask::Command,
+    given: &[(String, String)],
+    beside: Option<&Source>,
+) -> Result<Options, Stop> {
     let form = form(command);
     let begin = ["toolpost", name(command), "--machine=m", "--output=o"];
     let mut words: Vec<String> = begin.map(str::to_owned).to_vec();
@@ -142,6 +146,11 @@ fn options(command: ask::Command, given: &[(String, String)]) -> Result<Options,
         });
     }
     words.extend(["--", "source"].map(str::to_owned));
+    let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
+    let words = match beside {
+        Some(file) => crate::settings::with(words, file)?.words,
+        None => words,
+    };
     let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
         let message = crate::shortened(usage).render().to_string();
         let first = message.split("\n\n").next().unwrap_or_default();
@@ -164,7 +173,6 @@ fn options(command: ask::Command, given: &[(String, String)]) -> Result<Options,
         }
         Command::Pcb(pcb) => {
             let named = pcb.files.named().into_iter();
-            let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
             let board = Settings {
                 plan: pcb.plan(),
                 heights: pcb.running.heights.clone().map(Source::File),
@@ -208,7 +216,7 @@ mod tests {
     fn options_are_read_as_the_command_line_reads_them() {
         let given = |list: &[(&str, &str)]| {
             let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
-            options(ask::Command::Post, &list)
+            options(ask::Command::Post, &list, None)
         };
         let read = given(&[
             ("strict", ""),
@@ -233,7 +241,7 @@ mod tests {
         }
         let list = [("tool", "8mil"), ("only", "front,drill"), ("drill", "b.drl"), ("strict", "")];
         let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
-        let read = options(ask::Command::Pcb, &list).unwrap();
+        let read = options(ask::Command::Pcb, &list, None).unwrap();
         let board = read.board.unwrap();
         assert!(read.strict);
         assert_eq!(board.plan.isolation.tool, Some(0.2032));
@@ -242,12 +250,28 @@ mod tests {
         // As the report keeps them for a later proof.
         assert_eq!(board.typed, ["--drill=b.drl", "--only=front", "--only=drill", "--tool=8mil"]);
         for given in ["settings", "output", "picture", "machine"] {
-            assert!(options(ask::Command::Pcb, &[(given.to_owned(), "x".to_owned())]).is_err());
+            assert!(
+                options(ask::Command::Pcb, &[(given.to_owned(), "x".to_owned())], None).is_err()
+            );
         }
+        // What stands in the file beside the board counts less, and what it names lies where it does.
+        let beside = "tool = 0.5\npasses = 3\nheights = \"map.txt\"\nmachine = \"other\"\n";
+        let beside = Source::memory("lamp/toolpost.toml", beside.as_bytes());
+        let board = options(ask::Command::Pcb, &list, Some(&beside)).unwrap().board.unwrap();
+        assert_eq!(board.plan.isolation.tool, Some(0.2032));
+        assert_eq!(board.plan.isolation.passes, 3);
+        assert_eq!(board.heights.unwrap().path(), Path::new("lamp/map.txt"));
+        let wrong = Source::memory("lamp/toolpost.toml", &b"passes = 3\nwidth = 2\n"[..]);
+        let stop = options(ask::Command::Pcb, &list, Some(&wrong)).unwrap_err();
+        let found = &stop.findings[0];
+        assert_eq!(
+            (found.rule.name(), &*found.file, found.line),
+            ("settings-key", "lamp/toolpost.toml", 2)
+        );
         let side = [(String::from("side"), String::from("inside"))];
-        let wire = options(ask::Command::Wire, &side).unwrap().wire.unwrap();
+        let wire = options(ask::Command::Wire, &side, None).unwrap().wire.unwrap();
         assert_eq!(wire.cutting.side, Some(wire::cutting::Side::Inside));
-        assert!(options(ask::Command::Post, &side).is_err());
+        assert!(options(ask::Command::Post, &side, None).is_err());
         // What looks like another option is a value.
         assert_eq!(
             given(&[("from", "--strict")]).unwrap().origin.from.as_deref(),

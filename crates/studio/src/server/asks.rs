@@ -176,9 +176,10 @@ fn make(
         FileOrUpload::File(path) => studio.folder.target(path).ok(),
         FileOrUpload::Upload(_) => None,
     };
+    let beside = studio.beside(source)?;
     let (source, mut inputs) = studio.sources(source)?;
     inputs.extend(program.and_then(within));
-    let beside = program.and_then(within).and_then(|path| Some(path.parent()?.to_owned()));
+    let called = program.and_then(within).and_then(|path| Some(path.parent()?.to_owned()));
     // A program of the folder keeps its name.
     let named = match program {
         Some(FileOrUpload::File(path)) => path.rsplit('/').next().map(str::to_owned),
@@ -187,10 +188,10 @@ fn make(
     let asked = Asked {
         source,
         machine,
-        options: &|command| studio.options(command, options),
+        options: &|command| studio.options(command, options, beside.as_ref()),
         file: file.or(named),
         program: text,
-        folders: beside.into_iter().collect(),
+        folders: called.into_iter().collect(),
         inputs,
     };
     let jobs = Job::make(asked, &studio.folder, waits, ended)?;

@@ -75,7 +75,8 @@ pub struct Settings {
 pub type Form = fn(Command) -> Vec<Field>;
 
 /// Reads options of a command as the command line does.
-pub type ReadOptions = fn(Command, &[(String, String)]) -> Result<Options, Stop>;
+/// A board may have a file with more of them beside it.
+pub type ReadOptions = fn(Command, &[(String, String)], Option<&Source>) -> Result<Options, Stop>;
 
 /// A server that listens.
 #[derive(Debug)]
@@ -103,9 +104,14 @@ pub(crate) struct Studio {
 
 impl Studio {
     /// What options mean.
-    fn options(&self, command: Command, given: &[(String, String)]) -> Result<Options, Stop> {
+    fn options(
+        &self,
+        command: Command,
+        given: &[(String, String)],
+        beside: Option<&Source>,
+    ) -> Result<Options, Stop> {
         match self.options {
-            Some(read) => read(command, given),
+            Some(read) => read(command, given, beside.filter(|_| command == Command::Pcb)),
             None if given.is_empty() => Ok(Options::default()),
             None => Err(Diagnostic::error(Rule::StudioAsk, "there are no options here").into()),
         }
@@ -135,6 +141,25 @@ impl Studio {
             }
         };
         Ok((sources, inputs))
+    }
+
+    /// The file with options of a board that lies beside it, or is one of its files.
+    fn beside(&self, given: &Given) -> Result<Option<Source>, Stop> {
+        let name = app::pcb::SETTINGS[0];
+        let folder = match given {
+            Given::Uploads(ids) => {
+                let mut each = ids.iter().filter_map(|id| self.uploads.find(id).ok());
+                return Ok(each.find(|file| file.name() == name));
+            }
+            Given::Upload(_) => return Ok(None),
+            Given::Folder(path) => path.as_str(),
+            Given::File(path) => path.rsplit_once('/').map_or("", |(folder, _)| folder),
+        };
+        let path = if folder.is_empty() { name.to_owned() } else { format!("{folder}/{name}") };
+        match self.folder.is_file(&path) {
+            true => Ok(Some(self.source(&FileOrUpload::File(path))?)),
+            false => Ok(None),
+        }
     }
 
     /// What writes the programs of something: a file is read where its name does not say it.

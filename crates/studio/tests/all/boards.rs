@@ -18,10 +18,17 @@ fn plan() -> app::pcb::Settings {
     plan
 }
 
-fn options(command: Command, given: &[(String, String)]) -> Result<Options, app::Stop> {
+fn options(
+    command: Command,
+    given: &[(String, String)],
+    beside: Option<&app::Source>,
+) -> Result<Options, app::Stop> {
     assert_eq!(command, Command::Pcb);
     let heights = given.first().map(|(_, file)| app::Source::File(file.into()));
-    let board = Settings { plan: plan(), heights, ..Settings::default() };
+    // Of the file beside a board these tests take its size.
+    let typed = beside.map(|file| format!("{} {}", file.name(), file.read().unwrap().len()));
+    let typed = typed.into_iter().collect();
+    let board = Settings { plan: plan(), heights, typed, ..Settings::default() };
     Ok(Options { board: Some(Box::new(board)), ..Options::default() })
 }
 
@@ -226,6 +233,25 @@ fn layers_are_posted_from_a_folder_and_from_uploads_and_nothing_else_is_read() {
     // Files that the options name are those of the folder.
     let named = json!({ "source": { "folder": "plots" }, "machine": MACHINE, "options": [["heights", "../secret.gbl"]] });
     assert_eq!(page.refused("post", named), "folder-reach");
+}
+
+#[test]
+fn the_options_in_a_file_beside_a_board_are_taken() {
+    let studio = studio();
+    let mut page = studio.socket();
+    let beside = studio.own().join("lamp/toolpost.toml");
+    let mut saved = |source: Value| {
+        let job = post(&mut page, source);
+        let params = json!({ "revision": job["revision"], "path": "out", "replace": true });
+        page.done("save", params);
+        let report = fs::read(studio.own().join("out/report.json")).unwrap();
+        serde_json::from_slice::<Value>(&report).unwrap()["options"].clone()
+    };
+    assert_eq!(saved(json!({ "folder": "lamp" })), json!([]));
+    fs::write(beside, "passes = 2\n").unwrap();
+    for source in [json!({ "folder": "lamp" }), json!({ "file": "lamp/lamp.toml" })] {
+        assert_eq!(saved(source), json!(["toolpost.toml 11"]));
+    }
 }
 
 #[test]

@@ -315,7 +315,11 @@ fn uploads_are_posted_and_the_oldest_job_goes() {
 #[test]
 fn a_wire_is_posted_by_the_options_of_its_own_command() {
     use app::wire::{Settings, Sync};
-    fn options(command: Command, given: &[(String, String)]) -> Result<Options, app::Stop> {
+    fn options(
+        command: Command,
+        given: &[(String, String)],
+        _: Option<&app::Source>,
+    ) -> Result<Options, app::Stop> {
         assert_eq!(command, Command::Wire);
         let cutting = wire::cutting::Cutting {
             side: Some(wire::cutting::Side::Inside),
