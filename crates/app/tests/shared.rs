@@ -636,8 +636,8 @@ fn a_folder_in_memory_is_a_board_as_on_disk() {
     assert_eq!(made(None).err().unwrap().findings[0].rule, "board");
     // Each program knows the board as it lies for it, and how wide it cuts.
     let [front, _, back, _] = &whole.programs[..] else { panic!() };
-    let widths: Vec<_> = front.widths().map(|(number, _, width)| (number, width)).collect();
-    assert_eq!(widths, [(1, 0.3)]);
+    let [(number, _, width)] = &front.widths()[..] else { panic!() };
+    assert_eq!((*number, *width), (1, 0.3));
     let copper = |program| {
         let areas = whole.areas(program);
         let copper = areas.areas.iter().filter(|area| area.kind == drawing::AreaKind::Copper);

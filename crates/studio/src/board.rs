@@ -5,13 +5,15 @@ use crate::ask::{
     Turning,
 };
 use crate::folder::Folder;
-use crate::job::{Follows, Job, Made, Options, Sources, rows};
+use crate::job::{Follows, Job, Made, Options, Sources, report_of, rows};
 use crate::lines::Lines;
 use crate::message::{Array, Values};
+use ::post::Origins;
 use app::pcb::{AreaKind, Axis, BoardAreas, Layer};
 use app::{Account, Source, Stop, Verdict, Watch, files, pcb, post};
+use control::Folders;
 use machine::Machine;
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Rule, encoding};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -69,19 +71,8 @@ pub(crate) fn make(
     mut inputs: Vec<PathBuf>,
     follows: &Follows,
 ) -> Result<Vec<Job>, Stop> {
-    let Settings { plan, heights, named, typed } =
-        options.board.as_deref().cloned().unwrap_or_default();
-    let mut job = pcb::Job::new(machine, &plan, &options.tolerances)?;
-    (job.surface, job.named) = (heights, named);
-    (job.strict, job.options) = (options.strict, typed);
-    let board = match source {
-        Sources::One(file) => vec![file],
-        Sources::Several(files) => files,
-        Sources::Folder(name, files) => {
-            job.folder = Some(name);
-            files
-        }
-    };
+    let settings = options.board.as_deref().cloned().unwrap_or_default();
+    let (job, board) = begun(source, options, machine, &settings)?;
     let made = job.make(&board, follows)?;
     let account = made.account(&job, Vec::new());
     if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
@@ -106,7 +97,6 @@ pub(crate) fn make(
     let programs = made.programs.into_iter().zip(areas).enumerate();
     let job = |(number, (program, areas)): (usize, (pcb::Program, BoardAreas))| {
         let widths = program.widths();
-        let widths = widths.map(|(number, name, width)| (number, name.to_owned(), width)).collect();
         let pcb::Program { file, mut toolpath, machine, posted, .. } = program;
         let post::Posted { text: written, origins, parts, account } = posted;
         toolpath.file.clone_from(&text_name);
@@ -116,6 +106,60 @@ pub(crate) fn make(
         Job::of(made, Lines::of(text.clone()), (file, (machine_name, machine)), Vec::new(), follows)
     };
     programs.map(job).collect()
+}
+
+/// What is to be made, and the files that the board is.
+fn begun<'a>(
+    source: Sources,
+    options: &'a Options,
+    machine: &'a Machine,
+    settings: &'a Settings,
+) -> Result<(pcb::Job<'a>, Vec<Source>), Stop> {
+    let mut job = pcb::Job::new(machine, &settings.plan, &options.tolerances)?;
+    (job.surface, job.named) = (settings.heights.clone(), settings.named.clone());
+    (job.strict, job.options) = (options.strict, settings.typed.clone());
+    let board = match source {
+        Sources::One(file) => vec![file],
+        Sources::Several(files) => files,
+        Sources::Folder(name, files) => {
+            job.folder = Some(name);
+            files
+        }
+    };
+    Ok((job, board))
+}
+
+/// Proves a program of a board that was edited, by itself: what it is called says which of the programs it is.
+///
+/// # Errors
+/// What is wrong with the board, that it has no such program, or that the work was ended.
+pub(crate) fn prove(
+    source: Sources,
+    options: &Options,
+    (machine_name, machine): (&str, &Machine),
+    inputs: Vec<PathBuf>,
+    (file, text, folders): (String, Vec<u8>, Folders),
+    follows: &Follows,
+) -> Result<Job, Stop> {
+    let settings = options.board.as_deref().cloned().unwrap_or_default();
+    let (job, board) = begun(source, options, machine, &settings)?;
+    let name = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let program = (encoding::without_mark(&text), &folders);
+    let compared = job.prove(&board, (&name, &file), program, follows)?;
+    let pcb::Compared { account, mut toolpath, machine, widths } = compared;
+    let report = report_of(&account, &text, &folders, &toolpath, &machine)?;
+    let shown = match &board[..] {
+        [one] => (one.name(), one.text().unwrap_or_default()),
+        files => {
+            let names = files.iter().map(|file| format!("{}\n", file.name())).collect::<String>();
+            (toolpath.file.clone(), names.into_bytes())
+        }
+    };
+    toolpath.file = shown.0;
+    follows.step("drawing");
+    let (origins, parts, board) = (Origins::default(), Vec::new(), None);
+    let made = Made { toolpath, account, text, origins, parts, report, widths, board };
+    Job::of(made, Lines::of(shown.1), (file, (machine_name, machine)), inputs, follows)
 }
 
 /// What is shown as the source: the file of a board that is one file, of others what each was taken for. No line of a program is made by a

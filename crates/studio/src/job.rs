@@ -242,16 +242,17 @@ impl Job {
         let source = match asked.source {
             Sources::One(source) if command != Command::Pcb => source,
             board => {
-                if asked.program.is_some() {
-                    let message =
-                        "a program of a board is proven as it was written, not after an edit";
-                    let found = Diagnostic::error(Rule::Board, message);
-                    let help =
-                        "`toolpost prove` proves it, with the report that is saved beside it";
-                    return Err(found.help(help).into());
-                }
                 let machine = (asked.machine, &machine);
-                return board::make(board, &options, machine, inputs, &follows);
+                let Some(text) = asked.program else {
+                    return board::make(board, &options, machine, inputs, &follows);
+                };
+                let file = asked.file.ok_or_else(|| {
+                    let message = "the name of the file says which program of the board it is";
+                    Diagnostic::error(Rule::StudioAsk, message)
+                })?;
+                let program = (file, text, called_from(machine.1, asked.folders));
+                let job = board::prove(board, &options, machine, inputs, program, &follows)?;
+                return Ok(vec![job]);
             }
         };
         let file = asked.file.unwrap_or_else(|| {
@@ -260,17 +261,12 @@ impl Job {
         });
         let made = match (&options.wire, asked.program) {
             (Some(settings), None) => cut(&source, &options, &machine, settings, &file, &follows)?,
-            (Some(_), Some(_)) => {
-                let message = "a program of a wire is proven as it was written, not after an edit";
-                let found = Diagnostic::error(Rule::MachineKind, message);
-                return Err(found
-                    .help("change the contour or an option, and post it again")
-                    .into());
+            (Some(settings), Some(text)) => {
+                recut(&source, &options, &machine, settings, (&file, text), &follows)?
             }
             (None, None) => posted(&source, &options, &machine, &file, &follows)?,
             (None, Some(text)) => {
-                let folders = if machine.arm.is_some() { asked.folders } else { Vec::new() };
-                let program = (&*file, text, Folders::from(folders));
+                let program = (&*file, text, called_from(&machine, asked.folders));
                 compared(&source, &options, &machine, program, &follows)?
             }
         };
@@ -705,13 +701,54 @@ fn compared(
     let toolpath = toolpath_of(source, options, machine, watch)?;
     let program = (file, encoding::without_mark(&text), &folders);
     let account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
-    let mut report = None;
-    if account.verdict == Verdict::Done {
-        let called = report::called(&folders)?;
-        let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
-        let digests = Digests::of(&text, &called, &toolpath, machine);
-        report = Some(report::of_proven(&account, &digests));
+    let report = report_of(&account, &text, &folders, &toolpath, machine)?;
+    let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
+    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
+}
+
+/// Where programs are looked for that a program calls: a robot has them beside it.
+fn called_from(machine: &Machine, folders: Vec<PathBuf>) -> Folders {
+    Folders::from(if machine.arm.is_some() { folders } else { Vec::new() })
+}
+
+/// The report that is saved with a program that was proven and not written.
+///
+/// # Errors
+/// A file that it calls can no longer be read.
+pub(crate) fn report_of(
+    account: &Account,
+    text: &[u8],
+    folders: &Folders,
+    toolpath: &Toolpath,
+    machine: &Machine,
+) -> Result<Option<String>, Stop> {
+    if account.verdict != Verdict::Done {
+        return Ok(None);
     }
+    let called = report::called(folders)?;
+    let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
+    let digests = Digests::of(text, &called, toolpath, machine);
+    Ok(Some(report::of_proven(account, &digests)))
+}
+
+/// Proves a program of a wire that was edited.
+fn recut(
+    source: &Source,
+    options: &Options,
+    machine: &Machine,
+    settings: &wire::Settings,
+    (file, text): (&str, Vec<u8>),
+    watch: &dyn Watch,
+) -> Result<Made, Stop> {
+    if encoding::is_utf_16(&text) {
+        return Err(encoding::utf_16().file(file).into());
+    }
+    let Options { strict, origin, tolerances, .. } = options;
+    let read = (file, encoding::without_mark(&text));
+    let (strict, owned) = (*strict, machine.clone());
+    let (toolpath, account) =
+        wire::prove(source, strict, origin, owned, settings, read, tolerances, watch)?;
+    let report = report_of(&account, &text, &Folders::default(), &toolpath, machine)?;
     let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
     Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
 }

@@ -110,5 +110,5 @@ fn board(
     let name = args.program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let read = encoding::without_mark(&text);
     let folders = beside(&args.program, machine);
-    Ok(job.prove(&sources, (&name, &file), (read, &folders), &progress)?.into())
+    Ok(job.prove(&sources, (&name, &file), (read, &folders), &progress)?.account.into())
 }

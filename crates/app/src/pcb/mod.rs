@@ -55,6 +55,18 @@ pub struct Job<'a> {
     pub options: Vec<String>,
 }
 
+/// A program of a board that was there already, compared with what is made of the board.
+pub struct Compared {
+    /// What is reported of it.
+    pub account: Account,
+    /// What it was compared with.
+    pub toolpath: Toolpath,
+    /// The machine that it is for, with the program's own number.
+    pub machine: Machine,
+    /// As of [`Program::widths`].
+    pub widths: Vec<(u32, String, f64)>,
+}
+
 /// The programs of a board.
 pub struct Made {
     /// Those that are proven, in the order in which they are run.
@@ -186,7 +198,7 @@ impl<'a> Job<'a> {
         (name, file): (&str, &str),
         (text, folders): (&[u8], &Folders),
         watch: &dyn Watch,
-    ) -> Result<Account, Stop> {
+    ) -> Result<Compared, Stop> {
         let running = &self.settings.running;
         let Begun { shop, tasks, .. } = self.begun(board, watch)?;
         let is_called = |of: &str| of == name || self.file(of) == file;
@@ -203,8 +215,12 @@ impl<'a> Job<'a> {
                 return Err(Diagnostic::error(Rule::NoSuchPart, message).help(help).into());
             }
         };
-        let machine = self.shaped(numbered(self.machine, place));
-        prove::compare(&toolpath, &machine, (file, text, folders), self.tolerances, watch)
+        let machine = self.shaped(numbered(self.machine, place)).into_owned();
+        let text = (file, text, folders);
+        let account = prove::compare(&toolpath, &machine, text, self.tolerances, watch)?;
+        let work = tasks.into_iter().find(|task| is_called(&task.name)).map(|task| task.work);
+        let widths = widths(&toolpath, &work.unwrap_or_default());
+        Ok(Compared { account, toolpath, machine, widths })
     }
 
     /// Everything up to the programs: the board is read, and what is cut of it is planned.
@@ -610,14 +626,18 @@ pub struct Program {
 
 impl Program {
     /// Its tools, by number and name, and how wide each cuts where it goes deepest, mm; one that is called twice comes twice.
-    pub fn widths(&self) -> impl Iterator<Item = (u32, &str, f64)> {
-        let tools = self.toolpath.program.records.iter().filter_map(|record| match &record.op {
-            Op::Tool(tool) => Some((tool.number, &*tool.name)),
-            _ => None,
-        });
-        let widths = self.work.operations.iter().map(Operation::width);
-        tools.zip(widths).map(|((number, name), width)| (number, name, width))
+    pub fn widths(&self) -> Vec<(u32, String, f64)> {
+        widths(&self.toolpath, &self.work)
     }
+}
+
+fn widths(toolpath: &Toolpath, work: &Work) -> Vec<(u32, String, f64)> {
+    let tools = toolpath.program.records.iter().filter_map(|record| match &record.op {
+        Op::Tool(tool) => Some((tool.number, tool.name.clone())),
+        _ => None,
+    });
+    let widths = work.operations.iter().map(Operation::width);
+    tools.zip(widths).map(|((number, name), width)| (number, name, width)).collect()
 }
 
 /// A program that is not made.

@@ -152,25 +152,12 @@ pub fn make(
     tolerances: &Tolerances,
     watch: &dyn Watch,
 ) -> Result<Made, Stop> {
-    settings.check()?;
-    set_up(&mut machine, settings)?;
-    watch.begin("reading")?;
-    let Source { mut toolpath, paths, offset, height } =
-        Source::read(source, strict, origin, settings, watch)?;
-    let mut warnings = std::mem::take(&mut toolpath.warnings);
-    watch.begin("writing")?;
-    let planned = cutting::segments(paths, &offset, &settings.cutting, height);
-    let (mut segments, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
-    warnings.extend(rounded);
-    divide(&mut segments, settings.step, &machine)?;
-    let cut = Cut::of(segments, height, &machine);
+    let (toolpath, cut, mut warnings) =
+        planned(source, strict, origin, &mut machine, settings, watch)?;
     let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
     let output = post::write((&program, file), &machine, &toolpath, &mut warnings, watch)?;
     watch.begin("proving")?;
-    if cut.points().is_some() {
-        // Chords may leave their arcs by what the conversion has made of them, and by no more.
-        machine.capabilities.lowering_tolerance = cut.chord_error();
-    }
+    allow(&cut, &mut machine);
     let name = &toolpath.program.name;
     let proof = proof::of(&cut, &machine, name, file, &output.text, tolerances, watch)
         .map_err(Box::<Diagnostic>::from)?;
@@ -210,6 +197,82 @@ pub fn make(
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
     let posted = Posted { text: output.text, origins, parts: Vec::new(), account };
     Ok(Made { posted, report, toolpath, cut, select })
+}
+
+/// Proves a program that is called `file` and that somebody has edited, against the contours of `source` on `machine`, as [`make`]
+/// would cut them.
+///
+/// # Errors
+/// Why there is nothing to compare it with, or that the work was ended.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "what is cut, by what, how, how closely, and for whom"
+)]
+pub fn prove(
+    source: &input::Source,
+    strict: bool,
+    origin: &Origin,
+    mut machine: Machine,
+    settings: &Settings,
+    (file, text): (&str, &[u8]),
+    tolerances: &Tolerances,
+    watch: &dyn Watch,
+) -> Result<(Toolpath, Account), Stop> {
+    let (toolpath, cut, warnings) = planned(source, strict, origin, &mut machine, settings, watch)?;
+    watch.begin("proving")?;
+    allow(&cut, &mut machine);
+    let name = &toolpath.program.name;
+    let proof = proof::of(&cut, &machine, name, file, text, tolerances, watch)
+        .map_err(Box::<Diagnostic>::from)?;
+    watch.go_on()?;
+    if !proof.proven {
+        let mut account = prove::failed(&proof, &toolpath, file);
+        account.findings.extend(warnings);
+        return Ok((toolpath, account));
+    }
+    let data = json!({
+        "source": { "file": toolpath.file, "dialect": toolpath.dialect },
+        "machine": toolpath::describe(&machine),
+        "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
+        "wire": cut.summary(settings.select, MOST_LISTED),
+        "proof": proof,
+    });
+    let mut rows = toolpath.rows(Some(&machine));
+    rows.extend(cut.rows(settings.select));
+    rows.extend(prove::rows(&proof, &machine));
+    let findings = warnings.into_iter().chain(proof.warnings).collect();
+    Ok((toolpath, Account { verdict: Verdict::Done, rows, data, findings }))
+}
+
+/// The contours of `source` as the wire cuts them on `machine`, which is set up for it; and what is odd about them.
+fn planned(
+    source: &input::Source,
+    strict: bool,
+    origin: &Origin,
+    machine: &mut Machine,
+    settings: &Settings,
+    watch: &dyn Watch,
+) -> Result<(Toolpath, Cut, Vec<Diagnostic>), Stop> {
+    settings.check()?;
+    set_up(machine, settings)?;
+    watch.begin("reading")?;
+    let Source { mut toolpath, paths, offset, height } =
+        Source::read(source, strict, origin, settings, watch)?;
+    let mut warnings = std::mem::take(&mut toolpath.warnings);
+    watch.begin("writing")?;
+    let planned = cutting::segments(paths, &offset, &settings.cutting, height);
+    let (mut segments, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
+    warnings.extend(rounded);
+    divide(&mut segments, settings.step, machine)?;
+    let cut = Cut::of(segments, height, machine);
+    Ok((toolpath, cut, warnings))
+}
+
+/// Chords may leave their arcs by what the conversion has made of them, and by no more.
+fn allow(cut: &Cut, machine: &mut Machine) {
+    if cut.points().is_some() {
+        machine.capabilities.lowering_tolerance = cut.chord_error();
+    }
 }
 
 /// The machine with what the call says of it.

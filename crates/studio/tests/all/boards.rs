@@ -8,7 +8,7 @@ use std::path::Path;
 use toolpost_studio::Options;
 use toolpost_studio::ask::Command;
 use toolpost_studio::board::Settings;
-use toolpost_studio::message::Values;
+use toolpost_studio::message::{Array, Values};
 
 const MACHINE: &str = "grbl-3018";
 
@@ -233,6 +233,37 @@ fn layers_are_posted_from_a_folder_and_from_uploads_and_nothing_else_is_read() {
     // Files that the options name are those of the folder.
     let named = json!({ "source": { "folder": "plots" }, "machine": MACHINE, "options": [["heights", "../secret.gbl"]] });
     assert_eq!(page.refused("post", named), "folder-reach");
+}
+
+#[test]
+fn a_program_of_a_board_is_edited_proven_and_saved_by_itself() {
+    let studio = studio();
+    let mut page = studio.socket();
+    let front = post(&mut page, json!({ "folder": "lamp" }));
+    let drill = page.done("job", json!({ "revision": front["board"]["programs"][1]["revision"] }));
+    let text = text_of(&mut page, &drill);
+    let mut prove = |file: &str, text: &str| {
+        let mut params = params(json!({ "folder": "lamp" }));
+        params["file"] = json!(file);
+        page.answer("prove", params, &[Array::text("text", text)])
+            .map(|frame| frame.head["done"].clone())
+    };
+    let spaced = prove("drill.gcode", &text.replacen("G0 ", "G0  ", 1)).unwrap();
+    assert_eq!((&spaced["verdict"], &spaced["board"]), (&json!("done"), &json!(null)), "{spaced}");
+    assert_eq!(spaced["walk"]["moves"], drill["walk"]["moves"]);
+    assert_eq!(spaced["walk"]["tools"][0]["width"], drill["walk"]["tools"][0]["width"]);
+    // The first hole is not drilled as deep as it was.
+    let (at, deep) = text.lines().enumerate().find(|(_, line)| line.contains("Z-")).unwrap();
+    let shallow = text.replacen(deep, &deep.replacen("Z-", "Z-0.", 1).replacen(".1.", ".1", 1), 1);
+    let failed = prove("drill.gcode", &shallow).unwrap();
+    assert_eq!(failed["verdict"], "failed", "{failed}");
+    // How deep a hole is is known when the tool comes up, in the next block.
+    assert_eq!(failed["mismatch"]["program"], at + 2);
+    // A name of none of its programs.
+    let stop = prove("other.gcode", &text).unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "no-such-part");
+    let save = json!({ "revision": spaced["revision"], "path": "drill.gcode", "replace": false });
+    assert_eq!(page.done("save", save)["files"], json!(["drill.gcode", "drill.gcode.report.json"]));
 }
 
 #[test]

@@ -367,8 +367,33 @@ fn a_wire_is_posted_by_the_options_of_its_own_command() {
     let saved =
         page.done("save", json!({ "revision": job["revision"], "path": "w.nc", "replace": false }));
     assert_eq!(saved["files"], json!(["w.nc", "w.nc.report.json"]));
-    let stop = page.answer("prove", params, &[Array::text("text", "M30\n")]).unwrap_err();
-    assert_eq!(stop["findings"][0]["rule"], "machine-kind");
+    // An edit is proven against the contour: a blank more is the same program, a place that is off by a tenth is not.
+    let lines = job["program"]["lines"].as_u64().unwrap();
+    let text = json!({ "revision": job["revision"], "of": "program", "from": 1, "to": lines + 1 });
+    let mut frame = page.answer("text", text, &[]).unwrap();
+    let text = String::from_utf8(frame.take_text("text").unwrap()).unwrap();
+    let mut prove = |text: &str| {
+        let frame = page.answer("prove", params.clone(), &[Array::text("text", text)]).unwrap();
+        frame.head["done"].clone()
+    };
+    let spaced = prove(&text.replacen(" X", "  X", 1));
+    assert_eq!(
+        (&spaced["verdict"], &spaced["walk"]["moves"]),
+        (&json!("done"), &job["walk"]["moves"]),
+        "{spaced}"
+    );
+    // The last block that says X goes back to where the wire is threaded.
+    let cut = text.lines().rfind(|line| line.contains(" X")).unwrap();
+    let word = cut.split(' ').find(|word| word.starts_with('X')).unwrap();
+    let x: f64 = word[1..].parse().unwrap();
+    let moved = cut.replacen(word, &format!("X{:.3}", x + 0.1), 1);
+    let failed = prove(&text.replacen(cut, &moved, 1));
+    assert_eq!(failed["verdict"], "failed", "{failed}");
+    let line = text.lines().position(|line| line == cut).unwrap() + 1;
+    assert_eq!(failed["mismatch"]["program"], line);
+    let save = json!({ "revision": spaced["revision"], "path": "edited.nc", "replace": false });
+    let saved = page.done("save", save);
+    assert_eq!(saved["files"], json!(["edited.nc", "edited.nc.report.json"]));
 }
 
 #[test]
