@@ -61,13 +61,16 @@ impl Folders {
     /// # Errors
     /// As [`Folders::open`].
     pub(crate) fn called(&self, name: &str, ending: &str) -> Result<Option<CalledFile>, String> {
-        let file = format!("{name}.{ending}");
-        let spellings = [file.to_ascii_uppercase(), file.to_ascii_lowercase(), file];
-        let Some(name) = spellings.into_iter().rfind(|own| self.have(own)) else {
-            return Ok(None);
-        };
+        let Some(name) = self.find(name, ending) else { return Ok(None) };
         let text = self.open(&name)?;
         Ok(Some(CalledFile { name, text }))
+    }
+
+    /// The file of the program `name`, with that ending: as it is written, or else in small letters or in capitals.
+    pub(crate) fn find(&self, name: &str, ending: &str) -> Option<String> {
+        let file = format!("{name}.{ending}");
+        let spellings = [file.to_ascii_uppercase(), file.to_ascii_lowercase(), file];
+        spellings.into_iter().rfind(|own| self.have(own))
     }
 
     /// Finds a called program, in the first folder that has it, and reads it.

@@ -320,6 +320,12 @@ fn a_file_whose_programs_do_not_end_or_have_names_of_kuka_is_refused_whether_the
         ("DEF Ir_Stopm ( )\nEND\n", "job.src:4:", "own software"),
         ("DEF p00 ( )\nEND\n", "job.src:4:", "own software"),
         ("DEF C_DIS ( )\nEND\n", "job.src:4:", "word of the language"),
+        ("DEFFCT INT BAS ( )\nRETURN 1\nENDFCT\n", "job.src:4:", "own software"),
+        ("deffct char[80] Sps (a:IN)\nRETURN 1\nENDFCT\n", "job.src:4:", "own software"),
+        ("DEF Abs ( )\nEND\n", "job.src:4:", "function of the language"),
+        ("DEFFCT REAL SIN ( )\nRETURN 1\nENDFCT\n", "job.src:4:", "function of the language"),
+        ("DEF STRCLEAR ( )\nEND\n", "job.src:4:", "function of the language"),
+        ("DEF $a ( )\nEND\n", "job.src:4:", "begin with $"),
     ] {
         let found = found(behind);
         assert!(found.contains(at) && found.contains(what), "{behind}: {found}");
@@ -333,6 +339,19 @@ fn a_file_whose_programs_do_not_end_or_have_names_of_kuka_is_refused_whether_the
     settings.setup.folders = vec![folder.path().to_path_buf()].into();
     let found = run_with(&settings, "DEF job()\npart()\nEND\n").unwrap_err();
     assert!(found.contains("no END"), "{found}");
+    let function = "DEF part()\nEND\nDEFFCT INT BAS()\nRETURN 1\nENDFCT\n";
+    std::fs::write(folder.path().join("part.src"), function).unwrap();
+    let found = run_with(&settings, "DEF job()\npart()\nEND\n").unwrap_err();
+    assert!(found.contains("own software"), "{found}");
+    let function = "DEF part()\nEND\nDEFFCT INT own()\nRETURN 1\nENDFCT\n";
+    std::fs::write(folder.path().join("part.src"), function).unwrap();
+    run_with(&settings, "DEF job()\npart()\nEND\n").unwrap();
+    // KUKA keeps a file CELL.SRC where programs are; of the others none lies there.
+    std::fs::write(folder.path().join("cell.src"), "DEF CELL()\nEND\n").unwrap();
+    run_with(&settings, "DEF job()\npart()\nEND\n").unwrap();
+    std::fs::write(folder.path().join("BAS.SRC"), "DEF BAS()\nEND\n").unwrap();
+    let found = run_with(&settings, "DEF job()\npart()\nEND\n").unwrap_err();
+    assert!(found.contains("lies BAS.SRC"), "{found}");
 }
 
 #[test]
@@ -419,6 +438,21 @@ fn a_data_list_in_a_folder_gives_positions_their_values() {
     let events = run_with(&settings, "DEF job()\nPTP XP1\nEND\n").unwrap();
     let ArmPath::Point(end) = moves(&events)[0].1.path else { panic!() };
     assert_eq!(end.translation, Vec3::new(5.0, 6.0, 7.0));
+    for (list, at, what) in [
+        ("DEFDAT job\n", "job.dat:1:", "no ENDDAT"),
+        ("", "job.dat:1:", "no ENDDAT"),
+        ("DEFDAT foo\nENDDAT\n", "job.dat:1:", "that of FOO"),
+        ("DEFDAT job\nEND\n", "job.dat:2:", "declarations and values alone"),
+        ("DEFDAT job\nHALT\nENDDAT\n", "job.dat:2:", "declarations and values alone"),
+        ("DEFDAT job\nENDDAT\nINT n=1\n", "job.dat:3:", "outside of the data list"),
+        ("INT n=1\nDEFDAT job\nENDDAT\n", "job.dat:1:", "outside of the data list"),
+    ] {
+        std::fs::write(folder.path().join("job.dat"), list).unwrap();
+        let found = run_with(&settings, "DEF job()\nHALT\nEND\n").unwrap_err();
+        assert!(found.contains(at) && found.contains(what), "{list}: {found}");
+    }
+    let found = run_with(&self::settings(), "DEF job()\nHALT\nENDDAT\nEND\n").unwrap_err();
+    assert!(found.contains("ENDDAT ends a data list"), "{found}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Through a file: the program that it begins with, those behind it, and those of other files that are called.
 
 use super::execution::State;
-use super::language::{Name, Scan, Statement, Target, read};
+use super::language::{Name, Scan, Statement, Target, function_name, of_kuka, read};
 use crate::event::Action;
 use crate::kernel::Channel;
 use crate::kernel::flow::{BlockLocation, line, lines};
@@ -37,6 +37,7 @@ pub(super) fn run(
         return Err(Diagnostic::error(Rule::ProgramFrame, message).line(1).into());
     };
     is_called_as((name, at.line - 1), file_name)?;
+    hides_none_of_kuka(settings)?;
     let mut run = Run { settings, state: State::new(&settings.tool_change), channel };
     run.data(name)?;
     let end = run.routine(&file, at, 0)?;
@@ -62,6 +63,21 @@ fn is_called_as((name, line): (Name, u32), file_name: &str) -> Outcome {
     Err(Diagnostic::error(Rule::ProgramFrame, message).help(help).line(line).into())
 }
 
+/// # Errors
+/// A file in a folder for called programs has the name of a program of KUKA's software, which it would hide.
+fn hides_none_of_kuka(settings: &Settings) -> Outcome {
+    let folders = &settings.setup.folders;
+    let Some((name, file)) = of_kuka().find_map(|name| Some((name, folders.find(name, "src")?)))
+    else {
+        return Ok(());
+    };
+    let message = format!(
+        "beside the program lies {file}: {name} is a program of KUKA's own software, and this one would be called in its place"
+    );
+    let help = "give that program another name, or take its file out of the folder";
+    Err(Diagnostic::error(Rule::ProgramFrame, message).help(help).line(1).into())
+}
+
 impl<'t> File<'t> {
     /// # Errors
     /// Two programs have one name, or one has no end; a line with `DEF` is not understood.
@@ -73,7 +89,10 @@ impl<'t> File<'t> {
             let source = Source { line: place.line, text: block };
             let is_inside = stands(source, begun.is_some(), first.is_some())?;
             begun = is_inside.then(|| begun.unwrap_or(place.line));
-            if !begins_program(block) {
+            if begins_with(block, b"DEFFCT") {
+                function_name(&mut Scan::new(source))?;
+            }
+            if !begins_with(block, b"DEF") {
                 continue;
             }
             let mut scan = Scan::new(Source { line: place.line, text: block });
@@ -139,10 +158,10 @@ fn stands(source: Source, is_inside: bool, has_program: bool) -> Outcome<bool> {
     }
 }
 
-fn begins_program(block: &[u8]) -> bool {
+fn begins_with(block: &[u8], word: &[u8]) -> bool {
     let text = block.trim_ascii_start();
-    let word = text.get(..3).unwrap_or_default();
-    word.eq_ignore_ascii_case(b"DEF") && text.get(3).is_some_and(u8::is_ascii_whitespace)
+    let own = text.get(..word.len()).unwrap_or_default();
+    own.eq_ignore_ascii_case(word) && text.get(word.len()).is_some_and(u8::is_ascii_whitespace)
 }
 
 struct Run<'r, 'c> {
@@ -169,7 +188,11 @@ impl Run<'_, '_> {
             );
             match statement {
                 Statement::End | Statement::Return => return Ok(number),
-                Statement::Define(_) | Statement::DefineData => {
+                Statement::EndData => {
+                    let message = "ENDDAT ends a data list (.dat), and no program";
+                    return Err(scan.since(0, Rule::ProgramFrame, message));
+                }
+                Statement::Define(_) | Statement::DefineData(_) => {
                     let message = "a program begins within another: END is missing before it";
                     return Err(scan.since(0, Rule::ProgramFrame, message));
                 }
@@ -206,8 +229,9 @@ impl Run<'_, '_> {
             Statement::Declare(kind, names, None) => self.state.declare(scan, kind, &names),
             Statement::Nothing
             | Statement::Define(_)
-            | Statement::DefineData
+            | Statement::DefineData(_)
             | Statement::End
+            | Statement::EndData
             | Statement::Return
             | Statement::Call(_, _) => Ok(()),
         }
@@ -250,32 +274,72 @@ impl Run<'_, '_> {
     }
 
     /// The data list of a program, where a folder has it.
+    ///
+    /// # Errors
+    /// It is no data list of this program, from `DEFDAT` to `ENDDAT`, or a value is not understood.
     fn data(&mut self, name: Name) -> Outcome {
-        let folders = &self.settings.setup.folders;
-        let file = format!("{}.dat", name.as_str().to_ascii_lowercase());
-        if !folders.have(&file) {
-            return Ok(());
-        }
-        let text = folders.open(&file);
-        let text = text.map_err(|message| Diagnostic::error(Rule::CalledProgram, message))?;
-        for (place, _, block) in lines(&text) {
+        let list = self.settings.setup.folders.called(name.as_str(), "dat");
+        let list = list.map_err(|message| Diagnostic::error(Rule::CalledProgram, message))?;
+        let Some(list) = list else { return Ok(()) };
+        let inside = |found: Box<Diagnostic>| list.inside(found);
+        // Before its head, in it, or behind its end.
+        let (mut part, mut last) = (ListPart::Before, 1);
+        for (place, _, block) in lines(&list.text) {
             let mut scan = Scan::new(Source { line: place.line, text: block });
-            let listed = read(&mut scan, &self.state).and_then(|statement| match statement {
-                Statement::Declare(kind, names, value) => {
-                    self.state.declare(&scan, kind, &names)?;
-                    match (names.first(), value) {
-                        (Some(name), Some(value)) => {
-                            let target = Target { name: *name, index: None, field: None };
-                            self.state.set(&scan, target, value)
-                        }
-                        (_, _) => Ok(()),
-                    }
-                }
-                Statement::Assign(target, value) => self.state.set(&scan, target, value),
-                _ => Ok(()),
-            });
-            listed.map_err(|found| Box::new(found.file(file.clone())))?;
+            let statement = read(&mut scan, &self.state).map_err(inside)?;
+            part = self.datum(&scan, (name, statement), part).map_err(inside)?;
+            last = place.line;
         }
-        Ok(())
+        match part {
+            ListPart::Behind => Ok(()),
+            ListPart::Before | ListPart::Inside => {
+                let message = "the data list has no ENDDAT: a controller takes none of it";
+                Err(inside(Box::new(Diagnostic::error(Rule::NoEnd, message).line(last))))
+            }
+        }
     }
+
+    /// A line of the data list of a program; in which part of the list the next one is.
+    fn datum(
+        &mut self,
+        scan: &Scan,
+        (name, statement): (Name, Statement),
+        part: ListPart,
+    ) -> Outcome<ListPart> {
+        let wrong = |message: String| Err(scan.since(0, Rule::ProgramFrame, message));
+        match (statement, part) {
+            (Statement::Nothing | Statement::Comment(_), _) => Ok(part),
+            (Statement::DefineData(own), ListPart::Before) if own == name => Ok(ListPart::Inside),
+            (Statement::DefineData(own), ListPart::Before) => {
+                wrong(format!("the data list is that of {own}, and its file that of {name}"))
+            }
+            (Statement::EndData, ListPart::Inside) => Ok(ListPart::Behind),
+            (Statement::Declare(kind, names, value), ListPart::Inside) => {
+                self.state.declare(scan, kind, &names)?;
+                if let (Some(name), Some(value)) = (names.first(), value) {
+                    let target = Target { name: *name, index: None, field: None };
+                    self.state.set(scan, target, value)?;
+                }
+                Ok(part)
+            }
+            (Statement::Assign(target, value), ListPart::Inside) => {
+                self.state.set(scan, target, value)?;
+                Ok(part)
+            }
+            (_, ListPart::Inside) => {
+                wrong(String::from("a data list has declarations and values alone"))
+            }
+            (_, ListPart::Before | ListPart::Behind) => wrong(String::from(
+                "the line stands outside of the data list: between DEFDAT and ENDDAT",
+            )),
+        }
+    }
+}
+
+/// Where in a data list a line stands.
+#[derive(Clone, Copy)]
+enum ListPart {
+    Before,
+    Inside,
+    Behind,
 }

@@ -8,6 +8,8 @@ mod words;
 
 pub(super) use expression::{Readable, whole_frame};
 pub(super) use scan::Scan;
-pub(super) use statement::{Approximation, Motion, Statement, Target, Waiting, read};
+pub(super) use statement::{
+    Approximation, Motion, Statement, Target, Waiting, function_name, of_kuka, read,
+};
 pub(super) use value::{AXES, COORDINATES, Name, OUTER, Value, frame};
 pub(super) use words::SAMPLES;

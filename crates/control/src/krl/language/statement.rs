@@ -3,7 +3,7 @@
 use super::expression::{Readable, read as value, read_index, read_number};
 use super::scan::Scan;
 use super::value::{Name, Value};
-use super::words::{OF_KUKA, REFUSED, STATEMENTS, TYPES};
+use super::words::{FUNCTIONS, OF_KUKA, REFUSED, STATEMENTS, TYPES};
 use crate::kernel::formula::mistaken;
 use program::{Outcome, Rule};
 
@@ -23,9 +23,11 @@ pub(crate) enum Statement {
     /// `DEF name ( )`.
     Define(Name),
     /// `DEFDAT name`.
-    DefineData,
-    /// `END`, `ENDDAT`.
+    DefineData(Name),
+    /// `END`.
     End,
+    /// `ENDDAT`.
+    EndData,
     /// `RETURN`.
     Return,
     /// A declaration: type, variables, and the value that a data list gives.
@@ -111,11 +113,12 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
         "HALT" => Statement::Halt,
         "DEF" => define(scan)?,
         "DEFDAT" => {
-            scan.name()?;
+            let name = scan.needed("the name of the program whose data these are")?;
             scan.take_word("PUBLIC");
-            Statement::DefineData
+            Statement::DefineData(name)
         }
-        "END" | "ENDDAT" => Statement::End,
+        "END" => Statement::End,
+        "ENDDAT" => Statement::EndData,
         "RETURN" => Statement::Return,
         "EXT" | "GLOBAL" | "INTERRUPT" => external(scan, first)?,
         "DECL" => {
@@ -251,6 +254,35 @@ fn condition(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Statement> {
 
 /// `DEF name ( )`: without parameters.
 fn define(scan: &mut Scan) -> Outcome<Statement> {
+    let name = program_name(scan)?;
+    scan.expect("(")?;
+    if !scan.take(b')') {
+        return Err(scan.wrong("programs with parameters are not followed"));
+    }
+    Ok(Statement::Define(name))
+}
+
+/// The name in `DEFFCT type name (..)`, from its first word on. Functions are not followed.
+///
+/// # Errors
+/// No function has that name.
+pub(crate) fn function_name(scan: &mut Scan) -> Outcome {
+    scan.take_word("DEFFCT");
+    scan.needed("the type of the function")?;
+    if scan.take(b'[') {
+        while !matches!(scan.peek(), Some(b']') | None) {
+            scan.at += 1;
+        }
+        scan.expect("]")?;
+    }
+    program_name(scan).map(drop)
+}
+
+/// The name of a program or a function.
+///
+/// # Errors
+/// The language or KUKA's software has something else of that name.
+fn program_name(scan: &mut Scan) -> Outcome<Name> {
     let name = scan.needed("the name of the program")?;
     if [STATEMENTS, REFUSED, TYPES].iter().any(|words| words.contains(&name.as_str())) {
         return Err(scan.wrong(format!("{name} is a word of the language, and names no program")));
@@ -261,11 +293,18 @@ fn define(scan: &mut Scan) -> Outcome<Statement> {
         let found = scan.since(0, Rule::ProgramFrame, message);
         return Err(Box::new(found.help("give the program, and its file, another name")));
     }
-    scan.expect("(")?;
-    if !scan.take(b')') {
-        return Err(scan.wrong("programs with parameters are not followed"));
-    }
-    Ok(Statement::Define(name))
+    let of_language = match name.as_str() {
+        own if own.starts_with('$') => "variables of the system begin with $",
+        own if FUNCTIONS.contains(&own) => "a function of the language has that name",
+        _ => return Ok(name),
+    };
+    let message = format!("{name} names no program: {of_language}");
+    Err(scan.since(0, Rule::ProgramFrame, message))
+}
+
+/// The programs of KUKA's own software whose files lie in no folder where an operator's programs do. `CELL.SRC` lies there.
+pub(crate) fn of_kuka() -> impl Iterator<Item = &'static str> {
+    OF_KUKA.iter().copied().filter(|name| *name != "CELL")
 }
 
 /// `EXT name (...)`, and the interrupt of the standard head, which stops the program's timers at a stop and moves nothing:
