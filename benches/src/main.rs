@@ -16,7 +16,7 @@
 //! ([`layer`]), real boards made whole ([`board`]). Joints of an arm are found for frames ([`mod@arm`]), points
 //! in glass are found and ordered ([`mod@glass`]). Memory is what the program asks the allocator for
 //! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
-//! and memory grow no faster. A proof that hands out its walk is compared with the proof alone ([`walk`]). Then come real files
+//! and memory grow no faster. A proof that hands out its walk, kept and not kept, is compared with the proof alone ([`walk`]). Then come real files
 //! ([`library`]).
 
 mod arm;

@@ -230,7 +230,7 @@ fn prove_on(
     let mut prover = Prover::new(source, machine, tolerances);
     let wants_motions = observer.wants_motions();
     if wants_motions {
-        prover.keep_motions();
+        prover.tell_motions();
     }
     let resolved = compensation::is_resolved(source, machine);
     if resolved == Ok(true) {
@@ -243,9 +243,8 @@ fn prove_on(
             (file_name, text),
             (observer, EVENTS_AT_ONCE),
             |event, observer| {
-                let outcome = prover.event(event);
+                let outcome = prover.event_for(event, observer);
                 if wants_motions {
-                    prover.tell_motions(observer);
                     mark.tell(prover.mismatches(), observer);
                 }
                 outcome

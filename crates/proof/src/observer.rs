@@ -206,14 +206,25 @@ impl From<Spindle> for SpindleState {
     }
 }
 
-/// What an observer is told of an event, until it is taken.
+/// The state that an observer has been told.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stated(Option<MachineState>);
+
+impl Stated {
+    /// What holds from here on, where it is something new.
+    pub fn news(&mut self, state: MachineState) -> Option<&MachineState> {
+        let is_new = self.0.as_ref() != Some(&state);
+        is_new.then(|| &*self.0.insert(state))
+    }
+}
+
+/// What an observer is told of an event of an arm, until it is taken.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Walk {
     moved: Vec<Motion>,
     /// What holds from the motion on that has this place among them.
     stated: Vec<(usize, MachineState)>,
-    /// The state that has been told.
-    state: Option<MachineState>,
+    state: Stated,
     /// Waiting since the last motion, s.
     pub waited: f64,
 }
@@ -221,9 +232,8 @@ pub(crate) struct Walk {
 impl Walk {
     /// Keeps what holds from here on, where it is something new.
     pub fn state(&mut self, state: MachineState) {
-        if self.state.as_ref() != Some(&state) {
+        if let Some(state) = self.state.news(state) {
             self.stated.push((self.moved.len(), state.clone()));
-            self.state = Some(state);
         }
     }
 

@@ -21,6 +21,7 @@ use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
 use crate::line::Followed;
 use crate::machine_pose::PossiblePositions;
+use crate::observer::Observer;
 use crate::pace::{self, Compared, Pace};
 use crate::report::{Excursion, Report, SourceLine, TravelChecked};
 use crate::resolved_pose::{Number, PartialPose, ResolvedPose};
@@ -61,7 +62,7 @@ pub struct Prover<'a> {
     compensation: Compensation,
     /// The stretches in which the program compensates, where they are wanted.
     trail: Option<Trail>,
-    /// The motions since they were taken last, where they are wanted.
+    /// What is told of motions, where they are wanted.
     motions: Option<motions::Motions>,
     here: ResolvedPose,
     /// Where the rotary axes stand.
@@ -213,6 +214,14 @@ impl<'a> Prover<'a> {
     /// # Errors
     /// The mismatch after which nothing can be compared any more; it is in the report too.
     pub fn event(&mut self, event: &Event) -> Outcome {
+        self.event_for(event, &mut ())
+    }
+
+    /// The same for an observer, who is told its motions where they are wanted.
+    ///
+    /// # Errors
+    /// The same.
+    pub(crate) fn event_for(&mut self, event: &Event, observer: &mut dyn Observer) -> Outcome {
         if self.lost {
             return Ok(());
         }
@@ -220,7 +229,7 @@ impl<'a> Prover<'a> {
         self.begin_motion();
         let outcome = self.take(event);
         if outcome.is_ok() {
-            self.end_motion(event);
+            self.end_motion(event, observer);
         }
         if event.action.position().is_some() {
             self.contact.moved(self.running.spindle);

@@ -2,18 +2,20 @@
 
 use super::*;
 use crate::observer::{
-    AxisPositions, Deviation, Motion, MotionKind as Kind, Observer, ToolPose, Walk,
+    AxisPositions, Deviation, Motion, MotionKind as Kind, Observer, Stated, ToolPose,
 };
 use machine::time;
 use program::lowering::{self, HoleMove};
 use program::{Cycle, CycleKind, Pose};
 
-/// Motions since they were taken last.
+/// What whoever follows the proof is told of its motions.
 #[derive(Default)]
 pub(super) struct Motions {
-    walk: Walk,
-    /// Whether what holds may have changed since it was kept.
+    stated: Stated,
+    /// Whether what holds may have changed since it was told.
     restated: bool,
+    /// Waiting since the last motion, s.
+    waited: f64,
     /// Where the axes stand.
     axes: Option<AxisPositions>,
     /// Where the event at hand begins.
@@ -26,20 +28,23 @@ pub(super) struct Motions {
     deviation: Option<Deviation>,
 }
 
+impl Motions {
+    /// Where the tool is before the event at hand.
+    #[inline]
+    fn begins(&self, start: &ResolvedPose) -> ToolPose {
+        let ToolPose { tip, axis } = start.place.into();
+        ToolPose { tip: if self.changed { Vec3::NAN } else { tip }, axis }
+    }
+}
+
 impl Prover<'_> {
-    /// Keeps the motions of each event until they are taken.
-    pub(crate) fn keep_motions(&mut self) {
+    /// The motions of each event are told.
+    pub(crate) fn tell_motions(&mut self) {
         self.motions = Some(Motions { restated: true, ..Motions::default() });
     }
 
-    /// Tells the motions of the last event.
-    pub(crate) fn tell_motions(&mut self, observer: &mut dyn Observer) {
-        if let Some(motions) = &mut self.motions {
-            motions.walk.tell(observer);
-        }
-    }
-
     /// Before an event.
+    #[inline]
     pub(super) fn begin_motion(&mut self) {
         if let Some(motions) = &mut self.motions {
             (motions.start, motions.made, motions.deviation) = (Some(self.here), None, None);
@@ -47,6 +52,7 @@ impl Prover<'_> {
     }
 
     /// The event has been compared with the source: so far, mm and degrees, it is from it.
+    #[inline]
     pub(super) fn has_compared(&mut self, apart: (f64, f64)) {
         if let Some(motions) = &mut self.motions {
             Deviation::widen(&mut motions.deviation, apart);
@@ -54,76 +60,37 @@ impl Prover<'_> {
     }
 
     /// The event makes the record at hand.
+    #[inline]
     pub(super) fn has_arrived(&mut self) {
         if let Some(motions) = &mut self.motions {
             motions.made = Some(self.cursor.record());
         }
     }
 
-    /// Behind an event that was accepted.
-    pub(super) fn end_motion(&mut self, event: &Event) {
+    /// Behind an event that was accepted: tells its motions.
+    pub(super) fn end_motion(&mut self, event: &Event, observer: &mut dyn Observer) {
         let Some(motions) = &mut self.motions else { return };
-        let Some(start) = motions.start.take() else { return };
-        let record = motions.made.unwrap_or_else(|| self.cursor.record());
-        let source_line = self.source.records.get(record).map_or(0, |record| record.line);
-        let (deviation, mut from) = (motions.deviation, ToolPose::from(start.place));
-        if motions.changed {
-            from.tip = Vec3::NAN;
-        }
-        let mut before = start.position;
-        let mut moved = |prover: &mut Self, kind: Kind, to: &ResolvedPose| {
-            let (axes, end) = (prover.axis_positions(&to.position), ToolPose::from(to.place));
-            let seconds = prover.seconds(event, &kind, [&before, &to.position], [from, end], &axes);
-            let motion = Motion {
-                file: None,
-                line: event.line,
-                record,
-                source_line,
-                kind,
-                tool: [from, end],
-                axes,
-                feed: prover.running.feed,
-                seconds,
-                waited: 0.0,
-                deviation,
-            };
-            (from, before) = (end, to.position);
-            if let Some(motions) = &mut prover.motions {
-                if std::mem::take(&mut motions.restated) {
-                    motions.walk.state(prover.running.state());
-                }
-                motions.walk.moved(motion);
-                (motions.axes, motions.changed) = (Some(axes), false);
-            }
-        };
-        let here = self.here;
-        match &event.action {
+        let kind = match &event.action {
             Action::Rapid(_)
             | Action::Home(_)
             | Action::MachineMove(_)
             | Action::Across(_)
-            | Action::Swivel(_) => moved(self, Kind::Rapid, &here),
-            Action::Line(_) | Action::Thread(_) | Action::Probe(_) => {
-                moved(self, Kind::Line, &here);
-            }
+            | Action::Swivel(_) => Kind::Rapid,
+            Action::Line(_) | Action::Thread(_) | Action::Probe(_) => Kind::Line,
             Action::Arc(to) => {
-                let arc = arc::of_block(&self.gauge, &start, to);
-                moved(self, arc.map_or(Kind::Line, |arc| Kind::Arc(Box::new(arc))), &here);
+                let arc = motions.start.and_then(|start| arc::of_block(&self.gauge, &start, to));
+                arc.map_or(Kind::Line, |arc| Kind::Arc(Box::new(arc)))
             }
-            Action::Hole(position) => {
-                let (moves, waited) = self.in_hole(event.line, position, start.place.into());
-                for (kind, to) in moves {
-                    moved(self, kind, &to);
-                }
-                if let Some(motions) = &mut self.motions {
-                    motions.walk.waited += waited;
-                }
-            }
+            Action::Hole(position) => return self.tell_hole(event, position, observer),
             Action::Tool(_) => {
                 (motions.changed, motions.restated) = (true, true);
-                motions.walk.waited += time::TOOL_CHANGE;
+                motions.waited += time::TOOL_CHANGE;
+                return;
             }
-            Action::Dwell(seconds) => motions.walk.waited += seconds,
+            Action::Dwell(seconds) => {
+                motions.waited += seconds;
+                return;
+            }
             Action::Spindle(_)
             | Action::SurfaceSpeed(_)
             | Action::Coolant(_)
@@ -133,7 +100,10 @@ impl Prover<'_> {
             | Action::PathMode(_)
             | Action::Taper(_)
             | Action::Cycle(_)
-            | Action::CycleOff => motions.restated = true,
+            | Action::CycleOff => {
+                motions.restated = true;
+                return;
+            }
             Action::TouchOff(_)
             | Action::Arm(_)
             | Action::Stop
@@ -151,7 +121,78 @@ impl Prover<'_> {
             | Action::Risk(_)
             | Action::Comment(_)
             | Action::Message(_)
-            | Action::End => {}
+            | Action::End => return,
+        };
+        self.tell_state(observer);
+        let Some(motions @ Motions { start: Some(start), .. }) = &self.motions else { return };
+        let from = motions.begins(start);
+        let motion = self.motion_of(event, kind, (from, &start.position), &self.here, motions);
+        observer.moved(&motion);
+        self.has_told(motion.axes);
+    }
+
+    /// Tells what holds from here on, where it has changed.
+    fn tell_state(&mut self, observer: &mut dyn Observer) {
+        if let Some(motions) = &mut self.motions
+            && std::mem::take(&mut motions.restated)
+            && let Some(state) = motions.stated.news(self.running.state())
+        {
+            observer.stated(state);
+        }
+    }
+
+    /// A motion has been told, behind which the axes stand there.
+    #[inline]
+    fn has_told(&mut self, axes: AxisPositions) {
+        if let Some(motions) = &mut self.motions {
+            (motions.axes, motions.changed, motions.waited) = (Some(axes), false, 0.0);
+        }
+    }
+
+    /// A motion of the event from where the tool is, as the control has it before.
+    #[inline(always)]
+    fn motion_of(
+        &self,
+        event: &Event,
+        kind: Kind,
+        (from, before): (ToolPose, &Position),
+        to: &ResolvedPose,
+        motions: &Motions,
+    ) -> Motion {
+        let (axes, end) = (self.axis_positions(&to.position), ToolPose::from(to.place));
+        let record = motions.made.unwrap_or_else(|| self.cursor.record());
+        let (ends, stand) = ([before, &to.position], [motions.axes.as_ref(), Some(&axes)]);
+        let seconds = self.seconds(event, &kind, ends, [&from, &end], stand);
+        Motion {
+            file: None,
+            line: event.line,
+            record,
+            source_line: self.source.records.get(record).map_or(0, |record| record.line),
+            kind,
+            tool: [from, end],
+            axes,
+            feed: self.running.feed,
+            seconds,
+            waited: motions.waited,
+            deviation: motions.deviation,
+        }
+    }
+
+    /// Tells the motions of a canned cycle in a hole.
+    fn tell_hole(&mut self, event: &Event, position: &Position, observer: &mut dyn Observer) {
+        self.tell_state(observer);
+        let Some(motions @ Motions { start: Some(start), .. }) = &self.motions else { return };
+        let (mut from, mut before) = (motions.begins(start), start.position);
+        let (moves, waited) = self.in_hole(event.line, position, start.place.into());
+        for (kind, to) in moves {
+            let Some(motions) = &self.motions else { return };
+            let motion = self.motion_of(event, kind, (from, &before), &to, motions);
+            observer.moved(&motion);
+            self.has_told(motion.axes);
+            (from, before) = (to.place.into(), to.position);
+        }
+        if let Some(motions) = &mut self.motions {
+            motions.waited += waited;
         }
     }
 
@@ -198,22 +239,22 @@ impl Prover<'_> {
         (moves, waited)
     }
 
-    /// How long a motion takes, s.
+    /// How long a motion takes, s, in which the axes go from where they stand to where they go.
+    #[inline]
     fn seconds(
         &self,
         event: &Event,
         kind: &Kind,
         [before, to]: [&Position; 2],
-        [from, end]: [ToolPose; 2],
-        axes: &AxisPositions,
+        [from, end]: [&ToolPose; 2],
+        stand: [Option<&AxisPositions>; 2],
     ) -> f64 {
         let (machine, running) = (self.gauge.machine, &self.running);
-        let stood = self.motions.as_ref().and_then(|motions| motions.axes);
-        let (mut way, turn) = match (stood, axes) {
-            (
+        let (mut way, turn) = match stand {
+            [
                 Some(AxisPositions::Mill { linear: a, rotary: from }),
-                AxisPositions::Mill { linear: b, rotary: to },
-            ) => (*b - a, [to[0] - from[0], to[1] - from[1], to[2] - from[2]]),
+                Some(AxisPositions::Mill { linear: b, rotary: to }),
+            ] => (*b - *a, [to[0] - from[0], to[1] - from[1], to[2] - from[2]]),
             _ => (Vec3::NAN, [0.0; 3]),
         };
         // Where nobody says how the rotary axes carry the tip, it goes its own way.
@@ -250,6 +291,7 @@ impl Prover<'_> {
     }
 
     /// Where the axes stand at a position to which they have turned.
+    #[inline]
     fn axis_positions(&self, position: &Position) -> AxisPositions {
         let machine = self.gauge.machine;
         if let Some(wire) = machine.wire {
