@@ -103,6 +103,27 @@ pub struct Progress {
     pub part: Option<f64>,
 }
 
+/// What the proof that runs has walked since the last such event: the next chunks of moves, thinned so that all of them have about 250,000
+/// vertices. The arrays are `index` and `vertices` (u8), as [`crate::geometry`] describes them; an entry's vertices of level 0 are those
+/// that are sent. Nothing of it is proven.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Walked {
+    /// `walked`.
+    #[cfg_attr(test, ts(type = "\"walked\""))]
+    pub event: &'static str,
+    /// Of which ask.
+    pub id: u32,
+    /// Name of the program's file.
+    pub file: String,
+    /// Number of the first chunk.
+    pub chunk: u32,
+    /// How many moves there are so far.
+    pub moves: u32,
+    /// When the last one of them is over, s.
+    pub time_s: f64,
+}
+
 /// A finding, as `--json` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(TS))]
@@ -1104,6 +1125,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             Stop,
             Verdict,
             Progress,
+            Walked,
             Finding,
             Severity,
             Opened,

@@ -26,10 +26,13 @@ pub const CHUNK: u32 = 4096;
 pub const EXACT: f64 = 0.002;
 
 /// How many vertices the coarsest level has, where it can be made of so few.
-const COARSEST: usize = 250_000;
+pub const COARSEST: usize = 250_000;
 
 /// How many levels there are at most: the last one is within half a metre.
 const MOST_LEVELS: usize = 10;
+
+/// So many vertices are thinned at a time: how long that takes grows with their square where a line winds.
+const STRETCH: usize = 64;
 
 /// How many vertices the arcs of a chunk are drawn with at most.
 const MOST_VERTICES: usize = 1 << 20;
@@ -54,7 +57,7 @@ impl Vertex {
 }
 
 /// The levels of a walk.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Geometry {
     chunks: Vec<Chunk>,
     /// How many vertices each level has.
@@ -62,8 +65,43 @@ pub struct Geometry {
     bounds: Option<[Vec3; 2]>,
 }
 
+/// A chunk as exact as it is drawn.
 #[derive(Debug)]
-struct Chunk {
+pub struct Exact {
+    /// Its first move.
+    pub first: u32,
+    /// How many moves it has.
+    pub moves: u32,
+    /// When the move before it is over, and when its last one is, s.
+    begin: f64,
+    /// The same of its last one.
+    pub end: f64,
+    /// The line of its first block.
+    line: u32,
+    vertices: Vec<Vertex>,
+}
+
+impl Exact {
+    /// A chunk of a walk.
+    pub fn of(walk: &Walk, chunk: u32) -> Exact {
+        let moves = moves(walk, chunk).unwrap_or_default();
+        let line = if moves.is_empty() { 0 } else { walk.line(moves.start) };
+        Exact {
+            first: moves.start,
+            moves: moves.len() as u32,
+            begin: walk.end_before(moves.start),
+            end: walk.end_before(moves.end),
+            line,
+            vertices: polyline(walk, chunk),
+        }
+    }
+}
+
+/// A chunk in the levels of detail that have been made of it.
+#[derive(Clone, Debug)]
+pub struct Chunk {
+    begin: f64,
+    line: u32,
     origin: Vec3,
     half: Vec3,
     /// How many vertices each level has.
@@ -73,48 +111,109 @@ struct Chunk {
 }
 
 impl Chunk {
+    fn of(exact: Exact) -> Chunk {
+        let Exact { begin, line, vertices, .. } = exact;
+        let [low, high] = bounds_of(&vertices).unwrap_or_default();
+        let counts = vec![vertices.len() as u32];
+        let (origin, half) = ((low + high) / 2.0, (high - low) / 2.0);
+        Chunk { begin, line, origin, half, counts, coarsest: vertices }
+    }
+
+    /// Its box; none where nothing of it is drawn.
+    fn bounds(&self) -> Option<[Vec3; 2]> {
+        (self.counts[0] > 0).then_some([self.origin - self.half, self.origin + self.half])
+    }
+
     /// Makes it one level coarser.
     fn coarsen(&mut self) {
         let level = self.counts.len();
         self.coarsest = simplified(&self.coarsest, level);
         self.counts.push(self.coarsest.len() as u32);
     }
+
+    /// Its entry of the index, where its first move is this one.
+    pub fn entry(&self, first: u32) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(64);
+        bytes.extend(self.origin.to_array().iter().flat_map(|value| value.to_le_bytes()));
+        bytes.extend(self.half.to_array().iter().flat_map(|v| (*v as f32).to_le_bytes()));
+        bytes.extend(first.to_le_bytes());
+        bytes.extend((self.begin as f32).to_le_bytes());
+        bytes.extend(self.line.to_le_bytes());
+        let counts = [0, 1, 2].map(|level| self.counts.get(level).copied().unwrap_or(0));
+        bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
+        bytes.extend(u32::from(self.counts[0] == 0).to_le_bytes());
+        bytes
+    }
+
+    /// The vertices of its coarsest level.
+    pub fn octets(&self) -> Vec<u8> {
+        octets(&self.coarsest, self.origin)
+    }
+}
+
+/// Vertices from an origin.
+fn octets(vertices: &[Vertex], origin: Vec3) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(vertices.len() * 16);
+    for Vertex { at, packed } in vertices {
+        let at = (*at - origin).to_array();
+        bytes.extend(at.iter().flat_map(|value| (*value as f32).to_le_bytes()));
+        bytes.extend(packed.to_le_bytes());
+    }
+    bytes
+}
+
+/// Of no moves.
+impl Default for Geometry {
+    fn default() -> Geometry {
+        Geometry { chunks: Vec::new(), levels: vec![0], bounds: None }
+    }
 }
 
 impl Geometry {
-    /// Of a walk, for as long as `goes_on` says so, which is told how much is done, 0 to 1.
-    pub fn of(walk: &Walk, mut goes_on: impl FnMut(f64) -> bool) -> Option<Geometry> {
-        let mut geometry = Geometry { levels: vec![0], ..Geometry::default() };
-        let count = walk.len().div_ceil(CHUNK);
-        for chunk in 0..count {
-            let part = f64::from(chunk) / f64::from(count);
-            geometry.add(polyline(walk, chunk), &mut || goes_on(part))?;
-        }
-        Some(geometry)
-    }
-
-    /// Adds the exact polyline of the next chunk. While all are more than the coarsest level may have, all become coarser, for as long as
-    /// `goes_on` says so, which is asked for each of them.
-    fn add(&mut self, exact: Vec<Vertex>, goes_on: &mut impl FnMut() -> bool) -> Option<()> {
-        if !goes_on() {
-            return None;
-        }
-        let bounds = bounds_of(&exact);
-        let [low, high] = bounds.unwrap_or_default();
-        self.bounds = match (self.bounds, bounds) {
+    /// Adds the next chunk, for as long as `goes_on` says so.
+    pub fn add(&mut self, exact: Exact, goes_on: &mut impl FnMut() -> bool) -> Option<()> {
+        let chunk = self.levelled(exact, goes_on)?;
+        self.bounds = match (self.bounds, chunk.bounds()) {
             (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
             (one, other) => one.or(other),
         };
-        let counts = vec![exact.len() as u32];
-        let origin = (low + high) / 2.0;
-        let mut chunk = Chunk { origin, half: (high - low) / 2.0, counts, coarsest: exact };
-        while chunk.counts.len() < self.levels.len() {
-            chunk.coarsen();
-        }
         for (level, count) in self.levels.iter_mut().zip(&chunk.counts) {
             *level += *count as usize;
         }
         self.chunks.push(chunk);
+        self.coarsen(goes_on)
+    }
+
+    /// Takes a chunk for the one of this number, which has the same moves and other marks.
+    pub fn again(
+        &mut self,
+        number: u32,
+        exact: Exact,
+        goes_on: &mut impl FnMut() -> bool,
+    ) -> Option<()> {
+        let chunk = self.levelled(exact, goes_on)?;
+        let before = self.chunks.get_mut(number as usize)?;
+        for (level, (before, now)) in
+            self.levels.iter_mut().zip(before.counts.iter().zip(&chunk.counts))
+        {
+            *level = *level - *before as usize + *now as usize;
+        }
+        *before = chunk;
+        self.coarsen(goes_on)
+    }
+
+    /// A chunk with the levels that the others have.
+    fn levelled(&self, exact: Exact, goes_on: &mut impl FnMut() -> bool) -> Option<Chunk> {
+        let mut chunk = Chunk::of(exact);
+        while chunk.counts.len() < self.levels.len() {
+            goes_on().then_some(())?;
+            chunk.coarsen();
+        }
+        goes_on().then_some(chunk)
+    }
+
+    /// While all are more than the coarsest level may have, all become coarser, for as long as `goes_on` says so, which is asked for each of them.
+    fn coarsen(&mut self, goes_on: &mut impl FnMut() -> bool) -> Option<()> {
         while self.levels.len() < MOST_LEVELS && self.levels.last().is_some_and(|l| *l > COARSEST) {
             let vertices = self.chunks.iter_mut().map(|chunk| {
                 goes_on().then(|| {
@@ -126,6 +225,16 @@ impl Geometry {
             self.levels.push(vertices?);
         }
         Some(())
+    }
+
+    /// A chunk that has so many vertices, or as few as it can, with one level alone.
+    pub fn piece(&self, number: u32, budget: usize) -> Chunk {
+        let mut piece = self.chunks[number as usize].clone();
+        while piece.coarsest.len() > budget && piece.counts.len() < MOST_LEVELS {
+            piece.coarsen();
+        }
+        piece.counts = vec![piece.coarsest.len() as u32];
+        piece
     }
 
     /// How many chunks there are.
@@ -150,40 +259,20 @@ impl Geometry {
     }
 
     /// The index of all chunks.
-    pub fn index(&self, walk: &Walk) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(self.chunks.len() * 64);
-        for (number, chunk) in self.chunks.iter().enumerate() {
-            let first = number as u32 * CHUNK;
-            bytes.extend(chunk.origin.to_array().iter().flat_map(|value| value.to_le_bytes()));
-            bytes.extend(chunk.half.to_array().iter().flat_map(|v| (*v as f32).to_le_bytes()));
-            bytes.extend(first.to_le_bytes());
-            bytes.extend((walk.end_before(first) as f32).to_le_bytes());
-            bytes.extend(walk.line(first).to_le_bytes());
-            let counts = [0, 1, 2].map(|level| chunk.counts.get(level).copied().unwrap_or(0));
-            bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
-            bytes.extend(u32::from(chunk.counts[0] == 0).to_le_bytes());
-        }
-        bytes
+    pub fn index(&self) -> Vec<u8> {
+        let entries = self.chunks.iter().zip(0..);
+        entries.flat_map(|(chunk, number)| chunk.entry(number * CHUNK)).collect()
     }
 
     /// The vertices of a chunk at a level; `None` where there is no such chunk or level.
     pub fn vertices(&self, walk: &Walk, level: usize, chunk: usize) -> Option<Vec<u8>> {
         let kept = self.chunks.get(chunk).filter(|_| level < self.levels.len())?;
-        let bytes = |vertices: &[Vertex]| {
-            let mut bytes = Vec::with_capacity(vertices.len() * 16);
-            for Vertex { at, packed } in vertices {
-                let at = (*at - kept.origin).to_array();
-                bytes.extend(at.iter().flat_map(|value| (*value as f32).to_le_bytes()));
-                bytes.extend(packed.to_le_bytes());
-            }
-            bytes
-        };
         if level + 1 == self.levels.len() {
-            return Some(bytes(&kept.coarsest));
+            return Some(kept.octets());
         }
         let exact = polyline(walk, chunk as u32);
         let made = (1..=level).fold(exact, |finer, level| simplified(&finer, level));
-        Some(bytes(&made))
+        Some(octets(&made, kept.origin))
     }
 }
 
@@ -281,7 +370,7 @@ fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
     while let Some(first) = finer.get(from) {
         // A stretch of segments that look alike, from the vertex before it.
         let alike = |vertex: &&Vertex| vertex.look() == first.look() && vertex.kind() != GAP;
-        let to = from + finer[from..].iter().take_while(alike).count().max(1);
+        let to = from + finer[from..].iter().take(STRETCH).take_while(alike).count().max(1);
         match from.checked_sub(1).filter(|_| to - from > 1) {
             Some(anchor) => thin(&finer[anchor..to], most, &mut kept),
             None => kept.extend_from_slice(&finer[from..to]),
@@ -334,7 +423,8 @@ mod tests {
     fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
         let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
-        let mut follower = Follower::new(&source, &machine, &ended, Slot::clone(&handed));
+        let to = Slot::clone(&handed);
+        let mut follower = Follower::new("x.nc", &source, &machine, (&(), &ended), to);
         let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
         for (line, (kind, tip)) in (1..).zip(moves) {
             let behind = ToolPose { tip, axis: Vec3::Z };
@@ -354,7 +444,16 @@ mod tests {
             before = behind;
         }
         follower.ended(&Report::default());
-        handed.lock().unwrap().take().unwrap()
+        handed.lock().unwrap().take().unwrap().walk
+    }
+
+    /// The geometry of a walk, for as long as `goes_on` says so.
+    fn made(walk: &Walk, mut goes_on: impl FnMut() -> bool) -> Option<Geometry> {
+        let mut geometry = Geometry::default();
+        for chunk in 0..walk.len().div_ceil(CHUNK) {
+            geometry.add(Exact::of(walk, chunk), &mut goes_on)?;
+        }
+        Some(geometry)
     }
 
     fn points(geometry: &Geometry, walk: &Walk, level: usize, chunk: usize) -> Vec<Vec3> {
@@ -381,7 +480,7 @@ mod tests {
         let (start, end) = (Vec3::ZERO, Vec3::new(20.0, 0.0, 5.0));
         let arc = Arc::new(start, end, Vec3::new(10.0, 0.0, 0.0), -Vec3::Z, 2, 1e-6).unwrap();
         let walk = walk([(MotionKind::Arc(Box::new(arc)), end)]);
-        let geometry = Geometry::of(&walk, |_| true).unwrap();
+        let geometry = made(&walk, || true).unwrap();
         let points = points(&geometry, &walk, 0, 0);
         // By hand: a chord of a circle of 10 mm that leaves it by 0.002 mm spans 2 acos(1 - 0.0002) = 0.0400 rad; 2.5 turns take 393.
         assert_eq!(points.len(), 1 + (2.5 * TAU / 0.040_000_7_f64).ceil() as usize);
@@ -399,7 +498,7 @@ mod tests {
             (MotionKind::Line, Vec3::new(t.cos(), t.sin(), 0.0) * (10.0 + t / 50.0))
         };
         let walk = walk((0..375_000).map(spiral));
-        let geometry = Geometry::of(&walk, |_| true).unwrap();
+        let geometry = made(&walk, || true).unwrap();
         let levels: Vec<(f64, usize)> = geometry.levels().collect();
         assert!(levels.len() > 1 && levels.len() < MOST_LEVELS, "{levels:?}");
         assert!(levels.last().unwrap().1 <= COARSEST);
@@ -415,32 +514,21 @@ mod tests {
         }
     }
 
-    #[test]
-    fn it_ends_between_two_chunks_where_it_shall() {
-        let walk = walk((0..20_000).map(|i| (MotionKind::Line, Vec3::new(f64::from(i), 0.0, 0.0))));
-        let mut told = Vec::new();
-        let made = Geometry::of(&walk, |part| {
-            told.push(part);
-            told.len() < 3
-        });
-        assert!(made.is_none());
-        assert_eq!(told, [0.0, 0.2, 0.4]);
-    }
-
-    /// Chunks of 4,097 vertices: with the 62nd there are more than 250,000, and all become coarser, each between two asks.
+    /// Chunks of 4,097 vertices: with the 62nd there are more than 250,000, and all become coarser, each between two asks;
+    /// so do the twelve behind it.
     #[test]
     fn it_ends_between_two_chunks_that_become_coarser() {
         let walk =
             walk((0..300_000).map(|i| (MotionKind::Line, Vec3::new(f64::from(i), 0.0, 0.0))));
         let asks = |most: u32| {
             let mut asked = 0;
-            let made = Geometry::of(&walk, |_| {
+            let made = made(&walk, || {
                 asked += 1;
                 asked <= most
             });
             (asked, made.is_some())
         };
-        assert_eq!(asks(u32::MAX), (74 + 62, true));
+        assert_eq!(asks(u32::MAX), (74 + 62 + 12, true));
         assert_eq!(asks(100), (101, false));
     }
 
@@ -465,10 +553,10 @@ mod tests {
         let vertices = polyline(&walk, 0);
         let kinds: Vec<u8> = vertices.iter().map(|vertex| vertex.kind()).collect();
         assert_eq!(kinds, [GAP, crate::walk::FEED, GAP, crate::walk::FEED]);
-        let geometry = Geometry::of(&walk, |_| true).unwrap();
-        let flags = geometry.index(&walk);
+        let geometry = made(&walk, || true).unwrap();
+        let flags = geometry.index();
         assert_eq!((flags.len(), flags[60]), (64, 0));
-        let nothing = Geometry::of(&Walk::default(), |_| true).unwrap();
+        let nothing = made(&Walk::default(), || true).unwrap();
         assert_eq!((nothing.chunks(), nothing.bounds(), nothing.levels().count()), (0, None, 1));
     }
 

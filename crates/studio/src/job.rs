@@ -5,6 +5,7 @@ use crate::ask::{
     Saved, Template, TextAbout, WalkAbout,
 };
 use crate::board;
+use crate::drawing::Piece;
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
 use crate::lines::{Lines, readable};
@@ -12,7 +13,7 @@ use crate::machines;
 use crate::message::{Array, Values};
 use crate::place::{self, At};
 use crate::plots::{self, What};
-use crate::walk::{By, Follower, KINDS, NO_TOOL, Slot, Walk};
+use crate::walk::{By, Drawn, Follower, KINDS, NO_TOOL, Slot, Walk};
 use ::post::{Origins, Part};
 use app::report::{self, Digests};
 use app::toolpath::{self, Toolpath};
@@ -91,6 +92,19 @@ pub trait Waits: Sync {
 
     /// So much of it is done, 0 to 1.
     fn reached(&self, part: f64);
+
+    /// The proof of the program `file` has walked and drawn a chunk.
+    fn walked(&self, file: &str, piece: Piece);
+}
+
+/// Nobody.
+#[cfg(test)]
+impl Waits for () {
+    fn step(&self, _what: &'static str) {}
+
+    fn reached(&self, _part: f64) {}
+
+    fn walked(&self, _file: &str, _piece: Piece) {}
 }
 
 /// Work that may be ended: by the page, by a newer ask, or because the page has gone.
@@ -118,12 +132,12 @@ pub(crate) struct Follows<'a> {
 }
 
 impl Follows<'_> {
-    /// The walk of the program that is called `file`.
-    fn walk(&self, file: &str) -> Walk {
+    /// The walk of the program that is called `file`, and its drawing.
+    fn drawn(&self, file: &str) -> Drawn {
         let walks = self.walks.lock().unwrap_or_else(PoisonError::into_inner);
         let slot = walks.iter().find(|(of, _)| of == file).map(|(_, slot)| slot);
-        let walk = |slot: &Slot| slot.lock().unwrap_or_else(PoisonError::into_inner).take();
-        slot.and_then(walk).unwrap_or_default()
+        let drawn = |slot: &Slot| slot.lock().unwrap_or_else(PoisonError::into_inner).take();
+        slot.and_then(drawn).unwrap_or_default()
     }
 }
 
@@ -149,7 +163,7 @@ impl Watch for Follows<'_> {
         let slot = Slot::default();
         let mut walks = self.walks.lock().unwrap_or_else(PoisonError::into_inner);
         walks.push((file.to_owned(), Slot::clone(&slot)));
-        Box::new(Follower::new(source, machine, self.ended, slot))
+        Box::new(Follower::new(file, source, machine, (self.waits, self.ended), slot))
     }
 }
 
@@ -287,16 +301,11 @@ impl Job {
         mut inputs: Vec<PathBuf>,
         follows: &Follows,
     ) -> Result<Job, Stop> {
-        let mut walk = follows.walk(&file);
+        let Drawn { mut walk, geometry } = follows.drawn(&file);
         if follows.ended.is_ended() {
             return Err(Stop::cancelled());
         }
         walk.set_widths(&made.widths);
-        let goes_on = |part| {
-            follows.waits.reached(part);
-            !follows.ended.is_ended()
-        };
-        let geometry = Geometry::of(&walk, goes_on).ok_or_else(Stop::cancelled)?;
         let Made { toolpath, account, text, origins, parts, report, board, .. } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         inputs.extend(machine.loaded_from.files.iter().cloned());

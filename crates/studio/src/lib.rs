@@ -25,6 +25,7 @@
 
 pub mod ask;
 pub mod board;
+pub mod drawing;
 pub mod folder;
 pub mod geometry;
 mod index;

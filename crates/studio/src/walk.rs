@@ -5,13 +5,15 @@
 //! before it ended.
 
 use crate::ask::{Operation, ToolUse};
+use crate::drawing::Drawing;
+use crate::geometry::{self, CHUNK, Exact, Geometry};
 use crate::index::Index;
-use crate::job::Ended;
+use crate::job::{Ended, Waits};
 use geom::{Arc, Vec3};
 use machine::Machine;
 use program::{Compensation, Diagnostic, Feed, Op, Program, Tool};
 use proof::{AxisPositions, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{self, Mutex, PoisonError};
 
 /// How a move goes, by its number in vertices and rows.
@@ -353,9 +355,24 @@ fn same(a: &ToolPose, b: &ToolPose) -> bool {
     bits(a) == bits(b)
 }
 
-/// Writes the columns while a proof runs.
+/// A walk and its drawing.
+#[derive(Debug, Default)]
+pub struct Drawn {
+    /// The moves.
+    pub walk: Walk,
+    /// The same in levels of detail.
+    pub geometry: Geometry,
+}
+
+/// Writes the columns while a proof runs, and has them drawn.
 pub struct Follower<'a> {
     walk: Walk,
+    /// Name of the program's file.
+    file: String,
+    drawing: Drawing,
+    /// How many chunks have been drawn, and those whose marks have changed since.
+    drawn: u32,
+    marked: BTreeSet<u32>,
     source: &'a Program,
     /// Which of A, B and C the machine has.
     rotary: Vec<usize>,
@@ -367,19 +384,32 @@ pub struct Follower<'a> {
     compensation: Option<Compensation>,
     /// What is marked of the next move.
     next_marks: u8,
+    waits: &'a dyn Waits,
     ended: &'a Ended,
     goes_to: Slot,
 }
 
 /// Where a walk is put when its proof is over.
-pub type Slot = sync::Arc<Mutex<Option<Walk>>>;
+pub type Slot = sync::Arc<Mutex<Option<Drawn>>>;
 
 impl<'a> Follower<'a> {
-    /// Follows the proof of a program that is to make the motions of `source`, and hands the walk over at its end, unless the work
-    /// is ended.
-    pub fn new(source: &'a Program, machine: &Machine, ended: &'a Ended, to: Slot) -> Follower<'a> {
+    /// Follows the proof of the program `file`, which is to make the motions of `source`, and hands the walk over at its end, unless the work
+    /// is ended. Who waits is shown it meanwhile.
+    pub fn new(
+        file: &str,
+        source: &'a Program,
+        machine: &Machine,
+        (waits, ended): (&'a dyn Waits, &'a Ended),
+        to: Slot,
+    ) -> Follower<'a> {
+        // As many moves as records, about.
+        let chunks = source.records.len() / CHUNK as usize + 1;
         Follower {
             walk: Walk::default(),
+            file: file.to_owned(),
+            drawing: Drawing::begin(geometry::COARSEST / chunks, ended),
+            drawn: 0,
+            marked: BTreeSet::new(),
             source,
             rotary: machine.rotary.iter().map(|axis| axis.index()).collect(),
             searched: 0,
@@ -387,8 +417,28 @@ impl<'a> Follower<'a> {
             tool: NO_TOOL,
             compensation: None,
             next_marks: 0,
+            waits,
             ended,
             goes_to: to,
+        }
+    }
+
+    /// Has the next chunk drawn, and shows what has been drawn.
+    fn draw(&mut self) {
+        self.drawing.next(Exact::of(&self.walk, self.drawn));
+        self.drawn += 1;
+        for piece in self.drawing.pieces() {
+            self.waits.walked(&self.file, piece);
+        }
+    }
+
+    /// Marks a move, also one that has been drawn.
+    fn mark(&mut self, at: u32, mark: u8) {
+        if let Some(marks) = self.walk.marks.get_mut(at as usize) {
+            *marks |= mark;
+            if at / CHUNK < self.drawn {
+                self.marked.insert(at / CHUNK);
+            }
         }
     }
 
@@ -471,6 +521,9 @@ impl Observer for Follower<'_> {
         self.walk.tools.push(self.tool);
         self.walk.marks.push(std::mem::take(&mut self.next_marks));
         self.positions(&motion.axes);
+        if self.walk.len().is_multiple_of(CHUNK) {
+            self.draw();
+        }
     }
 
     fn stated(&mut self, state: &MachineState) {
@@ -489,34 +542,41 @@ impl Observer for Follower<'_> {
     }
 
     fn mismatched(&mut self, _found: &Diagnostic) {
-        self.walk.mismatch = Some(self.walk.len().saturating_sub(1));
-        if let Some(marks) = self.walk.marks.last_mut() {
-            *marks |= MISMATCH;
-        }
+        let last = self.walk.len().saturating_sub(1);
+        self.walk.mismatch = Some(last);
+        self.mark(last, MISMATCH);
     }
 
     fn ended(&mut self, report: &Report) {
-        let mut walk = std::mem::take(&mut self.walk);
         // By file and first line: excursions do not overlap.
         let excursions = report.excursions.iter().map(|excursion| {
             let from = (excursion.program_file.as_deref(), excursion.first_program_line);
             (from, excursion.last_program_line)
         });
         let excursions: BTreeMap<(Option<&str>, u32), u32> = excursions.collect();
-        for at in (0..walk.len()).filter(|_| !excursions.is_empty()) {
-            let (file, line) = (walk.file(at), walk.line(at));
+        for at in (0..self.walk.len()).filter(|_| !excursions.is_empty()) {
+            let (file, line) = (self.walk.file(at), self.walk.line(at));
             let found = excursions.range(..=(file, line)).next_back();
             if found.is_some_and(|((of, _), last)| *of == file && line <= *last) {
-                walk.marks[at as usize] |= EXCURSION;
+                self.mark(at, EXCURSION);
             }
         }
+        if !self.walk.len().is_multiple_of(CHUNK) {
+            self.draw();
+        }
+        for chunk in std::mem::take(&mut self.marked) {
+            self.drawing.again(chunk, Exact::of(&self.walk, chunk));
+        }
+        let mut walk = std::mem::take(&mut self.walk);
         let index = |lines| Index::of(lines, &|| !self.ended.is_ended());
         let (Some(by_block), Some(by_source)) = (index(&walk.lines), index(&walk.source_lines))
         else {
             return;
         };
         (walk.by_block, walk.by_source) = (by_block, by_source);
-        *self.goes_to.lock().unwrap_or_else(PoisonError::into_inner) = Some(walk);
+        let Some(geometry) = self.drawing.finish() else { return };
+        *self.goes_to.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some(Drawn { walk, geometry });
     }
 }
 
@@ -542,9 +602,14 @@ mod tests {
     }
 
     fn followed(tell: impl Fn(&mut Follower)) -> Walk {
+        drawn(tell).walk
+    }
+
+    fn drawn(tell: impl Fn(&mut Follower)) -> Drawn {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
         let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
-        let mut follower = Follower::new(&source, &machine, &ended, Slot::clone(&handed));
+        let (waits, to) = ((&() as &dyn Waits, &ended), Slot::clone(&handed));
+        let mut follower = Follower::new("x.nc", &source, &machine, waits, to);
         tell(&mut follower);
         follower.ended(&Report::default());
         handed.lock().unwrap().take().unwrap()
@@ -593,6 +658,21 @@ mod tests {
             }
         });
         assert!((walk.bytes() as f64 / 1000.0 - 67.0).abs() < 1.0, "{}", walk.bytes());
+    }
+
+    /// A failed proof marks its last move when the chunk of that has been drawn.
+    #[test]
+    fn a_mark_behind_a_chunk_that_is_drawn_is_drawn_too() {
+        let drawn = drawn(|follower| {
+            for line in 1..=CHUNK {
+                follower.moved(&motion(line, [f64::from(line), 0.0, 0.0]));
+            }
+            follower.mismatched(&Diagnostic::error(program::Rule::RapidPath, "x"));
+        });
+        let vertices = drawn.geometry.vertices(&drawn.walk, 0, 0).unwrap();
+        let marks = vertices.chunks(16).map(|vertex| vertex[15]);
+        // Each of these moves begins at the zero point: two vertices each.
+        assert_eq!(marks.rev().take(4).collect::<Vec<_>>(), [MISMATCH, MISMATCH, 0, 0]);
     }
 
     #[test]

@@ -84,6 +84,37 @@ step: string,
 part: number | null, };
 
 /**
+ * What the proof that runs has walked since the last such event: the next chunks of moves, thinned so that all of them have about 250,000
+ * vertices. The arrays are `index` and `vertices` (u8), as [`crate::geometry`] describes them; an entry's vertices of level 0 are those
+ * that are sent. Nothing of it is proven.
+ */
+export type Walked = { 
+/**
+ * `walked`.
+ */
+event: "walked", 
+/**
+ * Of which ask.
+ */
+id: number, 
+/**
+ * Name of the program's file.
+ */
+file: string, 
+/**
+ * Number of the first chunk.
+ */
+chunk: number, 
+/**
+ * How many moves there are so far.
+ */
+moves: number, 
+/**
+ * When the last one of them is over, s.
+ */
+time_s: number, };
+
+/**
  * A finding, as `--json` prints it.
  */
 export type Finding = { 

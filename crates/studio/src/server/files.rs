@@ -105,7 +105,7 @@ fn octets(studio: &Studio, path: &str) -> Option<Vec<u8>> {
     let parts: Vec<&str> = path.split('/').collect();
     let job = studio.jobs.find(parts.get(1)?.parse().ok()?).ok()?;
     match parts[..] {
-        ["geometry", _, "index"] => Some(job.geometry().index(job.walk())),
+        ["geometry", _, "index"] => Some(job.geometry().index()),
         ["geometry", _, level, chunk] => {
             job.geometry().vertices(job.walk(), level.parse().ok()?, chunk.parse().ok()?)
         }

@@ -3,9 +3,10 @@
 use super::asks::{self, Answer, wrong};
 use super::closed::say;
 use super::{SOCKETS, Studio};
-use crate::ask::{Cancel, Done, Hello, Progress, Stop, Stopped, Verdict};
+use crate::ask::{Cancel, Done, Hello, Progress, Stop, Stopped, Verdict, Walked};
+use crate::drawing::Piece;
 use crate::job::{Ended, Waits};
-use crate::message::{self, Frame};
+use crate::message::{self, Array, Frame};
 use axum::body::Body;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{FromRequestParts, Request};
@@ -119,15 +120,33 @@ impl Drop for EndsAll<'_> {
     }
 }
 
+/// What was walked, with the arrays `index` and `vertices`.
+type Shown = (Walked, [Vec<u8>; 2]);
+
 /// Tells a page how far an ask has come.
 struct Tells<'a> {
     page: &'a Page,
     id: u32,
     /// The step, and when something was told last.
     last: Mutex<(&'static str, Instant)>,
+    /// What was walked since the last word of that, and when that was.
+    walked: Mutex<(Option<Shown>, Instant)>,
 }
 
-impl Tells<'_> {
+impl<'a> Tells<'a> {
+    fn new(page: &'a Page, id: u32) -> Tells<'a> {
+        let now = Instant::now();
+        Tells { page, id, last: Mutex::new(("", now)), walked: Mutex::new((None, now)) }
+    }
+
+    /// Tells what was walked.
+    fn show(&self, walked: Option<Shown>) {
+        if let Some((walked, [index, vertices])) = walked {
+            let arrays = [Array::text("index", index), Array::text("vertices", vertices)];
+            let _ = self.page.answers.send(message::write(&walked, &arrays));
+        }
+    }
+
     fn tell(&self, step: &'static str, part: Option<f64>) {
         let progress = Progress { event: "progress", id: self.id, step, part };
         let _ = self.page.answers.send(message::write(&progress, &[]));
@@ -145,6 +164,26 @@ impl Waits for Tells<'_> {
         if last.1.elapsed() > BETWEEN {
             last.1 = Instant::now();
             self.tell(last.0, Some(part));
+        }
+    }
+
+    fn walked(&self, file: &str, piece: Piece) {
+        let mut walked = self.walked.lock().unwrap_or_else(PoisonError::into_inner);
+        let (begun, last) = &mut *walked;
+        // Several programs may be proven at the same time.
+        let others = begun.take_if(|(begun, _)| begun.file != file);
+        let (told, [index, vertices]) = begun.get_or_insert_with(|| {
+            let (event, file, chunk) = ("walked", file.to_owned(), piece.chunk);
+            let told = Walked { event, id: self.id, file, chunk, moves: 0, time_s: 0.0 };
+            (told, [Vec::new(), Vec::new()])
+        });
+        (told.moves, told.time_s) = (piece.moves, piece.seconds);
+        index.extend(piece.index);
+        vertices.extend(piece.vertices);
+        self.show(others);
+        if last.elapsed() > BETWEEN {
+            *last = Instant::now();
+            self.show(begun.take());
         }
     }
 }
@@ -182,7 +221,7 @@ fn take(page: &Arc<Page>, frame: Frame) {
     };
     let page = Arc::clone(page);
     tokio::task::spawn_blocking(move || {
-        let tells = Tells { page: &page, id, last: Mutex::new(("", Instant::now())) };
+        let tells = Tells::new(&page, id);
         let answer = || asks::answer(&page.studio, &ask, params, arrays, (&tells, &ended));
         let answer = catch_unwind(AssertUnwindSafe(answer));
         page.running().remove(&id);

@@ -287,6 +287,55 @@ fn a_job_tells_its_steps() {
     assert_eq!(steps, ["reading", "writing", "proving", "drawing"]);
 }
 
+/// A page draws what the proof has walked before it ends: chunk after chunk, each once.
+#[test]
+fn what_a_proof_has_walked_is_shown_while_it_runs() {
+    let studio = Studio::new();
+    let mut source =
+        String::from("UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n");
+    for i in 0..60_000 {
+        source += &format!("GOTO/{}.{:03},{},-1\n", i / 1000, i % 1000, i % 7);
+    }
+    std::fs::write(studio.own().join("long.cls"), source + "RAPID\nGOTO/0,0,10\n").unwrap();
+    let mut page = studio.socket();
+    let params = json!({ "source": { "file": "long.cls" }, "machine": "generic-3axis-linuxcnc" });
+    page.ask("post", params, &[]);
+    let (mut chunks, mut events) = (0u64, 0);
+    let job = loop {
+        let Said::Frame(frame) = page.next() else { panic!() };
+        if let Some(done) = frame.head.get("done") {
+            break done.clone();
+        }
+        if frame.head["event"] != "walked" {
+            continue;
+        }
+        events += 1;
+        assert_eq!(
+            (&frame.head["file"], &frame.head["chunk"]),
+            (&json!("long.ngc"), &json!(chunks))
+        );
+        let bytes = |name: &str| {
+            let array = frame.arrays.iter().find(|array| array.name == name).unwrap();
+            let Values::U8(bytes) = &array.values else { panic!() };
+            bytes.clone()
+        };
+        let (index, vertices) = (bytes("index"), bytes("vertices"));
+        let entries = index.chunks(64);
+        let counts: usize = entries.clone().map(|entry| u32_at(entry, 48) as usize).sum();
+        assert_eq!(vertices.len(), 16 * counts);
+        assert_eq!(u32_at(&index, 36), chunks as u32 * 4096);
+        chunks += entries.len() as u64;
+        assert_eq!(frame.head["moves"], chunks * 4096);
+        assert!(frame.head["time_s"].as_f64().unwrap() > 0.0);
+    };
+    assert!(events > 0 && chunks < job["walk"]["chunks"].as_u64().unwrap(), "{events} {chunks}");
+    // What is drawn behind the verdict is what the whole walk gives.
+    assert_eq!(job["verdict"], "done", "{job}");
+    let index = studio.get(&format!("/geometry/{}/index", job["revision"]));
+    let counts: u64 = index.chunks(64).map(|entry| u64::from(u32_at(entry, 48))).sum();
+    assert_eq!(job["walk"]["levels"][0]["vertices"], counts);
+}
+
 #[test]
 fn uploads_are_posted_and_the_oldest_job_goes() {
     let studio = Studio::new();
