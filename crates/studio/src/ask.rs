@@ -122,6 +122,8 @@ pub struct Walked {
     pub moves: u32,
     /// When the last one of them is over, s.
     pub time_s: f64,
+    /// What the numbers of kinds mean.
+    pub kinds: Vec<&'static str>,
 }
 
 /// A finding, as `--json` prints it.
@@ -704,10 +706,34 @@ pub struct WalkAbout {
     pub operations: Vec<Operation>,
     /// What the numbers of kinds mean.
     pub kinds: Vec<&'static str>,
-    /// How many bytes the row of a move has: 16, or 36 where any tool leans.
+    /// How many bytes the row of a move has: 20, or 40 where any tool leans.
     pub row: u32,
+    /// The largest deviation of a tip from the source, mm; null where nothing was compared.
+    pub deviation: Option<f64>,
+    /// The first thousand cuts in which a rotary axis turns by more than 30 degrees.
+    pub jumps: Vec<Jump>,
+    /// How many there are.
+    pub jumps_in_all: u32,
+    /// How far the lines of the level `fine` may be from the arcs, mm; null where there are no arcs.
+    pub fine: Option<f64>,
     /// The last move before the first mismatch.
     pub mismatch: Option<u32>,
+}
+
+/// A cut in which a rotary axis turns far.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Jump {
+    /// Its place in `machine.axes`.
+    pub axis: u32,
+    /// The move.
+    pub r#move: u32,
+    /// When that begins, s.
+    pub time_s: f64,
+    /// Where the axis is before it, degrees.
+    pub from: f64,
+    /// And behind it.
+    pub to: f64,
 }
 
 /// A level of detail.
@@ -1015,7 +1041,7 @@ pub struct SpindleAbout {
 pub struct PlotParams {
     /// Of the job.
     pub revision: u64,
-    /// Name of an axis, or `feed`.
+    /// Name of an axis, `feed` (mm/min), or `deviation` of the tip from the source (mm).
     pub what: String,
     /// First time, s.
     pub from: f64,
@@ -1164,6 +1190,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             Axis,
             AxisKind,
             WalkAbout,
+            Jump,
             Level,
             ToolUse,
             Operation,

@@ -9,9 +9,11 @@
 //! vertex  16 bytes  x y z f32 from the chunk's origin, mm; u32: move in the chunk (12 bits), kind (4), tool (8), marks (8)
 //! index   64 bytes  a chunk: origin 3 f64, half box 3 f32, first move u32, its begin f32 s, its block u32, vertices of levels 0 to 2
 //!                   3 u32, flags u32 (1: nothing of it is drawn)
-//! row     16 bytes  a move: its end f32 s from the chunk's begin, block u32, source line u32, feed f32 (NaN: not known);
-//!         36 bytes  where any tool leans: then the tool axis 3 f32, and the first two rotary axes 2 f32, degrees
+//! row     20 bytes  a move: its end f32 s from the chunk's begin, block u32, source line u32, feed f32 (NaN: not known);
+//!         40 bytes  where any tool leans: then the tool axis 3 f32, and the first two rotary axes 2 f32, degrees;
+//!                   at the end of both its deviation from the source f32 mm (NaN: not compared)
 //! ```
+//! A further level, `fine`, is as the exact one, with chords of arcs within [`FINE`].
 //! All little-endian.
 
 use crate::walk::{GAP, Walk};
@@ -24,6 +26,9 @@ pub const CHUNK: u32 = 4096;
 
 /// How far a chord may be from its arc at level 0, mm.
 pub const EXACT: f64 = 0.002;
+
+/// The same of the level that is shown where one looks close, mm.
+pub const FINE: f64 = EXACT / 16.0;
 
 /// How many vertices the coarsest level has, where it can be made of so few.
 pub const COARSEST: usize = 250_000;
@@ -92,7 +97,7 @@ impl Exact {
             begin: walk.end_before(moves.start),
             end: walk.end_before(moves.end),
             line,
-            vertices: polyline(walk, chunk),
+            vertices: polyline(walk, chunk, EXACT),
         }
     }
 }
@@ -264,13 +269,19 @@ impl Geometry {
         entries.flat_map(|(chunk, number)| chunk.entry(number * CHUNK)).collect()
     }
 
+    /// The vertices of a chunk at the level `fine`; `None` where there is no such chunk.
+    pub fn fine(&self, walk: &Walk, chunk: usize) -> Option<Vec<u8>> {
+        let kept = self.chunks.get(chunk)?;
+        Some(octets(&polyline(walk, chunk as u32, FINE), kept.origin))
+    }
+
     /// The vertices of a chunk at a level; `None` where there is no such chunk or level.
     pub fn vertices(&self, walk: &Walk, level: usize, chunk: usize) -> Option<Vec<u8>> {
         let kept = self.chunks.get(chunk).filter(|_| level < self.levels.len())?;
         if level + 1 == self.levels.len() {
             return Some(kept.octets());
         }
-        let exact = polyline(walk, chunk as u32);
+        let exact = polyline(walk, chunk as u32, EXACT);
         let made = (1..=level).fold(exact, |finer, level| simplified(&finer, level));
         Some(octets(&made, kept.origin))
     }
@@ -296,13 +307,14 @@ pub fn rows(walk: &Walk, chunk: u32) -> Option<Vec<u8>> {
             let values = axis.into_iter().chain([rotary(3), rotary(4)]);
             bytes.extend(values.flat_map(|value| (value as f32).to_le_bytes()));
         }
+        bytes.extend(walk.deviation(at).to_le_bytes());
     }
     Some(bytes)
 }
 
 /// How many bytes the row of a move has.
 pub fn row_bytes(walk: &Walk) -> usize {
-    if walk.leans() { 36 } else { 16 }
+    if walk.leans() { 40 } else { 20 }
 }
 
 /// The moves of a chunk.
@@ -316,8 +328,8 @@ fn error(level: usize) -> f64 {
     if level == 0 { EXACT } else { EXACT * 4f64.powi(level as i32) }
 }
 
-/// The exact polyline of a chunk.
-fn polyline(walk: &Walk, chunk: u32) -> Vec<Vertex> {
+/// The polyline of a chunk with chords as near to their arcs, mm.
+fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
     let Some(moves) = moves(walk, chunk) else { return Vec::new() };
     let arcs = moves.clone().filter(|at| walk.arc(*at).is_some()).count();
     let most = (MOST_VERTICES / arcs.max(1)).max(16);
@@ -339,7 +351,7 @@ fn polyline(walk: &Walk, chunk: u32) -> Vec<Vertex> {
         }
         match walk.arc(at).filter(|_| is_drawn) {
             Some(arc) => {
-                let chords = arc.chords(EXACT).min(most);
+                let chords = arc.chords(near).min(most);
                 let point = |i: usize| arc.at(i as f64 / chords as f64);
                 let kind = packed(walk.kind(at));
                 let points = (1..=chords).map(point).filter(|at| at.is_finite());
@@ -409,7 +421,7 @@ fn distance(point: Vec3, a: Vec3, b: Vec3) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::job::Ended;
     use crate::walk::Follower;
@@ -420,7 +432,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// A walk of moves that each end at a point; an arc goes there where one is given.
-    fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {
+    pub(crate) fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {
         let machine = machine::load("generic-3axis-linuxcnc").unwrap();
         let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
         let to = Slot::clone(&handed);
@@ -487,6 +499,9 @@ mod tests {
         let exact: Vec<Vec3> = (0..=10_000).map(|i| arc.at(f64::from(i) / 1e4)).collect();
         assert!(furthest(&exact, &points) < EXACT + 1e-5);
         assert!(points.last().unwrap().distance(end) < 1e-5);
+        // Within 0.000125 mm it spans 2 acos(1 - 0.0000125) = 0.0100 rad.
+        let fine = geometry.fine(&walk, 0).unwrap();
+        assert_eq!(fine.len() / 16, 1 + (2.5 * TAU / 0.010_000_01_f64).ceil() as usize);
         assert_eq!(geometry.bounds().unwrap()[0].z, 0.0);
     }
 
@@ -538,7 +553,7 @@ mod tests {
             let kind = if i.is_multiple_of(2) { MotionKind::Rapid } else { MotionKind::Line };
             (kind, Vec3::new(f64::from(i) * 1e-6, 0.0, 0.0))
         };
-        let vertices = polyline(&walk((0..100).map(step)), 0);
+        let vertices = polyline(&walk((0..100).map(step)), 0, EXACT);
         assert_eq!(simplified(&vertices, 5), vertices);
     }
 
@@ -550,7 +565,7 @@ mod tests {
             (MotionKind::Rapid, Vec3::new(1e9, 0.0, 0.0)),
             (MotionKind::Line, Vec3::new(1e9, 1.0, 0.0)),
         ]);
-        let vertices = polyline(&walk, 0);
+        let vertices = polyline(&walk, 0, EXACT);
         let kinds: Vec<u8> = vertices.iter().map(|vertex| vertex.kind()).collect();
         assert_eq!(kinds, [GAP, crate::walk::FEED, GAP, crate::walk::FEED]);
         let geometry = made(&walk, || true).unwrap();
@@ -565,7 +580,7 @@ mod tests {
         let end = Vec3::new(0.0, 0.0, -100.0);
         let helix = Arc::new(Vec3::ZERO, end, Vec3::new(10.0, 0.0, 0.0), Vec3::Z, 100_000, 1e-6);
         let arc = MotionKind::Arc(Box::new(helix.unwrap()));
-        let vertices = polyline(&walk([(arc.clone(), end), (arc, end)]), 0);
+        let vertices = polyline(&walk([(arc.clone(), end), (arc, end)]), 0, EXACT);
         assert!(vertices.len() <= MOST_VERTICES + 3, "{}", vertices.len());
     }
 }

@@ -12,7 +12,7 @@ use crate::lines::{Lines, readable};
 use crate::machines;
 use crate::message::{Array, Values};
 use crate::place::{self, At};
-use crate::plots::{self, What};
+use crate::plots::{Plots, What};
 use crate::walk::{By, Drawn, Follower, KINDS, NO_TOOL, Slot, Walk};
 use ::post::{Origins, Part};
 use app::report::{self, Digests};
@@ -228,6 +228,7 @@ pub struct Job {
     inputs: Vec<PathBuf>,
     walk: Walk,
     geometry: Geometry,
+    plots: Plots,
     /// The board that it is one of the programs of.
     board: Option<board::Place>,
 }
@@ -325,6 +326,7 @@ impl Job {
             inputs,
             walk,
             geometry,
+            plots: Plots::default(),
             board,
         })
     }
@@ -413,6 +415,10 @@ impl Job {
             operations: walk.operations().to_vec(),
             kinds: KINDS.to_vec(),
             row: geometry::row_bytes(walk) as u32,
+            deviation: walk.largest_deviation(),
+            jumps: walk.jumps().0.to_vec(),
+            jumps_in_all: walk.jumps().1,
+            fine: walk.has_arcs().then_some(geometry::FINE),
             mismatch: walk.mismatch(),
         }
     }
@@ -608,12 +614,14 @@ impl Job {
         let axis = || machines::axes(&self.machine).iter().position(|axis| axis.name == what);
         let what = match what {
             "feed" => What::Feed,
+            "deviation" => What::Deviation,
             _ => What::Axis(axis().ok_or_else(|| {
-                let message = "there is no plot of this name: an axis of the machine, or `feed`";
+                let message =
+                    "there is no plot of this name: an axis of the machine, `feed` or `deviation`";
                 Diagnostic::error(Rule::StudioAsk, message)
             })?),
         };
-        let [least, most] = plots::plot(&self.walk, what, times, pixels);
+        let [least, most] = self.plots.plot(&self.walk, what, times, pixels);
         let array = |name: &str, values| Array::new(name, Values::F32(values));
         Ok(vec![array("least", least), array("most", most)])
     }

@@ -1,10 +1,10 @@
 //! The walk: all moves of a program in the control's order, as columns. Whatever the page asks is looked up here.
 //!
-//! A move takes 67 bytes on three axes (8 more for each further axis, 24 where any tool leans, 4 where its lines do not go up with the
+//! A move takes 71 bytes on three axes (8 more for each further axis, 24 where any tool leans, 4 where its lines do not go up with the
 //! moves), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
 //! before it ended.
 
-use crate::ask::{Operation, ToolUse};
+use crate::ask::{Jump, Operation, ToolUse};
 use crate::drawing::Drawing;
 use crate::geometry::{self, CHUNK, Exact, Geometry};
 use crate::index::Index;
@@ -46,6 +46,10 @@ const MOST_BYTES: usize = 3 << 29;
 /// How many operations are listed.
 const MOST_NAMED: usize = 10_000;
 
+/// By how much a rotary axis turns in a cut that is listed as a jump, degrees, and how many are listed.
+const JUMP: f64 = 30.0;
+const MOST_JUMPS: usize = 1000;
+
 /// After so many moves it is looked at.
 const LOOK: usize = 4096;
 
@@ -68,6 +72,13 @@ pub struct Walk {
     /// Positions of the axes behind the move, so many for each.
     positions: Vec<f64>,
     stride: usize,
+    /// How far the tip is off the source, mm; NaN where nothing was compared.
+    deviations: Vec<f32>,
+    /// The largest of them.
+    deviation: Option<f64>,
+    /// The first cuts in which a rotary axis turns far, and how many there are.
+    jumps: Vec<Jump>,
+    jumps_in_all: u32,
     /// Where the tool is before a move that does not begin where the one before it ended.
     starts: Vec<(u32, ToolPose)>,
     arcs: Vec<(u32, Arc)>,
@@ -218,6 +229,26 @@ impl Walk {
         *holds(&self.feeds, at)?
     }
 
+    /// How far its tip is off the source at the most, mm; NaN where nothing was compared.
+    pub fn deviation(&self, at: u32) -> f32 {
+        self.deviations[at as usize]
+    }
+
+    /// The largest deviation, mm.
+    pub fn largest_deviation(&self) -> Option<f64> {
+        self.deviation
+    }
+
+    /// The first cuts in which a rotary axis turns far, and how many there are.
+    pub fn jumps(&self) -> (&[Jump], u32) {
+        (&self.jumps, self.jumps_in_all)
+    }
+
+    /// Whether there are arcs.
+    pub fn has_arcs(&self) -> bool {
+        !self.arcs.is_empty()
+    }
+
     /// What holds in it.
     pub fn state(&self, at: u32) -> Option<&MachineState> {
         holds(&self.states, at)
@@ -288,7 +319,8 @@ impl Walk {
 
     /// How much memory it takes, bytes.
     pub fn bytes(&self) -> usize {
-        let each = 3 + 2 * size_of::<u32>() + size_of::<f64>() + size_of::<Vec3>();
+        let each =
+            3 + 2 * size_of::<u32>() + size_of::<f32>() + size_of::<f64>() + size_of::<Vec3>();
         let rare = self.starts.len() * size_of::<(u32, ToolPose)>()
             + self.arcs.len() * size_of::<(u32, Arc)>()
             + self.feeds.len() * size_of::<(u32, Option<Feed>)>()
@@ -325,6 +357,10 @@ impl Walk {
             self.waits.push((at, waited));
         }
         self.ends.push(self.seconds() + waited + seconds);
+        let deviation = motion.deviation.map(|deviation| deviation.tip_mm);
+        self.deviations.push(deviation.map_or(f32::NAN, |mm| mm as f32));
+        // What is not known is not the largest.
+        self.deviation = self.deviation.into_iter().chain(deviation).reduce(f64::max);
         if self.feeds.last().is_none_or(|(_, feed)| *feed != motion.feed) {
             self.feeds.push((at, motion.feed));
         }
@@ -485,6 +521,23 @@ impl<'a> Follower<'a> {
         place
     }
 
+    /// Notes the rotary axes that turn far in the last move, where it cuts.
+    fn jumps(&mut self) {
+        let walk = &mut self.walk;
+        let at = walk.len() - 1;
+        let Some(before) = at.checked_sub(1).filter(|_| walk.kind(at) != RAPID) else { return };
+        for axis in (3..).take(self.rotary.len()) {
+            let (from, to) = (walk.positions(before)[axis], walk.positions(at)[axis]);
+            if (to - from).abs() > JUMP {
+                walk.jumps_in_all += 1;
+                if walk.jumps.len() < MOST_JUMPS {
+                    let time_s = walk.end(before);
+                    walk.jumps.push(Jump { axis: axis as u32, r#move: at, time_s, from, to });
+                }
+            }
+        }
+    }
+
     fn positions(&mut self, axes: &AxisPositions) {
         let before = self.walk.positions.len();
         match axes {
@@ -521,6 +574,9 @@ impl Observer for Follower<'_> {
         self.walk.tools.push(self.tool);
         self.walk.marks.push(std::mem::take(&mut self.next_marks));
         self.positions(&motion.axes);
+        if matches!(motion.axes, AxisPositions::Mill { .. }) {
+            self.jumps();
+        }
         if self.walk.len().is_multiple_of(CHUNK) {
             self.draw();
         }
@@ -602,11 +658,11 @@ mod tests {
     }
 
     fn followed(tell: impl Fn(&mut Follower)) -> Walk {
-        drawn(tell).walk
+        drawn("generic-3axis-linuxcnc", tell).walk
     }
 
-    fn drawn(tell: impl Fn(&mut Follower)) -> Drawn {
-        let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    fn drawn(machine: &str, tell: impl Fn(&mut Follower)) -> Drawn {
+        let machine = machine::load(machine).unwrap();
         let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
         let (waits, to) = ((&() as &dyn Waits, &ended), Slot::clone(&handed));
         let mut follower = Follower::new("x.nc", &source, &machine, waits, to);
@@ -645,7 +701,7 @@ mod tests {
         assert_eq!((walk.at_time(99.0), Walk::default().at_time(0.0)), (Some(2), None));
     }
 
-    /// 1 + 1 + 1 + 4 + 4 + 8 + 24, and 8 for each of three axes.
+    /// 1 + 1 + 1 + 4 + 4 + 4 + 8 + 24, and 8 for each of three axes.
     #[test]
     fn a_move_takes_as_much_memory_as_the_front_page_says() {
         let walk = followed(|follower| {
@@ -657,13 +713,13 @@ mod tests {
                 before = behind;
             }
         });
-        assert!((walk.bytes() as f64 / 1000.0 - 67.0).abs() < 1.0, "{}", walk.bytes());
+        assert!((walk.bytes() as f64 / 1000.0 - 71.0).abs() < 1.0, "{}", walk.bytes());
     }
 
     /// A failed proof marks its last move when the chunk of that has been drawn.
     #[test]
     fn a_mark_behind_a_chunk_that_is_drawn_is_drawn_too() {
-        let drawn = drawn(|follower| {
+        let drawn = drawn("generic-3axis-linuxcnc", |follower| {
             for line in 1..=CHUNK {
                 follower.moved(&motion(line, [f64::from(line), 0.0, 0.0]));
             }
@@ -673,6 +729,44 @@ mod tests {
         let marks = vertices.chunks(16).map(|vertex| vertex[15]);
         // Each of these moves begins at the zero point: two vertices each.
         assert_eq!(marks.rev().take(4).collect::<Vec<_>>(), [MISMATCH, MISMATCH, 0, 0]);
+    }
+
+    #[test]
+    fn a_cut_in_which_a_rotary_axis_turns_far_is_a_jump_and_a_rapid_is_none() {
+        let turns = |kind, b, c| Motion {
+            axes: AxisPositions::Mill { linear: Vec3::ZERO, rotary: [0.0, b, c] },
+            kind,
+            ..motion(1, [0.0; 3])
+        };
+        let walk = drawn("fanuc-table-bc", |follower| {
+            follower.moved(&turns(MotionKind::Line, 0.0, 200.0));
+            follower.moved(&turns(MotionKind::Line, 29.0, 200.0));
+            follower.moved(&turns(MotionKind::Rapid, 29.0, 0.0));
+            follower.moved(&turns(MotionKind::Line, 60.0, -31.0));
+            follower.moved(&turns(MotionKind::Line, f64::NAN, -31.0));
+        });
+        let (jumps, count) = walk.walk.jumps();
+        let jump = |axis, from, to| Jump { axis, r#move: 3, time_s: 6.0, from, to };
+        assert_eq!((jumps, count), (&[jump(3, 29.0, 60.0), jump(4, 0.0, -31.0)][..], 2));
+    }
+
+    #[test]
+    fn the_largest_deviation_is_that_of_a_move_that_was_compared() {
+        let off = |tip_mm| Motion {
+            deviation: Some(proof::Deviation { tip_mm, axis_degrees: 0.0 }),
+            ..motion(1, [0.0; 3])
+        };
+        let walk = followed(|follower| {
+            follower.moved(&motion(1, [0.0; 3]));
+            follower.moved(&off(0.004));
+            follower.moved(&off(0.001));
+        });
+        assert!(walk.deviation(0).is_nan());
+        assert_eq!((walk.deviation(1), walk.largest_deviation()), (0.004, Some(0.004)));
+        assert_eq!(
+            followed(|follower| follower.moved(&motion(1, [0.0; 3]))).largest_deviation(),
+            None
+        );
     }
 
     #[test]

@@ -112,7 +112,11 @@ moves: number,
 /**
  * When the last one of them is over, s.
  */
-time_s: number, };
+time_s: number, 
+/**
+ * What the numbers of kinds mean.
+ */
+kinds: Array<string>, };
 
 /**
  * A finding, as `--json` prints it.
@@ -792,13 +796,54 @@ operations: Array<Operation>,
  */
 kinds: Array<string>, 
 /**
- * How many bytes the row of a move has: 16, or 36 where any tool leans.
+ * How many bytes the row of a move has: 20, or 40 where any tool leans.
  */
 row: number, 
+/**
+ * The largest deviation of a tip from the source, mm; null where nothing was compared.
+ */
+deviation: number | null, 
+/**
+ * The first thousand cuts in which a rotary axis turns by more than 30 degrees.
+ */
+jumps: Array<Jump>, 
+/**
+ * How many there are.
+ */
+jumps_in_all: number, 
+/**
+ * How far the lines of the level `fine` may be from the arcs, mm; null where there are no arcs.
+ */
+fine: number | null, 
 /**
  * The last move before the first mismatch.
  */
 mismatch: number | null, };
+
+/**
+ * A cut in which a rotary axis turns far.
+ */
+export type Jump = { 
+/**
+ * Its place in `machine.axes`.
+ */
+axis: number, 
+/**
+ * The move.
+ */
+move: number, 
+/**
+ * When that begins, s.
+ */
+time_s: number, 
+/**
+ * Where the axis is before it, degrees.
+ */
+from: number, 
+/**
+ * And behind it.
+ */
+to: number, };
 
 /**
  * A level of detail.
@@ -1190,7 +1235,7 @@ export type PlotParams = {
  */
 revision: number, 
 /**
- * Name of an axis, or `feed`.
+ * Name of an axis, `feed` (mm/min), or `deviation` of the tip from the source (mm).
  */
 what: string, 
 /**

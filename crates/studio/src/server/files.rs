@@ -81,7 +81,8 @@ pub async fn upload(studio: &Studio, name: &str, request: Request) -> Response<B
     response
 }
 
-/// Answers the geometry or the rows of a job: `geometry/REVISION/index`, `geometry/REVISION/LEVEL/CHUNK`, `moves/REVISION/CHUNK`.
+/// Answers the geometry or the rows of a job: `geometry/REVISION/index`, `geometry/REVISION/LEVEL/CHUNK` (or `fine` for
+/// LEVEL), `moves/REVISION/CHUNK`.
 pub async fn drawn(studio: Arc<Studio>, path: String) -> Response<Body> {
     // Chunks are made when they are asked for.
     let made = tokio::task::spawn_blocking(move || octets(&studio, &path)).await;
@@ -106,6 +107,7 @@ fn octets(studio: &Studio, path: &str) -> Option<Vec<u8>> {
     let job = studio.jobs.find(parts.get(1)?.parse().ok()?).ok()?;
     match parts[..] {
         ["geometry", _, "index"] => Some(job.geometry().index()),
+        ["geometry", _, "fine", chunk] => job.geometry().fine(job.walk(), chunk.parse().ok()?),
         ["geometry", _, level, chunk] => {
             job.geometry().vertices(job.walk(), level.parse().ok()?, chunk.parse().ok()?)
         }

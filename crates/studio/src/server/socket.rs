@@ -7,6 +7,7 @@ use crate::ask::{Cancel, Done, Hello, Progress, Stop, Stopped, Verdict, Walked};
 use crate::drawing::Piece;
 use crate::job::{Ended, Waits};
 use crate::message::{self, Array, Frame};
+use crate::walk::KINDS;
 use axum::body::Body;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{FromRequestParts, Request};
@@ -174,7 +175,8 @@ impl Waits for Tells<'_> {
         let others = begun.take_if(|(begun, _)| begun.file != file);
         let (told, [index, vertices]) = begun.get_or_insert_with(|| {
             let (event, file, chunk) = ("walked", file.to_owned(), piece.chunk);
-            let told = Walked { event, id: self.id, file, chunk, moves: 0, time_s: 0.0 };
+            let kinds = KINDS.to_vec();
+            let told = Walked { event, id: self.id, file, chunk, moves: 0, time_s: 0.0, kinds };
             (told, [Vec::new(), Vec::new()])
         });
         (told.moves, told.time_s) = (piece.moves, piece.seconds);

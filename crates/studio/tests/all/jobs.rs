@@ -134,7 +134,7 @@ fn the_geometry_is_that_of_the_moves() {
     assert_eq!(vertices.len() / 16, u32_at(&index, 48) as usize);
     let rows = studio.get(&format!("/moves/{revision}/0"));
     let row = walk["row"].as_u64().unwrap() as usize;
-    assert_eq!(row, 36);
+    assert_eq!(row, 40);
     assert_eq!(rows.len(), row * walk["moves"].as_u64().unwrap() as usize);
     // The last vertex of a move is its tip, its row has its block and its line.
     for number in [3u32, 40, 200] {
@@ -152,7 +152,16 @@ fn the_geometry_is_that_of_the_moves() {
         assert_eq!(place["block"]["line"], u32_at(&rows, at + 4));
         assert_eq!(place["source"]["line"], u32_at(&rows, at + 8));
     }
-    for path in ["0/99", "9/0", "x/0", "0/-1", "0/0/0", "index/0"] {
+    // The rows end with the deviations: the largest of them is that of the walk, and within the tolerance.
+    let deviations = rows.chunks(row).map(|row| f64::from(f32s(&row[36..])[0]));
+    let largest = deviations.filter(|mm| mm.is_finite()).fold(0.0, f64::max);
+    assert!(
+        (walk["deviation"].as_f64().unwrap() - largest).abs() < 1e-7 && largest > 0.0,
+        "{largest}"
+    );
+    let fine = studio.get(&format!("/geometry/{revision}/fine/0"));
+    assert!(walk["fine"] == 0.000_125 && fine.len() > vertices.len(), "{}", walk["fine"]);
+    for path in ["fine/1", "fine/x", "0/99", "9/0", "x/0", "0/-1", "0/0/0", "index/0"] {
         let (status, ..) = studio.request(&format!("GET /geometry/{revision}/{path}"), "", b"");
         assert_eq!(status, 404, "{path}");
     }
@@ -243,6 +252,8 @@ fn a_plot_has_the_least_and_the_most_of_each_pixel() {
     assert_eq!(fold(&least, f32::min), one_least[0]);
     assert_eq!(fold(&most, f32::max), one_most[0]);
     assert!(least.iter().zip(&most).all(|(least, most)| least <= most || least.is_nan()));
+    let (deviation, _) = plot("deviation", 1).unwrap();
+    assert!(deviation[0] >= 0.0, "{deviation:?}");
     assert_eq!(plot("Q", 10).unwrap_err()["findings"][0]["rule"], "studio-ask");
     assert_eq!(plot("feed", 1_000_000).unwrap().0.len(), 10_000);
 }
