@@ -27,6 +27,8 @@ export class Studio {
     readonly isCurrent: Signal<boolean> = signal(false);
     readonly canSave = computed(() => this.isCurrent.value && (this.job.value?.verdict === "done" || this.job.value?.verdict === "partly"));
     private typing: ReturnType<typeof setTimeout> | undefined;
+    /** Name of the draft that this page keeps its edit under. */
+    private kept: string | null = null;
     readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
     readonly cursor: Cursor;
     /** A machine has to be chosen before anything can be posted. */
@@ -80,7 +82,8 @@ export class Studio {
             return ids;
         });
         if (uploads === undefined) return;
-        await this.open(uploads.length === 1 ? { upload: uploads[0]! } : { uploads });
+        const source = uploads.length === 1 ? { upload: uploads[0]! } : { uploads };
+        await this.post({ source, name: files.map(({ name }) => name).join(", "), machine: this.machine.value, options: [] });
     }
 
     async choose(machine: string): Promise<void> {
@@ -95,6 +98,7 @@ export class Studio {
         clearTimeout(this.typing);
         this.work.value = work;
         this.edited.value = null;
+        this.kept = null;
         this.isCurrent.value = false;
         const { source, machine, options } = work;
         void this.askForm();
@@ -148,7 +152,7 @@ export class Studio {
         this.edited.value = text;
         this.isCurrent.value = false;
         const octets = new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
-        void this.seam.ask("draft", { name: draftName(work), of: work }, { arrays: { text: octets } }).catch(() => {});
+        void this.keep(work, octets);
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("prove", { source, machine, options }, { arrays: { text: octets }, signal, progress })).done);
         if (job === undefined) return;
@@ -157,11 +161,32 @@ export class Studio {
         this.isCurrent.value = this.edited.value === text;
     }
 
+    /** Keeps the edit as a draft; beside that of another page, where one edits the same program. */
+    private async keep(work: Work, text: Uint8Array): Promise<void> {
+        const name = draftName(work);
+        for (const own of new Set([this.kept ?? name, name, ...[2, 3, 4, 5].map((number) => `${name}-${number}`)])) {
+            this.kept = own;
+            try {
+                await this.seam.ask("draft", { name: own, of: work }, { arrays: { text } });
+                return;
+            } catch (error) {
+                if (!(error instanceof Stopped) || error.findings[0]?.rule !== OTHER_PAGE) return;
+                this.said.value = "another tab edits this program too: both edits are kept";
+            }
+        }
+    }
+
+    private async dropOwn(): Promise<void> {
+        const { kept } = this;
+        this.kept = null;
+        if (kept !== null) await this.dropDraft(kept);
+    }
+
     /** Back to the program as posted. */
     async discard(): Promise<void> {
         const work = this.work.value;
         if (work === null) return;
-        await this.dropDraft(draftName(work));
+        await this.dropOwn();
         await this.post(work);
     }
 
@@ -170,6 +195,7 @@ export class Studio {
         const { arrays } = await this.seam.ask("draft_text", { name: draft.name });
         const text = new TextDecoder().decode(arrays.text as Uint8Array | undefined);
         this.work.value = draft.of as Work;
+        this.kept = draft.name;
         this.machine.value = this.work.value.machine;
         this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
         await this.prove(text);
@@ -180,19 +206,28 @@ export class Studio {
         await this.seam.ask("drop_draft", { name }).catch(() => {});
     }
 
+    /** Why the program cannot be saved as it stands on the page. */
+    refusal(): Finding | null {
+        if (this.canSave.value) return null;
+        if (this.job.value === null) return said("nothing-to-save", "there is no program to save", "post a toolpath first");
+        const help = this.isCurrent.value ? "mend what the findings name, or discard the edit" : "wait until its proof has passed";
+        return said("not-proven", "the program as it stands here is not proven: it is not saved", help);
+    }
+
     /** Saves the program as it stands on the page, which is proven; a proof that runs is not ended for it. */
     async save(path: string, replace: boolean): Promise<boolean> {
         const job = this.job.value;
         const work = this.work.value;
         if (job === null || work === null) return false;
-        if (!this.canSave.value) {
-            this.stopped.value = [said("not-proven", "the program as it stands here is not proven: it is not saved", "wait until its proof has passed")];
+        const refusal = this.refusal();
+        if (refusal !== null) {
+            this.stopped.value = [refusal];
             return false;
         }
         const saved = await this.told(async () => (await this.seam.ask("save", { revision: job.revision, path, replace })).done);
         if (saved === undefined) return false;
         this.said.value = `saved ${saved.files.join(", ")}`;
-        if (this.isCurrent.value) await this.dropDraft(draftName(work));
+        if (this.isCurrent.value) await this.dropOwn();
         return true;
     }
 
@@ -227,6 +262,9 @@ export class Studio {
         }
     }
 }
+
+/** The server's rule where another page keeps a draft of that name. */
+const OTHER_PAGE = "studio-draft";
 
 export function draftName({ source, machine }: Work): string {
     const name = Object.values(source).flat().join("-");

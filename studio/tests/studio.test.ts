@@ -2,19 +2,21 @@
 
 import { signal } from "@preact/signals";
 import { expect, test } from "vitest";
-import type { Seam, State } from "../src/protocol/seam.ts";
+import { said, Stopped, type Seam, type State } from "../src/protocol/seam.ts";
 import { Studio } from "../src/studio.ts";
 
 const settled = () => new Promise((resolve) => setTimeout(resolve));
 
 /** A server that has answered `post`, and answers `prove` when it is told to. */
-function open() {
+function open(taken: string[] = []) {
     const asked: string[] = [];
     const proofs: ((job: object) => void)[] = [];
     const job = (revision: number) => ({ revision, verdict: "done", findings: [], walk: { moves: 0, mismatch: null } });
     const seam = {
-        ask: (ask: string, params: object) => {
-            asked.push(ask === "save" ? `save ${(params as { revision: number }).revision}` : ask);
+        ask: (ask: string, params: { revision: number; name: string }) => {
+            const named = { save: params.revision, draft: params.name, drop_draft: params.name }[ask];
+            asked.push(named === undefined ? ask : `${ask} ${named}`);
+            if (ask === "draft" && taken.includes(params.name)) return Promise.reject(new Stopped("invalid", [said("studio-draft", "another page has it", "")]));
             if (ask === "post") return Promise.resolve({ done: job(1), arrays: {} });
             if (ask === "prove") return new Promise((resolve) => proofs.push((done) => resolve({ done, arrays: {} })));
             return Promise.resolve({ done: { files: ["a.nc"] }, arrays: {} });
@@ -52,4 +54,34 @@ test("a proof that ends when somebody has typed on is not that of the text on th
     await settled();
     expect([studio.isCurrent.value, studio.canSave.value]).toEqual([false, false]);
     expect(await studio.save("a.nc", true)).toBe(false);
+});
+
+test("an edit of a program that another page edits has a draft of its own, and that is the one that is dropped", async () => {
+    const { studio, asked, proved } = open(["a.cls.mill", "a.cls.mill-2"]);
+    await studio.post(work as never);
+    const proof = studio.prove("G0 X1\n");
+    await settled();
+    expect(studio.said.value).toContain("another tab");
+    expect(asked.filter((ask) => ask.startsWith("draft"))).toEqual(["draft a.cls.mill", "draft a.cls.mill-2", "draft a.cls.mill-3"]);
+    proved(2);
+    await proof;
+    await studio.discard();
+    expect(asked.filter((ask) => ask.startsWith("drop"))).toEqual(["drop_draft a.cls.mill-3"]);
+});
+
+test("an edit that is discarded before the server has its draft leaves none", async () => {
+    const { studio, asked } = open();
+    await studio.post(work as never);
+    void studio.prove("G0 X1\n");
+    await studio.discard();
+    expect(asked.filter((ask) => ask.includes("draft"))).toEqual(["draft a.cls.mill", "drop_draft a.cls.mill"]);
+});
+
+test("what cannot be saved says why", async () => {
+    const { studio } = open();
+    expect(studio.refusal()?.message).toBe("there is no program to save");
+    await studio.post(work as never);
+    expect(studio.refusal()).toBe(null);
+    void studio.prove("G0 X1\n");
+    expect(studio.refusal()?.help).toBe("wait until its proof has passed");
 });

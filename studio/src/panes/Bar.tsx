@@ -9,7 +9,7 @@ const verdicts: Record<Verdict, string> = {
     cancelled: "■ CANCELLED",
 };
 
-const nameOf = ({ source }: Work): string => Object.values(source).flat().join(", ").replace(/^.*\//, "");
+const nameOf = ({ source, name }: Work): string => name ?? Object.values(source).flat().join(", ").replace(/^.*\//, "");
 
 export function Bar({ screen }: { screen: Screen }) {
     const { studio, dialog } = screen;

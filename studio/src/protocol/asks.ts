@@ -36,6 +36,8 @@ export type * from "./types.ts";
 /** What is worked on: enough to post it again. */
 export interface Work {
     source: Given;
+    /** Of a file that was dropped. */
+    name?: string;
     machine: string | null;
     options: [name: string, value: string][];
 }

@@ -25,7 +25,7 @@ function general(screen: Screen): Command[] {
         { name: "program", title: "Prove a program from a file against this toolpath", run: show("program") },
         { name: "machine", title: "Choose the machine", keys: ["Ctrl+m"], run: show("machine") },
         { name: "options", title: "Options of posting", run: () => screen.toOption("") },
-        { name: "save", title: "Save the program", keys: ["Ctrl+s"], run: show("save") },
+        { name: "save", title: "Save the program", keys: ["Ctrl+s"], run: () => screen.save() },
         { name: "next-program", title: "Next program of the board", run: () => screen.nextProgram(1) },
         { name: "last-program", title: "Previous program of the board", run: () => screen.nextProgram(-1) },
         { name: "discard", title: "Discard the edits by hand", run: () => void studio.discard() },

@@ -179,6 +179,17 @@ export class Screen {
         else if (of === "program") void cursor.to({ by: "block", value: line, file: file === job.value.program?.file ? null : file });
     }
 
+    /** The dialog; where nothing can be saved, why. */
+    save(): void {
+        const refusal = this.studio.refusal();
+        if (refusal === null) {
+            this.dialog.value = "save";
+            return;
+        }
+        this.studio.stopped.value = [refusal];
+        this.tab.value = "findings";
+    }
+
     /** The form, at an option. */
     toOption(name: string): void {
         this.option.value = name;

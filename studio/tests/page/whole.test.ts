@@ -105,6 +105,9 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.keyboard.type(" Z-7.777");
         await page.getByText("✗ NOT PROVEN").waitFor();
         expect(await page.getByRole("button", { name: "Save…" }).isDisabled()).toBe(true);
+        await page.keyboard.press("Control+s");
+        await page.getByText("it is not saved").waitFor();
+        expect(await page.getByRole("dialog").count()).toBe(0);
         await page.getByRole("tab", { name: "Verdict" }).click();
         expect(await page.getByRole("region", { name: "First mismatch" }).innerText()).toContain("Z-7.777");
         await page.getByRole("button", { name: "Discard" }).click();
@@ -218,6 +221,26 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.getByText("✗ NOT PROVEN").waitFor();
         await page.getByRole("button", { name: "Discard" }).click();
         await proven(page);
+    });
+
+    test("a file that is dropped keeps its name, also in the notice of its edit", async () => {
+        const page = await begin();
+        const dropped = await page.evaluateHandle((text) => {
+            const data = new DataTransfer();
+            data.items.add(new File([text], "dropped.cls"));
+            return data;
+        }, readFileSync(example("plate.cls"), "utf8"));
+        await page.dispatchEvent(".canvas", "drop", { dataTransfer: dropped });
+        await page.getByRole("button", { name: "dropped.cls" }).waitFor();
+        await proven(page);
+        await page.locator(".program .cm-line").first().click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" (kept)");
+        await page.getByText("▲ edited").waitFor();
+        await page.waitForTimeout(800);
+        await page.reload();
+        await page.getByText("an edit of dropped.cls is kept").waitFor();
+        await page.getByRole("button", { name: "Drop it" }).click();
     });
 
     test("replay moves the cursor on, and stops at the end", async () => {
