@@ -1,7 +1,7 @@
 import { expect, test, vi } from "vitest";
 import type { WalkAbout } from "../src/protocol/asks.ts";
 import { project, VIEWS } from "../src/view/camera.ts";
-import { Chunks, inSight, levelFor, readIndex } from "../src/view/chunks.ts";
+import { Chunks, inSight, levelFor, readIndex, type Vertices } from "../src/view/chunks.ts";
 import { MARKED, theme } from "../src/view/colours.ts";
 import { Raster } from "../src/view/raster.ts";
 import { Painting } from "../src/view/renderer.ts";
@@ -80,6 +80,31 @@ test("what has not come is asked for, and what is there is drawn meanwhile", asy
     expect(one.picture(near, size, looks, marks).strips[0]!.vertices).toBe(server["1/0"]);
     await settled();
     expect(one.picture(near, size, looks, marks).strips[0]!.vertices).toBe(server["0/0"]);
+});
+
+test("a chunk that is on its way is not asked for again, and what was walked before is drawn until it has come", async () => {
+    const asked: string[] = [];
+    const before = { best: () => ({ vertices: server["1/0"]!, isExact: false }) } as unknown as Vertices;
+    let tell = 0;
+    const octets = async (path: string) => {
+        asked.push(path);
+        await settled();
+        return server[path]!;
+    };
+    const chunks = new Chunks(walk, octets, () => tell++, before);
+    await chunks.load();
+    const one = new Scene(walk, chunks, {} as Rows);
+    for (let frame = 0; frame < 3; frame++) {
+        chunks.begin();
+        expect(one.picture(above, size, looks, marks).strips.map(({ vertices }) => vertices)).toEqual([server["1/0"], server["1/0"]]);
+    }
+    await settled();
+    await settled();
+    expect(asked).toEqual(["index", "1/0", "1/1"]);
+    expect(one.picture(above, size, looks, marks).strips.map(({ vertices }) => vertices)).toEqual([server["1/0"], server["1/1"]]);
+    // One picture for both.
+    await new Promise((resolve) => setTimeout(resolve, 100));
+    expect(tell).toBe(2);
 });
 
 test("a click finds the exact move below a coarse line, and nothing where nothing is", async () => {

@@ -53,15 +53,32 @@ export function levelFor(levels: WalkAbout["levels"], scale: number): number {
     return 0;
 }
 
+/** Between two pictures while chunks come, ms. */
+const BETWEEN = 60;
+
 interface Kept {
     vertices: ArrayBuffer;
     used: number;
 }
 
-export class Chunks {
+/** Where the vertices of a walk come from. */
+export interface Vertices {
+    readonly chunks: Chunk[];
+    /** A picture begins. */
+    begin(): void;
+    /** Of a chunk, at the level or the nearest that is there. */
+    best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null;
+    /** At exactly this level; null where that cannot be had. */
+    exact(level: number, chunk: number): Promise<ArrayBuffer | null>;
+}
+
+export class Chunks implements Vertices {
     chunks: Chunk[] = [];
     private readonly kept = new Map<number, Kept>();
-    private readonly wanted = new Map<number, (vertices: ArrayBuffer | null) => void>();
+    private readonly wanted = new Set<number>();
+    /** What is on its way. */
+    private readonly coming = new Set<number>();
+    private telling: ReturnType<typeof setTimeout> | undefined;
     private running = 0;
     private bytes = 0;
     private frame = 0;
@@ -70,11 +87,21 @@ export class Chunks {
         readonly walk: WalkAbout,
         private readonly octets: (path: string) => Promise<ArrayBuffer>,
         private readonly changed: () => void,
+        /** Of the same walk while it was proven: drawn until something better has come. */
+        private readonly before: Vertices | null = null,
     ) {}
 
     async load(): Promise<void> {
         this.chunks = readIndex(await this.octets("index"));
         this.changed();
+    }
+
+    /** A picture for each of many chunks that come would hold them up. */
+    private tell(): void {
+        this.telling ??= setTimeout(() => {
+            this.telling = undefined;
+            this.changed();
+        }, BETWEEN);
     }
 
     private key(level: number, chunk: number): number {
@@ -84,7 +111,6 @@ export class Chunks {
     /** A frame begins: what the one before wished for and did not get is forgotten. */
     begin(): void {
         this.frame++;
-        for (const given of this.wanted.values()) given(null);
         this.wanted.clear();
     }
 
@@ -94,10 +120,10 @@ export class Chunks {
         const finer = Array.from({ length: level }, (_, i) => level - 1 - i);
         for (const other of [...coarser, ...finer]) {
             const vertices = this.take(other, chunk);
-            if (vertices === null && other === level) this.want(level, chunk, () => this.changed());
+            if (vertices === null && other === level) this.want(this.key(level, chunk));
             if (vertices !== null) return { vertices, isExact: other === 0 };
         }
-        return null;
+        return this.before?.best(level, chunk) ?? null;
     }
 
     /** The vertices at exactly this level. */
@@ -112,10 +138,9 @@ export class Chunks {
         return kept.vertices;
     }
 
-    private want(level: number, chunk: number, then: () => void): void {
-        const key = this.key(level, chunk);
-        if (this.wanted.has(key)) return;
-        this.wanted.set(key, (vertices) => vertices !== null && then());
+    private want(key: number): void {
+        if (this.coming.has(key)) return;
+        this.wanted.add(key);
         void this.work();
     }
 
@@ -123,11 +148,11 @@ export class Chunks {
         if (this.running >= REQUESTS) return;
         this.running++;
         try {
-            for (let next = this.wanted.entries().next(); !next.done; next = this.wanted.entries().next()) {
-                const [key, given] = next.value;
+            for (const key of this.wanted) {
                 this.wanted.delete(key);
-                const vertices = await this.fetch(Math.floor(key / this.walk.chunks), key % this.walk.chunks);
-                given(vertices);
+                this.coming.add(key);
+                if ((await this.fetch(Math.floor(key / this.walk.chunks), key % this.walk.chunks)) !== null) this.tell();
+                this.coming.delete(key);
             }
         } finally {
             this.running--;

@@ -4,7 +4,7 @@ import type { Range } from "../cursor.ts";
 import type { WalkAbout } from "../protocol/asks.ts";
 import type { Board, Flat } from "./board.ts";
 import { toScreen, type Projection, type Size } from "./camera.ts";
-import { inSight, levelFor, type Chunk, type Chunks } from "./chunks.ts";
+import { inSight, levelFor, type Chunk, type Vertices } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
 import { GAP, NEEDLES, needlesOf } from "./needles.ts";
 import { painterOf, type Painter } from "./painted.ts";
@@ -44,7 +44,7 @@ export interface Picture {
     symbols: Symbol[];
 }
 
-type Best = NonNullable<ReturnType<Chunks["best"]>>;
+type Best = NonNullable<ReturnType<Vertices["best"]>>;
 
 /** The most places of a board that are marked. */
 const PLACES = 400;
@@ -64,7 +64,7 @@ export class Scene {
 
     constructor(
         readonly walk: WalkAbout,
-        readonly chunks: Chunks,
+        readonly chunks: Vertices,
         private readonly rows: Rows,
     ) {}
 

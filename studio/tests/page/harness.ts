@@ -48,6 +48,10 @@ export class Server {
         throw new Error("the command has printed no link");
     }
 
+    get pid(): number {
+        return this.process.pid!;
+    }
+
     /** Ends it as Ctrl-C does. */
     async end(signal: NodeJS.Signals = "SIGINT"): Promise<void> {
         const ended = new Promise((done) => this.process.once("exit", done));
