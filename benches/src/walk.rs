@@ -5,8 +5,8 @@ use crate::clock::{self, Taken};
 use crate::{memory, path};
 use program::Diagnostic;
 use proof::{Motion, Observer, Tolerances};
-use std::sync::Mutex;
-use studio::walk::Follower;
+use studio::job::Ended;
+use studio::walk::{Follower, Slot};
 
 /// Looks at each motion, and keeps none.
 #[derive(Default)]
@@ -55,8 +55,9 @@ pub fn measure(records: usize, machines: &[String], rounds: usize) -> Result<(),
             prove(&mut looks, &mut told)?;
             std::hint::black_box(looks.seconds);
             motions = looks.motions;
-            let walk = Mutex::new(None);
-            let mut follower = Follower::new(&source, &machine, &walk);
+            let ended = Ended::default();
+            let mut follower =
+                Follower::new("wave.nc", &source, &machine, (&(), &ended), Slot::default());
             let (followed, most) = memory::peak(|| prove(&mut follower, &mut kept));
             followed?;
             peak = peak.max(most);

@@ -3,7 +3,7 @@
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import { said, Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { Command, Draft, Field, Given, Finding, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
+import type { BoardAbout, Command, Draft, Field, Finding, Given, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
 
 export class Studio {
     readonly link: Signal<State>;
@@ -15,6 +15,8 @@ export class Studio {
     /** The machine that was chosen last, also before there is a source. */
     readonly machine: Signal<string | null> = signal(null);
     readonly job: Signal<Job | null> = signal(null);
+    /** The board that was posted: it stays while one of its programs is edited, which is a job by itself. */
+    readonly board: Signal<BoardAbout | null> = signal(null);
     readonly running: Signal<Progress | null> = signal(null);
     /** How the last work ended that gave nothing. */
     readonly stop: Signal<Verdict | null> = signal(null);
@@ -108,8 +110,11 @@ export class Studio {
         }
         const job = await this.told(async (signal, progress) =>
             (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
+        this.board.value = job?.board ?? null;
         this.job.value = job ?? null;
         this.isCurrent.value = job !== undefined && this.edited.value === null;
+        const same = job?.board?.programs.find(({ file, revision }) => file === work.file && revision !== job.revision);
+        if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
     }
 
     /** Another program of the board. */
@@ -118,12 +123,14 @@ export class Studio {
         if (job === undefined) return;
         clearTimeout(this.typing);
         this.edited.value = null;
+        this.work.value = ofProgram(this.work.value, job);
         this.job.value = job;
         this.isCurrent.value = true;
     }
 
     /** The program is being edited: it is proven when the typing rests. */
     typed(text: string): void {
+        this.work.value = ofProgram(this.work.value, this.job.value);
         this.edited.value = text;
         this.isCurrent.value = false;
         clearTimeout(this.typing);
@@ -148,13 +155,13 @@ export class Studio {
     async prove(text: string): Promise<void> {
         const work = this.work.value;
         if (work === null || work.machine === null) return;
-        const { source, machine, options } = work;
+        const { source, machine, options, file } = work;
         this.edited.value = text;
         this.isCurrent.value = false;
         const octets = new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
         void this.keep(work, octets);
         const job = await this.told(async (signal, progress) =>
-            (await this.seam.ask("prove", { source, machine, options }, { arrays: { text: octets }, signal, progress })).done);
+            (await this.seam.ask("prove", { source, machine, options, file: file ?? null }, { arrays: { text: octets }, signal, progress })).done);
         if (job === undefined) return;
         this.job.value = job;
         // Somebody may have typed on meanwhile.
@@ -266,7 +273,13 @@ export class Studio {
 /** The server's rule where another page keeps a draft of that name. */
 const OTHER_PAGE = "studio-draft";
 
-export function draftName({ source, machine }: Work): string {
-    const name = Object.values(source).flat().join("-");
+/** Of a program of a board the work says which it is. */
+function ofProgram(work: Work | null, job: Job | null): Work | null {
+    const file = job?.board ? job.program?.file : undefined;
+    return work === null || file === undefined ? work : { ...work, file };
+}
+
+export function draftName({ source, machine, file }: Work): string {
+    const name = [...Object.values(source).flat(), ...(file === undefined ? [] : [file])].join("-");
     return `${name}.${machine ?? "no-machine"}`.replaceAll(/[^\w.-]+/g, "_");
 }

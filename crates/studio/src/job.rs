@@ -98,7 +98,6 @@ pub trait Waits: Sync {
 }
 
 /// Nobody.
-#[cfg(test)]
 impl Waits for () {
     fn step(&self, _what: &'static str) {}
 

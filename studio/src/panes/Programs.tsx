@@ -3,13 +3,22 @@ import type { Screen } from "../screen/screen.ts";
 /** The programs of a board: which one is shown, and those that could not be made. */
 export function Programs({ screen }: { screen: Screen }) {
     const { studio } = screen;
+    const board = studio.board.value;
     const job = studio.job.value;
-    const board = job?.board ?? null;
-    if (job === null || board === null) return null;
+    if (board === null || job === null) return null;
+    const isEdited = studio.edited.value !== null;
     return (
         <div class="programs" role="group" aria-label="Programs of the board">
             {board.programs.map(({ name, file, revision }) => (
-                <button key={name} type="button" class="small" title={file} aria-pressed={revision === job.revision} onClick={() => void studio.chooseProgram(revision)}>
+                <button
+                    key={name}
+                    type="button"
+                    class="small"
+                    title={isEdited ? "Save or discard the edit first" : file}
+                    disabled={isEdited}
+                    aria-pressed={file === job.program?.file}
+                    onClick={() => void studio.chooseProgram(revision)}
+                >
                     ✓ {name}
                 </button>
             ))}

@@ -119,7 +119,7 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
     const origin = (job: Job, text: Text): Origin => ({
         lines: job.parts.find((part) => part.file === file.value)?.lines ?? text.lines,
         family: of === "source" ? familyOf(null, text.file) : familyOf(job.machine.dialect, text.file),
-        isEditable: of === "program" && job.parts.length === 0 && job.board === null,
+        isEditable: of === "program" && job.parts.length === 0,
         read: (from, to) => readText(seam, { revision: job.revision, of, file: file.value, from, to }),
     });
 

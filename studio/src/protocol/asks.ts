@@ -40,6 +40,8 @@ export interface Work {
     name?: string;
     machine: string | null;
     options: [name: string, value: string][];
+    /** Of a board the file of the program that is edited. */
+    file?: string;
 }
 
 /** What may be null may be left out. */

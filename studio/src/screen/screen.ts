@@ -86,6 +86,7 @@ export class Screen {
 
     /** The scene of a job that is new. */
     private begin(job: Job | null): void {
+        const board = this.studio.board.value === null ? null : this.board.value;
         this.board.value = null;
         if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
@@ -96,6 +97,7 @@ export class Screen {
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++));
         void chunks.load().catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
+        else if (board !== null) this.show(board);
         const isOther = this.fitted !== job.source.file;
         this.fitted = job.source.file;
         for (const viewer of this.viewers) viewer.refit(isOther);
@@ -106,11 +108,15 @@ export class Screen {
         const { done, arrays } = await this.studio.seam.ask("board", { revision });
         if (this.studio.job.value?.revision !== revision || this.scene.value === null) return;
         const { areas, holes, tabs } = arrays as Record<string, Float32Array>;
-        const board = new Board(done, areas!, holes!, tabs!);
+        this.show(new Board(done, areas!, holes!, tabs!));
+        for (const viewer of this.viewers) viewer.refit(false);
+    }
+
+    private show(board: Board): void {
+        if (this.scene.value === null) return;
         this.scene.value.board = board;
         this.board.value = board;
         this.news.value++;
-        for (const viewer of this.viewers) viewer.refit(false);
     }
 
     /** The net of the copper under the pointer. */
@@ -204,9 +210,10 @@ export class Screen {
 
     /** The programs of a board in turn. */
     nextProgram(step: number): void {
-        const { job } = this.studio;
-        const programs = job.value?.board?.programs ?? [];
-        const at = programs.findIndex(({ revision }) => revision === job.value?.revision);
+        const { job, board, edited } = this.studio;
+        if (edited.value !== null) return;
+        const programs = board.value?.programs ?? [];
+        const at = programs.findIndex(({ file }) => file === job.value?.program?.file);
         const next = programs[(at + step + programs.length) % programs.length];
         if (next !== undefined) void this.studio.chooseProgram(next.revision);
     }

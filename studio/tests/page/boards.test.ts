@@ -101,6 +101,34 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
         await page.close();
     });
 
+    test("a program of a board is edited: proven anew, refused when it cuts otherwise, saved by itself, and discarded", async () => {
+        const server = await Server.start([example("lamp.toml")], ["-m", "grbl-3018"]);
+        const { page, complaints } = await visit(browser, server.link);
+        await give(page, "tool", "0.3");
+        await proven(page);
+        await choose(page, "drill");
+        await page.getByText("G21 G17").first().waitFor();
+        const line = page.locator(".program .cm-line").filter({ hasText: /^G1 Z-|^Z-/ }).first();
+        await line.click();
+        await page.keyboard.press("End");
+        await page.keyboard.press("Backspace");
+        await page.getByText("✗ NOT PROVEN").waitFor();
+        await page.keyboard.press("Control+z");
+        await page.keyboard.press("End");
+        await page.keyboard.type(" ");
+        await proven(page);
+        await expect.poll(() => page.getByRole("button", { name: "✓ front" }).isDisabled()).toBe(true);
+        await page.keyboard.press("Control+s");
+        await page.getByLabel(/^File, in/).waitFor();
+        await page.getByRole("dialog").getByRole("button", { name: "Save" }).click();
+        await page.getByText("saved drill.gcode, drill.gcode.report.json").waitFor();
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+        await expect.poll(() => page.locator(".program h2").innerText()).toContain("drill.gcode");
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
     test("several files that are dropped are a board", async () => {
         const server = await Server.start([], ["-m", "grbl-3018"]);
         const { page, complaints } = await visit(browser, server.link);
