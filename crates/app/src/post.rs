@@ -8,7 +8,7 @@ use crate::summary::{Shape, time};
 use crate::toolpath::{self, Toolpath};
 use crate::watch::{Waits, Watch};
 use ::post::{Origins, Output, Part};
-use control::Folders;
+use control::{Dialect, Folders};
 use machine::Machine;
 use machine::time::{Clock, Times};
 use program::{Diagnostic, Op, Program, Record, Rule};
@@ -80,6 +80,9 @@ pub fn proven(
         let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
         let help = "`toolpost wire` writes for it";
         return Err(Diagnostic::error(Rule::MachineKind, message).help(help).into());
+    }
+    if let Some(dialect) = Dialect::named(&machine.reader) {
+        control::check_file_name(dialect, file)?;
     }
     let mut warnings = toolpath.warnings.clone();
     watch.begin("writing")?;

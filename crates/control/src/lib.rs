@@ -551,6 +551,23 @@ pub fn check_coolant(settings: &Settings) -> Result<(), Box<Diagnostic>> {
     Ok(())
 }
 
+/// Whether a control of this dialect takes a program whose file has that name: a KUKA finds it by the name of its file.
+///
+/// # Errors
+/// It does not, and why.
+pub fn check_file_name(dialect: Dialect, file_name: &str) -> Result<(), Box<Diagnostic>> {
+    match dialect.language() {
+        Language::Krl => krl::check_file_name(file_name),
+        Language::Iso(_)
+        | Language::Sinumerik(_)
+        | Language::Klartext
+        | Language::Points
+        | Language::UrScript
+        | Language::Ls
+        | Language::Rapid => Ok(()),
+    }
+}
+
 /// Runs `text` on the virtual control of `settings` and hands each event to `sink`, in order. The
 /// line of an event is the line of the program (from 1); in a program that is called from another
 /// file, the line of the call in `text`.

@@ -17,6 +17,12 @@ pub(crate) fn run(settings: &Settings, program: (&str, &[u8]), channel: &mut Cha
     flow::run(settings, program, channel)
 }
 
+/// # Errors
+/// No program has the name of a file that is called so.
+pub(crate) fn check_file_name(file_name: &str) -> Outcome {
+    flow::check_file_name(file_name)
+}
+
 /// A statement of each word that is understood.
 pub(crate) fn vocabulary() -> Vec<String> {
     language::SAMPLES.iter().map(|sample| String::from(*sample)).collect()

@@ -361,6 +361,9 @@ fn a_position_without_its_group_or_out_of_order_is_refused() {
         ),
         ("J1= 0.0 deg, J2= 0.0 deg", "J2= 0.0 deg, J1= 0.0 deg", "in this order"),
         ("J4= 0.0 deg, J5= -90.0 deg", "J5= -90.0 deg, J4= 0.0 deg", "in this order"),
+        ("   GP1:\n", "   GP1:\n   GP1:\n", "GP1 stands twice"),
+        ("UT : 1,\n", "UT : 1, UF : 1,\n", "UF stands twice"),
+        ("\n};\n", "\n}\n", "ends with };"),
     ] {
         let text = whole.replace(from, to);
         assert_ne!(text, whole);

@@ -272,9 +272,15 @@ fn tool_and_work_object_are_compared_with_who_holds_them() {
     let events = run_with(&settings(), &text("FALSE", "TRUE")).unwrap();
     let on_flange = Action::Arm(ArmAction::PartOnFlange(true));
     assert!(events.iter().any(|event| event.action == on_flange));
-    let heavy = text("TRUE", "FALSE").replace("[1,0,0,0],0,0,0]];", "[1,0,0,0],0,-1,0]];");
-    let found = run_with(&settings(), &heavy).unwrap_err();
-    assert!(found.contains("moments of inertia"), "{found}");
+    let moments = |moments: &str| {
+        let with = format!("[1,0,0,0],{moments}]];");
+        run_with(&settings(), &text("TRUE", "FALSE").replace("[1,0,0,0],0,0,0]];", &with))
+    };
+    for wrong in ["0,-1,0", "0,0,1E6", "5000,0,0"] {
+        let found = moments(wrong).unwrap_err();
+        assert!(found.contains("moments of inertia"), "{found}");
+    }
+    moments("0.01,0.01,0.02").unwrap();
     let found = run_with(&settings(), &text("TRUE", "TRUE")).unwrap_err();
     assert!(found.contains("job.mod:5:") && found.contains("held by the robot"), "{found}");
 }

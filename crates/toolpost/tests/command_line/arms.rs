@@ -49,6 +49,35 @@ fn an_arm_is_copied_and_checked_and_no_program_is_written_for_it() {
     }
 }
 
+#[test]
+fn a_file_whose_name_no_program_of_a_kuka_has_is_refused_before_anything_is_written() {
+    let folder = Folder::new();
+    folder.write(
+        "part.cls",
+        "PARTNO/P\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,0\nRAPID\nGOTO/0,0,50\nFINI\n",
+    );
+    let post =
+        |file: &str| folder.run(&["post", "part.cls", "--machine", "kuka-kr6-r900", "-o", file]);
+    for (file, what) in [
+        ("my-part.src", "`my-part` is none"),
+        ("1abc.src", "`1abc` is none"),
+        ("for.src", "`for` is none"),
+        ("bas.src", "KUKA's own software"),
+        ("abs.src", "function of the language"),
+        ("a_name_of_more_than_24_letters.src", "is none"),
+    ] {
+        let said = post(file);
+        assert_eq!(said.code, 2, "{file}: {said:?}");
+        assert!(
+            said.err.contains("by the name of its file") && said.err.contains(what),
+            "{said:?}"
+        );
+        assert!(!said.out.contains("proof") && !said.err.contains("proof"), "{said:?}");
+        assert!(!folder.names().contains(&file.to_string()));
+    }
+    assert_eq!(post("my_part.src").code, 0);
+}
+
 const CALIBRATION: &str = "kinematics:\n  shoulder: # mm\n    x: 0\n    y: 0\n    z: 0.1626\n    roll: 0\n    pitch: 0\n    yaw: 0\n";
 
 #[test]

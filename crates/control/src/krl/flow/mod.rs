@@ -44,13 +44,34 @@ pub(super) fn run(
     run.channel.report(end, Action::End)
 }
 
+/// The name that a program has to have in a file that a controller takes; none of other files.
+fn name_in(file_name: &str) -> Option<&str> {
+    let path = Path::new(file_name);
+    let is_source = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("src"));
+    is_source.then(|| path.file_stem().and_then(OsStr::to_str).unwrap_or_default())
+}
+
+/// # Errors
+/// No program has the name of a file that is called so.
+pub(super) fn check_file_name(file_name: &str) -> Outcome {
+    let Some(stem) = name_in(file_name) else { return Ok(()) };
+    let text = format!("DEF {stem} ( )");
+    let defined = read(&mut Scan::new(Source { line: 1, text: text.as_bytes() }), &State::new(""));
+    let why = match defined {
+        Ok(Statement::Define(name)) if stem.eq_ignore_ascii_case(name.as_str()) => return Ok(()),
+        Err(found) if found.rule == Rule::ProgramFrame => found.message,
+        Ok(_) | Err(_) => format!("`{stem}` is none"),
+    };
+    let message = format!("a KUKA finds a program by the name of its file: {why}");
+    let help = "a name of up to 24 letters, digits and _, a letter first, that neither the language nor KUKA's software has";
+    Err(Diagnostic::error(Rule::ProgramFrame, message).help(help).into())
+}
+
 /// # Errors
 /// A file that a controller takes has another name than its first program.
 fn is_called_as((name, line): (Name, u32), file_name: &str) -> Outcome {
-    let path = Path::new(file_name);
-    let is_source = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("src"));
-    let stem = path.file_stem().and_then(OsStr::to_str).unwrap_or_default();
-    if !is_source || stem.eq_ignore_ascii_case(name.as_str()) {
+    let Some(stem) = name_in(file_name) else { return Ok(()) };
+    if stem.eq_ignore_ascii_case(name.as_str()) {
         return Ok(());
     }
     let message = format!(

@@ -58,7 +58,9 @@ pub(crate) fn positions<'t>(
                 }
                 Some((number, reading)) => {
                     if scan.take(b'}') {
-                        scan.take(b';');
+                        if !scan.take(b';') {
+                            return Err(scan.wrong("a position ends with };"));
+                        }
                         all.insert(*number, reading.finish(&scan, *number)?);
                         open = None;
                     } else {
@@ -109,7 +111,10 @@ impl Reading {
         }
         match name {
             "GP1" => {
-                self.has_group = true;
+                if std::mem::replace(&mut self.has_group, true) {
+                    let message = "GP1 stands twice in the position";
+                    return Err(scan.since(from, Rule::RepeatedWord, message));
+                }
                 return scan.expect(":");
             }
             "UF" | "UT" => {
@@ -119,7 +124,11 @@ impl Reading {
                     let message = "the number of a frame is needed here: the position must say in which it counts";
                     return Err(scan.wrong(message));
                 };
-                self.frames[usize::from(name == "UT")] = Some(number as u32);
+                let frame = &mut self.frames[usize::from(name == "UT")];
+                if frame.replace(number as u32).is_some() {
+                    let message = format!("{name} stands twice in the position");
+                    return Err(scan.since(from, Rule::RepeatedWord, message));
+                }
             }
             "CONFIG" => {
                 scan.expect(":")?;

@@ -248,6 +248,9 @@ fn same_rail(via: &Value, end: Option<f64>) -> Result<(), (Rule, String)> {
     }
 }
 
+/// No tool reaches so far around its centre of gravity, m: its moments of inertia are below its mass times the square of this.
+const WIDEST: f64 = 1.0;
+
 /// Mass, kg, and its centre, mm, of a `loaddata`.
 fn load_of(load: &Value) -> Result<[f64; 4], String> {
     let [mass, center, turn, moments @ ..] = load.parts() else {
@@ -259,8 +262,12 @@ fn load_of(load: &Value) -> Result<[f64; 4], String> {
     if mass <= 0.0 {
         return Err(String::from("the mass of a tool is above 0 kg"));
     }
-    if !moments.iter().all(|moment| moment.number().is_some_and(|moment| moment >= 0.0)) {
-        return Err(String::from("the moments of inertia of a tool are 0 kgm² or above"));
+    let most = mass * WIDEST * WIDEST;
+    let fits = |moment: f64| (0.0..=most).contains(&moment);
+    if !moments.iter().all(|moment| moment.number().is_some_and(fits)) {
+        return Err(format!(
+            "the moments of inertia of a tool of {mass} kg are from 0 to {most} kgm²: it reaches no farther than {WIDEST} m around its centre"
+        ));
     }
     frame(&[center.clone(), turn.clone()])?;
     Ok([mass, x, y, z])
