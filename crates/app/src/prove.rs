@@ -69,7 +69,16 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
         }
     }
     match &proof.arm {
-        Some(arm) => rows.extend(joints(arm)),
+        Some(arm) => {
+            rows.extend(joints(arm));
+            let (count, more) = (proof.compared.slowed, number(arm.slowed_s, 1));
+            if count > 0 {
+                let text = format!(
+                    "not reached in {count} cuts, in which the control turns the tool no faster: they take {more} s longer"
+                );
+                rows.push(("feed", text));
+            }
+        }
         None if machine.wire.is_none() => {
             rows.push(("travel", summary::travel(&proof.travel)));
         }

@@ -2,6 +2,7 @@
 //!
 //! - A rapid takes as long as its slowest axis, each going from rest to rest with its acceleration up
 //!   to its rapid (trapezoid), all at the same time.
+//! - A rapid of a robot takes its length at `rapid` of the cell: how its joints go, the program does not show.
 //! - A cut takes its length at its feed, and no less than its fastest axis needs at its rapid. Corners
 //!   are taken for free, as a control that looks ahead nearly does.
 //! - A tool change takes [`TOOL_CHANGE`], a dwell what it says; what waits for a person takes nothing.
@@ -121,7 +122,10 @@ impl<'a> Clock<'a> {
                     self.times.dwell += self.machine.spindle.dwell;
                 }
                 self.tool_length = tool.length;
-                self.times.tool_change += TOOL_CHANGE;
+                // A robot whose cell has no program for that waits for a person.
+                let by_hand =
+                    self.machine.cell.as_ref().is_some_and(|cell| cell.tool_change.is_empty());
+                self.times.tool_change += if by_hand { 0.0 } else { TOOL_CHANGE };
             }
             Op::Dwell(seconds) => self.times.dwell += seconds,
             // Where the axes are sent to, or how far it is, the program does not know.
@@ -167,7 +171,10 @@ impl<'a> Clock<'a> {
 
     fn rapid(&mut self, to: TipPose) {
         let (way, turn) = self.go(to);
-        self.times.rapid += rapid(self.machine, way, turn);
+        self.times.rapid += match &self.machine.cell {
+            Some(cell) => 60.0 * way.length() / cell.rapid,
+            None => rapid(self.machine, way, turn),
+        };
     }
 
     fn cut(&mut self, to: TipPose, length: f64) {
@@ -182,6 +189,10 @@ impl<'a> Clock<'a> {
                 length / lowering::feed_per_minute(feed, length, speed)
             }
         };
+        if self.machine.cell.is_some() {
+            self.times.cutting += if at_feed.is_finite() { 60.0 * at_feed } else { 0.0 };
+            return;
+        }
         let at_feed = self.counted(at_feed, length, way, turn);
         self.times.cutting += cut(self.machine, way, turn, 60.0 * at_feed);
     }

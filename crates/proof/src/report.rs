@@ -56,6 +56,8 @@ pub struct ArmChecked {
     pub wrist_degrees: Option<f64>,
     /// The largest part of a joint's speed along a line or an arc, percent.
     pub speed_percent: f64,
+    /// By how much cuts (`compared.slowed` of them) take longer than at their feed, since the control turns the tool no faster, s.
+    pub slowed_s: f64,
 }
 
 impl ArmChecked {

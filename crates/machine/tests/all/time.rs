@@ -31,6 +31,26 @@ fn a_long_rapid_runs_at_speed_and_a_short_one_never_gets_there() {
 }
 
 #[test]
+fn a_robot_has_the_rapid_of_its_cell_and_no_axes_of_a_mill() {
+    let robot = toolpost_machine::load("kuka-kr6-r900").unwrap();
+    let mut program = Program::new("t");
+    let feed = Op::Feed(Feed::PerMinute(30_000.0));
+    let ops = [
+        Op::Tool(Box::new(Tool { number: 1, ..Tool::default() })),
+        Op::Rapid(at(0.0, 0.0, 0.0)),
+        Op::Rapid(at(300.0, 400.0, 0.0)),
+        feed,
+        Op::Line(at(0.0, 0.0, 0.0)),
+    ];
+    ops.into_iter().for_each(|op| program.push(1, op));
+    let times = Times::of(&program, &robot);
+    // 500 mm at 6000 mm/min from rest to rest of nothing, and at 30 m/min; the tool is put in by a person.
+    assert_near(times.rapid, 5.0);
+    assert_near(times.cutting, 1.0);
+    assert_near(times.tool_change, 0.0);
+}
+
+#[test]
 fn a_cut_takes_its_length_at_its_feed_in_every_unit() {
     let cut = |feed: Feed| {
         times([

@@ -350,3 +350,29 @@ fn an_arm_that_accelerates_faster_than_its_options_state_is_refused() {
         assert!(is_proven || found == ["acceleration"], "{to}: {found:?}");
     }
 }
+
+/// By hand: 20 degrees are 0.3491 rad; at 2000 mm/min the controller turns by 4 * 0.0333 rad/s: 2.618 s for each of three lines, and not 0.03 s.
+#[test]
+fn cuts_in_which_the_tool_turns_more_than_the_controller_does_at_the_feed_are_counted_with_their_time()
+ {
+    let lean = |x: u32, lean: bool| match lean {
+        true => format!("GOTO/{x},0,0,0.3420201,0,0.9396926\n"),
+        false => format!("GOTO/{x},0,0,0,0,1\n"),
+    };
+    let text = format!(
+        "PARTNO/L\nUNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/0,0,40,0,0,1\nFEDRAT/MMPM,300\nGOTO/0,0,0,0,0,1\n\
+         FEDRAT/MMPM,2000\n{}{}{}RAPID\nGOTO/23.5212,0,56.3816,0.3420201,0,0.9396926\nFINI\n",
+        lean(1, true),
+        lean(2, false),
+        lean(3, true)
+    );
+    let (source, machine) = (source(&text), ur5e());
+    let report = proof_of(&source, &machine, &proven(&source, &machine));
+    let slowed = report.arm.unwrap().slowed_s;
+    assert_eq!(report.compared.slowed, 3);
+    assert!((slowed - 3.0 * (2.618 - 0.03)).abs() < 0.01, "{slowed}");
+    // Where the tool stays as it is it is not slower.
+    let (job, report) = (crate::robot::source(JOB), ur5e());
+    let report = proof_of(&job, &report, &proven(&job, &report));
+    assert_eq!((report.compared.slowed, report.arm.unwrap().slowed_s), (0, 0.0));
+}

@@ -282,6 +282,10 @@ impl Comparison<'_> {
             [Some(swing), Some(roll)] => path.turn.to_degrees() / (swing + roll),
             [_, None] | [None, _] => 0.0,
         });
+        if cuts && time > feed_time * (1.0 + SLOWER) {
+            self.report.compared.slowed += 1;
+            self.checked().slowed_s += time - feed_time;
+        }
         let end = (path.at)(1.0);
         let path = Path { time: Some(time), ..path };
         let base = self.cell.foot(start.rail).inverse() * base;
