@@ -4,13 +4,12 @@ use crate::account::{Account, Stop, Verdict};
 use crate::parallel::parallel;
 use crate::prove;
 use crate::report::{self, Digests};
-use crate::summary::{Shape, time};
+use crate::summary::Shape;
 use crate::toolpath::{self, Toolpath};
 use crate::watch::{Waits, Watch};
 use ::post::{Origins, Output, Part};
 use control::{Dialect, Folders};
 use machine::Machine;
-use machine::time::{Clock, Times};
 use program::{Diagnostic, Op, Program, Record, Rule};
 use proof::Tolerances;
 use serde_json::{Value, json};
@@ -89,12 +88,12 @@ pub fn proven(
     let program = &toolpath.program;
     // What is reported of the toolpath is found meanwhile.
     let headed = headed(program, tolerances);
-    let (output, (shape, times)) = parallel(
+    let (output, shape) = parallel(
         || {
             let program = headed.as_ref().unwrap_or(program);
             write((program, file), machine, toolpath, &mut warnings, watch)
         },
-        || (Shape::of(program), times(program, machine, watch)),
+        || Shape::of(program),
     );
     watch.go_on()?;
     let mut output = output?;
@@ -132,33 +131,17 @@ pub fn proven(
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
         "program": about(file, &output),
-        "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
+        "time_s": prove::time(&proof),
         "proof": proof,
     });
     let mut rows = toolpath.rows(Some(machine));
     rows.extend(shape.rows());
-    rows.push(("time", time(&times)));
     rows.extend(prove::rows(&proof, machine));
     rows.extend(files(&output).map(|text| ("files", text)));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
     let Output { text, origins, parts, .. } = output;
     Ok(Posted { text, origins, parts, account })
 }
-
-/// How long a program takes, for as long as the work goes on.
-fn times(program: &Program, machine: &Machine, watch: &dyn Watch) -> Times {
-    let mut clock = Clock::new(machine);
-    for records in program.records.chunks(RECORDS_AT_ONCE) {
-        if watch.is_cancelled() {
-            break;
-        }
-        records.iter().for_each(|record| clock.run(&record.op));
-    }
-    clock.times
-}
-
-/// Between so many records it is asked whether the work goes on: a millisecond at the most.
-const RECORDS_AT_ONCE: usize = 1024;
 
 /// The texts of parts, in the order of the names of their files.
 fn texts(parts: &[Part]) -> Vec<&[u8]> {

@@ -8,7 +8,7 @@ use crate::watch::Watch;
 use control::Folders;
 use machine::Machine;
 use proof::{ArmChecked, Report, Tolerances, Worst};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Proves the program `text`, which is called `file` and may call those of `folders`, against `toolpath`.
 ///
@@ -42,6 +42,7 @@ pub fn compare(
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
         "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
+        "time_s": time(&proof),
         "proof": proof,
     });
     let mut rows = toolpath.rows(Some(machine));
@@ -50,10 +51,21 @@ pub fn compare(
     Ok(Account { verdict: Verdict::Done, rows, data, findings })
 }
 
+/// How long a proven program takes, s, as JSON.
+pub(crate) fn time(proof: &Report) -> Value {
+    let times = &proof.program.time_s;
+    json!({ "total": times.total(), "cutting": times.cutting, "rapid": times.rapid })
+}
+
 /// The lines of a summary about a program and its proof, which held.
 pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
     let (program, worst, allowed) = (&proof.program, &proof.deviations, &proof.tolerances);
-    let mut rows = vec![("program", format!("{} blocks", program.blocks))];
+    let mut rows = Vec::new();
+    // A wire has its own, which knows where the feed is not known.
+    if machine.wire.is_none() {
+        rows.push(("time", summary::time(&program.time_s)));
+    }
+    rows.push(("program", format!("{} blocks", program.blocks)));
     let linear = ["X", "Y", "Z"].into_iter().zip(program.linear_extents_mm);
     let linear = linear.take(if machine.wire.is_some() { 2 } else { 3 });
     let rotary = ["A", "B", "C"].into_iter().zip(program.rotary_extents_degrees);

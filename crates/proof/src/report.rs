@@ -5,6 +5,7 @@ use control::{Orientation, Position};
 use geom::{Arc, Vec2, Vec3};
 use machine::Unsaid;
 use machine::limits::Travel;
+use machine::time::Times;
 use program::{Diagnostic, Severity};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -233,6 +234,9 @@ pub struct Summary {
     pub cutting_length_mm: f64,
     /// Path length of the tip in rapid moves between known places, as straight lines, mm.
     pub rapid_length_mm: f64,
+    /// How long it takes, s, as [`machine::time`] estimates it of what the control has read: rapids as the program makes them, axis by axis
+    /// and by way of a retract. Ways from and to a place that is not known, as home, take nothing.
+    pub time_s: Times,
     /// Programmed positions of X, Y and Z, mm.
     pub linear_extents_mm: [Extent; 3],
     /// U and V of a wire in the upper plane of its machine, mm; none of what has no wire.

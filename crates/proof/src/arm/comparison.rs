@@ -101,6 +101,8 @@ pub(super) struct Comparison<'a> {
     made: Option<usize>,
     /// How far that motion is from the source.
     deviation: Option<Deviation>,
+    /// Whether it is a cut of the source.
+    is_cut: bool,
     /// Whether it is one of a contour that has been compared as a whole.
     follows_contour: bool,
     /// The called files in which it has been.
@@ -165,6 +167,7 @@ impl<'a> Comparison<'a> {
             motions: None,
             made: None,
             deviation: None,
+            is_cut: false,
             follows_contour: false,
             files: Vec::new(),
             ended: false,
@@ -222,7 +225,7 @@ impl<'a> Comparison<'a> {
 
     fn take(&mut self, event: &Event) -> Outcome {
         let before = self.standing;
-        (self.made, self.deviation) = (None, None);
+        (self.made, self.deviation, self.is_cut) = (None, None, false);
         self.obey(event)?;
         self.keep_motion(event, before);
         Ok(())

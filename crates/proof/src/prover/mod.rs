@@ -62,8 +62,8 @@ pub struct Prover<'a> {
     compensation: Compensation,
     /// The stretches in which the program compensates, where they are wanted.
     trail: Option<Trail>,
-    /// What is told of motions, where they are wanted.
-    motions: Option<motions::Motions>,
+    /// How long the motions take, and what is told of them.
+    motions: motions::Motions,
     here: ResolvedPose,
     /// Where the rotary axes stand.
     standing: PossiblePositions<'a>,
@@ -162,7 +162,7 @@ impl<'a> Prover<'a> {
             contact: contact::Contact::new(),
             compensation: Compensation::Off,
             trail: None,
-            motions: None,
+            motions: motions::Motions::default(),
             progress: MotionProgress::default(),
             pace: Pace::default(),
             report: Report { tolerances: allowed, ..Report::default() },
@@ -217,7 +217,7 @@ impl<'a> Prover<'a> {
         self.event_for(event, &mut ())
     }
 
-    /// The same for an observer, who is told its motions where they are wanted.
+    /// The same for an observer, who is told its motions where it wants them.
     ///
     /// # Errors
     /// The same.
@@ -475,6 +475,7 @@ impl<'a> Prover<'a> {
             return Err(self.lost_at(line, Rule::Arc, "makes no arc"));
         }
         let block = block.flatten();
+        self.motions.arc = block;
         self.count(motion, &to, arc, block.as_ref());
         self.hold_travel(&to, block.as_ref());
         if self.progress.left.is_none() {

@@ -8,9 +8,11 @@ use machine::time;
 use program::lowering::{self, HoleMove};
 use program::{Cycle, CycleKind, Pose};
 
-/// What whoever follows the proof is told of its motions.
+/// How long the motions take, and what whoever follows the proof is told of them.
 #[derive(Default)]
 pub(super) struct Motions {
+    /// Whether they are told.
+    told: bool,
     stated: Stated,
     /// Whether what holds may have changed since it was told.
     restated: bool,
@@ -20,12 +22,22 @@ pub(super) struct Motions {
     axes: Option<AxisPositions>,
     /// Where the event at hand begins.
     start: Option<ResolvedPose>,
+    /// The arc that it makes.
+    pub arc: Option<Arc>,
     /// Whether the tool has been changed since the last motion: where the machine has gone for that is its own.
     changed: bool,
     /// The record that it has made.
     made: Option<usize>,
     /// How far it is from the source.
     deviation: Option<Deviation>,
+}
+
+/// How a motion goes; an arc is that of [`Motions::arc`].
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Rapid,
+    Line,
+    Arc,
 }
 
 impl Motions {
@@ -40,57 +52,49 @@ impl Motions {
 impl Prover<'_> {
     /// The motions of each event are told.
     pub(crate) fn tell_motions(&mut self) {
-        self.motions = Some(Motions { restated: true, ..Motions::default() });
+        (self.motions.told, self.motions.restated) = (true, true);
     }
 
     /// Before an event.
     #[inline]
     pub(super) fn begin_motion(&mut self) {
-        if let Some(motions) = &mut self.motions {
-            (motions.start, motions.made, motions.deviation) = (Some(self.here), None, None);
-        }
+        let motions = &mut self.motions;
+        (motions.start, motions.arc) = (Some(self.here), None);
+        (motions.made, motions.deviation) = (None, None);
     }
 
     /// The event has been compared with the source: so far, mm and degrees, it is from it.
     #[inline]
     pub(super) fn has_compared(&mut self, apart: (f64, f64)) {
-        if let Some(motions) = &mut self.motions {
-            Deviation::widen(&mut motions.deviation, apart);
-        }
+        Deviation::widen(&mut self.motions.deviation, apart);
     }
 
     /// The event makes the record at hand.
     #[inline]
     pub(super) fn has_arrived(&mut self) {
-        if let Some(motions) = &mut self.motions {
-            motions.made = Some(self.cursor.record());
-        }
+        self.motions.made = Some(self.cursor.record());
     }
 
-    /// Behind an event that was accepted: tells its motions.
+    /// Behind an event that was accepted: counts what it takes, and tells its motions.
     pub(super) fn end_motion(&mut self, event: &Event, observer: &mut dyn Observer) {
-        let Some(motions) = &mut self.motions else { return };
-        let kind = match &event.action {
+        let motions = &mut self.motions;
+        let way = match &event.action {
             Action::Rapid(_)
             | Action::Home(_)
             | Action::MachineMove(_)
             | Action::Across(_)
-            | Action::Swivel(_) => Kind::Rapid,
-            Action::Line(_) | Action::Thread(_) | Action::Probe(_) => Kind::Line,
-            Action::Arc(to) => {
-                let arc = motions.start.and_then(|start| arc::of_block(&self.gauge, &start, to));
-                arc.map_or(Kind::Line, |arc| Kind::Arc(Box::new(arc)))
-            }
-            Action::Hole(position) => return self.tell_hole(event, position, observer),
+            | Action::Swivel(_) => Way::Rapid,
+            Action::Line(_) | Action::Thread(_) | Action::Probe(_) => Way::Line,
+            Action::Arc(_) if motions.arc.is_some() => Way::Arc,
+            Action::Arc(_) => Way::Line,
+            Action::Hole(position) => return self.end_hole(event, position, observer),
             Action::Tool(_) => {
                 (motions.changed, motions.restated) = (true, true);
                 motions.waited += time::TOOL_CHANGE;
+                self.report.program.time_s.tool_change += time::TOOL_CHANGE;
                 return;
             }
-            Action::Dwell(seconds) => {
-                motions.waited += seconds;
-                return;
-            }
+            Action::Dwell(seconds) => return self.waits(*seconds),
             Action::Spindle(_)
             | Action::SurfaceSpeed(_)
             | Action::Coolant(_)
@@ -123,77 +127,90 @@ impl Prover<'_> {
             | Action::Message(_)
             | Action::End => return,
         };
-        self.tell_state(observer);
-        let Some(motions @ Motions { start: Some(start), .. }) = &self.motions else { return };
-        let from = motions.begins(start);
-        let motion = self.motion_of(event, kind, (from, &start.position), &self.here, motions);
-        observer.moved(&motion);
-        self.has_told(motion.axes);
+        let Some(start) = &motions.start else { return };
+        let (from, before) = (motions.begins(start), start.position);
+        let to = self.here;
+        self.end_one(event, way, (from, &before), &to, observer);
     }
 
-    /// Tells what holds from here on, where it has changed.
-    fn tell_state(&mut self, observer: &mut dyn Observer) {
-        if let Some(motions) = &mut self.motions
-            && std::mem::take(&mut motions.restated)
-            && let Some(state) = motions.stated.news(self.running.state())
+    /// Counts what a motion takes from where the tool is, as the control has it before, and tells it.
+    #[inline]
+    fn end_one(
+        &mut self,
+        event: &Event,
+        way: Way,
+        (from, before): (ToolPose, &Position),
+        to: &ResolvedPose,
+        observer: &mut dyn Observer,
+    ) {
+        let (axes, end) = (self.axis_positions(&to.position), ToolPose::from(to.place));
+        let (ends, tool) = ([before, &to.position], [from, end]);
+        let seconds = self.seconds(event, way, ends, &tool, &axes);
+        let time = &mut self.report.program.time_s;
+        match way {
+            Way::Rapid => time.rapid += seconds,
+            Way::Line | Way::Arc => time.cutting += seconds,
+        }
+        if self.motions.told {
+            self.tell(event, way, tool, (axes, seconds), observer);
+        }
+        self.motions.axes = Some(axes);
+        (self.motions.changed, self.motions.waited) = (false, 0.0);
+    }
+
+    /// Tells a motion.
+    #[inline]
+    fn tell(
+        &mut self,
+        event: &Event,
+        way: Way,
+        tool: [ToolPose; 2],
+        (axes, seconds): (AxisPositions, f64),
+        observer: &mut dyn Observer,
+    ) {
+        if std::mem::take(&mut self.motions.restated)
+            && let Some(state) = self.motions.stated.news(self.running.state())
         {
             observer.stated(state);
         }
-    }
-
-    /// A motion has been told, behind which the axes stand there.
-    #[inline]
-    fn has_told(&mut self, axes: AxisPositions) {
-        if let Some(motions) = &mut self.motions {
-            (motions.axes, motions.changed, motions.waited) = (Some(axes), false, 0.0);
-        }
-    }
-
-    /// A motion of the event from where the tool is, as the control has it before.
-    #[inline(always)]
-    fn motion_of(
-        &self,
-        event: &Event,
-        kind: Kind,
-        (from, before): (ToolPose, &Position),
-        to: &ResolvedPose,
-        motions: &Motions,
-    ) -> Motion {
-        let (axes, end) = (self.axis_positions(&to.position), ToolPose::from(to.place));
+        let motions = &self.motions;
+        let kind = match (way, motions.arc) {
+            (Way::Rapid, _) => Kind::Rapid,
+            (Way::Arc, Some(arc)) => Kind::Arc(Box::new(arc)),
+            (Way::Line | Way::Arc, _) => Kind::Line,
+        };
         let record = motions.made.unwrap_or_else(|| self.cursor.record());
-        let (ends, stand) = ([before, &to.position], [motions.axes.as_ref(), Some(&axes)]);
-        let seconds = self.seconds(event, &kind, ends, [&from, &end], stand);
-        Motion {
+        observer.moved(&Motion {
             file: None,
             line: event.line,
             record,
             source_line: self.source.records.get(record).map_or(0, |record| record.line),
             kind,
-            tool: [from, end],
+            tool,
             axes,
             feed: self.running.feed,
             seconds,
             waited: motions.waited,
             deviation: motions.deviation,
-        }
+        });
     }
 
-    /// Tells the motions of a canned cycle in a hole.
-    fn tell_hole(&mut self, event: &Event, position: &Position, observer: &mut dyn Observer) {
-        self.tell_state(observer);
-        let Some(motions @ Motions { start: Some(start), .. }) = &self.motions else { return };
-        let (mut from, mut before) = (motions.begins(start), start.position);
+    /// The machine waits so many seconds.
+    fn waits(&mut self, seconds: f64) {
+        self.motions.waited += seconds;
+        self.report.program.time_s.dwell += seconds;
+    }
+
+    /// The motions of a canned cycle in a hole.
+    fn end_hole(&mut self, event: &Event, position: &Position, observer: &mut dyn Observer) {
+        let Some(start) = self.motions.start else { return };
+        let (mut from, mut before) = (self.motions.begins(&start), start.position);
         let (moves, waited) = self.in_hole(event.line, position, start.place.into());
-        for (kind, to) in moves {
-            let Some(motions) = &self.motions else { return };
-            let motion = self.motion_of(event, kind, (from, &before), &to, motions);
-            observer.moved(&motion);
-            self.has_told(motion.axes);
+        for (way, to) in moves {
+            self.end_one(event, way, (from, &before), &to, observer);
             (from, before) = (to.place.into(), to.position);
         }
-        if let Some(motions) = &mut self.motions {
-            motions.waited += waited;
-        }
+        self.waits(waited);
     }
 
     /// The moves of a canned cycle in a hole at `position`: across where the tool is above the R plane, down to that, and the
@@ -204,7 +221,7 @@ impl Prover<'_> {
         line: u32,
         position: &Position,
         from: ToolPose,
-    ) -> (Vec<(Kind, ResolvedPose)>, f64) {
+    ) -> (Vec<(Way, ResolvedPose)>, f64) {
         let Some(cycle) = self.running.cycle else { return Default::default() };
         let along = Drilled::along(&self.gauge, position);
         let at = |height: f64| {
@@ -215,23 +232,23 @@ impl Prover<'_> {
         let mut moves = Vec::new();
         let above = hole.above(from.tip).0;
         if above > cycle.clearance {
-            moves.push((Kind::Rapid, at(above)));
+            moves.push((Way::Rapid, at(above)));
         }
-        moves.push((Kind::Rapid, at(cycle.clearance)));
+        moves.push((Way::Rapid, at(cycle.clearance)));
         let pose = Pose::new(hole.tip, hole.axis);
         let lowered =
             pose.ok().and_then(|pose| lowering::hole(&cycle, &pose, self.running.spindle));
         let Some(lowered) = lowered else {
-            moves.push((Kind::Line, at(-cycle.depth)));
-            moves.push((Kind::Line, at(cycle.clearance)));
-            moves.push((Kind::Rapid, at(cycle.retract)));
+            moves.push((Way::Line, at(-cycle.depth)));
+            moves.push((Way::Line, at(cycle.clearance)));
+            moves.push((Way::Rapid, at(cycle.retract)));
             return (moves, cycle.dwell);
         };
         let mut waited = 0.0;
         for part in lowered {
             match part {
-                HoleMove::Rapid(pose) => moves.push((Kind::Rapid, at(hole.above(pose.point()).0))),
-                HoleMove::Line(pose) => moves.push((Kind::Line, at(hole.above(pose.point()).0))),
+                HoleMove::Rapid(pose) => moves.push((Way::Rapid, at(hole.above(pose.point()).0))),
+                HoleMove::Line(pose) => moves.push((Way::Line, at(hole.above(pose.point()).0))),
                 HoleMove::Dwell(seconds) => waited += seconds,
                 HoleMove::Spindle(_) => {}
             }
@@ -239,36 +256,34 @@ impl Prover<'_> {
         (moves, waited)
     }
 
-    /// How long a motion takes, s, in which the axes go from where they stand to where they go.
+    /// How long a motion takes, s, in which the axes go from where they stand to `axes`.
     #[inline]
     fn seconds(
         &self,
         event: &Event,
-        kind: &Kind,
+        way: Way,
         [before, to]: [&Position; 2],
-        [from, end]: [&ToolPose; 2],
-        stand: [Option<&AxisPositions>; 2],
+        [from, end]: &[ToolPose; 2],
+        axes: &AxisPositions,
     ) -> f64 {
         let (machine, running) = (self.gauge.machine, &self.running);
-        let (mut way, turn) = match stand {
-            [
+        let (mut linear, turn) = match (&self.motions.axes, axes) {
+            (
                 Some(AxisPositions::Mill { linear: a, rotary: from }),
-                Some(AxisPositions::Mill { linear: b, rotary: to }),
-            ] => (*b - *a, [to[0] - from[0], to[1] - from[1], to[2] - from[2]]),
+                AxisPositions::Mill { linear: b, rotary: to },
+            ) => (*b - *a, [to[0] - from[0], to[1] - from[1], to[2] - from[2]]),
             _ => (Vec3::NAN, [0.0; 3]),
         };
         // Where nobody says how the rotary axes carry the tip, it goes its own way.
-        if way.is_nan() {
-            way = Vec3::select(way.is_nan_mask(), end.tip - from.tip, way);
+        if linear.is_nan() {
+            linear = Vec3::select(linear.is_nan_mask(), end.tip - from.tip, linear);
         }
-        let length = match kind {
-            Kind::Rapid | Kind::Joints => return time::rapid(machine, way, turn),
-            Kind::Arc(arc) => arc.length(),
-            Kind::Line if matches!(event.action, Action::Hole(_)) => from.tip.distance(end.tip),
-            Kind::Line if running.feed_path.is_of_tip(before, to) => {
-                before.point.distance(to.point)
-            }
-            Kind::Line => {
+        let length = match (way, &self.motions.arc) {
+            (Way::Rapid, _) => return time::rapid(machine, linear, turn),
+            (Way::Arc, Some(arc)) => arc.length(),
+            _ if matches!(event.action, Action::Hole(_)) => from.tip.distance(end.tip),
+            _ if running.feed_path.is_of_tip(before, to) => before.point.distance(to.point),
+            _ => {
                 let counted = running.feed_path.length(before, to);
                 counted.unwrap_or_else(|| from.tip.distance(end.tip))
             }
@@ -287,7 +302,7 @@ impl Prover<'_> {
             Some(Feed::InverseTime(rate)) => 60.0 / rate,
             None => 0.0,
         };
-        time::cut(machine, way, turn, at_feed)
+        time::cut(machine, linear, turn, at_feed)
     }
 
     /// Where the axes stand at a position to which they have turned.

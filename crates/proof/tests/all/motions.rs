@@ -278,7 +278,8 @@ fn each_motion_takes_what_the_axes_and_the_feed_need() {
     let text =
         format!("{START}G0 X0 Y0\nZ105\nZ5\nG1 Z-1 F300\nG3 X10 Y0 I5 J0\nG4 P1.5\nG0 Z5\n{END}");
     let machine = machine::load("generic-3axis-linuxcnc").unwrap();
-    let found = motions(&source.build(), &machine, &text);
+    let source = source.build();
+    let found = motions(&source, &machine, &text);
     // Rapids at 10 m/min and 2 m/s²: 100 mm at 1000/6 mm/s and 1/12 s for starting and stopping; 6 mm, half of it at 2 m/s².
     let pi = std::f64::consts::PI;
     let short = 2.0 * (6.0_f64 / 2000.0).sqrt();
@@ -290,6 +291,13 @@ fn each_motion_takes_what_the_axes_and_the_feed_need() {
         let off = (motion.seconds - seconds).abs();
         assert!(off < 1e-9 && motion.waited == waited, "{seconds} {waited}: {motion:?}");
     }
+    // The report has their sums, whoever follows.
+    let report =
+        prove_for(&source, &machine, "p", text.as_bytes(), &Tolerances::default(), &mut ());
+    let times = report.program.time_s;
+    assert!((times.cutting - (1.2 + pi)).abs() < 1e-9, "{times:?}");
+    assert!((times.rapid - (0.6 + 1.0 / 12.0 + short)).abs() < 1e-9, "{times:?}");
+    assert_eq!((times.dwell, times.tool_change), (1.5, 6.0));
 }
 
 /// What the motions of a program are off, mm and degrees, by its lines.

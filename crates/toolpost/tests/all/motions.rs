@@ -254,9 +254,9 @@ fn the_links_of_each_robot_bring_the_tip_to_where_the_motion_ends() {
     assert!(compared > 60, "{compared}");
 }
 
-/// The largest deviations of the motions are those of the report, on mills and on robots.
+/// The largest deviations of the motions are those of the report, on mills and on robots, and so is the sum of their times.
 #[test]
-fn deviations_of_the_motions_are_those_of_the_report() {
+fn deviations_and_times_of_the_motions_are_those_of_the_report() {
     let robots = names(ROBOTS).map(|name| machine::load(name).unwrap());
     for machine in mills().chain(robots) {
         let sample = match (&machine.arm, machine.rotary.is_empty()) {
@@ -275,6 +275,11 @@ fn deviations_of_the_motions_are_those_of_the_report() {
         });
         let reported = &report.deviations;
         let (name, tip_mm) = (&machine.name, reported.tip_mm.value.max(reported.path_mm.value));
+        let times = report.program.time_s;
+        let whole: f64 = motions.iter().map(|motion| motion.waited + motion.seconds).sum();
+        assert!((whole - times.total()).abs() < 1e-6 * whole, "{name}: {whole} s, {times:?}");
+        let alone = proof::prove(&source, &machine, "p", &text, &tolerances);
+        assert_eq!(alone, report, "{name}");
         // The report has no ends of rapids of an arm.
         let is_alike = if machine.arm.is_some() { tip >= tip_mm } else { tip == tip_mm };
         assert!(is_alike, "{name}: {tip} mm, {tip_mm} mm in the report");

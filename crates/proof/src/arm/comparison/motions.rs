@@ -28,17 +28,18 @@ impl Comparison<'_> {
         next.or_else(|| Some(self.expected.last()?.record + 1)).unwrap_or_default()
     }
 
-    /// Behind an event that was accepted: the arm stood `before` it.
+    /// Behind an event that was accepted, the arm stood `before` it: counts what it takes, and keeps its motion.
     pub(super) fn keep_motion(&mut self, event: &Event, before: Option<Standing>) {
-        if let Some(motions) = &mut self.motions {
-            if let Action::Dwell(seconds) = &event.action {
-                motions.waited += seconds;
-            } else if matches!(event.action, Action::Tool(_)) {
-                motions.waited += time::TOOL_CHANGE;
-            }
+        let times = &mut self.report.program.time_s;
+        if let Action::Dwell(seconds) = &event.action {
+            times.dwell += seconds;
+            self.keep_wait(*seconds);
+        } else if matches!(event.action, Action::Tool(_)) {
+            times.tool_change += time::TOOL_CHANGE;
+            self.keep_wait(time::TOOL_CHANGE);
         }
         let Action::Arm(ArmAction::Move(motion)) = &event.action else { return };
-        let (Some(_), Some(now)) = (&self.motions, &self.standing) else { return };
+        let Some(now) = &self.standing else { return };
         let unknown = ToolPose { tip: Vec3::NAN, axis: Vec3::NAN };
         let start = before.map_or(unknown, |before| self.tool_pose(&before.tool));
         let end = self.tool_pose(&now.tool);
@@ -51,33 +52,40 @@ impl Comparison<'_> {
                     .map_or(MotionKind::Line, |arc| MotionKind::Arc(Box::new(arc)))
             }
         };
+        let seconds = self.seconds(&kind, before.as_ref(), [start, end]);
+        let times = &mut self.report.program.time_s;
+        *(if self.is_cut { &mut times.cutting } else { &mut times.rapid }) += seconds;
+        if self.motions.is_none() {
+            return;
+        }
         let shown = self.arm.shown(&now.joints).unwrap_or([f64::NAN; 6]);
         let joints = shown.map(f64::to_degrees);
-        let axes = AxisPositions::Arm { joints, rail: self.cell.rail.as_ref().map(|_| now.rail) };
+        let rail = self.cell.rail.as_ref().map(|_| now.rail);
         let record = self.made.unwrap_or_else(|| self.record());
-        let source_line = self.source.records.get(record).map_or(0, |record| record.line);
-        let (file, line) = (self.file.clone(), event.line);
-        let feed = self.running.feed.map(Feed::PerMinute);
-        let seconds = self.seconds(&kind, before.as_ref(), [start, end]);
-        let (tool, waited, deviation) =
-            ([start, end], 0.0, self.deviation.filter(|_| !self.follows_contour));
         let motion = Motion {
-            file,
-            line,
+            file: self.file.clone(),
+            line: event.line,
             record,
-            source_line,
+            source_line: self.source.records.get(record).map_or(0, |record| record.line),
             kind,
-            tool,
-            axes,
-            feed,
+            tool: [start, end],
+            axes: AxisPositions::Arm { joints, rail },
+            feed: self.running.feed.map(Feed::PerMinute),
             seconds,
-            waited,
-            deviation,
+            waited: 0.0,
+            deviation: self.deviation.filter(|_| !self.follows_contour),
         };
         let state = self.state();
         if let Some(motions) = &mut self.motions {
             motions.state(state);
             motions.moved(motion);
+        }
+    }
+
+    /// The arm waits so many seconds before its next motion.
+    fn keep_wait(&mut self, seconds: f64) {
+        if let Some(motions) = &mut self.motions {
+            motions.waited += seconds;
         }
     }
 

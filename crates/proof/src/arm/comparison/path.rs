@@ -262,6 +262,7 @@ impl Comparison<'_> {
             return refused(Rule::NoFeed, "the program goes straight and has not stated how fast");
         };
         let feed_time = path.length / (feed / 60.0);
+        self.is_cut = cuts;
         match cuts {
             true => self.keeps_feed(&path, feed_time)?,
             false if feed > self.cell.rapid + self.feed_step => {
