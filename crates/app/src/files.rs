@@ -260,7 +260,7 @@ impl Locked {
 }
 
 /// Removes the files that a killed process has begun in a folder, unless somebody is saving there now.
-fn sweep_idle(folder: &Path) {
+pub fn sweep_idle(folder: &Path) {
     let Ok(locked) = File::open(folder) else { return };
     if locked.try_lock().is_ok() {
         sweep(folder);

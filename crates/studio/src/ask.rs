@@ -380,8 +380,10 @@ pub struct Nothing {}
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Uploaded {
-    /// Its id.
+    /// Its id: a digest of its name and bytes.
     pub upload: String,
+    /// Its name.
+    pub name: String,
     /// Its size.
     pub bytes: u64,
 }

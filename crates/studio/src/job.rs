@@ -450,7 +450,8 @@ impl Job {
             (Of::Program, None) => Some(&self.program),
             (Of::Program, Some(file)) if file == self.file => Some(&self.program),
             (Of::Program, Some(file)) => self.parts.get(file).map(|(lines, _)| lines),
-            (Of::Source, _) => Some(&self.source),
+            (Of::Source, None) => Some(&self.source),
+            (Of::Source, Some(file)) => (file == self.toolpath.file).then_some(&self.source),
             (Of::Machine, None) => self.machine_files.get(&self.machine.file),
             (Of::Machine, Some(file)) => self.machine_files.get(file),
         };
@@ -579,15 +580,7 @@ impl Job {
                 let record = origins.and_then(|origins| origins.of(line)?.record);
                 record.and_then(|at| records.get(at)).is_some_and(|own| own.line == source_line)
             };
-            for line in lines.iter().copied().collect::<Vec<_>>() {
-                let above = (1..line).rev().take_while(|line| is_of_it(*line));
-                let below = (line + 1..).take_while(|line| is_of_it(*line));
-                for line in above.chain(below).take(MOST_BLOCKS) {
-                    if !lines.insert(line) {
-                        break;
-                    }
-                }
-            }
+            *lines = grown(lines, is_of_it);
         }
         lines.into_iter().map(|(file, lines)| Blocks::of(file, lines)).collect()
     }
@@ -641,6 +634,10 @@ impl Job {
             return board.save(folder, path, replace);
         }
         let target = folder.target(path)?;
+        if target.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+            let message = "a program is not saved as `.toml`: such files are machines and settings";
+            return Err(refused(message, "give a name that ends as programs of this control do"));
+        }
         if target.exists() && !replace {
             return Err(refused("it is there already", "give another name, or replace it"));
         }
@@ -668,6 +665,16 @@ impl Job {
         files::save_program(&target, text, &parts, self.report.as_deref(), &inputs)?;
         Ok(Saved { files: saved })
     }
+}
+
+/// Lines with those beside them, up to the next one, that `is_of_it`.
+fn grown(lines: &BTreeSet<u32>, is_of_it: impl Fn(u32) -> bool) -> BTreeSet<u32> {
+    let is_new = |line: &u32| !lines.contains(line) && is_of_it(*line);
+    let beside = lines.iter().flat_map(|line| {
+        let above = (1..*line).rev().take_while(is_new);
+        above.chain((line + 1..).take_while(is_new)).chain([*line])
+    });
+    beside.take(MOST_BLOCKS).collect()
 }
 
 /// What is reported of something, as the page shows it.
@@ -825,4 +832,23 @@ fn texts_of(machine: &Machine) -> BTreeMap<String, Lines> {
         }
     }
     texts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_grow_by_those_beside_them_up_to_the_next_one() {
+        let grown = |lines: &[u32]| {
+            let lines = grown(&lines.iter().copied().collect(), |line| {
+                ![1, 4, 9].contains(&line) && line < 13
+            });
+            lines.into_iter().collect::<Vec<_>>()
+        };
+        assert_eq!(grown(&[6, 7]), [5, 6, 7, 8]);
+        assert_eq!(grown(&[2]), [2, 3]);
+        assert_eq!(grown(&[1, 12]), [1, 2, 3, 10, 11, 12]);
+        assert!(grown(&[]).is_empty());
+    }
 }

@@ -398,9 +398,13 @@ export type Nothing = Record<symbol, never>;
  */
 export type Uploaded = { 
 /**
- * Its id.
+ * Its id: a digest of its name and bytes.
  */
 upload: string, 
+/**
+ * Its name.
+ */
+name: string, 
 /**
  * Its size.
  */

@@ -1727,6 +1727,10 @@ rules! {
         "The studio is asked for something that it does not know, or with values that it does not take."
         "reload the page: it may be of another version than the command"
         "a message of the page that names no ask";
+    StudioDraft "studio-draft" []
+        "Another page that is open keeps its edit under the name of this draft."
+        "close one of the pages, or edit another program in it"
+        "the same toolpath, edited in two tabs";
     StudioLimit "studio-limit" []
         "A file, a message or all open programs together are larger than the studio takes."
         "close what is no longer needed; the other commands take files of any size"

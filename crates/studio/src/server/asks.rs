@@ -15,7 +15,8 @@ use program::{Diagnostic, Rule};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, MutexGuard};
 
 /// All asks there are.
 const ASKS: &str = "open, folder, machines, command, form, post, prove, job, board, text, search, place, moves, plot, save, drafts, draft, draft_text, drop_draft";
@@ -53,6 +54,7 @@ pub fn answer(
     ask: &str,
     params: Map<String, Value>,
     arrays: Vec<Array>,
+    page: u64,
     work: (&dyn Waits, &Ended),
 ) -> Result<Answer, Stop> {
     let folder = &studio.folder;
@@ -147,7 +149,9 @@ pub fn answer(
         "draft" => {
             let DraftParams { name, of } = read(params)?;
             let text = frame.take_text("text").ok_or_else(|| wrong("`text` is missing"))?;
+            let mut drafting = own_draft(studio, &name, page)?;
             folder.keep_draft(&name, &of, &text)?;
+            drafting.insert(name, page);
             Answer::of(Nothing {})
         }
         "draft_text" => {
@@ -157,7 +161,9 @@ pub fn answer(
         }
         "drop_draft" => {
             let DraftName { name } = read(params)?;
+            let mut drafting = own_draft(studio, &name, page)?;
             folder.drop_draft(&name)?;
+            drafting.remove(&name);
             Answer::of(Nothing {})
         }
         _ => Err(wrong(&format!("there is no ask `{ask}`; there are {ASKS}"))),
@@ -197,6 +203,26 @@ fn make(
     let jobs = Job::make(asked, &studio.folder, waits, ended)?;
     let revision = studio.jobs.keep(jobs.into_iter().map(Arc::new).collect());
     Answer::of(studio.jobs.find(revision)?.about(revision))
+}
+
+/// Checks that no other page that is open keeps a draft of this name, and holds that until it is kept or dropped.
+///
+/// # Errors
+/// One does.
+fn own_draft<'a>(
+    studio: &'a Studio,
+    name: &str,
+    page: u64,
+) -> Result<MutexGuard<'a, BTreeMap<String, u64>>, Stop> {
+    let drafting = studio.drafting();
+    match drafting.get(name) {
+        Some(other) if *other != page => {
+            let message =
+                format!("another page that is open edits this too: the draft {name} is its own");
+            Err(Diagnostic::error(Rule::StudioDraft, message).into())
+        }
+        _ => Ok(drafting),
+    }
 }
 
 /// The parameters of an ask.

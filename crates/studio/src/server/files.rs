@@ -9,37 +9,39 @@ use axum::body::{Body, to_bytes};
 use axum::extract::Request;
 use axum::http::header::CONTENT_LENGTH;
 use axum::http::{HeaderValue, Response, StatusCode};
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Digest, Rule};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most uploads that are kept, and all of them together, bytes: the oldest goes when another comes.
 const MOST_UPLOADS: usize = 32;
-const MOST_BYTES: usize = 1 << 30;
+const MOST_BYTES: usize = 512 << 20;
 
 /// Files that the page has sent: kept in memory, and nowhere saved.
 #[derive(Debug, Default)]
-pub struct Uploads(Mutex<Kept>);
+pub struct Uploads(Mutex<Vec<Kept>>);
 
-#[derive(Debug, Default)]
+/// A file that is kept.
+#[derive(Debug)]
 struct Kept {
-    next: u64,
-    /// The oldest first.
-    files: Vec<(String, String, Arc<[u8]>)>,
+    id: String,
+    name: String,
+    bytes: Arc<[u8]>,
 }
 
 impl Uploads {
-    /// Keeps a file, and answers its id.
+    /// Keeps a file, and answers its id: the digest of its name and bytes. What was made of an upload is of that file alone, also
+    /// for another server.
     fn keep(&self, name: String, bytes: Arc<[u8]>) -> String {
+        let id = Digest::of([name.as_bytes(), &bytes[..]]);
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.next += 1;
-        let id = kept.next.to_string();
-        kept.files.push((id.clone(), name, bytes));
-        let too_much = |files: &[(String, String, Arc<[u8]>)]| {
-            let bytes: usize = files.iter().map(|(.., bytes)| bytes.len()).sum();
+        kept.retain(|file| file.id != id);
+        kept.push(Kept { id: id.clone(), name, bytes });
+        let too_much = |files: &[Kept]| {
+            let bytes: usize = files.iter().map(|file| file.bytes.len()).sum();
             files.len() > 1 && (files.len() > MOST_UPLOADS || bytes > MOST_BYTES)
         };
-        while too_much(&kept.files) {
-            kept.files.remove(0);
+        while too_much(&kept) {
+            kept.remove(0);
         }
         id
     }
@@ -50,8 +52,8 @@ impl Uploads {
     /// There is none, or no more.
     pub fn find(&self, id: &str) -> Result<Source, Box<Diagnostic>> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = kept.files.iter().find(|(kept, ..)| kept == id);
-        let (_, name, bytes) = found.ok_or_else(|| {
+        let found = kept.iter().find(|file| file.id == id);
+        let Kept { name, bytes, .. } = found.ok_or_else(|| {
             let message = "this upload is not kept any more: newer ones have taken its place";
             Diagnostic::error(Rule::StudioLimit, message).help("drop the file again")
         })?;
@@ -67,15 +69,16 @@ pub async fn upload(studio: &Studio, name: &str, request: Request) -> Response<B
     let length = request.headers().get(CONTENT_LENGTH);
     let length = length.and_then(|length| length.to_str().ok()?.parse::<usize>().ok());
     let is_too_large = length.is_some_and(|length| length > UPLOAD);
+    // One at a time: no more memory is taken than by one.
+    let _turn = studio.uploading.lock().await;
     let body = if is_too_large { None } else { to_bytes(request.into_body(), UPLOAD).await.ok() };
     let Some(bytes) = body else {
         let why = "the upload is larger than 256 MB, or was broken off: put the file into the folder instead";
         return say(StatusCode::PAYLOAD_TOO_LARGE, why);
     };
-    let answer = Uploaded {
-        bytes: bytes.len() as u64,
-        upload: studio.uploads.keep(name, Arc::from(&bytes[..])),
-    };
+    let (length, bytes) = (bytes.len() as u64, Arc::from(&bytes[..]));
+    let upload = studio.uploads.keep(name.clone(), bytes);
+    let answer = Uploaded { upload, name, bytes: length };
     let mut response = Response::new(Body::from(serde_json::json!(answer).to_string()));
     response.headers_mut().insert("content-type", HeaderValue::from_static("application/json"));
     response
@@ -156,10 +159,27 @@ mod tests {
     #[test]
     fn the_oldest_upload_goes_when_too_many_come() {
         let uploads = Uploads::default();
-        let ids: Vec<String> = (0..=MOST_UPLOADS)
-            .map(|_| uploads.keep(String::from("a"), Arc::from(&b"x"[..])))
-            .collect();
+        let keep = |name: String| uploads.keep(name, Arc::from(&b"x"[..]));
+        let ids: Vec<String> = (0..=MOST_UPLOADS).map(|name| keep(name.to_string())).collect();
         assert!(uploads.find(&ids[0]).unwrap_err().rule == "studio-limit");
         assert_eq!(uploads.find(&ids[1]).unwrap().read().unwrap(), b"x");
+    }
+
+    #[test]
+    fn an_upload_is_known_by_its_name_and_its_bytes() {
+        let (one, other) = (Uploads::default(), Uploads::default());
+        let keep = |uploads: &Uploads, name: &str, bytes: &[u8]| {
+            uploads.keep(name.to_owned(), Arc::from(bytes))
+        };
+        let id = keep(&one, "a.cls", b"x");
+        assert_eq!(keep(&other, "a.cls", b"x"), id);
+        for (name, bytes) in [("a.cls", &b"y"[..]), ("b.cls", b"x"), ("a.cl", b"sx")] {
+            assert_ne!(keep(&other, name, bytes), id);
+        }
+        // Dropped again it is kept once, as the newest.
+        keep(&one, "b.cls", b"x");
+        keep(&one, "a.cls", b"x");
+        assert_eq!(one.0.lock().unwrap().len(), 2);
+        assert_eq!(one.0.lock().unwrap()[1].id, id);
     }
 }

@@ -22,15 +22,19 @@ use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use machine::Machine;
 use program::{Diagnostic, Rule};
+use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::Semaphore;
+use tokio::task::AbortHandle;
 
-/// How many connections are open at the same time; others wait until one is over.
+/// How many connections are open at the same time. Another one takes the place of the one that has said nothing for the longest time; where
+/// all have said what they want, it waits.
 const CONNECTIONS: usize = 128;
 
 /// How many sockets are open at the same time.
@@ -44,7 +48,7 @@ const BOARD_FILES: usize = 1000;
 const BOARD_BYTES: u64 = 256 << 20;
 
 /// How long a connection may take to say what it wants, and a request to be answered.
-const PATIENCE: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
+const PATIENCE: (Duration, Duration) = (Duration::from_secs(3), Duration::from_secs(60));
 
 /// What the server takes.
 const LIMITS: Limits = Limits {
@@ -97,12 +101,23 @@ pub(crate) struct Studio {
     names: Names,
     sockets: Arc<Semaphore>,
     uploads: files::Uploads,
+    /// Held by the one whose upload is being taken.
+    uploading: tokio::sync::Mutex<()>,
+    /// How many pages there were.
+    pages: AtomicU64,
+    /// Which page that is open keeps a draft, by the names of the drafts.
+    drafting: Mutex<BTreeMap<String, u64>>,
     jobs: Jobs,
     form: Option<Form>,
     options: Option<ReadOptions>,
 }
 
 impl Studio {
+    /// Which page that is open keeps a draft.
+    fn drafting(&self) -> MutexGuard<'_, BTreeMap<String, u64>> {
+        self.drafting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// What options mean.
     fn options(
         &self,
@@ -186,6 +201,8 @@ impl Server {
     /// One of them cannot be opened.
     pub fn bind(settings: &Settings) -> Result<Server, Stop> {
         let folder = Folder::open(&settings.folder)?;
+        // A server that was killed while it saved.
+        app::files::sweep_idle(folder.path());
         let refused = |what: &str, error: &dyn std::fmt::Display| {
             let message = format!("{what}: {error}");
             Diagnostic::error(Rule::StudioPort, message)
@@ -217,6 +234,9 @@ impl Server {
             names: Names::of(port),
             sockets: Arc::new(Semaphore::new(SOCKETS)),
             uploads: files::Uploads::default(),
+            uploading: tokio::sync::Mutex::default(),
+            pages: AtomicU64::default(),
+            drafting: Mutex::default(),
             jobs: Jobs::new(own),
             form: settings.form,
             options: settings.options,
@@ -255,8 +275,9 @@ impl Server {
 /// Takes connections, so many at the same time.
 async fn serve(listener: tokio::net::TcpListener, studio: Arc<Studio>) -> ! {
     let connections = Arc::new(Semaphore::new(CONNECTIONS));
+    let silent = Silent::default();
+    let mut last = 0;
     loop {
-        let Ok(permit) = Arc::clone(&connections).acquire_owned().await else { continue };
         let stream = match listener.accept().await {
             Ok((stream, _)) => stream,
             Err(_) => {
@@ -265,10 +286,19 @@ async fn serve(listener: tokio::net::TcpListener, studio: Arc<Studio>) -> ! {
                 continue;
             }
         };
+        if connections.available_permits() == 0 {
+            silent.drop_first();
+        }
+        let Ok(permit) = Arc::clone(&connections).acquire_owned().await else { continue };
         let _ = stream.set_nodelay(true);
-        let studio = Arc::clone(&studio);
-        tokio::spawn(async move {
-            let service = service_fn(move |request| answer(Arc::clone(&studio), request));
+        last += 1;
+        let (number, studio, all) = (last, Arc::clone(&studio), silent.clone());
+        let connection = tokio::spawn(async move {
+            let speaks = all.clone();
+            let service = service_fn(move |request| {
+                speaks.remove(number);
+                answer(Arc::clone(&studio), request)
+            });
             let connection = http1::Builder::new()
                 .timer(TokioTimer::new())
                 .header_read_timeout(PATIENCE.0)
@@ -277,8 +307,35 @@ async fn serve(listener: tokio::net::TcpListener, studio: Arc<Studio>) -> ! {
                 .serve_connection(TokioIo::new(stream), service)
                 .with_upgrades();
             let _ = connection.await;
+            all.remove(number);
             drop(permit);
         });
+        silent.add(number, connection.abort_handle());
+    }
+}
+
+/// The connections that have not said yet what they want, by their numbers.
+#[derive(Clone, Default)]
+struct Silent(Arc<Mutex<BTreeMap<u64, AbortHandle>>>);
+
+impl Silent {
+    fn all(&self) -> MutexGuard<'_, BTreeMap<u64, AbortHandle>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn add(&self, number: u64, connection: AbortHandle) {
+        self.all().insert(number, connection);
+    }
+
+    fn remove(&self, number: u64) {
+        self.all().remove(&number);
+    }
+
+    /// Ends the oldest.
+    fn drop_first(&self) {
+        if let Some((_, connection)) = self.all().pop_first() {
+            connection.abort();
+        }
     }
 }
 

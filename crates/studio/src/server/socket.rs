@@ -19,6 +19,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
@@ -67,7 +68,8 @@ async fn talk(studio: Arc<Studio>, mut socket: WebSocket) {
         return close(socket, NO_TOKEN, "the first message is the token of the link").await;
     }
     let (answers, mut to_send) = unbounded_channel();
-    let page = Arc::new(Page { studio, answers, running: Mutex::default() });
+    let number = studio.pages.fetch_add(1, Ordering::Relaxed);
+    let page = Arc::new(Page { studio, number, answers, running: Mutex::default() });
     // However this ends, nobody waits for what is being done.
     let _ends = EndsAll(&page);
     loop {
@@ -107,17 +109,20 @@ async fn close(mut socket: WebSocket, code: u16, why: &'static str) {
 /// A page that has brought the token.
 struct Page {
     studio: Arc<Studio>,
+    /// Its number among all pages.
+    number: u64,
     answers: UnboundedSender<Vec<u8>>,
     /// What is being done for it, by the ids of the asks: whether that makes a job, and how it is ended.
     running: Mutex<BTreeMap<u32, (bool, Ended)>>,
 }
 
-/// Ends all work for a page that has gone.
+/// Ends all work for a page that has gone; its drafts are whoever's goes on with them.
 struct EndsAll<'a>(&'a Page);
 
 impl Drop for EndsAll<'_> {
     fn drop(&mut self) {
         self.0.running().values().for_each(|(_, ended)| ended.end());
+        self.0.studio.drafting().retain(|_, page| *page != self.0.number);
     }
 }
 
@@ -224,7 +229,8 @@ fn take(page: &Arc<Page>, frame: Frame) {
     let page = Arc::clone(page);
     tokio::task::spawn_blocking(move || {
         let tells = Tells::new(&page, id);
-        let answer = || asks::answer(&page.studio, &ask, params, arrays, (&tells, &ended));
+        let answer =
+            || asks::answer(&page.studio, &ask, params, arrays, page.number, (&tells, &ended));
         let answer = catch_unwind(AssertUnwindSafe(answer));
         page.running().remove(&id);
         match answer {

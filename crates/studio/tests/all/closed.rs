@@ -294,6 +294,23 @@ fn connections_that_say_nothing_are_closed() {
     assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
 }
 
+/// Heads that are never ended hold no place for longer than others need it.
+#[test]
+fn half_heads_hold_no_place_that_a_page_needs() {
+    let studio = Studio::new();
+    let halves: Vec<_> = (0..300)
+        .map(|_| {
+            let mut half = studio.stream();
+            half.write_all(b"GET / HTTP/1.1\r\n").unwrap();
+            half
+        })
+        .collect();
+    let begun = Instant::now();
+    assert_eq!(studio.socket().done("open", json!({}))["folder"], "own");
+    assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+    drop(halves);
+}
+
 #[test]
 fn nothing_outside_the_folder_is_read_or_written() {
     let studio = Studio::new();
@@ -397,13 +414,22 @@ fn the_same_file_in_two_tabs_is_two_jobs() {
     let second = other.answer_of(second).unwrap().head["done"].clone();
     assert_ne!(first["revision"], second["revision"]);
     assert_eq!((&first["verdict"], &first["walk"]), (&second["verdict"], &second["walk"]));
-    // Drafts of both are kept; the later one of a name holds.
+    // Each keeps its own edit: under the name of the other's nothing is kept or dropped.
     let draft = |text: &str| [Array::text("text", text)];
     one.answer("draft", json!({ "name": "d", "of": { "tab": 1 } }), &draft("one")).unwrap();
-    other.answer("draft", json!({ "name": "d", "of": { "tab": 2 } }), &draft("two")).unwrap();
+    let of = json!({ "name": "d", "of": { "tab": 2 } });
+    let stop = other.answer("draft", of.clone(), &draft("two")).unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "studio-draft", "{stop}");
+    assert_eq!(other.refused("drop_draft", json!({ "name": "d" })), "studio-draft");
     let mut kept = one.answer("draft_text", json!({ "name": "d" }), &[]).unwrap();
-    assert_eq!(kept.take_text("text").unwrap(), b"two");
-    assert_eq!(one.done("drafts", json!({}))[0]["of"]["tab"], 2);
+    assert_eq!(kept.take_text("text").unwrap(), b"one");
+    other.answer("draft", json!({ "name": "d-2", "of": {} }), &draft("two")).unwrap();
+    // What a page that has gone has kept is for whoever goes on with it.
+    drop(one);
+    let begun = Instant::now();
+    while let Err(stop) = other.answer("draft", of.clone(), &draft("three")) {
+        assert!(begun.elapsed() < Duration::from_secs(10), "{stop}");
+    }
     other.done("drop_draft", json!({ "name": "d" }));
-    assert_eq!(one.done("drafts", json!({})), json!([]));
+    assert_eq!(other.done("drafts", json!({}))[0]["name"], "d-2");
 }

@@ -79,6 +79,20 @@ fn a_place_has_all_blocks_of_its_record_and_all_moves_of_both() {
     assert_eq!(arc["source_moves"], json!([[at, at + 1]]));
     let next = place("source", &json!(10));
     assert_eq!(next["blocks"], json!([{ "file": null, "ranges": [[line + 1, line + 2]] }]));
+    // Of a source there is one text, called by its name or not at all.
+    let mut text = |of: &str, file: &Value| {
+        page.answer(
+            "text",
+            json!({ "revision": revision, "of": of, "file": file, "from": 1, "to": 2 }),
+            &[],
+        )
+    };
+    text("source", &json!("arc.cls")).unwrap();
+    let stop = text("source", &json!("/etc/passwd")).unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "studio-ask", "{stop}");
+    let mut place = |by: &str, value: &Value| {
+        page.done("place", json!({ "revision": revision, "by": by, "value": value }))
+    };
     // Lines count from 1: there is nothing on line 0.
     assert_eq!(place("source", &json!(0)), Value::Null);
     assert_eq!(place("block", &json!(0)), Value::Null);
@@ -208,6 +222,18 @@ fn an_edit_is_proven_and_one_that_cuts_otherwise_is_refused_and_not_saved() {
     page.done("save", save(&job["revision"], "dome.nc", true));
     assert_eq!(page.refused("save", save(&job["revision"], "../dome.nc", true)), "folder-reach");
     assert_eq!(page.refused("save", save(&job["revision"], "dome.cls", true)), "output-file");
+    // A machine file of the folder, of this program or of another, is no place for a program.
+    std::fs::write(studio.own().join("mine.toml"), "extends = \"iso\"\n").unwrap();
+    for name in ["mine.toml", "new.TOML"] {
+        assert_eq!(
+            page.refused("save", save(&job["revision"], name, true)),
+            "output-file",
+            "{name}"
+        );
+    }
+    assert!(
+        std::fs::read_to_string(studio.own().join("mine.toml")).unwrap().starts_with("extends")
+    );
     for name in [".toolpost/dome.nc", ".toolpost/drafts/dome.nc", "a\nb.nc", " ", "dome.nc/", ""] {
         assert_eq!(
             page.refused("save", save(&job["revision"], name, true)),
@@ -361,6 +387,10 @@ fn uploads_are_posted_and_the_oldest_job_goes() {
         Err(stop) => panic!("{stop}"),
     };
     assert_eq!(job["source"]["file"], "a dome.cls");
+    assert_eq!(upload["name"], "a dome.cls");
+    // The id is of this file alone: the next server has the same for it, and another file has another.
+    let own = program::Digest::of([&b"a dome.cls"[..], &bytes]);
+    assert_eq!(upload["upload"], json!(own));
     assert_eq!(
         page.refused("post", json!({ "source": { "upload": "99" }, "machine": "x" })),
         "studio-limit"

@@ -139,8 +139,13 @@ fn a_killed_server_leaves_no_half_file() {
                 assert_eq!(entry.metadata().unwrap().len(), bytes, "{name}");
             }
         }
-        // The next server goes on with what is there.
+        // What was begun is gone once the next server is there, which goes on with the rest.
+        std::fs::write(own.join(".toolpost-abc123.tmp"), "begun").unwrap();
         let (_process, studio) = Process::start(studio.outside);
+        let names =
+            std::fs::read_dir(studio.own()).unwrap().map(|entry| entry.unwrap().file_name());
+        let begun = names.filter(|name| name.to_string_lossy().ends_with(".tmp")).count();
+        assert_eq!(begun, 0);
         let mut page = studio.socket();
         page.done("drafts", json!({}));
         page.answer("draft", json!({ "name": "d", "of": {} }), &[Array::text("text", "x")])
