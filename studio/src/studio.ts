@@ -2,8 +2,10 @@
 
 import { computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
-import { said, Stopped, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { BoardAbout, Command, Draft, Field, Finding, Given, Job, MachineEntry, Opened, Verdict, Work } from "./protocol/asks.ts";
+import type { Arrays } from "./protocol/frames.ts";
+import { said, Stopped, type Asking, type Progress, type Seam, type State } from "./protocol/seam.ts";
+import type { BoardAbout, Command, Draft, Field, Finding, Given, Job, MachineEntry, Opened, Verdict, Walked, Work } from "./protocol/asks.ts";
+import { Walking } from "./view/walking.ts";
 
 export class Studio {
     readonly link: Signal<State>;
@@ -18,6 +20,8 @@ export class Studio {
     /** The board that was posted: it stays while one of its programs is edited, which is a job by itself. */
     readonly board: Signal<BoardAbout | null> = signal(null);
     readonly running: Signal<Progress | null> = signal(null);
+    /** What the proof that runs has walked, where there is no job to show: nothing of it is proven. */
+    readonly walking: Signal<{ walking: Walking; moves: number } | null> = signal(null);
     /** How the last work ended that gave nothing. */
     readonly stop: Signal<Verdict | null> = signal(null);
     /** Why there is no job, or why something else was not done. */
@@ -29,6 +33,8 @@ export class Studio {
     readonly isCurrent: Signal<boolean> = signal(false);
     readonly canSave = computed(() => this.isCurrent.value && (this.job.value?.verdict === "done" || this.job.value?.verdict === "partly"));
     private typing: ReturnType<typeof setTimeout> | undefined;
+    /** The source that the job is of. */
+    private shown = "";
     /** Name of the draft that this page keeps its edit under. */
     private kept: string | null = null;
     readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
@@ -78,7 +84,7 @@ export class Studio {
 
     /** A file is a toolpath or a board; several are the files of a board. */
     async drop(files: File[]): Promise<void> {
-        const uploads = await this.told(async (signal) => {
+        const uploads = await this.told(async ({ signal }) => {
             const ids: string[] = [];
             for (const file of files) ids.push(await this.seam.upload(file, signal));
             return ids;
@@ -108,8 +114,10 @@ export class Studio {
             this.job.value = null;
             return this.asksMachine();
         }
-        const job = await this.told(async (signal, progress) =>
-            (await this.seam.ask("post", { source, machine, options }, { signal, progress })).done);
+        // The picture of another source says nothing of this one.
+        if (this.shown !== JSON.stringify(source)) this.job.value = this.board.value = null;
+        this.shown = JSON.stringify(source);
+        const job = await this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done);
         this.board.value = job?.board ?? null;
         this.job.value = job ?? null;
         this.isCurrent.value = job !== undefined && this.edited.value === null;
@@ -143,8 +151,7 @@ export class Studio {
         if (work === null || work.machine === null) return;
         const { source, machine, options } = work;
         const program = { file };
-        const job = await this.told(async (signal, progress) =>
-            (await this.seam.ask("prove", { source, machine, options, program }, { signal, progress })).done);
+        const job = await this.told(async (asking) => (await this.seam.ask("prove", { source, machine, options, program }, asking)).done);
         if (job === undefined) return;
         this.edited.value = null;
         this.job.value = job;
@@ -160,8 +167,8 @@ export class Studio {
         this.isCurrent.value = false;
         const octets = new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
         void this.keep(work, octets);
-        const job = await this.told(async (signal, progress) =>
-            (await this.seam.ask("prove", { source, machine, options, file: file ?? null }, { arrays: { text: octets }, signal, progress })).done);
+        const job = await this.told(async (asking) =>
+            (await this.seam.ask("prove", { source, machine, options, file: file ?? null }, { arrays: { text: octets }, ...asking })).done);
         if (job === undefined) return;
         this.job.value = job;
         // Somebody may have typed on meanwhile.
@@ -243,17 +250,24 @@ export class Studio {
     }
 
     /** Runs one thing at a time: a newer one ends the older. What stops it is shown. */
-    private async told<T>(run: (signal: AbortSignal, progress: (now: Progress) => void) => Promise<T>): Promise<T | undefined> {
+    private async told<T>(run: (asking: Required<Pick<Asking, "signal" | "progress" | "walked">>) => Promise<T>): Promise<T | undefined> {
         this.abort?.abort();
         const abort = new AbortController();
         this.abort = abort;
         this.running.value = { step: "reading", part: null };
         this.stopped.value = [];
         this.stop.value = null;
+        this.walking.value = null;
+        const progress = (now: Progress): void => {
+            if (this.abort === abort) this.running.value = now;
+        };
+        const walked = (now: Walked, arrays: Arrays): void => {
+            if (this.abort !== abort || this.job.value !== null) return;
+            const walking = this.walking.value?.walking ?? new Walking(now.file, now.kinds);
+            if (walking.add(now, arrays)) this.walking.value = { walking, moves: walking.moves };
+        };
         try {
-            const done = await run(abort.signal, (now) => {
-                if (this.abort === abort) this.running.value = now;
-            });
+            const done = await run({ signal: abort.signal, progress, walked });
             return this.abort === abort ? done : undefined;
         } catch (error) {
             if (this.abort !== abort) return undefined;
@@ -265,6 +279,7 @@ export class Studio {
             if (this.abort === abort) {
                 this.abort = null;
                 this.running.value = null;
+                this.walking.value = null;
             }
         }
     }

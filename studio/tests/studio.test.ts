@@ -2,28 +2,35 @@
 
 import { signal } from "@preact/signals";
 import { expect, test } from "vitest";
-import { said, Stopped, type Seam, type State } from "../src/protocol/seam.ts";
+import { said, Stopped, type Asking, type Seam, type State } from "../src/protocol/seam.ts";
 import { Studio } from "../src/studio.ts";
 
 const settled = () => new Promise((resolve) => setTimeout(resolve));
+
+const piece = (chunk: number): Parameters<NonNullable<Asking["walked"]>> => [
+    { event: "walked", id: 1, file: "a.nc", chunk, moves: 4096 * (chunk + 1), time_s: 1, kinds: [] },
+    { index: new Uint8Array(64), vertices: new Uint8Array(0) },
+];
 
 /** A server that has answered `post`, and answers `prove` when it is told to. */
 function open(taken: string[] = []) {
     const asked: string[] = [];
     const proofs: ((job: object) => void)[] = [];
+    let walked: Asking["walked"];
     const job = (revision: number) => ({ revision, verdict: "done", findings: [], walk: { moves: 0, mismatch: null } });
     const seam = {
-        ask: (ask: string, params: { revision: number; name: string }) => {
+        ask: (ask: string, params: { revision: number; name: string }, asking?: Asking) => {
             const named = { save: params.revision, draft: params.name, drop_draft: params.name }[ask];
             asked.push(named === undefined ? ask : `${ask} ${named}`);
             if (ask === "draft" && taken.includes(params.name)) return Promise.reject(new Stopped("invalid", [said("studio-draft", "another page has it", "")]));
+            walked = asking?.walked ?? walked;
             if (ask === "post") return Promise.resolve({ done: job(1), arrays: {} });
             if (ask === "prove") return new Promise((resolve) => proofs.push((done) => resolve({ done, arrays: {} })));
             return Promise.resolve({ done: { files: ["a.nc"] }, arrays: {} });
         },
     } as unknown as Seam;
     const studio = new Studio(seam, signal<State>("open"));
-    return { studio, asked, proved: (revision: number) => proofs.shift()!(job(revision)) };
+    return { studio, asked, proved: (revision: number) => proofs.shift()!(job(revision)), walk: (chunk: number) => walked!(...piece(chunk)) };
 }
 
 const work = { source: { file: "a.cls" }, machine: "mill", options: [] };
@@ -84,4 +91,25 @@ test("what cannot be saved says why", async () => {
     expect(studio.refusal()).toBe(null);
     void studio.prove("G0 X1\n");
     expect(studio.refusal()?.help).toBe("wait until its proof has passed");
+});
+
+test("what the proof has walked is there until it ends, and nothing of it is proven or saved", async () => {
+    const { studio, proved, walk } = open();
+    studio.work.value = work as never;
+    const proof = studio.prove("G0 X1\n");
+    walk(0);
+    walk(1);
+    expect(studio.walking.value?.moves).toBe(8192);
+    expect([studio.job.value, studio.canSave.value, studio.isCurrent.value]).toEqual([null, false, false]);
+    proved(2);
+    await proof;
+    expect([studio.walking.value, studio.job.value!.revision]).toEqual([null, 2]);
+});
+
+test("while an edit is proven, the picture of the program before stays", async () => {
+    const { studio, walk } = open();
+    await studio.post(work as never);
+    void studio.prove("G0 X1\n");
+    walk(0);
+    expect(studio.walking.value).toBe(null);
 });

@@ -42,6 +42,7 @@ export function View({ screen }: { screen: Screen }) {
                 {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
                     <One key={view} screen={screen} view={view} first={number === 0} />
                 ))}
+                <Proving screen={screen} />
                 {screen.studio.job.value === null && screen.studio.running.value === null && <Empty screen={screen} />}
             </div>
             <Readout screen={screen} />
@@ -105,6 +106,17 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             data-pane
             onFocus={() => (screen.viewer = screen.viewers.find((viewer) => viewer.host === host.current) ?? screen.viewer)}
         />
+    );
+}
+
+/** Over the picture of what the proof has walked so far: nobody takes it for proven. */
+function Proving({ screen }: { screen: Screen }) {
+    const walked = screen.studio.walking.value;
+    if (walked === null || screen.studio.job.value !== null) return null;
+    return (
+        <p class="proving">
+            <strong class="warning">▲ the proof runs: nothing of this is proven yet</strong> {walked.moves.toLocaleString("en")} moves so far
+        </p>
     );
 }
 

@@ -1,7 +1,7 @@
 /** The one file of the page that knows how the server is reached: everything else asks. */
 
 import { read, write, type Arrays, type Frame } from "./frames.ts";
-import type { Asks, Finding, Verdict } from "./asks.ts";
+import type { Asks, Finding, Verdict, Walked } from "./asks.ts";
 
 export interface Progress {
     step: string;
@@ -12,6 +12,8 @@ export interface Asking {
     arrays?: Arrays;
     signal?: AbortSignal;
     progress?: (progress: Progress) => void;
+    /** What the proof that runs has walked so far, chunk by chunk. */
+    walked?: (walked: Walked, arrays: Arrays) => void;
 }
 
 export interface Answer<T> {
@@ -41,7 +43,7 @@ export interface Seam {
 interface Pending {
     resolve(answer: Answer<never>): void;
     reject(error: Error): void;
-    progress: ((progress: Progress) => void) | undefined;
+    asking: Asking;
 }
 
 const lost = (): Stopped =>
@@ -97,7 +99,8 @@ export class Socket implements Seam {
     private take({ head, arrays }: Frame): void {
         const pending = this.pending.get(head.id as number);
         if (pending === undefined) return;
-        if (head.event === "progress") return pending.progress?.(head as unknown as Progress);
+        if (head.event === "progress") return pending.asking.progress?.(head as unknown as Progress);
+        if (head.event === "walked") return pending.asking.walked?.(head as unknown as Walked, arrays);
         this.pending.delete(head.id as number);
         const stop = head.stop as { verdict: Verdict; findings: Finding[] } | undefined;
         if (stop !== undefined) return pending.reject(new Stopped(stop.verdict, stop.findings));
@@ -109,7 +112,7 @@ export class Socket implements Seam {
         if (socket === null) return Promise.reject(lost());
         const id = this.next++;
         return new Promise((resolve, reject) => {
-            this.pending.set(id, { resolve, reject, progress: asking.progress });
+            this.pending.set(id, { resolve, reject, asking });
             asking.signal?.addEventListener("abort", () => {
                 if (this.pending.has(id)) socket.send(write({ head: { cancel: id }, arrays: {} }));
             });

@@ -2,12 +2,12 @@
 
 import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { Job, Place, ToolUse } from "../protocol/asks.ts";
+import type { Job, Place, ToolUse, WalkAbout } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Board } from "../view/board.ts";
 import { axes } from "../view/camera.ts";
-import { Chunks } from "../view/chunks.ts";
+import { Chunks, type Vertices } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
 import { bodiesOf } from "../view/linkage.ts";
 import { Rows } from "../view/rows.ts";
@@ -15,6 +15,7 @@ import { Scene, type Looks, type Marks } from "../view/scene.ts";
 import { toolBody } from "../view/solids.ts";
 import type { Triangles } from "../view/strip.ts";
 import { along, type Vector } from "../view/vector.ts";
+import type { Walking } from "../view/walking.ts";
 import type { Drawing, Viewer } from "../view/viewer.ts";
 
 export type Dialog = "commands" | "keys" | "machine" | "source" | "program" | "options" | "save" | "go" | "find";
@@ -68,6 +69,7 @@ export class Screen {
     readonly news: Signal<number> = signal(0);
     /** The source that the views were fitted to. */
     private fitted: string | null = null;
+    private walking: Walking | null = null;
     readonly viewers: Viewer[] = [];
     /** The view that had the focus last. */
     viewer: Viewer | null = null;
@@ -80,7 +82,8 @@ export class Screen {
         dark.addEventListener("change", () => (this.dark.value = dark.matches));
         effect(() => {
             const job = studio.job.value;
-            untracked(() => this.begin(job));
+            const walked = studio.walking.value;
+            untracked(() => (job === null && walked !== null ? this.meanwhile(walked.walking) : this.begin(job)));
         });
     }
 
@@ -93,7 +96,7 @@ export class Screen {
             return;
         }
         const { walk, revision } = job;
-        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++);
+        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++, this.walkedBefore(walk));
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++));
         void chunks.load().catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
@@ -117,6 +120,22 @@ export class Screen {
         this.scene.value.board = board;
         this.board.value = board;
         this.news.value++;
+    }
+
+    /** What was shown while the proof ran, where it is all of the walk. */
+    private walkedBefore({ moves }: WalkAbout): Vertices | null {
+        const { walking } = this;
+        this.walking = null;
+        return walking?.moves === moves ? walking : null;
+    }
+
+    /** What the proof that runs has walked. */
+    private meanwhile(walking: Walking): void {
+        this.walking = walking;
+        const rows = new Rows(this.studio.seam, 0, 4, () => {});
+        this.scene.value = new Scene(walking.walk, walking, rows);
+        this.news.value++;
+        for (const viewer of this.viewers) viewer.refit(false);
     }
 
     /** The net of the copper under the pointer. */
@@ -165,6 +184,7 @@ export class Screen {
     }
 
     get all(): { low: Vector; high: Vector } | null {
+        if (this.studio.job.value === null) return this.studio.walking.value?.walking.box ?? null;
         const [low, high] = this.studio.job.value?.walk.box ?? [];
         if (low === undefined || high === undefined) return null;
         const board = this.board.value?.box ?? { low, high };

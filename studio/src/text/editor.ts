@@ -13,7 +13,7 @@ import { FIRST, isNearEnd, isWithin, KEPT, missing, windowAround, type Window } 
 const JUMPS = 250;
 
 /** How long the cursor rests before all lines around it are fetched, ms. */
-const REST = 700;
+const REST = 1500;
 
 /** A text that is somewhere else. */
 export interface Origin {

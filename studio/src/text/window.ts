@@ -9,10 +9,10 @@ export interface Window {
 export const KEPT = 200_000;
 
 /** Of a text that is not kept whole: as many lines are fetched first, the others when the cursor rests. */
-export const FIRST = 500;
+export const FIRST = 200;
 
 /** Lines of one answer to be added: more would hold the page up. */
-const PART = 20_000;
+const PART = 5000;
 
 /** All of a text, or as many lines as are kept, with `line` in the middle. */
 export function windowAround(line: number, lines: number, kept = KEPT): Window {

@@ -8,6 +8,13 @@ import { absent, goTo, launch, proven, Server, visit } from "./harness.ts";
 
 const MOVES = 210_000;
 
+/** Whether a canvas has more than its ground. */
+function isDrawn(canvas: SVGElement | HTMLElement): boolean {
+    const { width, height } = canvas as HTMLCanvasElement;
+    const pixels = new Uint32Array((canvas as HTMLCanvasElement).getContext("2d")!.getImageData(0, 0, width, height).data.buffer);
+    return pixels.some((pixel) => pixel !== pixels[0]);
+}
+
 describe.skipIf(absent() !== null)("a long program", () => {
     let browser: Browser;
     beforeAll(async () => {
@@ -25,16 +32,22 @@ describe.skipIf(absent() !== null)("a long program", () => {
         const { page, complaints } = await visit(browser, server.link);
         await page.keyboard.press("Control+o");
         await page.getByText("long.cls").click();
+        // What is walked is there before the verdict, and is not called proven.
+        await page.getByText("the proof runs: nothing of this is proven yet").waitFor();
+        expect(await page.getByText("PROVEN", { exact: false }).and(page.locator(".done")).count()).toBe(0);
+        expect(await page.getByRole("button", { name: "Save…" }).isDisabled()).toBe(true);
+        await expect.poll(() => page.locator(".canvas canvas").first().evaluate(isDrawn)).toBe(true);
         await proven(page);
+        await page.getByText("nothing of this is proven yet").waitFor({ state: "detached" });
         const lit = page.locator(".source .cm-line.at");
         // All but the first two moves are lines of the source behind its seventh.
         for (const line of [150_000, 60_000, 62_000]) {
             await goTo(page, `s${line}`);
             const i = line - 7;
             await expect.poll(() => lit.innerText()).toBe(`GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
-            await page.waitForTimeout(750);
+            await page.waitForTimeout(1600);
         }
-        await page.waitForTimeout(2500);
+        await page.waitForTimeout(4000);
         expect(await lit.isVisible()).toBe(true);
         const { y, height } = (await page.locator(".source > .body").boundingBox())!;
         const box = (await lit.boundingBox())!;
