@@ -2,7 +2,7 @@ import { expect, test } from "vitest";
 import type { Chunk } from "../src/view/chunks.ts";
 import { RAMP, RAMP_STEPS, UNKNOWN } from "../src/view/colours.ts";
 import { needlesOf } from "../src/view/needles.ts";
-import { byFeed, byOperation } from "../src/view/painted.ts";
+import { byDeviation, byFeed, byOperation } from "../src/view/painted.ts";
 import type { Rows } from "../src/view/rows.ts";
 import { wordOf } from "../src/view/strip.ts";
 
@@ -15,6 +15,13 @@ test("each move has its operation's colour, also in the chunks that it reaches i
     expect(paint(chunk(1))![5000 - 4096 - 1]).toBe(0);
     expect(paint(chunk(1))![5000 - 4096]).toBe(1);
     expect(paint(chunk(2))![0]).toBe(1);
+});
+
+test("deviations are painted from none to the largest, by the last number of each row", () => {
+    const given = Float32Array.of(0, 0, 0, 9, 0, 0, 0, 0, 9, 0.004, 0, 0, 0, 9, Number.NaN);
+    const paint = byDeviation({ width: 5, of: (number) => (number === 0 ? given : null) }, 0.004);
+    expect(Array.from(paint(chunk(0))!.slice(0, 3))).toEqual([RAMP, RAMP + RAMP_STEPS - 1, UNKNOWN]);
+    expect(paint(chunk(1))![0]).toBe(UNKNOWN);
 });
 
 test("feeds are painted from the least to the greatest that is known", () => {

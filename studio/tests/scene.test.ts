@@ -1,7 +1,7 @@
 import { expect, test, vi } from "vitest";
 import type { WalkAbout } from "../src/protocol/asks.ts";
 import { project, VIEWS } from "../src/view/camera.ts";
-import { Chunks, inSight, levelFor, readIndex, type Vertices } from "../src/view/chunks.ts";
+import { Chunks, FINE, inSight, levelFor, readIndex, type Vertices } from "../src/view/chunks.ts";
 import { MARKED, theme } from "../src/view/colours.ts";
 import { Raster } from "../src/view/raster.ts";
 import { Painting } from "../src/view/renderer.ts";
@@ -28,7 +28,28 @@ test("a chunk is in sight as soon as a corner of its box is", () => {
 
 test("the coarsest level whose error is at most half a pixel", () => {
     const levels = [0.002, 0.008, 0.032].map((error) => ({ error, vertices: 1 }));
-    expect([1, 15, 16, 62, 63, 1000].map((scale) => levelFor(levels, scale))).toEqual([2, 2, 1, 1, 0, 0]);
+    expect([1, 15, 16, 62, 63, 1000].map((scale) => levelFor({ levels, fine: null }, scale))).toEqual([2, 2, 1, 1, 0, 0]);
+});
+
+test("arcs are finer where the chords of the exact level would be seen", () => {
+    const levels = [0.002, 0.008].map((error) => ({ error, vertices: 1 }));
+    expect([62, 250, 251, 1e5].map((scale) => levelFor({ levels, fine: 0.000125 }, scale))).toEqual([1, 0, FINE, FINE]);
+});
+
+test("finer arcs are asked for by name, and the exact level is drawn until they have come", async () => {
+    const asked: string[] = [];
+    const finer = vertices([-40, 0, 0, 1], [0, 1, 0, 1], [40, 0, 0, 1]);
+    const octets = async (path: string) => {
+        asked.push(path);
+        return path === "fine/0" ? finer : server[path]!;
+    };
+    const chunks = new Chunks(walk, octets, () => {});
+    await chunks.load();
+    await chunks.exact(0, 0);
+    expect(chunks.best(FINE, 0)).toEqual({ vertices: server["0/0"], isExact: true });
+    await settled();
+    expect(chunks.best(FINE, 0)).toEqual({ vertices: finer, isExact: true });
+    expect(asked).toEqual(["index", "0/0", "fine/0"]);
 });
 
 const walk: WalkAbout = {

@@ -1,8 +1,9 @@
 import { effect, useComputed, useSignal, type ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Newest } from "../newest.ts";
-import type { Axis } from "../protocol/asks.ts";
+import type { Axis, Job, Jump } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
+import type { Theme } from "../view/colours.ts";
 import { clock } from "./Timeline.tsx";
 
 type Span = [from: number, to: number];
@@ -20,7 +21,8 @@ export function Plots({ screen }: { screen: Screen }) {
         const from = Math.max(0, Math.min(length - 2 * half, middle - half));
         zoomed.value = [from, from + 2 * half];
     };
-    const axes: Axis[] = [...job.machine.axes, { name: "feed", unit: "mm/min", kind: "linear", low: null, high: null }];
+    const plain = (name: string, unit: string): Axis => ({ name, unit, kind: "linear", low: null, high: null });
+    const axes = [...job.machine.axes, plain("feed", "mm/min"), ...(job.walk.deviation === null ? [] : [plain("deviation", "mm")])];
     return (
         <div class="plots">
             <p>
@@ -34,10 +36,40 @@ export function Plots({ screen }: { screen: Screen }) {
                     {clock(span.value[0])} to {clock(span.value[1])}; dashed lines are limits
                 </span>
             </p>
-            {axes.map((axis) => (
-                <Plot key={axis.name} screen={screen} axis={axis} span={span} />
+            <Jumps screen={screen} job={job} />
+            {axes.map((axis, number) => (
+                <Plot key={axis.name} screen={screen} axis={axis} number={number} span={span} />
             ))}
         </div>
+    );
+}
+
+/** More than these nobody looks through. */
+const LISTED = 200;
+
+/** Cuts in which a rotary axis turns far: where a tool may swing the wrong way. */
+function Jumps({ screen, job }: { screen: Screen; job: Job }) {
+    const { jumps, jumps_in_all } = job.walk;
+    if (jumps_in_all === 0) return null;
+    return (
+        <details class="jumps">
+            <summary>
+                <strong class="warning">▼ {jumps_in_all.toLocaleString("en")}</strong> {jumps_in_all === 1 ? "cut turns a rotary axis" : "cuts turn a rotary axis"} by more than 30°
+            </summary>
+            <ol>
+                {jumps.slice(0, LISTED).map(({ axis, move, time_s, from, to }) => (
+                    <li key={`${axis} ${move}`}>
+                        <button type="button" onClick={() => void screen.studio.cursor.toMove(move)}>
+                            {job.machine.axes[axis]?.name} {round(from)}° → {round(to)}°
+                        </button>{" "}
+                        <span class="soft">
+                            move {(move + 1).toLocaleString("en")}, {clock(time_s)}
+                        </span>
+                    </li>
+                ))}
+                {jumps_in_all > LISTED && <li class="soft">and {(jumps_in_all - LISTED).toLocaleString("en")} more</li>}
+            </ol>
+        </details>
     );
 }
 
@@ -46,7 +78,7 @@ interface Band {
     most: Float32Array;
 }
 
-function Plot({ screen, axis, span }: { screen: Screen; axis: Axis; span: ReadonlySignal<Span> }) {
+function Plot({ screen, axis, number, span }: { screen: Screen; axis: Axis; number: number; span: ReadonlySignal<Span> }) {
     const canvas = useRef<HTMLCanvasElement>(null);
     const band = useSignal<Band | null>(null);
     const { studio } = screen;
@@ -68,7 +100,8 @@ function Plot({ screen, axis, span }: { screen: Screen; axis: Axis; span: Readon
             }),
             effect(() => {
                 const time = studio.cursor.place.value?.time_s ?? null;
-                if (canvas.current !== null) draw(canvas.current, axis, band.value, span.value, time, screen.looks.value.theme);
+                const jumps = studio.job.value?.walk.jumps.filter((jump) => jump.axis === number) ?? [];
+                if (canvas.current !== null) draw(canvas.current, { axis, band: band.value, jumps }, span.value, time, screen.looks.value.theme);
             }),
         ];
         return () => {
@@ -106,7 +139,13 @@ function extent({ least, most }: Band): number[] {
     return low <= high ? [low, high] : [];
 }
 
-function draw(canvas: HTMLCanvasElement, axis: Axis, band: Band | null, [from, to]: Span, time: number | null, { ink, soft }: { ink: string; soft: string }): void {
+interface Curve {
+    axis: Axis;
+    band: Band | null;
+    jumps: Jump[];
+}
+
+function draw(canvas: HTMLCanvasElement, { axis, band, jumps }: Curve, [from, to]: Span, time: number | null, { ink, soft, warn }: Pick<Theme, "ink" | "soft" | "warn">): void {
     const { clientWidth: width, clientHeight: height } = canvas;
     const ratio = Math.min(2, devicePixelRatio);
     canvas.width = width * ratio;
@@ -136,8 +175,17 @@ function draw(canvas: HTMLCanvasElement, axis: Axis, band: Band | null, [from, t
         context.lineTo(width, y(limit));
         context.stroke();
     }
+    context.setLineDash([]);
+    context.fillStyle = warn;
+    for (const { time_s } of jumps) {
+        const x = ((time_s - from) / (to - from)) * width;
+        context.beginPath();
+        context.moveTo(x - 5, 0);
+        context.lineTo(x + 5, 0);
+        context.lineTo(x, 8);
+        context.fill();
+    }
     if (time !== null && time >= from && time <= to) {
-        context.setLineDash([]);
         context.strokeStyle = "#d9480f";
         const x = ((time - from) / (to - from)) * width;
         context.strokeRect(x, -1, 0.5, height + 2);

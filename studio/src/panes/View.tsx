@@ -1,6 +1,7 @@
 import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { axisOf, vector, type Screen } from "../screen/screen.ts";
+import type { Job } from "../protocol/asks.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
 import { Viewer } from "../view/viewer.ts";
@@ -37,6 +38,7 @@ export function View({ screen }: { screen: Screen }) {
                         ))}
                     </select>
                 </label>
+                {mode.value === "deviation" && <span class="soft">{deviations(screen.studio.job.value)}</span>}
             </header>
             <div class={four.value ? "body views four" : "body views"}>
                 {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
@@ -48,6 +50,12 @@ export function View({ screen }: { screen: Screen }) {
             <Readout screen={screen} />
         </section>
     );
+}
+
+/** What the ramp of colours means. */
+function deviations(job: Job | null): string {
+    const most = job?.walk.deviation ?? null;
+    return most === null ? "nothing is compared" : `0 to ${most.toLocaleString("en", { maximumFractionDigits: 4 })} mm; grey: not compared`;
 }
 
 function Toggle({ on, title, text }: { on: { value: boolean }; title: string; text: string }) {

@@ -45,12 +45,13 @@ export function inSight({ origin, half }: Chunk, { right, down, at }: Projection
     return within(right, at[0], width) && within(down, at[1], height);
 }
 
+/** The level in which arcs are finer than in the first, where they are near enough for its chords to be seen. */
+export const FINE = -1;
+
 /** The coarsest level whose error is not seen at this scale (pixels a millimetre). */
-export function levelFor(levels: WalkAbout["levels"], scale: number): number {
-    for (let level = levels.length - 1; level > 0; level--) {
-        if (levels[level]!.error * scale <= SEEN) return level;
-    }
-    return 0;
+export function levelFor({ levels, fine }: Pick<WalkAbout, "levels" | "fine">, scale: number): number {
+    const level = levels.findLastIndex(({ error }) => error * scale <= SEEN);
+    return level < 0 && fine === null ? 0 : level;
 }
 
 /** Between two pictures while chunks come, ms. */
@@ -105,7 +106,7 @@ export class Chunks implements Vertices {
     }
 
     private key(level: number, chunk: number): number {
-        return level * this.walk.chunks + chunk;
+        return (level - FINE) * this.walk.chunks + chunk;
     }
 
     /** A frame begins: what the one before wished for and did not get is forgotten. */
@@ -117,11 +118,11 @@ export class Chunks implements Vertices {
     /** The vertices at this level, else at the nearest that is there; what is missing is asked for. */
     best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
         const coarser = Array.from({ length: this.walk.levels.length - level }, (_, i) => level + i);
-        const finer = Array.from({ length: level }, (_, i) => level - 1 - i);
+        const finer = Array.from({ length: level - FINE }, (_, i) => level - 1 - i);
         for (const other of [...coarser, ...finer]) {
             const vertices = this.take(other, chunk);
             if (vertices === null && other === level) this.want(this.key(level, chunk));
-            if (vertices !== null) return { vertices, isExact: other === 0 };
+            if (vertices !== null) return { vertices, isExact: other <= 0 };
         }
         return this.before?.best(level, chunk) ?? null;
     }
@@ -151,7 +152,7 @@ export class Chunks implements Vertices {
             for (const key of this.wanted) {
                 this.wanted.delete(key);
                 this.coming.add(key);
-                if ((await this.fetch(Math.floor(key / this.walk.chunks), key % this.walk.chunks)) !== null) this.tell();
+                if ((await this.fetch(Math.floor(key / this.walk.chunks) + FINE, key % this.walk.chunks)) !== null) this.tell();
                 this.coming.delete(key);
             }
         } finally {
@@ -161,7 +162,7 @@ export class Chunks implements Vertices {
 
     private async fetch(level: number, chunk: number): Promise<ArrayBuffer | null> {
         try {
-            const vertices = await this.octets(`${level}/${chunk}`);
+            const vertices = await this.octets(`${level === FINE ? "fine" : level}/${chunk}`);
             this.keep(this.key(level, chunk), vertices);
             return vertices;
         } catch {

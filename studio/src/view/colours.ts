@@ -2,12 +2,13 @@
 
 import { rgb } from "./raster.ts";
 
-export type Mode = "kind" | "tool" | "operation" | "feed";
+export type Mode = "kind" | "tool" | "operation" | "feed" | "deviation";
 export const MODES: { name: Mode; title: string }[] = [
     { name: "kind", title: "kind" },
     { name: "tool", title: "tool" },
     { name: "operation", title: "operation" },
     { name: "feed", title: "feed" },
+    { name: "deviation", title: "deviation" },
 ];
 
 type Colour = [number, number, number];
@@ -17,7 +18,7 @@ export const RAPID = 255;
 export const MARKED = 254;
 export const WRONG = 253;
 export const UNKNOWN = 252;
-/** The ramp of feed: 64 steps from here. */
+/** The ramp of feed and deviation: 64 steps from here. */
 export const RAMP = 128;
 export const RAMP_STEPS = 64;
 

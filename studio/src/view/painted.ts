@@ -1,4 +1,4 @@
-/** Colours that vertices do not tell: by operation and feed. One byte a move, made where a chunk is first seen. */
+/** Colours that vertices do not tell: by operation, feed and deviation. One byte a move, made where a chunk is first seen. */
 
 import type { WalkAbout } from "../protocol/asks.ts";
 import type { Chunk } from "./chunks.ts";
@@ -10,7 +10,23 @@ export type Painter = (chunk: Chunk) => Uint8Array | null;
 
 export function painterOf(mode: Mode, walk: WalkAbout, rows: Rows): Painter | null {
     if (mode === "operation") return byOperation(walk);
+    if (mode === "deviation") return byDeviation(rows, walk.deviation ?? 0);
     return mode === "feed" ? byFeed(rows) : null;
+}
+
+/** From none to the largest of the program. It is the last number of a row. */
+export function byDeviation(rows: Pick<Rows, "of" | "width">, most: number): Painter {
+    const made = new Map<number, Uint8Array>();
+    return ({ number }) => {
+        const known = made.get(number);
+        if (known !== undefined) return known;
+        const chunk = rows.of(number);
+        const places = new Uint8Array(CHUNK_MOVES).fill(UNKNOWN);
+        if (chunk === null) return places;
+        for (let move = 0; move * rows.width < chunk.length; move++) places[move] = step(chunk[(move + 1) * rows.width - 1]!, 0, most);
+        made.set(number, places);
+        return places;
+    };
 }
 
 export function byOperation({ operations, moves }: Pick<WalkAbout, "operations" | "moves">): Painter {

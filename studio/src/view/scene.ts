@@ -72,7 +72,7 @@ export class Scene {
         const strips: Strip[] = [];
         const over: Strip[] = [];
         const symbols: Symbol[] = [];
-        const level = levelFor(this.walk.levels, projection.scale);
+        const level = levelFor(this.walk, projection.scale);
         for (const chunk of this.chunks.chunks) {
             if (!inSight(chunk, projection, size)) continue;
             const best = this.chunks.best(level, chunk.number);

@@ -1,6 +1,8 @@
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
 import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { absent, example, goTo, launch, lit, proven, readout, Server, visit } from "./harness.ts";
+import { absent, accessible, example, goTo, launch, lit, proven, readout, Server, visit } from "./harness.ts";
 
 describe.skipIf(absent() !== null)("the same part on machines of other kinds", () => {
     let browser: Browser;
@@ -43,6 +45,39 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.locator(".source .cm-line.at", { hasText: "GOTO/72,43,-6" }).waitFor();
         const marked = await page.locator(".program .cm-line.also").allInnerTexts();
         expect(marked.filter((block) => /^\d+ (CC|C) /.test(block)).map((block) => block.replace(/^\d+ /, "").replace(/ (F|M).*/, ""))).toEqual(["CC X+72 Y+40", "C Y+43 DR+"]);
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("a cut that turns a rotary axis far is marked and leads to its place; deviations have a plot and a colour", async () => {
+        const server = await Server.start([], ["-m", "fanuc-table-bc"]);
+        // The tool leans by 2 degrees, first over Y and then over X: C turns by 90 degrees, which are written as two cuts of 45.
+        const lean = (x: string, y: string): string => `${x},${y},0.9993908`;
+        const lines = [
+            "UNITS/MM", "MULTAX/ON", "TLDATA/MILL,16,0,90,0,0", "LOAD/TOOL,1", "SPINDL/RPM,3200,CLW", "RAPID", `GOTO/0,0,50,${lean("0", "0.0348995")}`,
+            "FEDRAT/MMPM,300", `GOTO/0,0,0,${lean("0", "0.0348995")}`, `GOTO/10,0,0,${lean("0", "0.0348995")}`, `GOTO/20,0,0,${lean("0.0348995", "0")}`, "RAPID",
+            `GOTO/20,0,50,${lean("0.0348995", "0")}`, "FINI", "",
+        ];
+        writeFileSync(join(server.folder, "pole.cls"), lines.join("\n"));
+        const { page, complaints } = await visit(browser, server.link);
+        await page.keyboard.press("Control+o");
+        await page.getByText("pole.cls").click();
+        await proven(page);
+        await page.getByRole("tab", { name: "Axes over time" }).click();
+        await page.getByText("2 cuts turn a rotary axis by more than 30°").click();
+        const jumps = page.locator(".jumps button");
+        for (const text of await jumps.allInnerTexts()) {
+            const [, from, to] = /^C (-?[\d.]+)° → (-?[\d.]+)°/.exec(text)!;
+            expect(Math.abs(Number(to) - Number(from))).toBeCloseTo(45, 2);
+        }
+        await jumps.nth(1).click();
+        await page.locator(".source .cm-line.at", { hasText: "GOTO/20,0,0" }).waitFor();
+        await page.getByRole("img", { name: "deviation over time" }).waitFor();
+        await page.getByLabel("Colour by").selectOption("deviation");
+        // Three decimals are written.
+        const most = Number(/0 to ([\d.]+) mm/.exec(await page.locator(".view header").innerText())![1]);
+        expect(most).toBeLessThan(0.002);
+        await accessible(page, "jumps");
         expect(complaints).toEqual([]);
         await page.close();
     });
