@@ -223,6 +223,21 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await proven(page);
     });
 
+    test("near an arc its lines are finer than the exact level, and stay so without an end of requests", async () => {
+        const page = await begin();
+        // `CIRCLE/72,40,-6,0,0,1,3` is gone round to here.
+        await goTo(page, "s47");
+        await page.locator(".source .cm-line.at", { hasText: "GOTO/72,43,-6" }).waitFor();
+        const asked: string[] = [];
+        page.on("request", (request) => request.url().includes("/geometry/") && asked.push(request.url().replace(/^.*geometry\/\d+\//, "")));
+        await page.locator(".canvas").focus();
+        await page.keyboard.press("z");
+        for (let step = 0; step < 25; step++) await page.keyboard.press("PageUp");
+        await expect.poll(() => asked.at(-1)).toBe("fine/0");
+        await page.waitForTimeout(300);
+        expect(asked.filter((path) => path === "fine/0").length).toBe(1);
+    });
+
     test("a file that is dropped keeps its name, also in the notice of its edit", async () => {
         const page = await begin();
         const dropped = await page.evaluateHandle((text) => {
