@@ -17,6 +17,7 @@ function board(): Board {
         areas: [area("board", null, 0, 1), area("copper", "GND", 0, 1), area("copper", null, 1, 1)],
         places: [{ x: 5, y: 3, kind: "joined", what: "two nets stay joined" }],
         turning: null,
+        width: null,
         error: 0.002,
         is_whole: true,
     };

@@ -11,7 +11,7 @@ use proof::Tolerances;
 use source::apt::Csys;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use toolpost_app::{
     Origin, Source, Stop, Verdict, Watch, pcb as board, post, prove, toolpath, wire,
 };
@@ -649,6 +649,51 @@ fn a_folder_in_memory_is_a_board_as_on_disk() {
     };
     assert_ne!(copper(front), copper(back));
     assert!(copper(front).0 > 1 && copper(front).1.is_finite());
+}
+
+/// A watch that counts how often it is asked while a board is planned, and ends that at one of the times.
+struct Planning {
+    end: Option<usize>,
+    is_on: AtomicBool,
+    asked: AtomicUsize,
+}
+
+impl Watch for Planning {
+    fn step(&self, what: &'static str) {
+        self.is_on.store(what == "planning", Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        if !self.is_on.load(Ordering::Relaxed) {
+            return false;
+        }
+        let asked = self.asked.fetch_add(1, Ordering::Relaxed) + 1;
+        self.end.is_some_and(|end| asked >= end)
+    }
+}
+
+/// Two sides with two parts each: asked for each side, for each part, and between the four steps of isolating a side.
+#[test]
+fn planning_a_board_is_asked_between_its_steps_and_ends_there() {
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let mut settings = Settings::default();
+    settings.isolation.tool = Some(0.3);
+    let tolerances = Tolerances::default();
+    let planned = |end| {
+        let watch = Planning { end, is_on: AtomicBool::new(false), asked: AtomicUsize::new(0) };
+        let job = board::Job::new(&machine, &settings, &tolerances).unwrap();
+        let made = job.make(&[Source::File(example("lamp.toml"))], &watch);
+        (made.map(|made| made.programs.len()), watch.asked.into_inner())
+    };
+    let (made, whole) = planned(None);
+    assert_eq!(made.unwrap(), 4);
+    assert!(whole >= 2 + 4 + 2 * 3, "{whole}");
+    for end in 1..=whole {
+        let (made, asked) = planned(Some(end));
+        assert_eq!(made.unwrap_err().verdict, Verdict::Cancelled, "{end}");
+        // Each of those who run at the same time asks once more, and who waits for them.
+        assert!(asked <= end + 8, "{end}: {asked}");
+    }
 }
 
 #[test]

@@ -551,6 +551,8 @@ pub struct BoardPicture {
     pub places: Vec<BoardPlace>,
     /// The line about which the board is turned over, where it is.
     pub turning: Option<Turning>,
+    /// How wide the only tool cuts, mm, where the program has one: a control that changes no tools does not name it.
+    pub width: Option<f64>,
     /// How far the areas may be from what they are of, mm.
     pub error: f64,
     /// Whether these are all areas.

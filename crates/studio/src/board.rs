@@ -58,6 +58,8 @@ pub struct Place {
     /// Which of the programs it is.
     number: usize,
     areas: BoardAreas,
+    /// How wide its only tool cuts, mm.
+    width: Option<f64>,
 }
 
 /// Writes the programs of a board and proves them: a job for each.
@@ -100,7 +102,11 @@ pub(crate) fn make(
         let pcb::Program { file, mut toolpath, machine, posted, .. } = program;
         let post::Posted { text: written, origins, parts, account } = posted;
         toolpath.file.clone_from(&text_name);
-        let board = Some(Place { whole: Arc::clone(&whole), number, areas });
+        let width = match widths[..] {
+            [(.., width)] => Some(width),
+            _ => None,
+        };
+        let board = Some(Place { whole: Arc::clone(&whole), number, areas, width });
         let made =
             Made { toolpath, account, text: written, origins, parts, report: None, widths, board };
         Job::of(made, Lines::of(text.clone()), (file, (machine_name, machine)), Vec::new(), follows)
@@ -241,6 +247,7 @@ impl Place {
             areas: areas.iter().map(area).collect(),
             places: problems.iter().map(place).collect(),
             turning: turning.map(turned),
+            width: self.width,
             error: *chord,
             is_whole: *is_whole,
         };

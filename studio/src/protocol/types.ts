@@ -590,6 +590,10 @@ places: Array<BoardPlace>,
  */
 turning: Turning | null, 
 /**
+ * How wide the only tool cuts, mm, where the program has one: a control that changes no tools does not name it.
+ */
+width: number | null, 
+/**
  * How far the areas may be from what they are of, mm.
  */
 error: number, 

@@ -60,7 +60,7 @@ export class Scene {
     /** The board that the program is of, when it has come. */
     board: Board | null = null;
 
-    private widths: { looks: Looks | null; scale: number; paints: Paint[] } = { looks: null, scale: 0, paints: [] };
+    private widths: { looks: Looks | null; board: Board | null; scale: number; paints: Paint[] } = { looks: null, board: null, scale: 0, paints: [] };
 
     constructor(
         readonly walk: WalkAbout,
@@ -110,14 +110,16 @@ export class Scene {
 
     /** A paint for each tool whose width is known and is seen at this scale. */
     private bandPaints(looks: Looks, scale: number): Paint[] {
-        if (this.widths.looks === looks && this.widths.scale === scale) return this.widths.paints;
-        const { kinds, tools } = this.walk;
+        if (this.widths.looks === looks && this.widths.board === this.board && this.widths.scale === scale) return this.widths.paints;
+        const { kinds } = this.walk;
+        const only = this.board?.about.width ?? null;
+        const tools = this.walk.tools.length > 0 || only === null ? this.walk.tools.map(({ width }, tool) => ({ width, tool })) : [{ width: only, tool: -1 }];
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => (kinds[kind] === "feed" || kinds[kind] === "arc" ? Style.line : Style.hidden));
-        const paints = tools.flatMap(({ width }, tool): Paint[] => {
+        const paints = tools.flatMap(({ width, tool }): Paint[] => {
             const pixels = (width ?? 0) * scale;
             return pixels < 2 ? [] : [{ palette: looks.theme.cut, byMove: null, shift: 16, mask: 63, styles, dashed: -1, width: pixels, tool, round: true, lift: -1 }];
         });
-        this.widths = { looks, scale, paints };
+        this.widths = { looks, board: this.board, scale, paints };
         return paints;
     }
 

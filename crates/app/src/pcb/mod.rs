@@ -457,11 +457,13 @@ fn planned(
     watch.go_on()?;
     let setup = Setup::of(face, board, settings)?;
     let parts = parts.par_iter().filter(|part| plan::face(**part, settings) == face);
+    let goes_on = |_| !watch.is_cancelled();
     let works = parts.map(|part| {
         watch.go_on()?;
-        Ok((*part, Work::of(*part, &setup, settings, fastest)))
+        Ok((*part, Work::of(*part, &setup, settings, fastest, &goes_on)))
     });
     let works = works.collect::<Result<_, Stop>>()?;
+    watch.go_on()?;
     Ok((setup, works))
 }
 

@@ -16,7 +16,7 @@ use crate::{
 };
 use geom::region::{Fill, Index, Region, RegionError, Ring};
 use geom::{Element, Vec2};
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Progress, Rule};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -105,20 +105,21 @@ impl ProblemKind {
 }
 
 impl Work {
-    /// What is cut for `part` of a board that lies so, by a spindle that turns `fastest` 1/min at most.
+    /// What is cut for `part` of a board that lies so, by a spindle that turns `fastest` 1/min at most, while who waits for it goes on.
     ///
     /// # Errors
-    /// Where a tool is missing, or cannot do it.
+    /// Where a tool is missing, or cannot do it; or that the work shall end (`cancelled`), which is asked between the steps of a part.
     pub fn of(
         part: Part,
         setup: &Setup,
         settings: &Settings,
         fastest: f64,
+        progress: &dyn Progress,
     ) -> Result<Work, Vec<Diagnostic>> {
         let board = &setup.board;
         let speed = settings.running.speed.unwrap_or(USUAL_SPEED.min(fastest));
         let mut work = Work::default();
-        let worker = Worker { asked: settings, speed };
+        let worker = Worker { asked: settings, speed, progress };
         let side = &board.front;
         match part {
             Part::Front | Part::Back => {
@@ -160,9 +161,16 @@ impl Work {
 struct Worker<'a> {
     asked: &'a Settings,
     speed: f64,
+    progress: &'a dyn Progress,
 }
 
 impl Worker<'_> {
+    /// # Errors
+    /// The work shall end.
+    fn go_on(&self) -> Result<(), Vec<Diagnostic>> {
+        if self.progress.reached(0.0) { Ok(()) } else { Err(vec![program::cancelled()]) }
+    }
+
     /// Isolates copper, and takes away what is surplus where that is asked for.
     fn copper(
         &self,
@@ -190,7 +198,9 @@ impl Worker<'_> {
                 let rest = self.by_wider(work, copper, area, width, &depths, detour)?;
                 let area = rest.as_ref().or(area);
                 let (paths, around) = self.around(work, copper, area, bit.cutter)?;
+                self.go_on()?;
                 let (lines, dots) = merged_to(&linking::trails(&paths, detour), tolerance(work));
+                self.go_on()?;
                 (linking::linked(&lines, &around, detour), dots)
             }
             Isolate::Middle => {
@@ -198,6 +208,7 @@ impl Worker<'_> {
             }
             Isolate::Lines => merged(&linking::trails(&along_lines(work, board)?, detour)),
         };
+        self.go_on()?;
         let cuts = cuts(&lines, &dots, width, &depths);
         match settings.wider.is_empty() {
             true => work.operations.push(Operation {
@@ -210,6 +221,7 @@ impl Worker<'_> {
         if self.asked.clearing.clear.is_empty() {
             return Ok(());
         }
+        self.go_on()?;
         let area = area(board)?;
         let clearing = self.clearing(self.asked.clearing.clear.clone());
         let cleared = clearing.rub_out(&copper.region, self.asked.clearing.margin, &area)?;
@@ -241,6 +253,7 @@ impl Worker<'_> {
             }
             let mill = self.end_mill(*tool);
             let isolation = Isolation { narrow: Narrow::LeaveOut, ..self.isolation(mill.cutter)? };
+            self.go_on()?;
             let isolated = isolation.isolate(copper, left.as_ref().or(area))?;
             let (lines, dots) = merged(&linking::trails(&isolated.paths, detour));
             let lines = linking::linked(&lines, &isolated.around, detour);

@@ -184,7 +184,7 @@ fn a_board_is_drawn_by_its_nets_as_it_lies_for_each_program() {
     let listed = about["areas"].as_array().unwrap();
     let count: u64 = listed.iter().map(|area| area["count"].as_u64().unwrap()).sum();
     assert_eq!(areas.len() as u64, 6 * count);
-    assert_eq!(listed[0]["kind"], "board");
+    assert_eq!((&listed[0]["kind"], &about["width"]), (&json!("board"), &json!(0.3)));
     assert!(listed.iter().any(|area| area["kind"] == "copper" && area["net"].is_string()));
     assert_eq!((holes.len() % 5, tabs.len()), (0, 0));
     assert!(!holes.is_empty());
