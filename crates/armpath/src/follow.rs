@@ -170,7 +170,7 @@ pub(crate) fn nearest(job: &Job, sample: &Sample, steps: usize, of: &[Posture]) 
 /// A singularity is nearer than a limit: the limit allows it. Of two of a kind the one with less to go.
 fn is_nearer(a: Why, b: Why) -> bool {
     let rank = |why: Why| match why {
-        Why::Speed(_, share) => (0, share),
+        Why::Speed(_, share, _) => (0, share),
         Why::Wrist(margin) | Why::Elbow(margin) | Why::Shoulder(margin) => (1, -margin),
         Why::Limit(_, by) => (2, by),
         Why::Range(_) | Why::Apart => (3, 0.0),
@@ -225,7 +225,7 @@ pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize, of: &[Posture
                     (0..6).map(|k| (k + 1, share(job.arm, k, wrap(to[k] - from[k]), pair[1].time)));
                 let (joint, used) =
                     used.fold((0, 0.0), |most, now| if now.1 > most.1 { now } else { most });
-                let now = Why::Speed(joint, used);
+                let now = Why::Speed(joint, used, job.settings.speed);
                 if speed.is_none_or(|least| is_nearer(now, least)) {
                     speed = Some(now);
                 }
@@ -233,7 +233,7 @@ pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize, of: &[Posture
         }
         match speed {
             _ if !reached => return (pair[1].point, nearest(job, &pair[1], steps, of)),
-            Some(Why::Speed(_, used)) if used <= job.settings.speed => {}
+            Some(Why::Speed(_, used, most)) if used <= most => {}
             Some(why) => return (pair[1].point, why),
             None => return (pair[1].point, Why::Apart),
         }

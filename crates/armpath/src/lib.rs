@@ -195,8 +195,8 @@ pub enum Why {
     Shoulder(f64),
     /// The elbow would be this near to stretched or folded, radians.
     Elbow(f64),
-    /// A joint would need this part of its speed (number from 1).
-    Speed(usize, f64),
+    /// A joint would need this part of its speed (number from 1), and that part a cut may use.
+    Speed(usize, f64, f64),
     /// A joint (number from 1) would leave its range, through which it has turned on the way.
     Range(usize),
     /// Single points are reached, but no turn and posture leads from one to the next.
@@ -222,17 +222,18 @@ impl fmt::Display for Blocked {
                 write!(f, "the elbow would be {:.2} degrees from stretched", degrees(angle))
             }
             // It turns where the tip stays.
-            Why::Speed(joint, share) if share.is_infinite() => {
+            Why::Speed(joint, share, _) if share.is_infinite() => {
                 write!(
                     f,
                     "joint {joint} would have no time for its turn: the path is a point, and nothing states how fast the tool turns"
                 )
             }
-            Why::Speed(joint, share) => {
+            Why::Speed(joint, share, most) => {
                 write!(
                     f,
-                    "joint {joint} would need {:.0} % of its speed at this feed",
-                    100.0 * share
+                    "joint {joint} would need {:.0} % of its speed at this feed, and a cut may use {:.0} %",
+                    100.0 * share,
+                    100.0 * most
                 )
             }
             Why::Range(joint) => {

@@ -218,8 +218,11 @@ fn a_feed_that_is_too_fast_for_a_joint_is_refused_far_from_any_singularity() {
     let slow = way(&cell(LEANING), &line(30_000.0)).unwrap();
     assert!(slow.worst.speed.0 > 0.05, "{:?}", slow.worst);
     let blocked = way(&cell(LEANING), &line(3_000_000.0)).unwrap_err();
-    assert!(matches!(blocked.why, Why::Speed(_, share) if share > 0.9), "{blocked:?}");
-    assert!(blocked.to_string().contains("% of its speed at this feed"), "{blocked}");
+    assert!(matches!(blocked.why, Why::Speed(_, share, 0.9) if share > 0.9), "{blocked:?}");
+    assert!(
+        blocked.to_string().ends_with("% of its speed at this feed, and a cut may use 90 %"),
+        "{blocked}"
+    );
 }
 
 #[test]

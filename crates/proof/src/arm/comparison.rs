@@ -599,7 +599,18 @@ impl<'a> Comparison<'a> {
 
     fn elsewhere<T>(&self, end: &Frame, to: &Pose) -> Outcome<T> {
         let (tip, axis) = self.off(end, to);
-        refused(Rule::EndPoint, format!("the tip ends {tip:.4} mm off, the axis {axis:.4}°"))
+        let message = format!("the tip ends {tip:.4} mm off, the axis {axis:.4}°");
+        Err(Diagnostic::error(Rule::EndPoint, message).help(self.way_to_end()).into())
+    }
+
+    /// The way out where a motion ends elsewhere.
+    fn way_to_end(&self) -> &'static str {
+        match self.cell.rail {
+            Some(_) => {
+                "the end of the source's motion: its position, or its joints and the place of the rail (E1 in KRL and LS, eax_a in RAPID) that belong together"
+            }
+            None => "the end of the source's motion: its position, or the joints that lead there",
+        }
     }
 
     /// Notes how far the end of a step is off.

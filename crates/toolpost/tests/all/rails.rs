@@ -86,6 +86,8 @@ fn a_rail_that_stands_elsewhere_is_refused() {
         let report = proof_of(&source, &machine, &damaged);
         let found = report.mismatches.first().map(|found| found.rule.name());
         assert_eq!(found, Some(rule), "{from} -> {to}: {:#?}", report.mismatches);
+        let names_rail = report.mismatches[0].help.contains("the place of the rail (E1");
+        assert!(rule != "end-point" || names_rail, "{:#?}", report.mismatches);
     }
     let home = text.rfind("E1 0.000").unwrap();
     let elsewhere = format!("{}E1 5.000{}", &text[..home], &text[home + "E1 0.000".len()..]);

@@ -170,6 +170,13 @@ fn each_damage_to_the_job_is_refused_by_its_rule() {
         let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
         assert_eq!(found, [*rule], "{from} -> {to}: {:#?}", report.mismatches);
     }
+    let off = text.replacen("$OUT[1]=TRUE", "$OUT[1]=FALSE", 1);
+    let report = proof_of(&source, &machine, &off);
+    assert!(
+        report.mismatches[0].help.contains("the spindle is off here"),
+        "{:#?}",
+        report.mismatches
+    );
 }
 
 /// A line of 10° over 40 mm at 1200 mm/min takes 2 s.

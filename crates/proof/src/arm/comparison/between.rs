@@ -91,11 +91,17 @@ impl Comparison<'_> {
             self.running.runs_up = 0.0;
             return Ok(());
         }
-        self.happens(
+        let done = self.happens(
             Rule::Dwell,
             "dwells",
             |step| matches!(step, Step::Dwell(wanted) if (wanted - seconds).abs() <= allowed),
-        )
+        );
+        done.map_err(|found| match self.running.is_on || self.machine.spindle.dwell == 0.0 {
+            true => found,
+            false => Box::new(found.help(
+                "the spindle is off here: a wait for its speed stands behind the output that switches it on",
+            )),
+        })
     }
 
     /// Something between motions that the source has there too.

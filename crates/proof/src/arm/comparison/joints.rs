@@ -65,7 +65,8 @@ impl Comparison<'_> {
                     "the joints bring the tip to X{:.3} Y{:.3} Z{:.3}, where the source does not go by rapid",
                     end.x, end.y, end.z
                 );
-                refused(Rule::EndPoint, message)
+                let found = Diagnostic::error(Rule::EndPoint, message);
+                Err(found.help(self.way_to_end()).into())
             }
         }
     }
