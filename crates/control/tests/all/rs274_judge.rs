@@ -25,6 +25,24 @@ fn is_refused_by_both(program: &str) {
 }
 
 #[test]
+fn a_line_has_252_bytes_at_most_with_blanks_comments_and_carriage_return() {
+    let lines: [fn(usize) -> String; 6] = [
+        |length| format!("({})", "x".repeat(length - 2)),
+        |length| format!(";{}", "x".repeat(length - 1)),
+        |length| format!("G0 X{}1", "0".repeat(length - 5)),
+        |length| format!("G0 X1{}", " ".repeat(length - 5)),
+        |length| format!("G0 X1{}\r", " ".repeat(length - 6)),
+        |length| format!("G0 X1 ({})", "x".repeat(length - 8)),
+    ];
+    for line in lines {
+        makes_the_same_moves(&format!("G0 X2\n{}\nG0 X3\nM2\n", line(252)));
+        is_refused_by_both(&format!("G0 X2\n{}\nG0 X3\nM2\n", line(253)));
+    }
+    // What stands behind the end is not read.
+    makes_the_same_moves(&format!("G0 X2\nM2\n({})\n", "x".repeat(300)));
+}
+
+#[test]
 fn lines_in_both_units_and_both_distance_modes() {
     makes_the_same_moves(
         "G21 G90\nG0 X0 Y0 Z10\nG1 X10.5 F100\nY-3.25 Z1\nG91 X1 Y1\nX-2\nG0 Z5\nG90 G1 X0\n\

@@ -160,6 +160,8 @@ group! {
         percent: bool = true;
         /// A line is one command, and what follows are its parameters: texts and axes without a number, too.
         one_command: bool = false;
+        /// The longest line that the control reads, bytes: with its blanks, its comments and a CR at its end.
+        longest_line: usize = usize::MAX;
         /// `$` begins a command of the console.
         console: bool = false;
         /// How a program ends.

@@ -178,6 +178,7 @@ impl<'a, 's> Run<'a, 's> {
         is_plain: bool,
     ) -> Result<(), Fault> {
         self.continuation = None;
+        self.is_short(from, text)?;
         if text.first() == Some(&b'%') && self.facts.syntax.percent {
             return self.percent(from, text, line);
         }
@@ -213,6 +214,23 @@ impl<'a, 's> Run<'a, 's> {
             return Ok(());
         }
         self.execute()
+    }
+
+    /// # Errors
+    /// The line `text`, which begins at byte `from`, is longer than the control reads, comments included. Behind the end it reads none.
+    fn is_short(&self, from: usize, text: &[u8]) -> Result<(), Fault> {
+        if self.control.state.ended {
+            return Ok(());
+        }
+        let longest = self.facts.syntax.longest_line;
+        let carriage_return = self.here.source.text.get(from + text.len()) == Some(&b'\r');
+        let length = text.len() + usize::from(carriage_return);
+        if length <= longest {
+            return Ok(());
+        }
+        let message =
+            format!("the line has {length} bytes with its blanks and comments, at most {longest}");
+        Err(self.at_line(Rule::BlockLength, message))
     }
 
     /// `%` stands alone on its line, which begins at byte `from`; a program ends at the second, or at one behind its first block.
