@@ -269,7 +269,10 @@ pub fn sweep_idle(folder: &Path) {
 
 /// Checks that the system lets this process write a file of so many bytes (`ulimit -f`): a larger one would end the process by
 /// a signal (SIGXFSZ), without a word.
-fn check_size(bytes: usize) -> io::Result<()> {
+///
+/// # Errors
+/// It does not.
+pub fn check_size(bytes: usize) -> io::Result<()> {
     #[cfg(unix)]
     {
         use rustix::process::{Resource, getrlimit};

@@ -4,6 +4,7 @@
 //! folder (`cap-std`), so a link that is put in place meanwhile leads nowhere else. Hidden names (`.toolpost`) are not listed.
 
 use crate::ask::{Draft, Entry, EntryKind};
+use app::files;
 use cap_std::ambient_authority;
 use cap_std::fs::{Dir, OpenOptions};
 use program::{Diagnostic, Rule};
@@ -269,6 +270,7 @@ impl Folder {
 
     /// Writes a file under another name, and puts it in the place of the one that was there.
     fn replace(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        files::check_size(bytes.len())?;
         self.sweep();
         let mut new = path.as_os_str().to_owned();
         // Another server may work in the same folder.

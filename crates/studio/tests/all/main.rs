@@ -1,5 +1,6 @@
 //! The server as a page talks with it, and as nobody should.
 
+mod bad_input;
 mod boards;
 mod client;
 mod closed;

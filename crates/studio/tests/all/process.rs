@@ -33,7 +33,12 @@ impl Drop for Process {
 
 impl Process {
     fn start(outside: tempfile::TempDir) -> (Process, Studio) {
-        let mut child = Command::new(std::env::current_exe().unwrap())
+        Process::by(Command::new(std::env::current_exe().unwrap()), outside)
+    }
+
+    /// Starts it by a command, which is given the arguments of this program.
+    fn by(mut command: Command, outside: tempfile::TempDir) -> (Process, Studio) {
+        let mut child = command
             .args(["--exact", "process::serves_as_a_child", "--nocapture"])
             .env(FOLDER, outside.path().join("own"))
             .stdout(Stdio::null())
@@ -152,6 +157,77 @@ fn a_killed_server_leaves_no_half_file() {
             .unwrap();
         assert_eq!(page.done("drafts", json!({}))[0]["bytes"], 1);
     }
+}
+
+/// A program or a draft for which there is no room: the page is told, nothing is half-written, and the server goes on.
+fn no_room_for(studio: &Studio, page: &mut crate::client::Socket, job: &serde_json::Value) {
+    let names = || {
+        let names = std::fs::read_dir(studio.own()).unwrap();
+        let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.filter(|name| name != ".toolpost").collect();
+        names.sort();
+        names
+    };
+    let before = names();
+    let save = json!({ "revision": job["revision"], "path": "dome.nc", "replace": false });
+    let stop = page.answer("save", save, &[]).unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "output-file", "{stop}");
+    assert!(stop["findings"][0]["help"].as_str().unwrap().contains("make room"), "{stop}");
+    assert_eq!(names(), before);
+    let draft = json!({ "name": "d", "of": {} });
+    let stop =
+        page.answer("draft", draft, &[Array::text("text", vec![b'x'; 300_000])]).unwrap_err();
+    assert_eq!(stop["findings"][0]["rule"], "output-file", "{stop}");
+    assert_eq!(page.done("drafts", json!({})), json!([]));
+    let drafts = std::fs::read_dir(studio.own().join(".toolpost/drafts"));
+    assert_eq!(drafts.into_iter().flatten().count(), 0);
+}
+
+/// The largest file of the shell: less than the program.
+#[cfg(unix)]
+#[test]
+fn a_file_that_the_system_does_not_let_be_written_is_not_begun() {
+    let outside = folder();
+    let source = std::fs::read(crate::client::root().join("examples/dome.cls")).unwrap();
+    std::fs::write(outside.path().join("own/dome.cls"), source).unwrap();
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -f 40; exec \"$0\" \"$@\""]).arg(std::env::current_exe().unwrap());
+    let (_process, studio) = Process::by(command, outside);
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "fanuc-table-bc");
+    no_room_for(&studio, &mut page, &job);
+    page.answer("draft", json!({ "name": "d", "of": {} }), &[Array::text("text", "x")]).unwrap();
+}
+
+/// A disk of 400 kB, of which 40 are free: where this process may make one.
+#[cfg(target_os = "linux")]
+#[test]
+fn on_a_full_disk_nothing_is_half_written() {
+    struct Disk(std::path::PathBuf);
+    impl Drop for Disk {
+        fn drop(&mut self) {
+            let _ = Command::new("umount").arg("--lazy").arg(&self.0).status();
+        }
+    }
+    let outside = folder();
+    let own = outside.path().join("own");
+    let mut mount = Command::new("mount");
+    mount.args(["-t", "tmpfs", "-o", "size=400k", "none"]).arg(&own).stderr(Stdio::null());
+    if !mount.status().is_ok_and(|status| status.success()) {
+        eprintln!("nothing is judged: no disk can be made here");
+        return;
+    }
+    let _disk = Disk(own.clone());
+    let source = std::fs::read(crate::client::root().join("examples/dome.cls")).unwrap();
+    std::fs::write(own.join("dome.cls"), &source).unwrap();
+    let (_process, studio) = Process::start(outside);
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "fanuc-table-bc");
+    let free = 400 * 1024 - source.len().next_multiple_of(4096) - 40 * 1024;
+    std::fs::write(own.join("filler"), vec![0; free]).unwrap();
+    no_room_for(&studio, &mut page, &job);
+    std::fs::remove_file(own.join("filler")).unwrap();
+    page.done("save", json!({ "revision": job["revision"], "path": "dome.nc", "replace": false }));
 }
 
 /// A folder in which nobody may write: the page is told, and the rest works.
