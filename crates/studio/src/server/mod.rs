@@ -3,6 +3,7 @@
 mod asks;
 pub mod closed;
 mod files;
+mod metered;
 mod socket;
 
 use crate::ask::{Command, Field, FileOrUpload, Given, Limits};
@@ -21,6 +22,7 @@ use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use machine::Machine;
+use metered::{Metered, Trusted};
 use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -295,8 +297,11 @@ async fn serve(listener: tokio::net::TcpListener, studio: Arc<Studio>) -> ! {
         let (number, studio, all) = (last, Arc::clone(&studio), silent.clone());
         let connection = tokio::spawn(async move {
             let speaks = all.clone();
-            let service = service_fn(move |request| {
+            let trusted = Trusted::default();
+            let stream = Metered::new(stream, trusted.clone());
+            let service = service_fn(move |mut request: hyper::Request<Incoming>| {
                 speaks.remove(number);
+                request.extensions_mut().insert(trusted.clone());
                 answer(Arc::clone(&studio), request)
             });
             let connection = http1::Builder::new()
@@ -374,6 +379,9 @@ async fn route(studio: Arc<Studio>, request: Request) -> Response<Body> {
     }
     if !brings(&studio.token, &request) {
         return say(StatusCode::UNAUTHORIZED, "the token of the link is missing or wrong");
+    }
+    if let Some(trusted) = request.extensions().get::<Trusted>() {
+        trusted.set();
     }
     if path.starts_with("geometry/") || path.starts_with("moves/") {
         return match is_get {

@@ -2,6 +2,7 @@
 
 use super::asks::{self, Answer, wrong};
 use super::closed::say;
+use super::metered::Trusted;
 use super::{SOCKETS, Studio};
 use crate::ask::{Cancel, Done, Hello, Progress, Stop, Stopped, Verdict, Walked};
 use crate::drawing::Piece;
@@ -45,12 +46,13 @@ pub async fn upgrade(studio: Arc<Studio>, request: Request) -> Response<Body> {
         return say(StatusCode::SERVICE_UNAVAILABLE, why);
     };
     let (mut parts, _) = request.into_parts();
+    let trusted = parts.extensions.get::<Trusted>().cloned().unwrap_or_default();
     match WebSocketUpgrade::from_request_parts(&mut parts, &()).await {
         Ok(upgrade) => upgrade
             .max_message_size(message::MOST_BYTES)
             .max_frame_size(message::MOST_BYTES)
             .on_upgrade(async move |socket| {
-                talk(studio, socket).await;
+                talk(studio, trusted, socket).await;
                 drop(place);
             }),
         Err(refused) => refused.into_response(),
@@ -58,7 +60,7 @@ pub async fn upgrade(studio: Arc<Studio>, request: Request) -> Response<Body> {
 }
 
 /// Talks with a page until it goes.
-async fn talk(studio: Arc<Studio>, mut socket: WebSocket) {
+async fn talk(studio: Arc<Studio>, trusted: Trusted, mut socket: WebSocket) {
     let first = timeout(PATIENCE.0, next(&mut socket)).await;
     let token = match first {
         Ok(Some(Ok(frame))) => of_head::<Hello>(frame.head).ok().map(|hello| hello.token),
@@ -67,6 +69,7 @@ async fn talk(studio: Arc<Studio>, mut socket: WebSocket) {
     if !token.is_some_and(|token| studio.token.is(token.as_bytes())) {
         return close(socket, NO_TOKEN, "the first message is the token of the link").await;
     }
+    trusted.set();
     let (answers, mut to_send) = unbounded_channel();
     let number = studio.pages.fetch_add(1, Ordering::Relaxed);
     let page = Arc::new(Page { studio, number, answers, running: Mutex::default() });

@@ -139,6 +139,12 @@ fn a_socket_brings_the_token_first_and_soon() {
     let (mut silent, begun) = (studio.silent_socket(), Instant::now());
     assert!(matches!(silent.next(), Said::Closed(4401)));
     assert!((2..10).contains(&begun.elapsed().as_secs()), "{:?}", begun.elapsed());
+    // One that sends more than a token is: some kB of it are taken, and what the system has under way.
+    let mut large = studio.silent_socket();
+    large.send_piece(0x82, 60 << 20, &[]);
+    let piece = vec![0; 1 << 20];
+    let sent = (0..60).take_while(|_| large.stream.write_all(&piece).is_ok()).count();
+    assert!(sent < 30, "{sent} MB were taken");
     // One that stops in the middle of its first frame.
     let (mut stuck, begun) = (studio.silent_socket(), Instant::now());
     stuck.send_piece(0x82, 1000, b"begun");
