@@ -147,7 +147,7 @@ export class Editor {
             const text = await origin.read(window.from, window.to);
             if (reading !== this.reading) return;
             this.move(text, window);
-            if (isLong) this.resting = setTimeout(() => void this.grow(), REST);
+            if (isLong) this.growLater();
         } finally {
             if (reading === this.reading) this.coming = null;
         }
@@ -162,6 +162,11 @@ export class Editor {
         this.view.dispatch({ changes: { from: 0, to: length, insert: text }, annotations: Transaction.addToHistory.of(false), selection: { anchor: 0 } });
         this.isSetting = false;
         this.draw(true);
+    }
+
+    private growLater(): void {
+        clearTimeout(this.resting);
+        this.resting = setTimeout(() => void this.grow(), REST);
     }
 
     /** As many lines as are kept, round those in sight. They come in parts, so that a jump need not wait for all of them. */
@@ -240,6 +245,12 @@ export class Editor {
     mark(marked: Marked): void {
         const isNew = marked.at !== this.marked.at;
         this.marked = marked;
+        // The lines of the place come first.
+        if (isNew && this.isGrowing) {
+            this.reading++;
+            this.isGrowing = false;
+            this.growLater();
+        }
         if (isNew && this.isElsewhere) this.jump();
         else this.draw(isNew);
     }

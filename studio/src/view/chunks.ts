@@ -117,14 +117,20 @@ export class Chunks implements Vertices {
 
     /** The vertices at this level, else at the nearest that is there; what is missing is asked for. */
     best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
-        const coarser = Array.from({ length: this.walk.levels.length - level }, (_, i) => level + i);
+        const vertices = this.take(level, chunk);
+        if (vertices !== null) return { vertices, isExact: level <= 0 };
+        this.want(this.key(level, chunk));
+        return this.nearest(level, chunk) ?? this.before?.best(level, chunk) ?? null;
+    }
+
+    private nearest(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
+        const coarser = Array.from({ length: this.walk.levels.length - level - 1 }, (_, i) => level + 1 + i);
         const finer = Array.from({ length: level - FINE }, (_, i) => level - 1 - i);
         for (const other of [...coarser, ...finer]) {
             const vertices = this.take(other, chunk);
-            if (vertices === null && other === level) this.want(this.key(level, chunk));
             if (vertices !== null) return { vertices, isExact: other <= 0 };
         }
-        return this.before?.best(level, chunk) ?? null;
+        return null;
     }
 
     /** The vertices at exactly this level. */

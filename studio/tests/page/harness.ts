@@ -101,8 +101,8 @@ async function serve(route: Route, folder: string): Promise<void> {
     await route.fulfill({ path, headers: { "content-security-policy": policy } });
 }
 
-export async function proven(page: Page): Promise<void> {
-    await page.getByText("✓ PROVEN").waitFor({ timeout: 20_000 });
+export async function proven(page: Page, timeout = 20_000): Promise<void> {
+    await page.getByText("✓ PROVEN").waitFor({ timeout });
 }
 
 /** The lit line of a pane: the number in its text, and what stands there. */

@@ -33,11 +33,11 @@ describe.skipIf(absent() !== null)("a long program", () => {
         await page.keyboard.press("Control+o");
         await page.getByText("long.cls").click();
         // What is walked is there before the verdict, and is not called proven.
-        await page.getByText("the proof runs: nothing of this is proven yet").waitFor();
+        await page.getByText("the proof runs: nothing of this is proven yet").waitFor({ timeout: 60_000 });
         expect(await page.getByText("PROVEN", { exact: false }).and(page.locator(".done")).count()).toBe(0);
         expect(await page.getByRole("button", { name: "Save…" }).isDisabled()).toBe(true);
         await expect.poll(() => page.locator(".canvas canvas").first().evaluate(isDrawn)).toBe(true);
-        await proven(page);
+        await proven(page, 90_000);
         await page.getByText("nothing of this is proven yet").waitFor({ state: "detached" });
         const lit = page.locator(".source .cm-line.at");
         // All but the first two moves are lines of the source behind its seventh.
@@ -58,5 +58,5 @@ describe.skipIf(absent() !== null)("a long program", () => {
         expect(numbers).toContain("62000");
         expect(complaints).toEqual([]);
         await page.close();
-    });
+    }, 150_000);
 });
