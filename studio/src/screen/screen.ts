@@ -97,13 +97,21 @@ export class Screen {
         }
         const { walk, revision } = job;
         const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++, this.walkedBefore(walk));
-        this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++));
+        this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job));
         void chunks.load().catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
         else if (board !== null) this.show(board);
         const isOther = this.fitted !== job.source.file;
         this.fitted = job.source.file;
         for (const viewer of this.viewers) viewer.refit(isOther);
+    }
+
+    /** Of a wire, the height of the part as it was given, else of the plane of the upper guide; null of another machine. */
+    private wireOf({ machine }: Job): number | null {
+        if (machine.kind !== "wire") return null;
+        const given = ["height", "uv-height"].map((name) => Number(this.studio.work.value?.options.find(([option]) => option === name)?.[1]));
+        const guide = machine.linkage.bodies.find(({ name }) => name === "upper guide")?.low[2] ?? 0;
+        return given.find((height) => height > 0) ?? guide;
     }
 
     /** The board below the cuts. */
@@ -185,11 +193,12 @@ export class Screen {
 
     get all(): { low: Vector; high: Vector } | null {
         if (this.studio.job.value === null) return this.studio.walking.value?.walking.box ?? null;
-        const [low, high] = this.studio.job.value?.walk.box ?? [];
+        const [low, high] = this.studio.job.value.walk.box ?? [];
         if (low === undefined || high === undefined) return null;
         const board = this.board.value?.box ?? { low, high };
         const of = (way: (...parts: number[]) => number, a: Vector, b: Vector): Vector => [way(a[0], b[0]), way(a[1], b[1]), way(a[2], b[2])];
-        return { low: of(Math.min, low, board.low), high: of(Math.max, high, board.high) };
+        const wire = this.wireOf(this.studio.job.value) ?? 0;
+        return { low: of(Math.min, low, board.low), high: of(Math.max, [high[0], high[1], high[2] + wire], board.high) };
     }
 
     /** Leads to the finding's place, in every pane. */

@@ -3,7 +3,7 @@ import type { Projection, Size } from "./camera.ts";
 import type { Theme } from "./colours.ts";
 import { Raster, rgb } from "./raster.ts";
 import type { Picture } from "./scene.ts";
-import type { Paint, Strip } from "./strip.ts";
+import type { Paint, Strip, Triangles } from "./strip.ts";
 
 /** Draws pictures on a canvas of its own. */
 export interface Renderer {
@@ -14,7 +14,7 @@ export interface Renderer {
 /** Pictures by the rasteriser. While only what lies over the lines changes, the lines are not drawn again. */
 export class Painting {
     private readonly raster: Raster;
-    private lines: { flats: Flat[]; strips: Strip[]; projection: Projection; paper: number; seen: Uint32Array; depth: Float32Array } | null = null;
+    private lines: { flats: Flat[]; surfaces: Triangles[]; strips: Strip[]; projection: Projection; paper: number; seen: Uint32Array; depth: Float32Array } | null = null;
 
     constructor(
         readonly width: number,
@@ -24,19 +24,20 @@ export class Painting {
     }
 
     /** The colours of all pixels. */
-    draw({ flats, strips, over, bodies }: Omit<Picture, "symbols">, projection: Projection, paper: number): Uint32Array<ArrayBuffer> {
+    draw({ flats, surfaces, strips, over, bodies }: Omit<Picture, "symbols">, projection: Projection, paper: number): Uint32Array<ArrayBuffer> {
         const { raster, lines } = this;
-        if (lines !== null && lines.paper === paper && areAlike(lines.flats, flats) && isSame(lines.projection, projection) && areSame(lines.strips, strips)) {
+        if (lines !== null && lines.paper === paper && areAlike(lines.flats, flats) && areAlike(lines.surfaces, surfaces) && isSame(lines.projection, projection) && areSame(lines.strips, strips)) {
             raster.seen.set(lines.seen);
             raster.depth.set(lines.depth);
         } else {
             raster.clear(paper);
             for (const flat of flats) raster.flat(flat, projection);
+            for (const surface of surfaces) raster.triangles(surface, projection);
             for (const strip of strips) raster.strip(strip, projection);
             const { seen, depth } = lines ?? { seen: raster.seen.slice(), depth: raster.depth.slice() };
             seen.set(raster.seen);
             depth.set(raster.depth);
-            this.lines = { flats, strips, projection, paper, seen, depth };
+            this.lines = { flats, surfaces, strips, projection, paper, seen, depth };
         }
         for (const strip of over) raster.strip(strip, projection);
         for (const body of bodies) raster.triangles(body, projection);
@@ -44,7 +45,7 @@ export class Painting {
     }
 }
 
-const areAlike = (a: Flat[], b: Flat[]): boolean => a.length === b.length && a.every((flat, i) => flat === b[i]);
+const areAlike = <T>(a: T[], b: T[]): boolean => a.length === b.length && a.every((one, i) => one === b[i]);
 
 const areSame = (a: Strip[], b: Strip[]): boolean =>
     a.length === b.length && a.every(({ vertices, from, to, paint }, i) => {

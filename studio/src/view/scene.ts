@@ -12,6 +12,8 @@ import { Raster } from "./raster.ts";
 import type { Rows } from "./rows.ts";
 import { Mark, symbolsOf, type Symbol } from "./symbols.ts";
 import { CHUNK_MOVES, Style, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
+import { surfaceOf } from "./surface.ts";
+import type { Vector } from "./vector.ts";
 
 export interface Looks {
     mode: Mode;
@@ -35,6 +37,8 @@ export interface Marks {
 }
 
 export interface Picture {
+    /** What a wire cuts: it stays while the lines do. */
+    surfaces: Triangles[];
     /** What lies below all else. */
     flats: Flat[];
     strips: Strip[];
@@ -49,6 +53,8 @@ type Best = NonNullable<ReturnType<Vertices["best"]>>;
 /** The most places of a board that are marked. */
 const PLACES = 400;
 
+const SURFACE: Triangles["colour"] = [205, 218, 235];
+
 /** Pixels round the pointer in which a line is looked for. */
 const REACH = 6;
 
@@ -60,24 +66,42 @@ export class Scene {
     /** The board that the program is of, when it has come. */
     board: Board | null = null;
 
+    private readonly surfaces = new WeakMap<ArrayBuffer, Triangles>();
+
     private widths: { looks: Looks | null; board: Board | null; scale: number; paints: Paint[] } = { looks: null, board: null, scale: 0, paints: [] };
 
     constructor(
         readonly walk: WalkAbout,
         readonly chunks: Vertices,
         private readonly rows: Rows,
+        /** Of a wire: how high its upper end is over the lower one, mm. */
+        private readonly wire: number | null = null,
     ) {}
+
+    /** The surface of a chunk, made once. */
+    private surface(surfaces: Triangles[], chunk: Chunk, vertices: ArrayBuffer, height: number): void {
+        const known = this.surfaces.get(vertices);
+        if (known !== undefined) return void surfaces.push(known);
+        const [straight, round] = ["feed", "arc"].map((kind) => this.walk.kinds.indexOf(kind)) as [number, number];
+        const corners = surfaceOf(chunk, vertices, this.rows, { height, straight, round });
+        if (corners === null) return;
+        const made = { corners, colour: SURFACE };
+        this.surfaces.set(vertices, made);
+        surfaces.push(made);
+    }
 
     picture(projection: Projection, size: Size, looks: Looks, marks: Marks): Picture {
         const strips: Strip[] = [];
         const over: Strip[] = [];
         const symbols: Symbol[] = [];
+        const surfaces: Triangles[] = [];
         const level = levelFor(this.walk, projection.scale);
         for (const chunk of this.chunks.chunks) {
             if (!inSight(chunk, projection, size)) continue;
             const best = this.chunks.best(level, chunk.number);
             if (best === null) continue;
             const { vertices } = best;
+            if (this.wire !== null) this.surface(surfaces, chunk, vertices, this.wire);
             this.bands(strips, chunk, best, looks, marks, projection.scale);
             this.lines(strips, chunk, best, looks, marks);
             this.picked(over, chunk, best, looks, marks);
@@ -88,7 +112,7 @@ export class Scene {
         if (tabs !== null) strips.push(tabs);
         const flats = this.board?.flats(looks.theme) ?? [];
         this.places(symbols, projection, size);
-        return { flats, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+        return { flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
     }
 
     /** Places of the board that are to be looked at. */
@@ -172,7 +196,8 @@ export class Scene {
         if (known !== undefined) return known;
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, looks.rapids));
         const bits = looks.mode === "tool" ? { shift: 16, mask: 63 } : { shift: 12, mask: 15 };
-        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width: looks.width, tool: -1, round: false, lift: 0 };
+        // On the edge of a surface lines lie over it.
+        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width: looks.width, tool: -1, round: false, lift: this.wire === null ? 0 : 1.5 };
         this.alike.paints.set(palette, paint);
         return paint;
     }
@@ -191,27 +216,43 @@ export class Scene {
     }
 
     /** The move under the pixel: found in what is drawn, then among the exact lines of that chunk. */
-    async pick(camera: Projection, size: Size, looks: Looks, x: number, y: number): Promise<number | null> {
-        const none: Marks = { now: null, pale: false, ofBlock: [], mismatch: null, tool: null, bodies: [] };
-        const thin = { ...looks, width: 1 };
-        const { strips } = this.picture(camera, size, thin, none);
-        const rough = seen(strips, camera, x, y);
+    async pick(camera: Projection, looks: Looks, x: number, y: number): Promise<number | null> {
+        const rough = seen(this.near(camera, looks, x, y), camera, x, y);
         if (rough === null) return null;
         const chunk = this.chunks.chunks[Math.floor(rough / CHUNK_MOVES)];
         if (chunk === undefined) return rough;
         const vertices = await this.chunks.exact(0, chunk.number);
         if (vertices === null) return rough;
         const exact: Strip[] = [];
-        this.bands(exact, chunk, { vertices }, thin, none, camera.scale);
-        this.lines(exact, chunk, { vertices }, thin, none);
+        this.pickable(exact, chunk, { vertices }, looks, camera.scale);
         return seen(exact, camera, x, y) ?? rough;
+    }
+
+    /** What is drawn of the chunks that reach to the pixel. */
+    private near(camera: Projection, looks: Looks, x: number, y: number): Strip[] {
+        const strips: Strip[] = [];
+        const level = levelFor(this.walk, camera.scale);
+        const reach = REACH + Math.max(0, ...this.bandPaints(looks, camera.scale).map(({ width }) => width / 2));
+        const round = { ...camera, at: [camera.at[0] - x + reach, camera.at[1] - y + reach, camera.at[2]] as Vector };
+        for (const chunk of this.chunks.chunks) {
+            if (!inSight(chunk, round, { width: reach * 2, height: reach * 2 })) continue;
+            const best = this.chunks.best(level, chunk.number);
+            if (best !== null) this.pickable(strips, chunk, best, looks, camera.scale);
+        }
+        return strips;
+    }
+
+    private pickable(strips: Strip[], chunk: Chunk, best: Pick<Best, "vertices">, looks: Looks, scale: number): void {
+        const all = { now: null, pale: false };
+        this.bands(strips, chunk, best, looks, all, scale);
+        this.lines(strips, chunk, best, looks, all);
     }
 }
 
 /** The move of the nearest line, or of the cut that the pixel is in. */
 function seen(strips: Strip[], projection: Projection, x: number, y: number): number | null {
-    const ofKind = (isBand: boolean): Strip[] => strips.filter(({ paint }) => paint.round === isBand);
-    return nearest(ofKind(false), projection, x, y) ?? nearest(ofKind(true), projection, x, y);
+    const lines = strips.flatMap((strip) => (strip.paint.round ? [] : [{ ...strip, paint: { ...strip.paint, width: 1 } }]));
+    return nearest(lines, projection, x, y) ?? nearest(strips.filter(({ paint }) => paint.round), projection, x, y);
 }
 
 function add(strips: Strip[], { origin, first }: Chunk, vertices: ArrayBuffer, [from, to]: Range, paint: Paint): void {

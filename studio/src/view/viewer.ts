@@ -118,7 +118,7 @@ export class Viewer {
         const { size, projection } = this;
         const { scene, looks, marks, tip, box, isBoxShown } = this.shown();
         scene?.chunks.begin();
-        const picture = scene?.picture(projection, size, looks, marks) ?? { flats: [], strips: [], over: [], bodies: [], symbols: [] };
+        const picture = scene?.picture(projection, size, looks, marks) ?? { flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
         this.renderer.draw(picture, projection, size, looks.theme);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
         overlay(this.context, { box: isBoxShown ? box : null, tip, symbols: picture.symbols, drag: this.measured }, projection, size, looks.theme, this.ratio);
@@ -213,7 +213,7 @@ export class Viewer {
 
     private async pick(x: number, y: number): Promise<number | null> {
         const { scene, looks } = this.shown();
-        return (await scene?.pick(this.projection, this.size, looks, x, y)) ?? null;
+        return (await scene?.pick(this.projection, looks, x, y)) ?? null;
     }
 
     /** The point under the pixel, in the plane of the view through the camera's middle. */

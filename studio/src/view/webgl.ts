@@ -156,7 +156,7 @@ export class Gl implements Renderer {
         return { program, at };
     }
 
-    draw({ flats, strips, over, bodies }: Picture, projection: Projection, size: Size, { paper }: Theme): void {
+    draw({ flats, surfaces, strips, over, bodies }: Picture, projection: Projection, size: Size, { paper }: Theme): void {
         const { gl, canvas } = this;
         if (gl.isContextLost()) return;
         this.frame++;
@@ -180,7 +180,7 @@ export class Gl implements Renderer {
         for (const strip of [...strips, ...over]) this.strip(strip, projection);
         this.use(this.faces, projection, size, reach);
         gl.uniform3f(this.faces.at("at"), ...projection.at);
-        for (const body of bodies) this.body(body, projection);
+        for (const body of [...surfaces, ...bodies]) this.body(body, projection);
         this.forget();
     }
 

@@ -4,6 +4,13 @@ import type { Browser } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
 import { absent, accessible, example, goTo, launch, lit, proven, readout, Server, visit } from "./harness.ts";
 
+/** The part of a canvas that is not its ground. */
+function covered(canvas: SVGElement | HTMLElement): number {
+    const { width, height } = canvas as HTMLCanvasElement;
+    const pixels = new Uint32Array((canvas as HTMLCanvasElement).getContext("2d")!.getImageData(0, 0, width, height).data.buffer);
+    return pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length;
+}
+
 describe.skipIf(absent() !== null)("the same part on machines of other kinds", () => {
     let browser: Browser;
     beforeAll(async () => {
@@ -97,6 +104,8 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.getByRole("button", { name: "Post" }).click();
         await proven(page);
         for (const axis of ["X", "Y", "U", "V"]) expect(await readout(page)).toHaveProperty(axis);
+        // Lines alone cover less than a fiftieth of the view.
+        await expect.poll(() => page.locator(".canvas canvas").first().evaluate(covered)).toBeGreaterThan(0.1);
         const slider = page.getByLabel("Time of the machine");
         await slider.focus();
         await page.keyboard.press("End");
