@@ -576,9 +576,13 @@ impl Job {
                 Some(file) => self.parts.get(*file).map(|(_, origins)| origins),
                 None => Some(&self.origins),
             };
-            let is_of_it = |line: u32| {
-                let record = origins.and_then(|origins| origins.of(line)?.record);
-                record.and_then(|at| records.get(at)).is_some_and(|own| own.line == source_line)
+            let record = |line: u32| origins.and_then(|origins| origins.of(line)?.record);
+            // A record that is of no line of a file, as those of a board, is asked for by a move, and is of itself alone.
+            let own = lines.first().and_then(|line| record(*line));
+            let is_of_it = |line: u32| match (record(line), source_line) {
+                (None, _) => false,
+                (record, 0) => record == own,
+                (Some(at), _) => records.get(at).is_some_and(|of| of.line == source_line),
             };
             *lines = grown(lines, is_of_it);
         }

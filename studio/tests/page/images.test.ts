@@ -1,7 +1,7 @@
 /** The pictures of docs/studio.md: `make images-studio`. */
 
 import { join } from "node:path";
-import type { Page } from "playwright-core";
+import type { Browser, Page } from "playwright-core";
 import { describe, test } from "vitest";
 import { absent, example, goTo, launch, proven, Server, visit } from "./harness.ts";
 
@@ -15,6 +15,22 @@ async function replayed(page: Page): Promise<void> {
     });
     await page.getByRole("tab", { name: "Axes over time" }).click();
     await page.waitForTimeout(1500);
+}
+
+/** The front of a board, half milled, from above. */
+async function board(browser: Browser): Promise<void> {
+    const server = await Server.start([example("lamp.toml")], ["-m", "linuxcnc-mill"]);
+    const { page } = await visit(browser, server.link);
+    await page.getByRole("button", { name: "Set --tool…" }).first().click();
+    await page.locator("#option-tool").fill("0.4");
+    await page.getByRole("button", { name: "Post" }).click();
+    await proven(page);
+    await page.locator("[data-view]").focus();
+    await page.keyboard.press("1");
+    await replayed(page);
+    await page.getByRole("tab", { name: "Verdict" }).click();
+    await page.waitForTimeout(500);
+    await page.screenshot({ path: join(folder!, "studio-board.png") });
 }
 
 describe.skipIf(folder === undefined || absent() !== null)("pictures of the documentation", () => {
@@ -40,6 +56,7 @@ describe.skipIf(folder === undefined || absent() !== null)("pictures of the docu
         await page.getByRole("tab", { name: "Verdict" }).click();
         await page.waitForTimeout(500);
         await page.screenshot({ path: join(folder!, "studio-failed.png") });
+        await board(browser);
         await browser.close();
         await Server.stopAll();
     }, 120_000);

@@ -119,6 +119,13 @@ fn a_board_is_several_programs_each_a_job_of_its_own() {
         let again =
             json!({ "revision": job["revision"], "by": "block", "value": place["block"]["line"] });
         assert_eq!(page.done("place", again)["block"], place["block"]);
+        // No line of a file makes the moves of a board: the blocks of a move are those of its own record.
+        let ranges = place["blocks"][0]["ranges"].as_array().unwrap();
+        let line = place["block"]["line"].as_u64().unwrap();
+        let of = |range: &Value| range[0].as_u64().unwrap()..range[1].as_u64().unwrap();
+        assert!(ranges.iter().any(|range| of(range).contains(&line)), "{place}");
+        let blocks: u64 = ranges.iter().map(|range| of(range).end - of(range).start).sum();
+        assert!(blocks <= 4, "{blocks}: {place}");
         assert!(!place["template"]["name"].as_str().unwrap().is_empty(), "{place}");
         assert!(!studio.get(&format!("/geometry/{}/index", job["revision"])).is_empty());
         revisions.push(job["revision"].clone());
