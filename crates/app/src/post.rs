@@ -120,9 +120,6 @@ pub fn proven(
         return Ok(Posted { text, origins, parts, account });
     }
 
-    // What a control takes for turning the tool, the toolpath does not show.
-    let slowed = proof.arm.map_or(0.0, |arm| arm.slowed_s);
-    let times = Times { cutting: times.cutting + slowed, ..times };
     warnings.extend(proof.warnings.iter().chain(&proof.accepted).cloned());
     let data = json!({
         "schema": report::SCHEMA,
