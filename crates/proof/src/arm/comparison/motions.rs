@@ -1,5 +1,6 @@
 //! The motions of the program for whoever follows the proof.
 
+use super::super::follow::angle;
 use super::{Comparison, Running, Standing, arc_through};
 use crate::observer::{
     AxisPositions, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose, Walk,
@@ -104,8 +105,12 @@ impl Comparison<'_> {
             MotionKind::Line => tool[0].tip.distance(tool[1].tip),
             MotionKind::Arc(arc) => arc.length(),
         };
+        let turn = before
+            .zip(self.standing.as_ref())
+            .map_or(0.0, |(before, now)| angle(&before.tool.matrix3, &now.tool.matrix3));
         // A way or a feed that is not known takes nothing.
-        self.running.feed.map_or(0.0, |feed| (60.0 * length / feed).max(0.0))
+        let at_feed = self.running.feed.map_or(0.0, |feed| (60.0 * length / feed).max(0.0));
+        at_feed.max(self.turning_time(turn))
     }
 
     /// What holds while the arm moves.

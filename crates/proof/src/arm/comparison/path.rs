@@ -248,6 +248,15 @@ impl Comparison<'_> {
         }
     }
 
+    /// How long the control takes at the least to turn the tool by so much, radians, in s.
+    pub(super) fn turning_time(&self, turn: f64) -> f64 {
+        match self.running.turn_speed {
+            // A turn is part swing and part turn about the tool; the slower of both decides.
+            [Some(swing), Some(roll)] => turn.to_degrees() / (swing + roll),
+            [_, None] | [None, _] => 0.0,
+        }
+    }
+
     /// The joints follow the path.
     pub(super) fn pass(
         &mut self,
@@ -278,11 +287,7 @@ impl Comparison<'_> {
             true => self.turned = Some(self.turns()),
             false => self.leaves_turning(&start)?,
         }
-        let time = feed_time.max(match self.running.turn_speed {
-            // A turn is part swing and part turn about the tool; the slower of both decides.
-            [Some(swing), Some(roll)] => path.turn.to_degrees() / (swing + roll),
-            [_, None] | [None, _] => 0.0,
-        });
+        let time = feed_time.max(self.turning_time(path.turn));
         if cuts && time > feed_time * (1.0 + SLOWER) {
             self.report.compared.slowed += 1;
             self.checked().slowed_s += time - feed_time;
