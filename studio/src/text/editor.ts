@@ -7,12 +7,12 @@ import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
 import { Compartment, EditorState, StateEffect, StateField, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
-import { FIRST, isNearEnd, isWithin, KEPT, missing, windowAround, type Window } from "./window.ts";
+import { FIRST, isNearEnd, isWithin, KEPT, LONG, missing, windowAround, type Window } from "./window.ts";
 
 /** Between two jumps to lines that are not here, ms. */
 const JUMPS = 250;
 
-/** How long the cursor rests before all lines around it are fetched, ms. */
+/** How long the cursor rests before more lines around it are fetched, ms. */
 const REST = 1500;
 
 /** A text that is somewhere else. */
@@ -174,7 +174,7 @@ export class Editor {
         const { origin } = this;
         if (origin === null) return;
         const reading = ++this.reading;
-        const kept = windowAround(this.inSight.from, origin.lines);
+        const kept = windowAround(this.inSight.from, origin.lines, LONG);
         this.isGrowing = true;
         this.drop(kept);
         try {
@@ -294,7 +294,7 @@ export class Editor {
         }
         if (update.viewportChanged && this.origin !== null && !this.isWhole) {
             const { from, to } = this.inSight;
-            const isResting = this.window.to - this.window.from >= KEPT && this.coming === null && !this.isGrowing;
+            const isResting = this.window.to - this.window.from >= LONG && this.coming === null && !this.isGrowing;
             if (isResting && isNearEnd(this.window, from, to, this.origin.lines)) void this.grow();
         }
     }

@@ -8,8 +8,9 @@ export interface Window {
 
 export const KEPT = 200_000;
 
-/** Of a text that is not kept whole: as many lines are fetched first, the others when the cursor rests. */
+/** Of a text that is not kept whole: as many lines are fetched first, and as many are kept when the cursor rests. */
 export const FIRST = 200;
+export const LONG = 20_000;
 
 /** Lines of one answer to be added: more would hold the page up. */
 const PART = 5000;

@@ -72,7 +72,7 @@ async function clicked(page: Page, count: number): Promise<number[]> {
         await page.mouse.click(view.x + view.width / 2 + (20 + i * 7) * Math.cos(angle), view.y + view.height / 2 + (20 + i * 7) * 0.5 * Math.sin(angle));
         times.push(Math.round(await armed.evaluate(({ time }) => time)));
         // Until the page has fetched what it keeps round the cursor.
-        await page.waitForTimeout(1200);
+        await page.waitForTimeout(3000);
     }
     return times.toSorted((a, b) => a - b);
 }
