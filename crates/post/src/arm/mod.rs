@@ -23,8 +23,7 @@ use minijinja::value::Value;
 use parts::{Border, Size};
 use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
 use program::{
-    Coolant, CutBox, Diagnostic, Op, Outcome, OutputValue, Program, Progress, Pulse, Rule, Spindle,
-    Tool,
+    Coolant, Diagnostic, Op, Outcome, OutputValue, Program, Progress, Pulse, Rule, Spindle, Tool,
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::f64::consts::TAU;
@@ -265,14 +264,7 @@ impl<'a> Walk<'a> {
             scope,
             findings: Findings::default(),
             limits: Limits::new(machine),
-            rapids: RapidPlanner {
-                arm,
-                cell,
-                can: &machine.capabilities,
-                turn_rate: machine.turn_speed().map(|speed| 2.0 * speed),
-                cuts: CutBox::of(program),
-                fed: CutBox::fed(program),
-            },
+            rapids: RapidPlanner::new(program, machine, (arm, cell)),
             sent: Sent { feed: None, corner: None, spindle: Spindle::Off, coolant: Coolant::Off },
             offsets: false,
             spindle: Spindle::Off,
@@ -426,7 +418,7 @@ impl<'a> Walk<'a> {
         };
         self.tool = Some(frame);
         self.state_frames(&frame)?;
-        self.joints(&self.home_position(&frame))
+        self.joints(&self.rapids.home(&frame))
     }
 
     /// States the frames, the load and the speeds of all that follows.
@@ -501,7 +493,7 @@ impl<'a> Walk<'a> {
     /// The joints go home, where the path is clear.
     fn home(&mut self) -> Outcome {
         let Some(tool) = self.tool.filter(|_| !self.is_home()) else { return Ok(()) };
-        let end = self.home_position(&tool);
+        let end = self.rapids.home(&tool);
         let route = self.rapids.route(&tool, &self.here, &end, true);
         // Home is where joints lead: not down to it from above.
         let by_joints = |route: &Vec<RapidSegment>| {
@@ -517,18 +509,8 @@ impl<'a> Walk<'a> {
         self.follow(&route)
     }
 
-    fn home_position(&self, tool: &Frame) -> Position {
-        self.at_joints(tool, (&self.home_joints(), self.cell.rail_home()))
-    }
-
     fn is_home(&self) -> bool {
         self.here.joints == self.home_joints() && self.here.rail == self.cell.rail_home()
-    }
-
-    /// The position of these joints, and of the rail.
-    fn at_joints(&self, tool: &Frame, (joints, rail): (&Joints, f64)) -> Position {
-        let at = self.cell.part_from(rail).inverse() * self.arm.flange(joints) * *tool;
-        Position { tool: at, joints: *joints, rail }
     }
 
     /// A straight line to where joints have led an arm that is measured one by one, and whose measures are not known here: its controller
@@ -574,7 +556,7 @@ impl<'a> Walk<'a> {
         self.required(BlockName::Joints)?;
         self.is_exact = self.arm.unmeasured() == 0.0;
         let tool = self.tool.unwrap_or(Frame::IDENTITY);
-        self.here = self.at_joints(&tool, (&to.joints, to.rail));
+        self.here = self.rapids.at_joints(&tool, (&to.joints, to.rail));
         Ok(())
     }
 
@@ -600,7 +582,7 @@ impl<'a> Walk<'a> {
         let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, free) else {
             let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut or fed through, and straight the \
                            posture or a turn of a joint would not fit";
-            let own = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell])";
+            let own = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
             let [from, to] = [&self.here, &motion.end].map(|at| self.arm.posture(&at.joints));
             let changes = [
                 (from.rear() != to.rear(), "the wrist on the other side of axis 1"),
@@ -626,7 +608,7 @@ impl<'a> Walk<'a> {
     fn reenter(&mut self, reentry: &Reentry) -> Outcome {
         let Some(tool) = self.tool else { return Ok(()) };
         let Reentry { line, back, feed, why } = *reentry;
-        let home = self.home_position(&tool);
+        let home = self.rapids.home(&tool);
         let most = feed.unwrap_or(self.cell.rapid);
         // A contour is proven as a whole: no way out of it is.
         let route = match self.offsets {

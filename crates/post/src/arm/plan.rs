@@ -1,6 +1,7 @@
 //! From records to the motions of an arm: where they end, and with which joints.
 
 use super::rail::{Group, Stand, groups};
+use super::rapid::RapidPlanner;
 use ::arm::{Arm, Joints};
 use armpath::{Blocked, Cell as Frames, Choice, Point, Settings, Why, Worst, choose};
 use geom::{Arc, Frame, Mat3, Vec3};
@@ -188,8 +189,9 @@ pub(super) fn plan<'a>(
     (arm, cell): (&Arm, &Cell),
 ) -> Outcome<Vec<Step<'a>>> {
     let mut steps = Vec::new();
+    let rapids = RapidPlanner::new(source, machine, (arm, cell));
     for stretch in stretches(source, machine, cell)? {
-        stretch.chosen((arm, cell), &mut steps)?;
+        stretch.chosen(&rapids, &mut steps)?;
     }
     Ok(steps)
 }
@@ -244,12 +246,12 @@ impl<'a> Stretch<'a> {
     /// The steps, with the joints that are chosen for them; the least margins on the way, of each place of the rail.
     pub(super) fn chosen(
         self,
-        (arm, cell): (&Arm, &Cell),
+        rapids: &RapidPlanner,
         steps: &mut Vec<Step<'a>>,
     ) -> Outcome<Vec<Worst>> {
         let chosen = match self.points.is_empty() {
             true => Chosen::default(),
-            false => self.positions(arm, cell)?,
+            false => self.positions(rapids)?,
         };
         for step in self.steps {
             match step {
@@ -264,7 +266,8 @@ impl<'a> Stretch<'a> {
         Ok(chosen.worst)
     }
 
-    fn positions(&self, arm: &Arm, cell: &Cell) -> Outcome<Chosen> {
+    fn positions(&self, rapids: &RapidPlanner) -> Outcome<Chosen> {
+        let (arm, cell) = (rapids.arm, rapids.cell);
         let Some(tool) = cell.tool(self.length) else {
             let message =
                 "neither the source nor `tool_length` of the cell states the length of the tool";
@@ -275,7 +278,7 @@ impl<'a> Stretch<'a> {
         };
         let mut chosen = Chosen::default();
         for group in groups(&Stand { arm, cell, tool }, &self.points) {
-            self.place((arm, cell, tool), &group, &mut chosen)?;
+            self.place((rapids, tool), &group, &mut chosen)?;
         }
         Ok(chosen)
     }
@@ -283,10 +286,11 @@ impl<'a> Stretch<'a> {
     /// The positions of points that are cut from one place of the rail.
     fn place(
         &self,
-        (arm, cell, tool): (&Arm, &Cell, Frame),
+        (rapids, tool): (&RapidPlanner, Frame),
         group: &Group,
         chosen: &mut Chosen,
     ) -> Outcome {
+        let (arm, cell) = (rapids.arm, rapids.cell);
         let points = &self.points[group.points.clone()];
         let lines = &self.lines[group.points.clone()];
         // Where axis 1 turns by a revolution the arm reaches everything over its back as well: it does not leave the posture of home.
@@ -297,10 +301,21 @@ impl<'a> Stretch<'a> {
             let frames = Frames { tool, part: cell.part_from(rail) };
             choose(arm, &frames, points, &settings).map(|choice| (rail, choice))
         };
-        // The places have been looked at with some of the points.
+        // The places have been looked at with some of the points. The first that needs no cut to be left is taken, or the one that needs fewest.
+        let left = |rail: f64, choice: &Choice| reentries(rapids, &tool, (points, choice), rail);
         let mut tries = group.places.iter().take(TRIES).map(|rail| at(*rail));
-        let first = tries.next().unwrap_or_else(|| at(0.0));
-        let found = first.or_else(|blocked| tries.find_map(Result::ok).ok_or(blocked));
+        let mut found = tries.next().unwrap_or_else(|| at(0.0));
+        while found.as_ref().map_or(true, |(rail, choice)| left(*rail, choice) != (0, 0)) {
+            let Some(next) = tries.next() else { break };
+            let is_better = match (&found, &next) {
+                (Ok((rail, found)), Ok((other, next))) => left(*other, next) < left(*rail, found),
+                (Err(_), Ok(_)) => true,
+                (_, Err(_)) => false,
+            };
+            if is_better {
+                found = next;
+            }
+        }
         let (rail, choice): (f64, Choice) = found.map_err(|blocked| {
             let message = format!("the arm cannot go here: {blocked}");
             let place = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
@@ -324,12 +339,7 @@ impl<'a> Stretch<'a> {
         chosen.worst.push(choice.worst);
         for section in &choice.sections {
             let positions = points[section.first..].iter().zip(&section.positions);
-            let mut positions = positions.map(|(point, position)| {
-                let z = -point.axis;
-                let axes = Mat3::from_cols(position.side, z.cross(position.side), z);
-                let tool = Frame::from_mat3_translation(axes, point.tip);
-                Position { tool, joints: position.joints, rail }
-            });
+            let mut positions = positions.map(|(point, position)| placed(point, position, rail));
             if let Some(why) = section.reentry {
                 let (line, feed) = (lines[section.first], cell.reentry_feed);
                 if let Some(back) = positions.next() {
@@ -341,6 +351,37 @@ impl<'a> Stretch<'a> {
         }
         Ok(())
     }
+}
+
+/// A position that is chosen for a point.
+fn placed(point: &Point, position: &armpath::Position, rail: f64) -> Position {
+    let z = -point.axis;
+    let axes = Mat3::from_cols(position.side, z.cross(position.side), z);
+    let tool = Frame::from_mat3_translation(axes, point.tip);
+    Position { tool, joints: position.joints, rail }
+}
+
+/// How often cuts are left and entered again with no way out and in that is clear, and how often in all.
+fn reentries(
+    rapids: &RapidPlanner,
+    tool: &Frame,
+    (points, choice): (&[Point], &Choice),
+    rail: f64,
+) -> (usize, usize) {
+    let home = rapids.home(tool);
+    let feed = rapids.cell.reentry_feed.unwrap_or(rapids.cell.rapid);
+    let again = choice.sections.windows(2).filter(|pair| pair[1].reentry.is_some());
+    let is_blocked = |pair: &[armpath::Section]| {
+        let point = points.get(pair[1].first);
+        let ends = [pair[0].positions.last(), pair[1].positions.first()];
+        let [Some(from), Some(back)] = ends.map(|position| Some(placed(point?, position?, rail)))
+        else {
+            return true;
+        };
+        rapids.reentry(tool, [&from, &back, &home], feed).is_none()
+    };
+    let blocked: Vec<bool> = again.map(is_blocked).collect();
+    (blocked.iter().filter(|is_blocked| **is_blocked).count(), blocked.len())
 }
 
 /// What is asked of a choice: `turn_speed` is how fast the tool may turn, degrees/s, its axis and about it each.

@@ -3,8 +3,8 @@
 use super::plan::Position;
 use ::arm::{Arm, Joints, Posture};
 use geom::{Frame, Mat3, Quat, Vec3, nearest_on_segment, wrap};
-use machine::{Capabilities, Cell};
-use program::CutBox;
+use machine::{Capabilities, Cell, Machine};
+use program::{CutBox, Program};
 
 /// Joints are looked at so near to each other that the tip moves by no more than this, mm.
 const STRIDE: f64 = 0.5;
@@ -50,7 +50,35 @@ pub(super) struct RapidSegment {
 /// How far beyond all cuts the tool is retracted, on top of the clearance, mm: the first that gives a path is taken.
 const RETRACTS: [f64; 5] = [2.0, 10.0, 30.0, 80.0, 200.0];
 
-impl RapidPlanner<'_> {
+impl<'a> RapidPlanner<'a> {
+    /// For the rapids of `program`.
+    pub(super) fn new(
+        program: &Program,
+        machine: &'a Machine,
+        (arm, cell): (&'a Arm, &'a Cell),
+    ) -> RapidPlanner<'a> {
+        RapidPlanner {
+            arm,
+            cell,
+            can: &machine.capabilities,
+            turn_rate: machine.turn_speed().map(|speed| 2.0 * speed),
+            cuts: CutBox::of(program),
+            fed: CutBox::fed(program),
+        }
+    }
+
+    /// The position at home, with this tool.
+    pub(super) fn home(&self, tool: &Frame) -> Position {
+        let joints = self.arm.model(&self.cell.home.map(f64::to_radians)).unwrap_or_default();
+        self.at_joints(tool, (&joints, self.cell.rail_home()))
+    }
+
+    /// The position of these joints, and of the rail.
+    pub(super) fn at_joints(&self, tool: &Frame, (joints, rail): (&Joints, f64)) -> Position {
+        let at = self.cell.part_from(rail).inverse() * self.arm.flange(joints) * *tool;
+        Position { tool: at, joints: *joints, rail }
+    }
+
     /// How the arm goes from one position to another, where it can: by its joints, or straight, or up along the tool, by its joints, and
     /// down along the tool. `free` is for a path that no line of the source gives.
     pub(super) fn route(

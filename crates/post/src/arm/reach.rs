@@ -2,6 +2,7 @@
 
 use super::plan::{Act, Kind, Motion, Position, Reentry, Step, slows_at, stretches};
 use super::rail::{Stand, groups};
+use super::rapid::RapidPlanner;
 use crate::arcs::arc_through;
 use crate::center;
 use ::arm::{Arm, Joints};
@@ -135,9 +136,10 @@ fn chosen<'a>(
     let robot = robot(machine)?;
     let mut steps = Vec::new();
     let mut margins: Option<ArmMargins> = None;
+    let rapids = RapidPlanner::new(program, machine, robot);
     let found = stretches(program, machine, robot.1).and_then(|stretches| {
         for stretch in stretches {
-            for worst in stretch.chosen(robot, &mut steps)? {
+            for worst in stretch.chosen(&rapids, &mut steps)? {
                 margins = Some(margins.map_or(ArmMargins::of(&worst), |known| known.least(&worst)));
             }
         }

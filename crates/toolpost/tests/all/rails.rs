@@ -285,13 +285,27 @@ fn a_cut_longer_than_the_arm_reaches_from_one_place_of_the_rail_is_refused_and_s
     assert!(found.contains("arm-path") && !found.contains("rail stands still"), "{found}");
 }
 
+/// A KUKA on a rail from 1000 mm on, which may leave cuts.
+fn reentering_on_rail(max: u32) -> Machine {
+    let rail = format!(
+        "part = [700, 1000, 0, 0, 0, 0]\nreentry_feed = 600\nrail = {{ direction = [0, 1, 0], origin = [0, 0, 0, 0, 0, 0], \
+         min = 1000, max = {max}, speed = 60000, home = 1000 }}"
+    );
+    let changes = [("part = [450, 0, 150, 0, 0, 0]", &*rail), ("[spindle]", KRL)];
+    crate::robot::changed("kuka-kr6-r900", &changes)
+}
+
+/// From the end of the rail the arm would leave the cut where the way above it is not clear, from its beginning it does not.
+#[test]
+fn of_the_places_of_a_rail_one_is_taken_from_which_cuts_are_entered_again() {
+    let text = proven(&crate::robot::rings(150), &reentering_on_rail(1030));
+    assert!(rails(&text).contains(&1000.0), "{text}");
+}
+
 #[test]
 fn a_cut_is_left_and_entered_again_on_a_rail_which_stands_meanwhile() {
     let source = crate::robot::rings(150);
-    let rail = "part = [700, 1000, 0, 0, 0, 0]\nreentry_feed = 600\nrail = { direction = [0, 1, 0], origin = [0, 0, 0, 0, 0, 0], \
-                min = 1000, max = 1001, speed = 60000, home = 1000 }";
-    let changes = [("part = [450, 0, 150, 0, 0, 0]", rail), ("[spindle]", KRL)];
-    let machine = crate::robot::changed("kuka-kr6-r900", &changes);
+    let machine = reentering_on_rail(1001);
     let text = proven(&source, &machine);
     let report = proof_of(&source, &machine, &text);
     assert!(!report.excursions.is_empty(), "{text}");
