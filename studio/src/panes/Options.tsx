@@ -1,4 +1,5 @@
 import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { matching } from "../commands.ts";
 import type { Field } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
@@ -17,6 +18,9 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
     const found = matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`);
     // The one that is named comes before those that speak of it.
     const fields = found.toSorted((a, b) => Number(b.name === search.value) - Number(a.name === search.value));
+    const into = (name: string | undefined): void => document.querySelector<HTMLElement>(`#option-${name}`)?.focus();
+    // Who was led to an option types into it.
+    useEffect(() => into(screen.option.value || "none"), []);
     return (
         <form
             onSubmit={(event) => {
@@ -25,7 +29,19 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
                 if (work !== null) void studio.post({ ...work, options: given.value });
             }}
         >
-            <input type="search" aria-label="Search the options" placeholder="Search the options" autofocus value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
+            <input
+                type="search"
+                aria-label="Search the options"
+                placeholder="Search the options"
+                autofocus
+                value={search.value}
+                onInput={(event) => (search.value = event.currentTarget.value)}
+                onKeyDown={(event) => {
+                    if (event.key !== "Enter") return;
+                    event.preventDefault();
+                    into(fields[0]?.name);
+                }}
+            />
             <div class="choices" role="group" aria-label="Options" tabIndex={0}>
                 {fields.map((field) => (
                     <Row

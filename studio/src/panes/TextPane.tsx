@@ -141,7 +141,7 @@ function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string |
             if (line !== null) file.value = line.file;
             const name = file.value ?? studio.job.value?.[of]?.file;
             const wrong = studio.findings.value.filter((finding) => finding.of === of && finding.line > 0 && finding.file === name).flatMap(({ line, lines }) => [line, ...lines]);
-            const also = of === "program" ? linesOf(place?.blocks ?? [], file.value) : [];
+            const also = of === "program" && place?.source ? linesOf(place.blocks, file.value) : [];
             editor.mark({ at: line?.line ?? null, also, wrong: wrong.slice(0, 1000) });
         }),
         effect(() => {

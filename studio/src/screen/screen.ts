@@ -223,6 +223,8 @@ export class Screen {
         }
         this.studio.stopped.value = [refusal];
         this.tab.value = "findings";
+        // What is typed next is no text of the program.
+        document.querySelector<HTMLElement>("#low")?.focus();
     }
 
     /** The form, at an option. */

@@ -118,7 +118,8 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         const server = await Server.start([example("flange.nc")], ["-m", "generic-3axis-fanuc"]);
         const { page } = await visit(browser, server.link);
         await page.getByRole("button", { name: "Set --from…" }).click();
-        await page.getByLabel(/^from/).fill("fanuc-31i");
+        await page.locator("#option-from:focus").waitFor();
+        await page.keyboard.type("fanuc-31i");
         await page.getByRole("button", { name: "Post" }).click();
         await page.getByText(/PROVEN|NOT POSTED/).waitFor();
         await expect.poll(() => page.getByText("no control named").count()).toBe(0);

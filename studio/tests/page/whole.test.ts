@@ -108,6 +108,8 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.keyboard.press("Control+s");
         await page.getByText("it is not saved").waitFor();
         expect(await page.getByRole("dialog").count()).toBe(0);
+        await page.keyboard.type("name.nc");
+        expect(await page.locator(".program .cm-content").innerText()).not.toContain("name.nc");
         await page.getByRole("tab", { name: "Verdict" }).click();
         expect(await page.getByRole("region", { name: "First mismatch" }).innerText()).toContain("Z-7.777");
         await page.getByRole("button", { name: "Discard" }).click();
