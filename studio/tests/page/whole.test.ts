@@ -1,6 +1,6 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Browser } from "playwright-core";
+import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, test } from "vitest";
 import { absent, accessible, example, goTo, launch, lit, proven, readout, Server, visit, type Visit } from "./harness.ts";
 
@@ -131,6 +131,32 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.getByRole("button", { name: "Discard" }).click();
         await proven(page);
         expect(await page.getByRole("button", { name: "Continue" }).count()).toBe(0);
+    });
+
+    test("two tabs on one source: the second says that another edits it, and both edits are kept", async () => {
+        const edit = async (page: Page, text: string): Promise<void> => {
+            await page.locator(".program .cm-line").first().click();
+            await page.keyboard.press("End");
+            await page.keyboard.type(text);
+            await page.getByText("▲ edited").waitFor();
+        };
+        const first = await begin();
+        await edit(first, " (first)");
+        const drafts = join(server.folder, ".toolpost/drafts");
+        const kept = (): string[] => (existsSync(drafts) ? readdirSync(drafts) : []).filter((name) => name.endsWith(".text"));
+        await expect.poll(() => kept().length).toBe(1);
+        const { page: second, complaints } = await visit(browser, server.link);
+        await proven(second);
+        await edit(second, " (second)");
+        await second.getByText("another tab edits this program too: both edits are kept").waitFor();
+        await expect.poll(() => kept().map((name) => /\((first|second)\)/.exec(readFileSync(join(drafts, name), "utf8"))?.[1]).toSorted()).toEqual(["first", "second"]);
+        for (const page of [second, first]) {
+            await page.getByRole("button", { name: "Discard" }).click();
+            await proven(page);
+        }
+        await expect.poll(kept).toEqual([]);
+        expect(complaints).toEqual([]);
+        await second.close();
     });
 
     test("by keyboard alone: another machine, a step, a view, a place, saved", async () => {
