@@ -20,7 +20,9 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
     const fields = found.toSorted((a, b) => Number(b.name === search.value) - Number(a.name === search.value));
     const into = (name: string | undefined): void => document.querySelector<HTMLElement>(`#option-${name}`)?.focus();
     // Who was led to an option types into it.
-    useEffect(() => into(screen.option.value || "none"), []);
+    useEffect(() => {
+        if (screen.option.value !== "") into(screen.option.value);
+    }, []);
     return (
         <form
             onSubmit={(event) => {
