@@ -54,8 +54,9 @@ export function levelFor({ levels, fine }: Pick<WalkAbout, "levels" | "fine">, s
     return level < 0 && fine === null ? 0 : level;
 }
 
-/** Between two pictures while chunks come, ms. */
+/** Between two pictures while chunks come, ms: at the least, and for each chunk, since a picture of many takes longer. */
 const BETWEEN = 60;
+const BETWEEN_EACH = 0.2;
 
 interface Kept {
     vertices: ArrayBuffer;
@@ -102,7 +103,7 @@ export class Chunks implements Vertices {
         this.telling ??= setTimeout(() => {
             this.telling = undefined;
             this.changed();
-        }, BETWEEN);
+        }, Math.max(BETWEEN, BETWEEN_EACH * this.walk.chunks));
     }
 
     private key(level: number, chunk: number): number {

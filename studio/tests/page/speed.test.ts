@@ -7,7 +7,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
-import { describe, test } from "vitest";
+import { afterAll, describe, test } from "vitest";
 import { absent, launch, Server, visit } from "./harness.ts";
 
 const moves = Number(process.env.TOOLPOST_SPEED ?? 0);
@@ -78,6 +78,8 @@ async function clicked(page: Page, count: number): Promise<number[]> {
 }
 
 describe.skipIf(moves === 0 || absent() !== null)(`the page with ${moves} moves`, () => {
+    afterAll(() => Server.stopAll());
+
     test("figures", async () => {
         const source = join(tmpdir(), "spiral.cls");
         writeFileSync(source, spiral(moves));
@@ -92,7 +94,8 @@ describe.skipIf(moves === 0 || absent() !== null)(`the page with ${moves} moves`
         await page.getByText("✓ PROVEN").waitFor({ timeout: 600_000 });
         figures.push(`verdict ${since()}`);
         figures.push(`picture ${since(await picture)}`);
-        await page.locator(".program .cm-line.at").waitFor();
+        await page.locator(".program .cm-line.at").waitFor({ timeout: 60_000 });
+        figures.push(`place ${since()}`);
 
         // Turning: a step of the pointer in each frame, all of which is drawn.
         const turned = await page.evaluate(async () => {
@@ -139,6 +142,5 @@ describe.skipIf(moves === 0 || absent() !== null)(`the page with ${moves} moves`
         figures.push(`page ${Math.max(...pages)} MB`, `server ${peak(server.pid)} MB at most`);
         process.stdout.write(`${figures.join(", ")}\n`);
         await browser.close();
-        await Server.stopAll();
     }, 900_000);
 });
