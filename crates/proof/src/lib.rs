@@ -162,8 +162,11 @@ fn compare(
     let run = |source: &Program, setup: Setup, observer: &mut dyn Observer| {
         let program = (file_name, text);
         let report = prove_on(source, machine, setup.clone(), program, tolerances, observer);
+        if !report.proven {
+            return report;
+        }
         let mut optional = control::optional_blocks(text);
-        let Some((_, level)) = optional.next().filter(|_| report.proven) else { return report };
+        let Some((_, level)) = optional.next() else { return report };
         if let Some((line, other)) = optional.find(|(_, other)| *other != level) {
             let message = format!(
                 "blocks behind /{level} and /{other} are switched apart: not each position is proven"

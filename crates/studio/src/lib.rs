@@ -14,7 +14,8 @@
 //!
 //! # What goes over the socket
 //!
-//! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]. What is large goes by HTTP, with the token in the header
+//! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]; while a proof runs, what it has walked so far
+//! ([`ask::Walked`]). What is large goes by HTTP, with the token in the header
 //! `x-toolpost-token`: `PUT /upload/NAME`, `GET /geometry/REVISION/index`, `GET /geometry/REVISION/LEVEL/CHUNK` and
 //! `GET /moves/REVISION/CHUNK`, whose octets [`geometry`] describes.
 //!
