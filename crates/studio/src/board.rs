@@ -28,6 +28,8 @@ pub struct Settings {
     pub named: Vec<(Source, Layer)>,
     /// The options as they are typed: the report keeps them.
     pub typed: Vec<String>,
+    /// What was found in a file with options.
+    pub found: Vec<Diagnostic>,
 }
 
 impl Settings {
@@ -76,7 +78,7 @@ pub(crate) fn make(
     let settings = options.board.as_deref().cloned().unwrap_or_default();
     let (job, board) = begun(source, options, machine, &settings)?;
     let made = job.make(&board, follows)?;
-    let account = made.account(&job, Vec::new());
+    let account = made.account(&job, settings.found.clone());
     if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         return Err(account.into());
     }

@@ -127,6 +127,7 @@ impl Folder {
         bytes: u64,
     ) -> Result<Vec<(String, Vec<u8>)>, Box<Diagnostic>> {
         let (entries, is_whole) = self.list(path)?;
+        self.leads_nowhere(path)?;
         let own = entries.into_iter().filter(|entry| entry.kind == EntryKind::File);
         let own: Vec<Entry> = own.collect();
         let all: u64 = own.iter().filter_map(|entry| entry.bytes).sum();
@@ -143,14 +144,33 @@ impl Folder {
         read.collect()
     }
 
+    /// Checks that no entry of one of its folders is a link that leads out: such a one is not listed.
+    ///
+    /// # Errors
+    /// The first that is.
+    fn leads_nowhere(&self, path: &str) -> Result<(), Box<Diagnostic>> {
+        let inner = inner(path)?;
+        let entries = self.dir.read_dir(&inner).map_err(|error| unreadable(path, &error))?;
+        let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let mut names: Vec<String> = names.filter(|name| !name.starts_with('.')).collect();
+        names.sort_unstable();
+        let leads_out = |name: &&String| {
+            self.dir.metadata(inner.join(name)).is_err_and(|error| is_escape(&error))
+        };
+        match names.iter().find(leads_out) {
+            Some(name) => Err(self::leads_out(&spelled(&inner.join(name)))),
+            None => Ok(()),
+        }
+    }
+
     /// Whether a path is one of its folders.
     pub fn is_folder(&self, path: &str) -> bool {
         inner(path).is_ok_and(|inner| self.dir.metadata(inner).is_ok_and(|at| at.is_dir()))
     }
 
-    /// Whether a path is one of its files.
-    pub fn is_file(&self, path: &str) -> bool {
-        inner(path).is_ok_and(|inner| self.dir.metadata(inner).is_ok_and(|at| at.is_file()))
+    /// Whether there is something of this name, also a link that leads nowhere or out.
+    pub fn has(&self, path: &str) -> bool {
+        inner(path).is_ok_and(|inner| self.dir.symlink_metadata(inner).is_ok())
     }
 
     /// The whole path of a file of the folder that is to be written, or of one that is there.

@@ -168,7 +168,7 @@ fn lies_beside(typed: &ArgMatches, name: &str) -> Option<PathBuf> {
 }
 
 /// A millproject is of another program and perhaps of another machine: nobody has asked for it.
-fn unused(file: &Path) -> Diagnostic {
+pub fn unused(file: &Path) -> Diagnostic {
     let message = "the options of pcb2gcode beside the board are not used";
     let help = format!("take them by `--settings {}`", file.display());
     Diagnostic::warning(Rule::FileUnused, message).help(help).file(file.display().to_string())

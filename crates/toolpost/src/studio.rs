@@ -2,8 +2,10 @@
 
 use crate::answer::Answer;
 use crate::args::{Closeness, Command, CommandLine, Studio};
+use crate::settings::{self, Expanded};
 use ::studio::ask::{self, Field};
 use ::studio::board::Settings;
+use ::studio::server::{More, SETTINGS};
 use ::studio::{Options, Server};
 use app::{Source, Stop, Verdict};
 use clap::{Arg, ArgAction, CommandFactory, Parser};
@@ -81,8 +83,7 @@ fn below(folder: &Path, path: &Path) -> Result<String, Stop> {
 }
 
 /// Arguments that the page gives by itself, or does by itself.
-const GIVEN: [&str; 8] =
-    ["machine", "output", "path", "board", "help", "picture", "select", "settings"];
+const GIVEN: [&str; 7] = ["machine", "output", "path", "board", "help", "picture", "select"];
 
 fn name(command: ask::Command) -> &'static str {
     match command {
@@ -129,12 +130,13 @@ fn field(arg: &Arg) -> Option<Field> {
 fn options(
     command: ask::Command,
     given: &[(String, String)],
-    beside: Option<&Source>,
+    more: Option<&More>,
 ) -> Result<Options, Stop> {
     let form = form(command);
     let begin = ["toolpost", name(command), "--machine=m", "--output=o"];
     let mut words: Vec<String> = begin.map(str::to_owned).to_vec();
-    for (name, value) in given {
+    // What the file says that this option names comes with it.
+    for (name, value) in given.iter().filter(|(name, _)| more.is_none() || name != SETTINGS) {
         let field = form.iter().find(|field| field.name == *name).ok_or_else(|| {
             let message =
                 format!("there is no option `{}`", name.chars().take(80).collect::<String>());
@@ -147,9 +149,13 @@ fn options(
     }
     words.extend(["--", "source"].map(str::to_owned));
     let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
-    let words = match beside {
-        Some(file) => crate::settings::with(words, file)?.words,
-        None => words,
+    let (words, found) = match more {
+        Some(More { file, is_asked }) if *is_asked || file.name() == app::pcb::SETTINGS[0] => {
+            let Expanded { words, found, .. } = settings::with(words, file)?;
+            (words, found)
+        }
+        Some(More { file, .. }) => (words, vec![settings::unused(file.path())]),
+        None => (words, Vec::new()),
     };
     let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
         let message = crate::shortened(usage).render().to_string();
@@ -177,7 +183,8 @@ fn options(
                 plan: pcb.plan(),
                 heights: pcb.running.heights.clone().map(Source::File),
                 named: named.map(|(file, layer)| (Source::File(file), layer)).collect(),
-                typed: crate::settings::options(&words),
+                typed: settings::options(&words),
+                found,
             };
             Ok(Options {
                 strict: pcb.strict,
@@ -249,19 +256,38 @@ mod tests {
         assert_eq!(board.named[0].0.path(), Path::new("b.drl"));
         // As the report keeps them for a later proof.
         assert_eq!(board.typed, ["--drill=b.drl", "--only=front", "--only=drill", "--tool=8mil"]);
-        for given in ["settings", "output", "picture", "machine"] {
+        for given in ["output", "picture", "machine"] {
             assert!(
                 options(ask::Command::Pcb, &[(given.to_owned(), "x".to_owned())], None).is_err()
             );
         }
         // What stands in the file beside the board counts less, and what it names lies where it does.
         let beside = "tool = 0.5\npasses = 3\nheights = \"map.txt\"\nmachine = \"other\"\n";
-        let beside = Source::memory("lamp/toolpost.toml", beside.as_bytes());
+        let more = |name: &str, text: &str, is_asked| More {
+            file: Source::memory(name, text.as_bytes()),
+            is_asked,
+        };
+        let beside = more("lamp/toolpost.toml", beside, false);
         let board = options(ask::Command::Pcb, &list, Some(&beside)).unwrap().board.unwrap();
         assert_eq!(board.plan.isolation.tool, Some(0.2032));
         assert_eq!(board.plan.isolation.passes, 3);
         assert_eq!(board.heights.unwrap().path(), Path::new("lamp/map.txt"));
-        let wrong = Source::memory("lamp/toolpost.toml", &b"passes = 3\nwidth = 2\n"[..]);
+        // A project of pcb2gcode is used where it is asked for, and else it is said that it is not.
+        let project = "metric=true\nmill-diameters=0.3\nextra-passes=2\n";
+        let read = |is_asked| {
+            let more = more("a64/millproject", project, is_asked);
+            let list = if is_asked {
+                vec![(SETTINGS.to_owned(), "a64/millproject".to_owned())]
+            } else {
+                Vec::new()
+            };
+            let board = options(ask::Command::Pcb, &list, Some(&more)).unwrap().board.unwrap();
+            let rules = board.found.iter().map(|found| found.rule.name()).collect::<Vec<_>>();
+            (board.plan.isolation.passes, rules)
+        };
+        assert_eq!(read(false), (1, vec!["file-unused"]));
+        assert_eq!(read(true), (3, vec![]));
+        let wrong = more("lamp/toolpost.toml", "passes = 3\nwidth = 2\n", false);
         let stop = options(ask::Command::Pcb, &list, Some(&wrong)).unwrap_err();
         let found = &stop.findings[0];
         assert_eq!(

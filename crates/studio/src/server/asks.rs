@@ -3,7 +3,7 @@
 use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
-    CommandParams, DraftName, DraftParams, FileOrUpload, FolderParams, FormParams, Given,
+    Command, CommandParams, DraftName, DraftParams, FileOrUpload, FolderParams, FormParams, Given,
     JobParams, Listing, MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams,
     ProveParams, SaveParams, SearchParams, TextParams,
 };
@@ -182,7 +182,10 @@ fn make(
         FileOrUpload::File(path) => studio.folder.target(path).ok(),
         FileOrUpload::Upload(_) => None,
     };
-    let beside = studio.beside(source)?;
+    let more = match source {
+        Given::File(_) | Given::Upload(_) if studio.command(source, None)? != Command::Pcb => None,
+        board => studio.more(board, options)?,
+    };
     let (source, mut inputs) = studio.sources(source)?;
     inputs.extend(program.and_then(within));
     let called = program.and_then(within).and_then(|path| Some(path.parent()?.to_owned()));
@@ -194,7 +197,7 @@ fn make(
     let asked = Asked {
         source,
         machine,
-        options: &|command| studio.options(command, options, beside.as_ref()),
+        options: &|command| studio.options(command, options, more.as_ref()),
         file: file.or(named),
         program: text,
         folders: called.into_iter().collect(),

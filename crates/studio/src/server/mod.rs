@@ -81,8 +81,20 @@ pub struct Settings {
 pub type Form = fn(Command) -> Vec<Field>;
 
 /// Reads options of a command as the command line does.
-/// A board may have a file with more of them beside it.
-pub type ReadOptions = fn(Command, &[(String, String)], Option<&Source>) -> Result<Options, Stop>;
+/// A board may have a file with more of them.
+pub type ReadOptions = fn(Command, &[(String, String)], Option<&More>) -> Result<Options, Stop>;
+
+/// A file with more options of a board.
+#[derive(Clone, Debug)]
+pub struct More {
+    /// The file.
+    pub file: Source,
+    /// Whether the options name it; otherwise it lies beside the board.
+    pub is_asked: bool,
+}
+
+/// The option that names it.
+pub const SETTINGS: &str = "settings";
 
 /// A server that listens.
 #[derive(Debug)]
@@ -125,10 +137,10 @@ impl Studio {
         &self,
         command: Command,
         given: &[(String, String)],
-        beside: Option<&Source>,
+        more: Option<&More>,
     ) -> Result<Options, Stop> {
         match self.options {
-            Some(read) => read(command, given, beside.filter(|_| command == Command::Pcb)),
+            Some(read) => read(command, given, more.filter(|_| command == Command::Pcb)),
             None if given.is_empty() => Ok(Options::default()),
             None => Err(Diagnostic::error(Rule::StudioAsk, "there are no options here").into()),
         }
@@ -160,23 +172,31 @@ impl Studio {
         Ok((sources, inputs))
     }
 
-    /// The file with options of a board that lies beside it, or is one of its files.
-    fn beside(&self, given: &Given) -> Result<Option<Source>, Stop> {
-        let name = app::pcb::SETTINGS[0];
+    /// The file with options of a board: the one that its options name, or one that lies beside it or is one of its files.
+    fn more(&self, given: &Given, options: &[(String, String)]) -> Result<Option<More>, Stop> {
+        let read = |path: String| self.source(&FileOrUpload::File(path));
+        if let Some((_, path)) = options.iter().find(|(name, _)| name == SETTINGS) {
+            return Ok(Some(More { file: read(path.clone())?, is_asked: true }));
+        }
+        let beside = |file| More { file, is_asked: false };
         let folder = match given {
             Given::Uploads(ids) => {
-                let mut each = ids.iter().filter_map(|id| self.uploads.find(id).ok());
-                return Ok(each.find(|file| file.name() == name));
+                let files: Vec<Source> =
+                    ids.iter().filter_map(|id| self.uploads.find(id).ok()).collect();
+                let of = |name| files.iter().find(|file| file.name() == name).cloned();
+                return Ok(app::pcb::SETTINGS.into_iter().find_map(of).map(beside));
             }
             Given::Upload(_) => return Ok(None),
-            Given::Folder(path) => path.as_str(),
+            Given::Folder(path) => path.trim_end_matches('/'),
             Given::File(path) => path.rsplit_once('/').map_or("", |(folder, _)| folder),
         };
-        let path = if folder.is_empty() { name.to_owned() } else { format!("{folder}/{name}") };
-        match self.folder.is_file(&path) {
-            true => Ok(Some(self.source(&FileOrUpload::File(path))?)),
-            false => Ok(None),
-        }
+        let path = |name: &str| match folder {
+            "" => name.to_owned(),
+            folder => format!("{folder}/{name}"),
+        };
+        let mut paths = app::pcb::SETTINGS.into_iter().map(path);
+        let found = paths.find(|path| self.folder.has(path));
+        Ok(found.map(read).transpose()?.map(beside))
     }
 
     /// What writes the programs of something: a file is read where its name does not say it.

@@ -9,6 +9,7 @@ use toolpost_studio::Options;
 use toolpost_studio::ask::Command;
 use toolpost_studio::board::Settings;
 use toolpost_studio::message::{Array, Values};
+use toolpost_studio::server::More;
 
 const MACHINE: &str = "grbl-3018";
 
@@ -21,12 +22,13 @@ fn plan() -> app::pcb::Settings {
 fn options(
     command: Command,
     given: &[(String, String)],
-    beside: Option<&app::Source>,
+    beside: Option<&More>,
 ) -> Result<Options, app::Stop> {
     assert_eq!(command, Command::Pcb);
     let heights = given.first().map(|(_, file)| app::Source::File(file.into()));
     // Of the file beside a board these tests take its size.
-    let typed = beside.map(|file| format!("{} {}", file.name(), file.read().unwrap().len()));
+    let size = |More { file, .. }: &More| format!("{} {}", file.name(), file.read().unwrap().len());
+    let typed = beside.map(size);
     let typed = typed.into_iter().collect();
     let board = Settings { plan: plan(), heights, typed, ..Settings::default() };
     Ok(Options { board: Some(Box::new(board)), ..Options::default() })
@@ -210,13 +212,21 @@ fn layers_are_posted_from_a_folder_and_from_uploads_and_nothing_else_is_read() {
     let (track, edge) = (track(), edge(CLOSED));
     let folder = studio.own().join("plots");
     plots(&folder, &[("b.gtl", &track), ("b.gko", &edge)]);
-    // What leads out is none of the board.
-    #[cfg(unix)]
-    {
-        fs::write(studio.outside.path().join("secret.gbl"), &track).unwrap();
-        std::os::unix::fs::symlink("../../secret.gbl", folder.join("b.gbl")).unwrap();
-    }
     let mut page = studio.socket();
+    // What leads out is not read, and not left out in silence.
+    #[cfg(unix)]
+    for (name, secret) in [("b.gbl", "secret.gbl"), ("toolpost.toml", "secret.toml")] {
+        fs::write(studio.outside.path().join(secret), &track).unwrap();
+        std::os::unix::fs::symlink(format!("../../{secret}"), folder.join(name)).unwrap();
+        for source in [json!({ "folder": "plots" }), json!({ "file": "plots/b.gtl" })] {
+            if name == "b.gbl" && source["file"].is_string() {
+                continue;
+            }
+            let stop = refused(&mut page, source);
+            assert_eq!(stop["findings"][0]["rule"], "folder-reach", "{name}: {stop}");
+        }
+        fs::remove_file(folder.join(name)).unwrap();
+    }
     let of_folder = post(&mut page, json!({ "folder": "plots" }));
     assert_eq!(names(&of_folder["board"]["programs"]), ["front", "outline"]);
     assert_eq!(of_folder["board"]["name"], "plots");

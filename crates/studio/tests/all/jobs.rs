@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use toolpost_studio::Options;
 use toolpost_studio::ask::Command;
 use toolpost_studio::message::{Array, Values};
+use toolpost_studio::server::More;
 
 fn f32s(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks().0.iter().map(|chunk| f32::from_le_bytes(*chunk)).collect()
@@ -409,7 +410,7 @@ fn a_wire_is_posted_by_the_options_of_its_own_command() {
     fn options(
         command: Command,
         given: &[(String, String)],
-        _: Option<&app::Source>,
+        _: Option<&More>,
     ) -> Result<Options, app::Stop> {
         assert_eq!(command, Command::Wire);
         let cutting = wire::cutting::Cutting {
