@@ -241,6 +241,7 @@ export class Studio {
         const saved = await this.told(async () => (await this.seam.ask("save", { revision: job.revision, path, replace })).done);
         if (saved === undefined) return false;
         this.said.value = `saved ${saved.files.join(", ")}`;
+        this.stopped.value = saved.findings;
         if (this.isCurrent.value) await this.dropOwn();
         return true;
     }

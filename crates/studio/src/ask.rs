@@ -1075,6 +1075,8 @@ pub struct SaveParams {
 pub struct Saved {
     /// Paths in the folder, the program first.
     pub files: Vec<String>,
+    /// Reports beside them that are of other programs now.
+    pub findings: Vec<Finding>,
 }
 
 /// A field of the form that is made of the command's own arguments.

@@ -17,6 +17,9 @@ use program::{Diagnostic, Rule, encoding};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The report of all programs of a board.
+pub const REPORT: &str = "report.json";
+
 /// How a board is made, as the options of the command say it.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
@@ -167,7 +170,8 @@ pub(crate) fn prove(
     follows.step("drawing");
     let (origins, parts, board) = (Origins::default(), Vec::new(), None);
     let made = Made { toolpath, account, text, origins, parts, report, widths, board };
-    Job::of(made, Lines::of(shown.1), (file, (machine_name, machine)), inputs, follows)
+    let job = Job::of(made, Lines::of(shown.1), (file, (machine_name, machine)), inputs, follows)?;
+    Ok(job.keeping_its_name())
 }
 
 /// What is shown as the source: the file of a board that is one file, of others what each was taken for. No line of a program is made by a
@@ -293,6 +297,14 @@ impl Place {
         files::save_in(&target, &contents, &inputs)?;
         // The programs first.
         saved.rotate_left(1);
-        Ok(Saved { files: saved })
+        let programs =
+            self.whole.programs.iter().map(|(_, file)| files::report_of(&target.join(file)));
+        let left = programs.filter(|report| report.exists()).map(|report| {
+            let message = "is of an edited program that these have taken the place of";
+            let found = Diagnostic::warning(Rule::ReportPair, message);
+            let name = format!("{path}/{}", files::name(&report));
+            found.help("remove it").file(name).into()
+        });
+        Ok(Saved { files: saved, findings: left.collect() })
     }
 }

@@ -230,6 +230,8 @@ pub struct Job {
     plots: Plots,
     /// The board that it is one of the programs of.
     board: Option<board::Place>,
+    /// Whether its name says which program of a board it is.
+    keeps_name: bool,
 }
 
 impl Job {
@@ -327,7 +329,13 @@ impl Job {
             geometry,
             plots: Plots::default(),
             board,
+            keeps_name: false,
         })
+    }
+
+    /// The same, of which the name of its file says which program of a board it is.
+    pub(crate) fn keeping_its_name(self) -> Job {
+        Job { keeps_name: true, ..self }
     }
 
     /// How much memory it takes, bytes.
@@ -650,6 +658,13 @@ impl Job {
                 format!("the program calls itself by the name of its file, {}", self.file);
             return Err(refused(&message, "post it under the name that it is to be saved by"));
         }
+        if self.keeps_name && files::name(&target) != self.file {
+            let message = format!(
+                "the name of its file says which program of the board it is: {}",
+                self.file
+            );
+            return Err(refused(&message, "keep the name, and give another folder"));
+        }
         let parent = Path::new(path).parent().unwrap_or(Path::new(""));
         let within = |name: &str| parent.join(name).to_string_lossy().into_owned();
         let mut saved = vec![path.to_owned()];
@@ -667,7 +682,20 @@ impl Job {
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let text = self.program.text();
         files::save_program(&target, text, &parts, self.report.as_deref(), &inputs)?;
-        Ok(Saved { files: saved })
+        let of_board = target.with_file_name(board::REPORT);
+        let findings = match self.keeps_name && of_board.exists() {
+            true => vec![
+                Diagnostic::warning(
+                    Rule::ReportPair,
+                    format!("is of the board as it was posted, not of this {}", self.file),
+                )
+                .help("what is said of this program stands in its own report beside it")
+                .file(within(board::REPORT))
+                .into(),
+            ],
+            false => Vec::new(),
+        };
+        Ok(Saved { files: saved, findings })
     }
 }
 

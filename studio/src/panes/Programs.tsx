@@ -6,7 +6,9 @@ export function Programs({ screen }: { screen: Screen }) {
     const board = studio.board.value;
     const job = studio.job.value;
     if (board === null || job === null) return null;
-    const isEdited = studio.edited.value !== null;
+    if (studio.edited.value !== null) {
+        return <span class="soft">of {board.name}: save or discard the edit to see its other programs</span>;
+    }
     return (
         <div class="programs" role="group" aria-label="Programs of the board">
             {board.programs.map(({ name, file, revision }) => (
@@ -14,8 +16,7 @@ export function Programs({ screen }: { screen: Screen }) {
                     key={name}
                     type="button"
                     class="small"
-                    title={isEdited ? "Save or discard the edit first" : file}
-                    disabled={isEdited}
+                    title={file}
                     aria-pressed={file === job.program?.file}
                     onClick={() => void studio.chooseProgram(revision)}
                 >

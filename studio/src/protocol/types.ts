@@ -1284,7 +1284,11 @@ export type Saved = {
 /**
  * Paths in the folder, the program first.
  */
-files: Array<string>, };
+files: Array<string>, 
+/**
+ * Reports beside them that are of other programs now.
+ */
+findings: Array<Finding>, };
 
 /**
  * A field of the form that is made of the command's own arguments.

@@ -21,6 +21,7 @@ async function choose(page: Page, name: string): Promise<void> {
 /** What the findings ask for is given by the form. */
 async function give(page: Page, name: string, value: string): Promise<void> {
     await page.getByRole("button", { name: `Set --${name}…` }).first().click();
+    await expect.poll(() => page.evaluate(() => document.activeElement?.id)).toBe(`option-${name}`);
     await page.locator(`#option-${name}`).fill(value);
     await page.getByRole("button", { name: "Post" }).click();
 }
@@ -117,7 +118,8 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
         await page.keyboard.press("End");
         await page.keyboard.type(" ");
         await proven(page);
-        await expect.poll(() => page.getByRole("button", { name: "✓ front" }).isDisabled()).toBe(true);
+        await page.getByText("of lamp: save or discard the edit to see its other programs").waitFor();
+        await expect.poll(() => page.getByRole("button", { name: "✓ front" }).count()).toBe(0);
         await page.keyboard.press("Control+s");
         await page.getByLabel(/^File, in/).waitFor();
         await page.getByRole("dialog").getByRole("button", { name: "Save" }).click();

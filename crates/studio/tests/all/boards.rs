@@ -279,8 +279,20 @@ fn a_program_of_a_board_is_edited_proven_and_saved_by_itself() {
     // A name of none of its programs.
     let stop = prove("other.gcode", &text).unwrap_err();
     assert_eq!(stop["findings"][0]["rule"], "no-such-part");
-    let save = json!({ "revision": spaced["revision"], "path": "drill.gcode", "replace": false });
-    assert_eq!(page.done("save", save)["files"], json!(["drill.gcode", "drill.gcode.report.json"]));
+    // Beside the others it is said that their report is not of it, and the other way round; under no other name.
+    let save = |of: &Value, path: &str| json!({ "revision": of["revision"], "path": path, "replace": true });
+    page.done("save", save(&front, "out"));
+    let saved = page.done("save", save(&spaced, "out/drill.gcode"));
+    assert_eq!(saved["files"], json!(["out/drill.gcode", "out/drill.gcode.report.json"]));
+    let found = |saved: &Value| {
+        let found = &saved["findings"][0];
+        (found["rule"].clone(), found["file"].clone())
+    };
+    assert_eq!(found(&saved), (json!("report-pair"), json!("out/report.json")));
+    let whole = page.done("save", save(&front, "out"));
+    assert_eq!(found(&whole), (json!("report-pair"), json!("out/drill.gcode.report.json")));
+    assert_eq!(page.refused("save", save(&spaced, "out/front.gcode")), "output-file");
+    assert_eq!(page.done("save", save(&spaced, "drill.gcode"))["findings"], json!([]));
 }
 
 #[test]
