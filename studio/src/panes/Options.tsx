@@ -49,7 +49,6 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
                     <Row
                         key={field.name}
                         field={field}
-                        isAsked={field.name === screen.option.value}
                         values={given.value.filter(([name]) => name === field.name).map(([, value]) => value)}
                         set={(values) => set(field.name, values)}
                     />
@@ -66,20 +65,18 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
 
 interface Props {
     field: Field;
-    /** It is what a finding asks for: the focus goes there. */
-    isAsked: boolean;
     values: string[];
     set(values: string[]): void;
 }
 
-function Row({ field, isAsked, values, set }: Props) {
+function Row({ field, values, set }: Props) {
     const id = `option-${field.name}`;
     return (
         <div class="field">
             <label for={id}>
                 {field.name} <span class="soft">{field.value}</span>
             </label>
-            <Input id={id} field={field} isAsked={isAsked} values={values} set={set} />
+            <Input id={id} field={field} values={values} set={set} />
             <div class="soft" id={`${id}-help`}>
                 {field.help}
                 {field.repeats && " One a line."}
@@ -90,20 +87,20 @@ function Row({ field, isAsked, values, set }: Props) {
 
 const linesOf = (text: string): string[] => text.split("\n").filter((line) => line.trim() !== "");
 
-function Input({ id, field, isAsked, values, set }: Props & { id: string }) {
+function Input({ id, field, values, set }: Props & { id: string }) {
     const help = `${id}-help`;
     if (field.value === null) {
-        return <input id={id} type="checkbox" autofocus={isAsked} aria-describedby={help} checked={values.length > 0} onChange={(event) => set(event.currentTarget.checked ? [""] : [])} />;
+        return <input id={id} type="checkbox" aria-describedby={help} checked={values.length > 0} onChange={(event) => set(event.currentTarget.checked ? [""] : [])} />;
     }
     if (field.repeats) {
-        return <textarea id={id} rows={2} autofocus={isAsked} aria-describedby={help} value={values.join("\n")} onChange={(event) => set(linesOf(event.currentTarget.value))} />;
+        return <textarea id={id} rows={2} aria-describedby={help} value={values.join("\n")} onChange={(event) => set(linesOf(event.currentTarget.value))} />;
     }
     const put = (value: string): void => set(value === "" ? [] : [value]);
     if (field.values.length === 0) {
-        return <input id={id} type="text" autofocus={isAsked} aria-describedby={help} value={values[0] ?? ""} placeholder={field.default ?? ""} onInput={(event) => put(event.currentTarget.value)} />;
+        return <input id={id} type="text" aria-describedby={help} value={values[0] ?? ""} placeholder={field.default ?? ""} onInput={(event) => put(event.currentTarget.value)} />;
     }
     return (
-        <select id={id} autofocus={isAsked} aria-describedby={help} value={values[0] ?? ""} onChange={(event) => put(event.currentTarget.value)}>
+        <select id={id} aria-describedby={help} value={values[0] ?? ""} onChange={(event) => put(event.currentTarget.value)}>
             <option value="">{field.default ?? ""}</option>
             {field.values.map(([value, meaning]) => (
                 <option key={value} value={value} title={meaning}>
