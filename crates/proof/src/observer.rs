@@ -121,7 +121,8 @@ pub struct Motion {
     pub tool: [ToolPose; 2],
     /// Where the axes of the machine stand behind it.
     pub axes: AxisPositions,
-    /// The feed that the control has read last; none where it has read none.
+    /// The feed that the control has read last, in a hole that of its cycle; of a thread in step with the spindle its pitch by the
+    /// spindle's speed, mm/min. None where it has read none.
     pub feed: Option<Feed>,
     /// How long it takes, s, as [`machine::time`] estimates it of what the control has read: a rapid as its slowest axis, each from
     /// rest to rest, a cut by its feed. A way that is not known, as to and from home, takes nothing.

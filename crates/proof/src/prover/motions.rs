@@ -188,7 +188,7 @@ impl Prover<'_> {
             kind,
             tool,
             axes,
-            feed: self.running.feed,
+            feed: if way == Way::Rapid { self.running.feed } else { self.feed(event) },
             seconds,
             waited: motions.waited,
             deviation: motions.deviation,
@@ -288,21 +288,27 @@ impl Prover<'_> {
                 counted.unwrap_or_else(|| from.tip.distance(end.tip))
             }
         };
-        let feed = match (&event.action, &running.cycle) {
-            (Action::Thread(thread), _) => Some(Feed::PerTurn(thread.pitch)),
-            (Action::Hole(_), Some(Cycle { kind: CycleKind::Tap { pitch, .. }, .. })) => {
-                Some(Feed::PerTurn(*pitch))
-            }
-            (Action::Hole(_), Some(cycle)) => cycle.feed.or(running.feed),
-            (_, _) => running.feed,
-        };
-        let at_feed = match feed {
+        let at_feed = match self.feed(event) {
             Some(Feed::PerMinute(feed)) => 60.0 * length / feed,
             Some(Feed::PerTurn(feed)) => 60.0 * length / (feed * state::speed(running.spindle)),
             Some(Feed::InverseTime(rate)) => 60.0 / rate,
             None => 0.0,
         };
         time::cut(machine, linear, turn, at_feed)
+    }
+
+    /// The feed of a cut: of a thread in step with the spindle its pitch at the speed of that.
+    fn feed(&self, event: &Event) -> Option<Feed> {
+        let running = &self.running;
+        let in_step = |pitch: f64| Some(Feed::PerMinute(pitch * state::speed(running.spindle)));
+        match (&event.action, &running.cycle) {
+            (Action::Thread(thread), _) => in_step(thread.pitch),
+            (Action::Hole(_), Some(Cycle { kind: CycleKind::Tap { pitch, .. }, .. })) => {
+                in_step(*pitch)
+            }
+            (Action::Hole(_), Some(cycle)) => cycle.feed.or(running.feed),
+            (_, _) => running.feed,
+        }
     }
 
     /// Where the axes stand at a position to which they have turned.

@@ -445,3 +445,37 @@ fn a_hole_says_how_far_it_is_off() {
     let moves = found("G0 X10 Y0.004\nZ2\nG1 Z-5.003 F100\nG0 Z20");
     assert_deviations(&moves, &[(9, None), (10, aside), (11, most), (12, aside)]);
 }
+
+/// A tap of 1.25 mm at 400 turns a minute goes at 500 mm/min, whatever F was before: 12 mm down and up in 1.44 s each.
+#[test]
+fn a_thread_in_step_with_the_spindle_has_its_pitch_by_the_speed_as_feed() {
+    let mut source = job(None);
+    source.spindle(Spindle::Clockwise(400.0)).unwrap();
+    source.rapid([0.0, 0.0, 20.0], None).unwrap();
+    source.line([0.0, 0.0, 18.0], None).unwrap();
+    source.rapid([0.0, 0.0, 20.0], None).unwrap();
+    let cycle = Cycle {
+        kind: CycleKind::Tap { pitch: 1.25, left: false },
+        depth: 10.0,
+        clearance: 2.0,
+        retract: 2.0,
+        feed: None,
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    };
+    source.drill(cycle, &[[10.0, 0.0, 0.0]], None).unwrap();
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let start = START.replace("S5000", "S400");
+    let text =
+        format!("{start}G0 X0 Y0\nZ20\nG1 Z18 F300\nG0 Z20\nX10\nZ2\nG33.1 Z-10 K1.25\nG80\n{END}");
+    let found = motions(&source.build(), &machine, &text);
+    let cuts = found.iter().filter(|motion| motion.kind == MotionKind::Line);
+    let cuts: Vec<_> = cuts.map(|cut| (cut.line, cut.feed.map(Feed::value), cut.seconds)).collect();
+    let mut should = vec![(9, Some(300.0), 0.4)];
+    should.extend([(13, Some(500.0), 1.44), (13, Some(500.0), 1.44)]);
+    let near = |(a, b): (&(u32, _, f64), &(u32, _, f64))| {
+        (a.0, a.1) == (b.0, b.1) && (a.2 - b.2).abs() < 1e-9
+    };
+    assert!(cuts.len() == 3 && cuts.iter().zip(&should).all(near), "{cuts:?}");
+}
