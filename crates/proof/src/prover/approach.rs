@@ -193,7 +193,7 @@ impl Prover<'_> {
     }
 
     /// Where +Z of the machine points on the part, in all ways that the machine may stand at `to`; none where nobody knows.
-    fn ups(&mut self, to: &ResolvedPose) -> Vec<Vec3> {
+    pub(super) fn ups(&mut self, to: &ResolvedPose) -> Vec<Vec3> {
         let machine = self.gauge.machine;
         if machine.rotary.iter().all(|axis| axis.on == Mount::Head) {
             return vec![Vec3::Z];

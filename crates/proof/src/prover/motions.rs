@@ -26,6 +26,9 @@ pub(super) struct Motions {
     pub arc: Option<Arc>,
     /// Whether the tool has been changed since the last motion: where the machine has gone for that is its own.
     changed: bool,
+    /// In which coordinates nobody knows where a tip is that the control keeps, behind a home that has moved it in others than those
+    /// of its axes.
+    adrift: [bool; 3],
     /// The record that it has made.
     made: Option<usize>,
     /// How far it is from the source.
@@ -40,12 +43,38 @@ enum Way {
     Arc,
 }
 
+/// Z of the machine points along an axis of the part where its other parts are below this.
+const LEVEL: f64 = 1e-9;
+
+/// The axes that a block sends home, or to a position of the machine.
+fn sent_home(action: &Action) -> Option<Axes> {
+    if let Action::Home(axes) = action {
+        Some(*axes)
+    } else if let Action::MachineMove(to) = action {
+        Some(to.axes())
+    } else {
+        None
+    }
+}
+
 impl Motions {
     /// Where the tool is before the event at hand.
     #[inline]
     fn begins(&self, start: &ResolvedPose) -> ToolPose {
-        let ToolPose { tip, axis } = start.place.into();
+        let ToolPose { tip, axis } = self.told_pose(start);
         ToolPose { tip: if self.changed { Vec3::NAN } else { tip }, axis }
+    }
+
+    /// Where the tool is as far as it is known.
+    #[inline]
+    fn told_pose(&self, at: &ResolvedPose) -> ToolPose {
+        let mut pose = ToolPose::from(at.place);
+        if self.adrift != [false; 3] {
+            for i in (0..3).filter(|i| self.adrift[*i]) {
+                pose.tip[i] = f64::NAN;
+            }
+        }
+        pose
     }
 }
 
@@ -130,6 +159,12 @@ impl Prover<'_> {
         let Some(start) = &motions.start else { return };
         let (from, before) = (motions.begins(start), start.position);
         let to = self.here;
+        if to.place.known() {
+            self.motions.adrift = [false; 3];
+        } else if let Some(axes) = sent_home(&event.action) {
+            let moved = self.moved_by(axes);
+            self.motions.adrift = [0, 1, 2].map(|i| self.motions.adrift[i] || moved[i]);
+        }
         self.end_one(event, way, (from, &before), &to, observer);
     }
 
@@ -143,7 +178,7 @@ impl Prover<'_> {
         to: &ResolvedPose,
         observer: &mut dyn Observer,
     ) {
-        let (axes, end) = (self.axis_positions(&to.position), ToolPose::from(to.place));
+        let (axes, end) = (self.axis_positions(&to.position), self.motions.told_pose(to));
         let (ends, tool) = ([before, &to.position], [from, end]);
         let seconds = self.seconds(event, way, ends, &tool, &axes);
         let time = &mut self.report.program.time_s;
@@ -254,6 +289,28 @@ impl Prover<'_> {
             }
         }
         (moves, waited)
+    }
+
+    /// In which coordinates of a block the tool moves where these linear axes of the machine do: in others than theirs where the control
+    /// keeps the tip on a table that is turned.
+    fn moved_by(&mut self, axes: Axes) -> [bool; 3] {
+        let own = [0, 1, 2].map(|i| axes.contains(Axes::linear(i)));
+        let here = self.here;
+        let keeps_tip =
+            matches!(here.position.orientation, Orientation::Rotary { tool_center: true, .. });
+        if !keeps_tip || own == [false; 3] {
+            return own;
+        }
+        let ups = self.ups(&here);
+        let goes_along = |i: usize| ups.iter().any(|up| up[i].abs() > LEVEL);
+        let is_level = !ups.is_empty() && !goes_along(0) && !goes_along(1);
+        if is_level {
+            own
+        } else if ups.is_empty() || own[0] || own[1] {
+            [true; 3]
+        } else {
+            [0, 1, 2].map(goes_along)
+        }
     }
 
     /// How long a motion takes, s, in which the axes go from where they stand to `axes`.

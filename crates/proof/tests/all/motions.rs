@@ -479,3 +479,26 @@ fn a_thread_in_step_with_the_spindle_has_its_pitch_by_the_speed_as_feed() {
     };
     assert!(cuts.len() == 3 && cuts.iter().zip(&should).all(near), "{cuts:?}");
 }
+
+/// A table that is turned by B brings the tip along the tool axis where Z of the machine goes home, and not along Z of the part: where it is
+/// then nobody knows in X and Z. Y lies along the axis of B.
+#[test]
+fn home_of_z_moves_the_tip_along_the_tool_axis_where_the_control_keeps_the_tip() {
+    let found = |degrees: f64| {
+        let mut source = job(Some(50.0));
+        let axis = Some([degrees.to_radians().sin(), 0.0, degrees.to_radians().cos()]);
+        source.rapid([7.0, 3.0, 80.0], axis).unwrap();
+        source.rapid([7.0, 3.0, 50.0], axis).unwrap();
+        source.line([7.0, 3.0, 10.0], axis).unwrap();
+        source.rapid([7.0, 3.0, 80.0], axis).unwrap();
+        let (source, machine) = (source.build(), machine::load("fanuc-table-bc").unwrap());
+        let text = format!(
+            "G21\nG0 G17 G40 G49 G69 G80 G90 G94 G54\nG91 G28 Z0\nG90\nT1 M6\nS5000 M3\nG0 B{degrees:.1} C0.\nG43.4 X7. Y3. Z80. H1\nZ50.\nG1 Z10. F300.\n\
+             G0 Z80.\nG91 G28 Z0\nG90\nG49\nM5\nG0 B0.\nM30\n"
+        );
+        let found = motions(&source, &machine, &text);
+        let home = found.iter().find(|motion| motion.line == 12).unwrap();
+        home.tool[1].tip.to_array().map(f64::is_nan)
+    };
+    assert_eq!((found(0.0), found(45.0)), ([false, false, true], [true, false, true]));
+}
