@@ -85,6 +85,9 @@ enum Kind {
     Bore,
 }
 
+/// No peck is shorter, mm: with the three decimals of its word it would be none.
+const SHORTEST_PECK: f64 = 1e-3;
+
 /// Names of cycles, longest first.
 const KINDS: [(&[&str], Kind); 15] = [
     (&["DRILL", "DEEP"], Kind::Deep),
@@ -226,8 +229,8 @@ impl Reader {
         let (first_peck, peck) = (parts.get(Part::FirstPeck), parts.get(Part::Peck));
         let mut pecks = first_peck.iter().chain(&peck).peekable();
         let is_pecking = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
-        if is_pecking != pecks.peek().is_some() || pecks.any(|peck| *peck <= 0.0) {
-            let message = "a cycle that pecks, and no other, takes a peck greater than 0";
+        if is_pecking != pecks.peek().is_some() || pecks.any(|peck| *peck < SHORTEST_PECK) {
+            let message = "a cycle that pecks, and no other, takes a peck of 0.001 mm or more";
             return Err(
                 Fault::new(Rule::Peck, message).help("write DEEP or BRKCHP with INCR,depth")
             );

@@ -227,6 +227,7 @@ fn a_cycle_that_is_not_whole_is_refused() {
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3,INCR,2", "peck"),
         ("CYCLE/DEEP,FEDTO,5,RAPTO,3", "peck"),
         ("CYCLE/DEEP,FEDTO,5,RAPTO,3,INCR,0", "peck"),
+        ("CYCLE/DEEP,FEDTO,5,RAPTO,3,INCR,0.000001", "peck"),
         ("CYCLE/TAP,FEDTO,5,RAPTO,3,TPI,0", "tap-pitch"),
         ("CYCLE/MILL,FEDTO,5,RAPTO,3", "unsupported"),
         ("CYCLE/CSINK,DIAMETR,20,RAPTO,3", "cycle-depth"),
