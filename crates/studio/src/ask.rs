@@ -527,6 +527,8 @@ pub struct BoardProgram {
     pub file: String,
     /// By which its job is asked for.
     pub revision: u64,
+    /// How many findings it has of its own.
+    pub findings: u32,
 }
 
 /// A program of a board that could not be made.

@@ -47,8 +47,10 @@ impl Settings {
 struct Whole {
     name: String,
     account: Account,
-    /// Names and files of the programs.
-    programs: Vec<(String, String)>,
+    /// Names and files of the programs, and how many findings each has.
+    programs: Vec<(String, String, usize)>,
+    /// Files that such boards have and this one does not.
+    others: Vec<String>,
     left_out: Vec<(String, Vec<Diagnostic>)>,
     /// What is saved: the report, and the programs.
     contents: Vec<(String, Vec<u8>)>,
@@ -91,9 +93,13 @@ pub(crate) fn make(
     let contents = contents.into_iter().map(|(name, bytes)| (name, bytes.to_vec())).collect();
     let left_out = made.left_out.iter().map(|left| (left.file.clone(), left.findings().collect()));
     inputs.extend(made.files.iter().filter_map(Source::file).map(Path::to_owned));
+    let named = |made: &pcb::Program| {
+        (made.name.clone(), made.file.clone(), made.posted.account.findings.len())
+    };
     let whole = Arc::new(Whole {
         name: made.name().to_owned(),
-        programs: made.programs.iter().map(|made| (made.name.clone(), made.file.clone())).collect(),
+        programs: made.programs.iter().map(named).collect(),
+        others: pcb::other_files(machine, &made.programs),
         left_out: left_out.collect(),
         contents,
         inputs,
@@ -207,10 +213,9 @@ impl Place {
     pub fn about(&self, revision: u64) -> BoardAbout {
         let Whole { name, account, programs, left_out, .. } = &*self.whole;
         let first = revision - self.number as u64;
-        let program = |((name, file), revision): (&(String, String), u64)| BoardProgram {
-            name: name.clone(),
-            file: file.clone(),
-            revision,
+        let program = |((name, file, findings), revision): (&(String, String, usize), u64)| {
+            let (name, file, findings) = (name.clone(), file.clone(), *findings as u32);
+            BoardProgram { name, file, revision, findings }
         };
         let left = |(file, findings): &(String, Vec<Diagnostic>)| LeftOut {
             file: file.clone(),
@@ -298,13 +303,15 @@ impl Place {
         // The programs first.
         saved.rotate_left(1);
         let programs =
-            self.whole.programs.iter().map(|(_, file)| files::report_of(&target.join(file)));
+            self.whole.programs.iter().map(|(_, file, _)| files::report_of(&target.join(file)));
         let left = programs.filter(|report| report.exists()).map(|report| {
             let message = "is of an edited program that these have taken the place of";
             let found = Diagnostic::warning(Rule::ReportPair, message);
             let name = format!("{path}/{}", files::name(&report));
             found.help("remove it").file(name).into()
         });
-        Ok(Saved { files: saved, findings: left.collect() })
+        let older = pcb::older(&self.whole.others, &target);
+        let older = older.into_iter().map(|found| found.file(path).into());
+        Ok(Saved { files: saved, findings: left.chain(older).collect() })
     }
 }

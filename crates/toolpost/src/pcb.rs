@@ -5,10 +5,8 @@ use crate::answer::{Answer, not_saved};
 use crate::args::pcb::Pcb;
 use crate::progress::Progress;
 use crate::settings::placed;
-use ::pcb::plan::Part;
-use app::pcb::{Job, PROBE, Program, file_of};
+use app::pcb::{Job, older, other_files};
 use app::{Source, Stop, Verdict, Watch, files, toolpath};
-use machine::Machine;
 use program::{Diagnostic, Rule};
 use std::path::Path;
 
@@ -31,7 +29,8 @@ fn made(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(4, silent);
     let board: Vec<Source> = args.board.iter().cloned().map(Source::File).collect();
     let made = job.make(&board, &progress)?;
-    let found = older(args, &machine, &made.programs).into_iter().chain(args.found.clone());
+    let others = other_files(&machine, &made.programs);
+    let found = older(&others, &args.output).into_iter().chain(args.found.clone());
     let mut account = made.account(&job, found.collect());
     if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         return Ok(not_saved(account));
@@ -58,17 +57,4 @@ fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
         return Err(found.file(args.output.display().to_string()).into());
     }
     Ok(())
-}
-
-/// Tells of programs and pictures of another call that stay next to those of this one.
-fn older(args: &Pcb, machine: &Machine, programs: &[Program]) -> Option<Diagnostic> {
-    let is_made = |name: &str| programs.iter().any(|made| made.name == name);
-    let names = Part::ALL.into_iter().map(Part::name).chain([PROBE]);
-    let others = names.filter(|name| !is_made(name)).map(|name| file_of(machine, name));
-    let there: Vec<String> = others.filter(|file| args.output.join(file).exists()).collect();
-    (!there.is_empty()).then(|| {
-        let message = format!("of an earlier call there are still {}", there.join(", "));
-        let help = "they are not of these programs: remove them, or save in a new folder";
-        Diagnostic::warning(Rule::FileOlder, message).help(help)
-    })
 }

@@ -11,7 +11,7 @@ export function Programs({ screen }: { screen: Screen }) {
     }
     return (
         <div class="programs" role="group" aria-label="Programs of the board">
-            {board.programs.map(({ name, file, revision }) => (
+            {board.programs.map(({ name, file, revision, findings }) => (
                 <button
                     key={name}
                     type="button"
@@ -21,6 +21,7 @@ export function Programs({ screen }: { screen: Screen }) {
                     onClick={() => void studio.chooseProgram(revision)}
                 >
                     ✓ {name}
+                    {findings > 0 && <span title={`${findings} findings`}> ▲</span>}
                 </button>
             ))}
             {board.left_out.map(({ file, findings }) => (

@@ -556,7 +556,11 @@ file: string,
 /**
  * By which its job is asked for.
  */
-revision: number, };
+revision: number, 
+/**
+ * How many findings it has of its own.
+ */
+findings: number, };
 
 /**
  * A program of a board that could not be made.

@@ -32,6 +32,7 @@ use proof::{Observer, Tolerances};
 use rayon::prelude::*;
 use serde_json::json;
 use std::borrow::Cow;
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What is made of a board, and on which machine.
@@ -869,6 +870,24 @@ fn picture<'a>(
 pub fn file_of(machine: &Machine, name: &str) -> String {
     let stem = robot_name(machine, name).unwrap_or_else(|| name.to_owned());
     format!("{stem}.{}", machine.extension)
+}
+
+/// The files of programs that a board may have on this machine, and that are none of these.
+pub fn other_files(machine: &Machine, programs: &[Program]) -> Vec<String> {
+    let is_made = |name: &str| programs.iter().any(|made| made.name == name);
+    let names = Part::ALL.into_iter().map(Part::name).chain([PROBE]);
+    names.filter(|name| !is_made(name)).map(|name| file_of(machine, name)).collect()
+}
+
+/// That such files of an earlier call stay in the folder, where there are any.
+pub fn older(others: &[String], folder: &Path) -> Option<Diagnostic> {
+    let there: Vec<&str> =
+        others.iter().filter(|file| folder.join(file).exists()).map(String::as_str).collect();
+    (!there.is_empty()).then(|| {
+        let message = format!("of an earlier call there are still {}", there.join(", "));
+        let help = "they are not of these programs: remove them, or save in a new folder";
+        Diagnostic::warning(Rule::FileOlder, message).help(help)
+    })
 }
 
 fn robot_name(machine: &Machine, name: &str) -> Option<String> {

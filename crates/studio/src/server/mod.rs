@@ -157,7 +157,10 @@ impl Studio {
             Given::Upload(id) => Sources::One(self.uploads.find(id)?),
             Given::Uploads(ids) => {
                 let each = ids.iter().map(|id| self.uploads.find(id));
-                Sources::Several(each.collect::<Result<_, _>>()?)
+                let mut files = each.collect::<Result<Vec<Source>, _>>()?;
+                // What says how a board is made is no file of it.
+                files.retain(|file| !app::pcb::SETTINGS.contains(&&*file.name()));
+                Sources::Several(files)
             }
             Given::Folder(path) => {
                 let files = self.folder.read_all(path, BOARD_FILES, BOARD_BYTES)?;

@@ -172,6 +172,11 @@ fn all_programs_of_a_board_are_saved_together_as_the_command_saves_them() {
     }
     assert_eq!(page.refused("save", save("out", false)), "output-folder");
     page.done("save", save("out", true));
+    // What an earlier call has left there is named.
+    fs::write(studio.own().join("out/front-mask.gcode"), "").unwrap();
+    let found = &page.done("save", save("out", true))["findings"][0];
+    assert_eq!((&found["rule"], &found["file"]), (&json!("file-older"), &json!("out")));
+    assert!(found["message"].as_str().unwrap().contains("front-mask.gcode"), "{found}");
 }
 
 #[test]
@@ -236,6 +241,10 @@ fn layers_are_posted_from_a_folder_and_from_uploads_and_nothing_else_is_read() {
     };
     let ids = [upload("b.gtl", &track), upload("b.gko", &edge)];
     let of_uploads = post(&mut page, json!({ "uploads": ids }));
+    // A file with options is no layer, and none that is left out.
+    let more = [ids[0].clone(), ids[1].clone(), upload("toolpost.toml", "passes = 2\n")];
+    let with_options = post(&mut page, json!({ "uploads": more }));
+    assert_eq!(with_options["findings"], of_uploads["findings"]);
     assert_eq!(names(&of_uploads["board"]["programs"]), ["front", "outline"]);
     let cuts = |text: String| {
         let cuts = text.lines().filter(|line| line.starts_with(['G', 'X', 'Y', 'Z']));
