@@ -81,7 +81,7 @@ CONTROL_CODE = 00000000 00000000;
 57:J P[34] 20% FINE ;
 58:L P[35] 15cm/min FINE ;
 59:L P[36] 600cm/min FINE ;
-60:J P[37] 20% FINE ;
+60:L P[37] 600cm/min FINE ;
 61:DO[1]=OFF ;
 62:J P[38] 20% FINE ;
 /POS
@@ -303,9 +303,9 @@ W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[37]{
 GP1:
-UF : 9, UT : 9,
-J1= 2.3859 deg, J2= 27.7577 deg, J3= -40.7221 deg,
-J4= 0.0000 deg, J5= -49.2779 deg, J6= -2.3859 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 30.000 mm, Y = 20.000 mm, Z = 50.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[38]{
 GP1:

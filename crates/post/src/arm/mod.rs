@@ -27,6 +27,7 @@ use program::{
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Entries of the code word `corner`.
 mod corner {
@@ -193,6 +194,8 @@ struct Walk<'a> {
     is_cutting: bool,
     /// The line of the last motion of the source.
     last_line: u32,
+    /// The rapids along one line that were looked at last: which steps, and where the first begins and the last ends.
+    line_of_rapids: Option<(Range<usize>, [Frame; 2])>,
     /// Whether the source calls tools of more than one number.
     changes: bool,
     /// Number of the tool that is in the spindle.
@@ -278,6 +281,7 @@ impl<'a> Walk<'a> {
             points: 0,
             is_cutting: false,
             last_line: 0,
+            line_of_rapids: None,
             changes: program.calls_several_tools(),
             held: None,
             name,
@@ -318,7 +322,11 @@ impl<'a> Walk<'a> {
                     Some(Step::Act(..) | Step::Reenter(_)) | None => None,
                 };
                 self.last_line = motion.line;
-                (motion.line, self.motion(motion, next))
+                let done = match motion.kind {
+                    Kind::Rapid => self.begin().and_then(|()| self.rapid(steps, index, motion)),
+                    Kind::Line | Kind::Arc(_) => self.begin().and_then(|()| self.cut(motion, next)),
+                };
+                (motion.line, done)
             }
         };
         done.map_err(|found| Box::new(if found.line == 0 { found.line(line) } else { *found }))
@@ -494,7 +502,7 @@ impl<'a> Walk<'a> {
     fn home(&mut self) -> Outcome {
         let Some(tool) = self.tool.filter(|_| !self.is_home()) else { return Ok(()) };
         let end = self.rapids.home(&tool);
-        let route = self.rapids.route(&tool, &self.here, &end, true);
+        let route = self.rapids.route(&tool, [&self.here, &end], true, None);
         // Home is where joints lead: not down to it from above.
         let by_joints = |route: &Vec<RapidSegment>| {
             route.last().is_some_and(|last| last.path == RapidPath::Joints)
@@ -560,15 +568,8 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn motion(&mut self, motion: &Motion, next: Option<&Motion>) -> Outcome {
-        self.begin()?;
-        match motion.kind {
-            Kind::Rapid => self.rapid(motion),
-            Kind::Line | Kind::Arc(_) => self.cut(motion, next),
-        }
-    }
-
-    fn rapid(&mut self, motion: &Motion) -> Outcome {
+    /// A rapid, which is a step of the source.
+    fn rapid(&mut self, steps: &[Step], index: usize, motion: &Motion) -> Outcome {
         let Some(tool) = self.tool else { return Ok(()) };
         let apart = self.here.tool.translation.distance(motion.end.tool.translation);
         let turns = self.here.joints.iter().zip(motion.end.joints).map(|(a, b)| (a - b).abs());
@@ -579,7 +580,8 @@ impl<'a> Walk<'a> {
         }
         // From home no line of the source leads.
         let free = self.is_home();
-        let Some(route) = self.rapids.route(&tool, &self.here, &motion.end, free) else {
+        let ends = self.line_of_rapids(steps, index, free);
+        let Some(route) = self.rapids.route(&tool, [&self.here, &motion.end], free, ends) else {
             let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut or fed through, and straight the \
                            posture or a turn of a joint would not fit";
             let own = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
@@ -602,6 +604,33 @@ impl<'a> Walk<'a> {
         };
         self.is_cutting = false;
         self.follow(&route)
+    }
+
+    /// Where the rapids along one line begin and end of which a step is one, which may be looked at again. From home the end of that step, and that of the
+    /// rapids by which the source goes up again, where the tool leans the same way there.
+    fn line_of_rapids(&mut self, steps: &[Step], index: usize, free: bool) -> Option<[Frame; 2]> {
+        if let Some((range, ends)) = &self.line_of_rapids
+            && range.contains(&index)
+        {
+            return Some(*ends);
+        }
+        let is_rapid =
+            |at: &usize| matches!(&steps[*at], Step::Move(motion) if motion.kind == Kind::Rapid);
+        let (range, ends) = match free {
+            true => {
+                let Step::Move(motion) = &steps[index] else { return None };
+                let to = motion.end.tool;
+                let stays =
+                    |at: &usize| !matches!(&steps[*at], Step::Act(Act::Tool(_) | Act::Home, ..));
+                let up = (index + 1..steps.len()).take_while(stays).find(is_rapid);
+                let up = up.and_then(|at| plan::line_of_rapids(steps, at));
+                let up = up.map(|(_, [_, end])| end).filter(|end| plan::leans_alike(&to, end));
+                (index..index + 1, [to, up.unwrap_or(to)])
+            }
+            false => plan::line_of_rapids(steps, index)?,
+        };
+        self.line_of_rapids = Some((range, ends));
+        Some(ends)
     }
 
     /// Leaves a cut straight along the tool, turns by the joints above all cuts, and enters at the same place.

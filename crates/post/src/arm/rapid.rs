@@ -80,21 +80,23 @@ impl<'a> RapidPlanner<'a> {
     }
 
     /// How the arm goes from one position to another, where it can: by its joints, or straight, or up along the tool, by its joints, and
-    /// down along the tool. `free` is for a path that no line of the source gives.
+    /// down along the tool. `free` is for a path that no line of the source gives; `rapids` are the ends of the rapids along one line of which this is one.
     pub(super) fn route(
         &self,
         tool: &Frame,
-        from: &Position,
-        to: &Position,
+        [from, to]: [&Position; 2],
         free: bool,
+        rapids: Option<[Frame; 2]>,
     ) -> Option<Vec<RapidSegment>> {
         let line = (!free).then_some([from, to].map(|end| end.tool.translation));
-        // A rapid into the part or out of it is made straight up to its higher end.
-        let leads_in = [from, to].into_iter().any(|end| {
-            let axis = -end.tool.matrix3.z_axis;
-            end.tool.translation.dot(axis) < self.fed.reach(axis) + self.can.rapid_clearance
+        // Rapids into the part or out of it are made straight up to their higher end.
+        let way = rapids.filter(|ends| {
+            ends.iter().any(|end| {
+                let axis = -end.matrix3.z_axis;
+                end.translation.dot(axis) < self.fed.reach(axis) + self.can.rapid_clearance
+            })
         });
-        let way = line.filter(|_| leads_in);
+        let way = way.map(|ends| ends.map(|end| end.translation));
         if self.is_clear(tool, [from, to], line, way) {
             return Some(vec![RapidSegment { path: RapidPath::Joints, end: *to }]);
         }

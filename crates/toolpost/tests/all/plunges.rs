@@ -34,6 +34,21 @@ fn drilled_before() -> Program {
     at_100_50("RAPID\nGOTO/100,50,-29\nGOTO/100,50,-30\nRAPID\nGOTO/100,50,65\n")
 }
 
+/// The same, entered and left with stops on the way, which are no other holes.
+fn by_stops() -> Program {
+    at_100_50(
+        "RAPID\nGOTO/100,50,5\nRAPID\nGOTO/100,50,-20\nRAPID\nGOTO/100,50,-40\nGOTO/100,50,-60\nRAPID\nGOTO/100,50,-50\nRAPID\nGOTO/100,50,-30\n\
+         RAPID\nGOTO/100,50,65\n",
+    )
+}
+
+/// Pecks of a cycle at the bottom of a hole, and a rapid behind them.
+fn cycle_below() -> Program {
+    at_100_50(
+        "CYCLE/DEEP,RAPTO,2,FEDTO,40,RTRCTO,10,MMPM,150,STEP,12\nGOTO/100,50,-40\nCYCLE/OFF\nRAPID\nGOTO/100,50,65\n",
+    )
+}
+
 /// The program of the KUKA, with its line behind the last cut to `tip` made by the joints.
 fn left_by_joints(text: &str, machine: &Machine, tip: [f64; 3]) -> String {
     let [x, y, z] = tip;
@@ -58,6 +73,9 @@ fn joints_that_lead_the_tool_aside_within_a_plunge_are_refused() {
         (slot(), [100.0, 90.0, 65.0], "below where the source begins to feed"),
         (drilled_before(), [100.0, 50.0, 65.0], "not left below its higher end"),
         (drilled_before(), [100.0, 50.0, -29.0], "not left below its higher end"),
+        (by_stops(), [100.0, 50.0, 65.0], "not left below its higher end"),
+        (by_stops(), [100.0, 50.0, -20.0], "not left below its higher end"),
+        (cycle_below(), [100.0, 50.0, 65.0], "not left below its higher end"),
     ] {
         let text = left_by_joints(&proven(&source, &machine), &machine, tip);
         let report = proof_of(&source, &machine, &text);
@@ -84,7 +102,7 @@ fn above_where_a_plunge_begins_the_joints_may_go() {
     assert!(report.proven, "{text}\n{:#?}", report.mismatches);
 }
 
-/// The ends of all motions of joints, and where the tool was before each.
+/// The ends of all motions of joints of more than 30 mm, and where the tool was before each: shorter ones stay near enough to the line.
 fn ends_of_joints(machine: &Machine, text: &str) -> Vec<Vec3> {
     let (arm, cell) = (machine.arm.as_ref().unwrap(), machine.cell.as_ref().unwrap());
     let dialect = Dialect::named(&machine.reader).unwrap();
@@ -105,7 +123,8 @@ fn ends_of_joints(machine: &Machine, text: &str) -> Vec<Vec3> {
             ArmPath::Point(_) => panic!("{text}"),
         };
         if matches!(path, ArmPath::Joints(_)) {
-            ends.extend(here.into_iter().chain([end]));
+            let from = here.filter(|from: &Vec3| from.distance(end) > 30.0);
+            ends.extend(from.into_iter().flat_map(|from| [from, end]));
         }
         here = Some(end);
     }
@@ -121,13 +140,32 @@ fn out_of_plunges_and_back_in_every_robot_goes_straight() {
     let names = ["kuka-kr6-r900", "fanuc-lrmate-200id-mill", "abb-irb120-mill", "universal-ur5e"];
     let library = names.map(|name| machine::load(name).unwrap());
     for machine in library.iter().chain([&leaning]) {
-        for (source, top) in
-            [(deep(), 60.0), (pecks(), 2.0), (slot(), 2.0), (drilled_before(), 65.0)]
-        {
+        for (source, top) in [
+            (deep(), 60.0),
+            (pecks(), 2.0),
+            (slot(), 2.0),
+            (drilled_before(), 65.0),
+            (by_stops(), 65.0),
+            (cycle_below(), 65.0),
+        ] {
             let text = proven(&source, machine);
             let lowest =
                 ends_of_joints(machine, &text).iter().fold(f64::INFINITY, |z, end| z.min(end.z));
             assert!(lowest > top - 0.05, "{}: {lowest}\n{text}", machine.name);
         }
     }
+}
+
+/// The first rapid of the source leads into a hole that was there before: nobody knows from where, and the tool comes from as high as it leaves.
+#[test]
+fn from_home_the_tool_comes_into_a_hole_from_above() {
+    let text = "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-40\nFEDRAT/MMPM,300\nGOTO/100,50,-60\nRAPID\n\
+                GOTO/100,50,65\nSPINDL/OFF\nFINI\n";
+    let (source, machine) = (source(text), machine::load("kuka-kr6-r900").unwrap());
+    let text = proven(&source, &machine);
+    let lowest = ends_of_joints(&machine, &text).iter().fold(f64::INFINITY, |z, end| z.min(end.z));
+    assert!(lowest > 65.0 - 0.05, "{lowest}\n{text}");
+    let by_joints = left_by_joints(&text, &machine, [100.0, 50.0, -40.0]);
+    let report = proof_of(&source, &machine, &by_joints);
+    assert_eq!(report.mismatches[0].rule.name(), "rapid-path", "{by_joints}");
 }

@@ -41,10 +41,7 @@ impl Comparison<'_> {
             (_, Some((Some(from), to))) => Some([from.point(), to.point()]),
             (_, _) => None,
         };
-        let part_way = match rapid {
-            Some((Some(from), to)) => self.part_way(&from, &to),
-            _ => None,
-        };
+        let part_way = self.part_way();
         self.clear([&before, &now], line.filter(|_| arrives), part_way)?;
         // From above the end of a rapid the tool goes down to it along its axis.
         let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));

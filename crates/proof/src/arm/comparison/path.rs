@@ -165,7 +165,7 @@ impl Comparison<'_> {
     /// # Errors
     /// A straight rapid is neither on the line of the source, nor down along the tool to its end, nor free of the part.
     fn is_rapid_path(
-        &self,
+        &mut self,
         start: &Standing,
         at: &dyn Fn(f64) -> Frame,
         (from, to): (Option<&Pose>, &Pose),
@@ -176,7 +176,7 @@ impl Comparison<'_> {
         if is_own || self.is_above(&start.tool, to, f64::INFINITY) {
             return Ok(());
         }
-        let part_way = from.and_then(|from| self.part_way(from, to));
+        let part_way = self.part_way();
         let count = (length / STRIDE).ceil().clamp(1.0, 1e6);
         for step in 0..=count as usize {
             let tool = self.in_part(&at(step as f64 / count));
