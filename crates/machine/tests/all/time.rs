@@ -1,5 +1,6 @@
 //! Machining times against times worked out by hand.
 
+use crate::clock::times_of;
 use crate::common::{machine, table_ac};
 use geom::Vec3;
 use program::{ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
@@ -10,7 +11,7 @@ use toolpost_machine::{Machine, OrientationMode};
 fn times(ops: impl IntoIterator<Item = Op>) -> Times {
     let mut program = Program::new("t");
     ops.into_iter().for_each(|op| program.push(1, op));
-    Times::of(&program, &machine(Vec::new()))
+    times_of(&program, &machine(Vec::new()))
 }
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
@@ -43,7 +44,7 @@ fn a_robot_has_the_rapid_of_its_cell_and_no_axes_of_a_mill() {
         Op::Line(at(0.0, 0.0, 0.0)),
     ];
     ops.into_iter().for_each(|op| program.push(1, op));
-    let times = Times::of(&program, &robot);
+    let times = times_of(&program, &robot);
     // 500 mm at 6000 mm/min from rest to rest of nothing, and at 30 m/min; the tool is put in by a person.
     assert_near(times.rapid, 5.0);
     assert_near(times.cutting, 1.0);
@@ -122,10 +123,10 @@ fn a_rotary_axis_may_be_the_slowest() {
     let mut program = Program::new("t");
     program.push(1, Op::Rapid(at(0.0, 0.0, 0.0)));
     program.push(2, Op::Rapid(Pose::new(Vec3::X, Vec3::Y).unwrap()));
-    assert_near(Times::of(&program, &table_ac()).rapid, 0.86);
+    assert_near(times_of(&program, &table_ac()).rapid, 0.86);
     program.push(3, Op::Feed(Feed::PerMinute(1000.0)));
     program.push(4, Op::Line(Pose::upright(Vec3::X * 2.0).unwrap()));
-    assert_near(Times::of(&program, &table_ac()).cutting, 0.5);
+    assert_near(times_of(&program, &table_ac()).cutting, 0.5);
 }
 
 /// The table of the test above on a control without inverse time.
@@ -141,7 +142,7 @@ fn leaning(mill: &Machine, from: Vec3, to: Vec3) -> f64 {
     program.push(1, Op::Feed(Feed::PerMinute(1000.0)));
     program.push(2, Op::Rapid(Pose::upright(from).unwrap()));
     program.push(3, Op::Line(Pose::new(to, Vec3::Y).unwrap()));
-    Times::of(&program, mill).cutting
+    times_of(&program, mill).cutting
 }
 
 #[test]
@@ -174,5 +175,5 @@ fn along_the_tool_above_a_turned_table_z_goes_alone() {
     let mut program = Program::new("t");
     program.push(1, Op::Rapid(Pose::new(Vec3::ZERO, axis).unwrap()));
     program.push(2, Op::Rapid(Pose::new(axis * 12.5, axis).unwrap()));
-    assert_near(Times::of(&program, &table_ac()).rapid, 0.7);
+    assert_near(times_of(&program, &table_ac()).rapid, 0.7);
 }

@@ -5,6 +5,8 @@ mod arcs;
 mod block_by_block;
 mod cells;
 mod clamps;
+#[path = "../../../machine/tests/all/clock.rs"]
+mod clock;
 mod compensated;
 mod contours;
 mod corners;

@@ -1,11 +1,11 @@
 //! The motions that a proof hands out, against chains of axes that share no code with the project.
 
+use crate::clock::{Clock, times_of};
 use crate::files::{mills, root};
 use control::{Action, Event};
 use geom::Vec3;
 use machine::library::{ROBOTS, names};
 use machine::linkage::Linkage;
-use machine::time::{Clock, Times};
 use machine::{Machine, Mount};
 use program::{Builder, Feed, Op, Program, Spindle, Tool};
 use proof::{AxisPositions, Motion, MotionKind, Tolerances};
@@ -202,7 +202,7 @@ fn times_of_the_motions_are_those_of_the_report() {
         let text = std::fs::read(root().join("machines/samples").join(axes).with_extension("cls"));
         let source =
             source::apt::read("s.cls", &text.unwrap(), &Default::default()).unwrap().program;
-        let times = Times::of(&source, &machine);
+        let times = times_of(&source, &machine);
         let found = posted(&source, &machine).1;
         let cuts = found.iter().filter(|motion| motion.kind != MotionKind::Rapid);
         let cutting: f64 = cuts.map(|motion| motion.seconds).sum();

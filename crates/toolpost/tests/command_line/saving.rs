@@ -240,7 +240,7 @@ fn prove_says_whether_the_report_belongs_to_the_program() {
     assert_eq!(post().code, 0);
     let report: serde_json::Value =
         serde_json::from_str(&folder.read("out.mpf.report.json")).unwrap();
-    assert_eq!(report["schema"], 3);
+    assert_eq!(report["schema"], 4);
     let said = prove();
     assert!(said.out.contains("out.mpf.report.json belongs to this program"), "{said:?}");
     // Still proven, but by another text, another toolpath, another machine file.
