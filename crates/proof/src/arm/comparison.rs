@@ -216,7 +216,9 @@ impl<'a> Comparison<'a> {
     /// # Errors
     /// What differs: the run ends there.
     pub(super) fn event(&mut self, event: &Event) -> Outcome {
-        let source = self.expected.get(self.next).map_or(0, |expected| expected.line);
+        // Behind the last step the program still goes home.
+        let source = self.expected.get(self.next).or(self.expected.last());
+        let source = source.map_or(0, |expected| expected.line);
         let done = match self.gather(event) {
             Ok(true) => Ok(()),
             Ok(false) => self.take(event),

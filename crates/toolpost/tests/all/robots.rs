@@ -604,6 +604,18 @@ fn a_tool_leaves_a_cut_with_the_spindle_as_in_the_cut() {
         let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
         assert_eq!(found, ["spindle"], "{:#?}", report.mismatches);
     }
+    // The source itself stops it at the bottom: its line is named, and what to do there.
+    let last = "GOTO/60,0,-2\nSPINDL/OFF\nFINI\n";
+    let in_cut = crate::robot::source(
+        &JOB.split("GOTO/60,0,-2").next().map(|head| format!("{head}{last}")).unwrap(),
+    );
+    let report = proof_of(&in_cut, &machine, &crate::robot::written(&in_cut, &machine).unwrap());
+    let found = &report.mismatches[0];
+    assert!(
+        found.message.starts_with("source line 10: the tool leaves a cut with the spindle off,"),
+        "{found}"
+    );
+    assert!(found.help.contains("SPINDL/OFF"), "{found}");
     // Above the cuts it is stopped and started as the program likes.
     let free = behind(&text, &above, &format!("$OUT[1]=FALSE\r\n{on}"));
     assert!(proof_of(&source, &machine, &free).proven);

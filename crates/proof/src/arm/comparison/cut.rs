@@ -120,13 +120,16 @@ impl Comparison<'_> {
             "the tool leaves a cut with the spindle {}, which is not as in the cut",
             self.spindle()
         );
-        refused(Rule::Spindle, message)
+        let help = "stop the spindle, or change its speed, behind the rapid that takes the tool out of the cut: in the source where that stops it in the cut (SPINDL/OFF)";
+        Err(Diagnostic::error(Rule::Spindle, message).help(help).into())
     }
 
     /// How the spindle turns, for a message.
     fn spindle(&self) -> String {
-        let state = if self.running.is_on { "on" } else { "off" };
-        format!("{state} at {:.0} 1/min", self.running.speed.unwrap_or(0.0))
+        match self.running.is_on {
+            true => format!("on at {:.0} 1/min", self.running.speed.unwrap_or(0.0)),
+            false => String::from("off"),
+        }
     }
 
     /// How the spindle turns: whether, and how fast.
