@@ -144,7 +144,7 @@ impl Walk<'_> {
         let tips: Vec<Vec3> =
             solutions.iter().flat_map(|at| machine.wandering(a, b, *at)).collect();
         let is_straight = tips.iter().all(|tip| nearest_on_segment(a, b, *tip).1 <= corridor);
-        !solutions.is_empty() && (is_straight || tips.iter().all(|tip| self.is_beyond(*tip, axis)))
+        !solutions.is_empty() && (is_straight || self.are_free(&tips, [from, to]))
     }
 
     /// How far `pose` has to go out along its axis to be beyond all cuts, mm.
@@ -576,14 +576,24 @@ impl Walk<'_> {
         let corner = corner(a, b, axis);
         let (legs, goes_up) = ([(a, corner), (corner, b)], (b - a).dot(axis) > 0.0);
         let [along, across] = if goes_up { legs } else { [legs[1], legs[0]] };
-        let mut is_beyond = |(a, b)| wandering(a, b).iter().all(|tip| self.is_beyond(*tip, axis));
-        Ok(if is_straight(a, b) || is_beyond((a, b)) {
+        let mut are_free = |(a, b)| self.are_free(&wandering(a, b), [from, to]);
+        Ok(if is_straight(a, b) || are_free((a, b)) {
             RapidMoves::AtOnce
-        } else if is_straight(along.0, along.1) && is_beyond(across) {
+        } else if is_straight(along.0, along.1) && are_free(across) {
             RapidMoves::Corner(to.at(corner)?)
         } else {
             RapidMoves::Feed
         })
+    }
+
+    /// Whether the tool may go by these places off the straight way between two poses, where it does not turn: they are beyond all cuts; and
+    /// where one of the ends is below where a feed begins, so that the way may lead through a hole, not below the higher end.
+    fn are_free(&mut self, tips: &[Vec3], ends: [&Pose; 2]) -> bool {
+        let axis = ends[1].axis();
+        let is_in = ends.iter().any(|end| self.is_near_cuts(end));
+        let heights = ends.map(|end| end.point().dot(axis));
+        let floor = if is_in { heights[0].max(heights[1]) - ROUNDING } else { f64::NEG_INFINITY };
+        tips.iter().all(|tip| tip.dot(axis) >= floor && self.is_beyond(*tip, axis))
     }
 
     /// Whether the tool is beyond all cuts along its axis.

@@ -3,7 +3,7 @@
 //! A block goes near the part only on the straight way that the source goes by rapid, along the tool axis away from a
 //! place or down to it, or from home along Z. Any other way must be beyond all that the source cuts, along the tool
 //! axis as it is at each point. Where the axes of the machine go each at its own speed, the way is anywhere in the box
-//! that they span.
+//! that they span; of a way out of what is fed through, or into it, that box may not be below its higher end either.
 
 use super::*;
 use crate::line::{blend, turn};
@@ -85,8 +85,17 @@ impl Prover<'_> {
         let (on_way, elsewhere): (Vec<&PartialPose>, Vec<&PartialPose>) =
             places.iter().partition(|place| way.holds(place));
         self.note_rapid(way, on_way.into_iter(), to.line);
-        let short = self.short_of_clearance(elsewhere.iter().copied())?;
         let slack = self.gauge.slack(here);
+        if let Some(low) = self.below_its_end([here, to], &elsewhere) {
+            let what = format!(
+                "leaves the straight way of the source {} mm below its higher end: one of its ends is below where the source \
+                 begins to feed, so that there may be a hole around it",
+                Number(low)
+            );
+            self.note_rapid(way, elsewhere.into_iter(), to.line);
+            return Some(self.way_refused(to, &what));
+        }
+        let short = self.short_of_clearance(elsewhere.iter().copied())?;
         let low: Vec<&PartialPose> =
             elsewhere.into_iter().filter(|place| self.short(place) > slack).collect();
         self.note_rapid(way, low.into_iter(), to.line);
@@ -96,6 +105,27 @@ impl Prover<'_> {
             Number(short)
         );
         Some(self.way_refused(to, &what))
+    }
+
+    /// How far the axes, going each at its own speed, lead the tool below the higher end of a way on which it does not turn, mm, where
+    /// one of the ends is below where a feed of the source begins: in a hole that was drilled by moves the tool is beyond all cuts
+    /// everywhere but at its bottom.
+    fn below_its_end(
+        &mut self,
+        ends: [&ResolvedPose; 2],
+        elsewhere: &[&PartialPose],
+    ) -> Option<f64> {
+        let axis = ends[1].place.axis;
+        let turns = ends[0].position.orientation != ends[1].position.orientation;
+        if self.gauge.straight_rapids || turns || !ends.iter().any(|end| self.is_near(end)) {
+            return None;
+        }
+        let height = |place: &PartialPose| place.tip.dot(axis);
+        let higher = ends.iter().map(|end| height(&end.place)).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = elsewhere.iter().map(|place| height(place)).fold(f64::INFINITY, f64::min);
+        let low = higher - lowest;
+        let corridor = self.gauge.machine.capabilities.rapid_corridor;
+        (low > corridor + self.gauge.slack(ends[0])).then_some(low)
     }
 
     /// Holds the rounding of corners of rapids, which goes through the part where one of the two ends is not beyond all cuts.

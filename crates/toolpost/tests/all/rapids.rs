@@ -394,3 +394,45 @@ fn from_home_only_z_comes_down() {
     let line = approach as u32 + 1;
     assert_eq!(refused(&source, &machine, &(all.join("\n") + "\n")), [("rapid-path", line)]);
 }
+
+/// A head that leans the tool and axes that go each at its own speed: off its straight way the tool would cut the wall of the hole, though it is
+/// beyond the bottom, which is all that a plunge cuts.
+#[test]
+fn a_hole_along_a_leaning_tool_is_left_and_entered_straight_where_each_axis_goes_at_its_own_speed()
+{
+    let machine = machine::load_text(
+        "head.toml",
+        "extends = \"fanuc-31i\"\n[orientation]\nsimultaneous = \"tool-center-angles\"\npositioned = \"tool-center-angles\"\n\
+         tolerance = 0.005\n[settings]\nrapid_path = \"independent\"\nrotary_by_sign = false\ntool_radius = \"full\"\n\
+         [axes]\nX = { min = -1400, max = 1400, rapid = 36000, acceleration = 4 }\nY = { min = -1400, max = 1400, rapid = 36000, acceleration = 4 }\n\
+         Z = { min = -1400, max = 1400, rapid = 10000, acceleration = 4 }\n\
+         [[rotary]]\nletter = \"B\"\non = \"head\"\naxis = [0, 1, 0]\npoint = [0, 0, 250]\nsign = -1\nmin = -110\nmax = 110\nrapid = 3600\nacceleration = 300\n",
+    )
+    .unwrap();
+    // Drilled from (105, 5) down to (40, -60), by a peck at (46, -54).
+    let at = |place: &str| format!("GOTO/{place},0.70710678,0,0.70710678\n");
+    let [top, above, peck, back, bottom] =
+        ["145,0,45", "105,0,5", "46,0,-54", "100,0,0", "40,0,-60"].map(at);
+    let source = read(&format!(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\n{top}RAPID\n{above}FEDRAT/MMPM,300\n{peck}\
+         RAPID\n{back}RAPID\n{peck}{bottom}RAPID\n{peck}RAPID\n{top}SPINDL/OFF\nFINI\n"
+    ));
+    let text = text(&written(&source, &machine));
+    let rules = |text: &str| {
+        let report =
+            proof::prove(&source, &machine, "job.nc", text.as_bytes(), &Default::default());
+        report.mismatches.iter().map(|found| found.rule.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(rules(&text), [""; 0], "{text}");
+    // The rapids of the source in the hole are written by feed; by rapid none of them is proven.
+    for (own, by_rapid) in [
+        ("N160 X100. Z0.\nN170 ", "N160 G0 X100. Z0.\nN170 G1 "),
+        ("N170 X46. Z-54.\nN180 ", "N170 G0 X46. Z-54.\nN180 G1 "),
+        ("N190 X46. Z-54.\nN200 ", "N190 G0 X46. Z-54.\nN200 G1 "),
+        ("N200 X145. Z45.", "N200 G0 X145. Z45."),
+    ] {
+        assert!(text.contains(own), "{own}: {text}");
+        let found = rules(&text.replacen(own, by_rapid, 1));
+        assert!(found.contains(&"rapid-path".into()), "{by_rapid}: {found:?}");
+    }
+}
