@@ -212,7 +212,7 @@ struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(
-        program: &Program,
+        program: &'a Program,
         machine: &'a Machine,
         (arm, cell): (&'a Arm, &'a Cell),
         name: &str,
@@ -501,8 +501,7 @@ impl<'a> Walk<'a> {
     /// The joints go home, where the path is clear.
     fn home(&mut self) -> Outcome {
         let Some(tool) = self.tool.filter(|_| !self.is_home()) else { return Ok(()) };
-        let end = self.rapids.home(&tool);
-        let route = self.rapids.route(&tool, [&self.here, &end], true, None);
+        let route = self.rapids.route_home(&tool, &self.here);
         // Home is where joints lead: not down to it from above.
         let by_joints = |route: &Vec<RapidSegment>| {
             route.last().is_some_and(|last| last.path == RapidPath::Joints)

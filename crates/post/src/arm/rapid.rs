@@ -26,6 +26,7 @@ pub(super) struct RapidPlanner<'a> {
     pub(super) can: &'a Capabilities,
     /// How fast the tool turns where it turns on the spot, its axis and about it together, degrees/s; `None` where it cannot be said.
     pub(super) turn_rate: Option<f64>,
+    source: &'a Program,
     pub(super) cuts: CutBox,
     /// All that the source feeds through: what is below the start of a plunge may be material.
     pub(super) fed: CutBox,
@@ -53,7 +54,7 @@ const RETRACTS: [f64; 5] = [2.0, 10.0, 30.0, 80.0, 200.0];
 impl<'a> RapidPlanner<'a> {
     /// For the rapids of `program`.
     pub(super) fn new(
-        program: &Program,
+        program: &'a Program,
         machine: &'a Machine,
         (arm, cell): (&'a Arm, &'a Cell),
     ) -> RapidPlanner<'a> {
@@ -62,6 +63,7 @@ impl<'a> RapidPlanner<'a> {
             cell,
             can: &machine.capabilities,
             turn_rate: machine.turn_speed().map(|speed| 2.0 * speed),
+            source: program,
             cuts: CutBox::of(program),
             fed: CutBox::fed(program),
         }
@@ -181,6 +183,23 @@ impl<'a> RapidPlanner<'a> {
             return Some((*at, None));
         }
         self.raised(tool, at, height).map(|(raised, feed)| (raised, Some(feed)))
+    }
+
+    /// Home from a position: straight up along the tool to where it is as high as the source ever goes with its tool as it leans there, and by
+    /// the joints.
+    pub(super) fn route_home(&self, tool: &Frame, from: &Position) -> Option<Vec<RapidSegment>> {
+        let home = self.home(tool);
+        let axis = -from.tool.matrix3.z_axis;
+        let low = self.source.height_along(axis) - from.tool.translation.dot(axis);
+        if low <= self.can.rapid_corridor / 2.0 {
+            return self.route(tool, [from, &home], true, None);
+        }
+        let (above, feed) = self.raised(tool, from, low)?;
+        let route = self.route(tool, [&above, &home], true, None)?;
+        // Where the route goes up first anyway, that is one way.
+        let goes_up = route.first().is_some_and(|first| first.path != RapidPath::Joints);
+        let up = RapidSegment { path: RapidPath::Straight(feed), end: above };
+        Some((!goes_up).then_some(up).into_iter().chain(route).collect())
     }
 
     /// The position so many mm up along the tool, and the feed to go between it and `at`.

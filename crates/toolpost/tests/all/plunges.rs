@@ -49,6 +49,13 @@ fn cycle_below() -> Program {
     )
 }
 
+/// The same, with nothing behind them: the arm goes home from within the hole.
+fn ends_below() -> Program {
+    at_100_50(
+        "CYCLE/DEEP,RAPTO,2,FEDTO,40,RTRCTO,10,MMPM,150,STEP,12\nGOTO/100,50,-40\nCYCLE/OFF\n",
+    )
+}
+
 /// The program of the KUKA, with its line behind the last cut to `tip` made by the joints.
 fn left_by_joints(text: &str, machine: &Machine, tip: [f64; 3]) -> String {
     let [x, y, z] = tip;
@@ -147,6 +154,7 @@ fn out_of_plunges_and_back_in_every_robot_goes_straight() {
             (drilled_before(), 65.0),
             (by_stops(), 65.0),
             (cycle_below(), 65.0),
+            (ends_below(), 65.0),
         ] {
             let text = proven(&source, machine);
             let lowest =
@@ -168,4 +176,18 @@ fn from_home_the_tool_comes_into_a_hole_from_above() {
     let by_joints = left_by_joints(&text, &machine, [100.0, 50.0, -40.0]);
     let report = proof_of(&source, &machine, &by_joints);
     assert_eq!(report.mismatches[0].rule.name(), "rapid-path", "{by_joints}");
+}
+
+#[test]
+fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
+    let (source, machine) = (ends_below(), machine::load("kuka-kr6-r900").unwrap());
+    let text = proven(&source, &machine);
+    // Without the line up to there.
+    let at = text.rfind("LIN {X 100.000,Y 50.000,Z 65.000,").unwrap_or_else(|| panic!("{text}"));
+    let end = at + text[at..].find("\r\n").unwrap() + 2;
+    let damaged = format!("{}{}", &text[..at], &text[end..]);
+    let report = proof_of(&source, &machine, &damaged);
+    let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{damaged}"));
+    assert_eq!(found.rule.name(), "rapid-path", "{found}");
+    assert!(found.message.contains("lower along the tool"), "{found}");
 }

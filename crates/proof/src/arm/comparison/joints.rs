@@ -14,6 +14,7 @@ const SAME_JOINTS: f64 = 1e-4;
 impl Comparison<'_> {
     /// A motion of all joints.
     pub(super) fn joints(&mut self, shown: [f64; 6], rail: f64) -> Outcome {
+        let was_home = self.is_home;
         let Some((before, now)) = self.turn_joints(shown, rail)? else {
             return Ok(());
         };
@@ -23,6 +24,9 @@ impl Comparison<'_> {
         if same && before.tool.translation.distance(at.translation) <= self.tip(true) {
             // A file of a program begins by the joints at which the one before has ended.
             return Ok(());
+        }
+        if home && !was_home {
+            self.high_enough(&before.tool)?;
         }
         let wanted = self.expected.get(self.next).map(|expected| expected.step.clone());
         let rapid = match &wanted {
@@ -66,6 +70,25 @@ impl Comparison<'_> {
                 Err(found.help(self.way_to_end()).into())
             }
         }
+    }
+
+    /// Where the joints lead home no line of the source says what the tool passes.
+    ///
+    /// # Errors
+    /// The tool is lower there than the source goes with its tool as it leans there.
+    fn high_enough(&self, tool: &Frame) -> Outcome {
+        let at = self.in_part(tool);
+        let (tip, axis) = (at.translation, -at.matrix3.z_axis);
+        let low = self.source.height_along(axis) - tip.dot(axis);
+        if low <= self.machine.capabilities.rapid_corridor {
+            return Ok(());
+        }
+        let message = format!(
+            "the joints lead home from X{:.1} Y{:.1} Z{:.1}, {low:.2} mm lower along the tool than the source goes: it may stand in a hole there",
+            tip.x, tip.y, tip.z
+        );
+        let help = "go straight up along the tool first";
+        Err(Diagnostic::error(Rule::RapidPath, message).help(help).into())
     }
 
     /// Turns the joints to what the controller shows; where the arm stood, and where it stands. `None` where it was led from somewhere to home.
