@@ -2,9 +2,9 @@ import { mkdtempSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { mkdir } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import type { Browser, Page } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { absent, accessible, example, launch, lit, proven, readout, Server, visit } from "./harness.ts";
+import type { Page } from "playwright-core";
+import { describe, expect, test } from "vitest";
+import { absent, accessible, browserOfTests, example, lit, proven, readout, Server, visit } from "./harness.ts";
 
 const HEAD = "%FSLAX46Y46*%\n%MOMM*%\n";
 const track = `${HEAD}%ADD10C,1.0*%\nD10*\nX2000000Y2000000D02*\nX8000000Y2000000D01*\nM02*\n`;
@@ -27,18 +27,11 @@ async function give(page: Page, name: string, value: string): Promise<void> {
 }
 
 describe.skipIf(absent() !== null)("circuit boards", () => {
-    let browser: Browser;
-    beforeAll(async () => {
-        browser = await launch();
-    });
-    afterAll(async () => {
-        await browser.close();
-        await Server.stopAll();
-    });
+    const browser = browserOfTests();
 
     test("a board opens, its tool is asked for, its programs are chosen, a click on a cut lights its block, all are saved together", async () => {
         const server = await Server.start([example("lamp.toml")], ["-m", "grbl-3018"]);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await give(page, "tool", "0.3");
         await proven(page);
         const programs = page.getByRole("group", { name: "Programs of the board" });
@@ -91,7 +84,7 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
         writeFileSync(join(folder, "plots/b.gtl"), track);
         writeFileSync(join(folder, "plots/b.gko"), edge(""));
         const server = await Server.start([], ["-m", "grbl-3018"], folder);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
         await page.getByRole("option", { name: /^plots\// }).click();
         await page.getByRole("option", { name: "All files of plots as a circuit board" }).click();
@@ -105,7 +98,7 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
 
     test("a program of a board is edited: proven anew, refused when it cuts otherwise, saved by itself, and discarded", async () => {
         const server = await Server.start([example("lamp.toml")], ["-m", "grbl-3018"]);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await give(page, "tool", "0.3");
         await proven(page);
         await choose(page, "drill");
@@ -134,7 +127,7 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
 
     test("several files that are dropped are a board", async () => {
         const server = await Server.start([], ["-m", "grbl-3018"]);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         const data = await page.evaluateHandle(([copper, line]) => {
             const transfer = new DataTransfer();
             transfer.items.add(new File([copper!], "b.gtl"));
@@ -154,7 +147,7 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
         await mkdir(join(folder, "two"));
         for (const name of ["a", "b"]) writeFileSync(join(folder, `two/${name}.kicad_pcb`), "(kicad_pcb (version 20221018))");
         const server = await Server.start([], ["-m", "grbl-3018"], folder);
-        const { page } = await visit(browser, server.link);
+        const { page } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
         await page.getByRole("option", { name: /^two\// }).click();
         await page.getByRole("option", { name: /as a circuit board/ }).click();

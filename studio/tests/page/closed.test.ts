@@ -2,24 +2,16 @@ import { createServer } from "node:http";
 import type { AddressInfo } from "node:net";
 import { existsSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Browser } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { absent, example, launch, proven, Server, visit } from "./harness.ts";
+import { describe, expect, test } from "vitest";
+import { absent, browserOfTests, example, proven, Server, visit } from "./harness.ts";
 
 describe.skipIf(absent() !== null)("the page and others", () => {
-    let browser: Browser;
-    beforeAll(async () => {
-        browser = await launch();
-    });
-    afterAll(async () => {
-        await browser.close();
-        await Server.stopAll();
-    });
+    const browser = browserOfTests();
 
     test("a page of another origin gets no socket and no data, even with the token", async () => {
         const server = await Server.start([example("plate.cls")], ["-m", "generic-3axis-fanuc"]);
         const other = createServer((_, response) => response.setHeader("content-type", "text/html").end("<p>elsewhere")).listen(0, "127.0.0.1");
-        const page = await browser.newPage();
+        const page = await browser().newPage();
         await page.goto(`http://127.0.0.1:${(other.address() as AddressInfo).port}/`);
         const { origin, hash } = new URL(server.link);
         const token = hash.slice(1);
@@ -43,7 +35,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
 
     test("a link with another token is refused, and the page says so", async () => {
         const server = await Server.start([]);
-        const { page } = await visit(browser, `${server.link.slice(0, -4)}0000`);
+        const { page } = await visit(browser(), `${server.link.slice(0, -4)}0000`);
         await page.getByText("the link is not of this server").waitFor();
         await page.close();
     });
@@ -52,7 +44,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         const server = await Server.start([]);
         const file = join(server.folder, "x<img src=x onerror=alert(1)>.cls");
         writeFileSync(file, "PARTNO/<script>alert(1)</script>\nUNITS/MM\nLOADTL/1\nSPINDL/900,RPM,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\nGOTO/0,0,0\nPPRINT/<b onmouseover=alert(2)>\nGOTO/10,0,0\nFINI\n");
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         let alerts = 0;
         page.on("dialog", (dialog) => {
             alerts++;
@@ -75,7 +67,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
         const moves = Array.from({ length: 400_000 }, (_, i) => `GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
         writeFileSync(join(server.folder, "long.cls"), ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...moves, "FINI", ""].join("\n"));
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
         await page.getByText("long.cls").click();
         await page.getByRole("progressbar").waitFor();
@@ -90,7 +82,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         const files = [example("plate.cls")];
         const machine = ["-m", "generic-3axis-fanuc"];
         const first = await Server.start(files, machine);
-        const { page } = await visit(browser, first.link);
+        const { page } = await visit(browser(), first.link);
         await proven(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
@@ -102,7 +94,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         await page.close();
 
         const second = await Server.start([], machine, first.folder);
-        const again = await visit(browser, second.link);
+        const again = await visit(browser(), second.link);
         await again.page.getByRole("button", { name: "Continue" }).click();
         await again.page.locator(".program .cm-line", { hasText: "(kept)" }).waitFor();
         expect(again.complaints).toEqual([]);

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { createInterface } from "node:readline";
 import { chromium, type Browser, type Page, type Route } from "playwright-core";
-import { expect } from "vitest";
+import { afterAll, beforeAll, expect } from "vitest";
 
 const root = resolve(import.meta.dirname, "../../..");
 const command = process.env.TOOLPOST ?? join(process.env.CARGO_TARGET_DIR ?? join(root, "target"), "debug/toolpost");
@@ -71,6 +71,26 @@ export class Server {
 
 export const launch = (): Promise<Browser> =>
     chromium.launch({ executablePath: browserPath, args: ["--no-sandbox", "--enable-unsafe-swiftshader", ...(newer ? ["--disable-features=LocalNetworkAccessChecks"] : [])] });
+
+/** The browser of the tests of a `describe`, behind which it and all servers end. */
+export function browserOfTests(): () => Browser {
+    let browser: Browser;
+    beforeAll(async () => {
+        browser = await launch();
+    });
+    afterAll(async () => {
+        await browser.close();
+        await Server.stopAll();
+    });
+    return () => browser;
+}
+
+/** The part of a canvas that is not its ground. It runs in the page. */
+export function covered(canvas: SVGElement | HTMLElement): number {
+    const { width, height } = canvas as HTMLCanvasElement;
+    const pixels = new Uint32Array((canvas as HTMLCanvasElement).getContext("2d")!.getImageData(0, 0, width, height).data.buffer);
+    return pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length;
+}
 
 export interface Visit {
     page: Page;

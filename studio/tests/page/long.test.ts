@@ -2,41 +2,26 @@
 
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Browser } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { absent, goTo, launch, proven, Server, visit } from "./harness.ts";
+import { describe, expect, test } from "vitest";
+import { absent, browserOfTests, covered, goTo, proven, Server, visit } from "./harness.ts";
 
 const MOVES = 210_000;
 
-/** Whether a canvas has more than its ground. */
-function isDrawn(canvas: SVGElement | HTMLElement): boolean {
-    const { width, height } = canvas as HTMLCanvasElement;
-    const pixels = new Uint32Array((canvas as HTMLCanvasElement).getContext("2d")!.getImageData(0, 0, width, height).data.buffer);
-    return pixels.some((pixel) => pixel !== pixels[0]);
-}
-
 describe.skipIf(absent() !== null)("a long program", () => {
-    let browser: Browser;
-    beforeAll(async () => {
-        browser = await launch();
-    });
-    afterAll(async () => {
-        await browser.close();
-        await Server.stopAll();
-    });
+    const browser = browserOfTests();
 
     test("the place is lit and stays in sight, also while the lines round the one before are on their way", async () => {
         const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
         const moves = Array.from({ length: MOVES }, (_, i) => `GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
         writeFileSync(join(server.folder, "long.cls"), ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...moves, "FINI", ""].join("\n"));
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
         await page.getByText("long.cls").click();
         // What is walked is there before the verdict, and is not called proven.
         await page.getByText("the proof runs: nothing of this is proven yet").waitFor({ timeout: 60_000 });
         expect(await page.getByText("PROVEN", { exact: false }).and(page.locator(".done")).count()).toBe(0);
         expect(await page.getByRole("button", { name: "Save…" }).isDisabled()).toBe(true);
-        await expect.poll(() => page.locator(".canvas canvas").first().evaluate(isDrawn)).toBe(true);
+        await expect.poll(() => page.locator(".canvas canvas").first().evaluate(covered)).toBeGreaterThan(0);
         await proven(page, 90_000);
         await page.getByText("nothing of this is proven yet").waitFor({ state: "detached" });
         const lit = page.locator(".source .cm-line.at");

@@ -1,32 +1,17 @@
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Browser } from "playwright-core";
-import { afterAll, beforeAll, describe, expect, test } from "vitest";
-import { absent, accessible, example, goTo, launch, lit, proven, readout, Server, visit } from "./harness.ts";
-
-/** The part of a canvas that is not its ground. */
-function covered(canvas: SVGElement | HTMLElement): number {
-    const { width, height } = canvas as HTMLCanvasElement;
-    const pixels = new Uint32Array((canvas as HTMLCanvasElement).getContext("2d")!.getImageData(0, 0, width, height).data.buffer);
-    return pixels.filter((pixel) => pixel !== pixels[0]).length / pixels.length;
-}
+import { describe, expect, test } from "vitest";
+import { absent, accessible, browserOfTests, covered, example, goTo, lit, proven, readout, Server, visit } from "./harness.ts";
 
 describe.skipIf(absent() !== null)("the same part on machines of other kinds", () => {
-    let browser: Browser;
-    beforeAll(async () => {
-        browser = await launch();
-    });
-    afterAll(async () => {
-        await browser.close();
-        await Server.stopAll();
-    });
+    const browser = browserOfTests();
 
     test.each([
         ["five axes", "fanuc-table-bc", ["X", "Y", "Z", "B", "C"]],
         ["a robot", "universal-ur10e", ["J1", "J2", "J3", "J4", "J5", "J6"]],
     ])("%s: the tip is where the record goes, and each axis is read out", async (_, machine, axes) => {
         const server = await Server.start([example("dome.cls")], ["-m", machine]);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await proven(page);
         await page.locator(".program .cm-line.at").waitFor();
         const before = await lit(page, "source");
@@ -45,7 +30,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
 
     test("all blocks of a record are marked: on a HEIDENHAIN the centre of an arc has a block of its own", async () => {
         const server = await Server.start([example("plate.cls")], ["-m", "generic-3axis-heidenhain"]);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await proven(page);
         // The way of `CIRCLE/72,40,-6,0,0,1,3` to its end.
         await goTo(page, "s47");
@@ -66,7 +51,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
             `GOTO/20,0,50,${lean("0.0348995", "0")}`, "FINI", "",
         ];
         writeFileSync(join(server.folder, "pole.cls"), lines.join("\n"));
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
         await page.getByText("pole.cls").click();
         await proven(page);
@@ -91,7 +76,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
 
     test("a wire: what the program leaves open is asked for, and the wire's four axes are read out", async () => {
         const server = await Server.start([example("sector.nc")], ["-m", "bp-95d"]);
-        const { page, complaints } = await visit(browser, server.link);
+        const { page, complaints } = await visit(browser(), server.link);
         await page.getByRole("button", { name: "Set --from…" }).click();
         const given = { from: "fanuc-31i", side: "inside", wire: "0.25", gap: "0.02", thread: "12,12", "round-corners": null };
         for (const [name, value] of Object.entries(given)) {
@@ -116,7 +101,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
 
     test("a program without a control leads to the option that it needs", async () => {
         const server = await Server.start([example("flange.nc")], ["-m", "generic-3axis-fanuc"]);
-        const { page } = await visit(browser, server.link);
+        const { page } = await visit(browser(), server.link);
         await page.getByRole("button", { name: "Set --from…" }).click();
         await page.locator("#option-from:focus").waitFor();
         await page.keyboard.type("fanuc-31i");

@@ -459,10 +459,6 @@ impl<'a> Walk<'a> {
         self.set_each(words, load.center.to_array());
     }
 
-    fn home_joints(&self) -> Joints {
-        self.arm.model(&self.cell.home.map(f64::to_radians)).unwrap_or_default()
-    }
-
     fn change_tool(&mut self, tool: &Tool, line: u32) -> Outcome {
         self.limits.tool(tool, line)?;
         (self.spindle, self.coolant) = (Spindle::Off, Coolant::Off);
@@ -517,7 +513,7 @@ impl<'a> Walk<'a> {
     }
 
     fn is_home(&self) -> bool {
-        self.here.joints == self.home_joints() && self.here.rail == self.cell.rail_home()
+        self.here.joints == self.rapids.home_joints() && self.here.rail == self.cell.rail_home()
     }
 
     /// A straight line to where joints have led an arm that is measured one by one, and whose measures are not known here: its controller

@@ -23,13 +23,13 @@ const SPEED: f64 = 0.8;
 pub(super) struct RapidPlanner<'a> {
     pub(super) arm: &'a Arm,
     pub(super) cell: &'a Cell,
-    pub(super) can: &'a Capabilities,
+    can: &'a Capabilities,
     /// How fast the tool turns where it turns on the spot, its axis and about it together, degrees/s; `None` where it cannot be said.
-    pub(super) turn_rate: Option<f64>,
+    turn_rate: Option<f64>,
     source: &'a Program,
-    pub(super) cuts: CutBox,
+    cuts: CutBox,
     /// All that the source feeds through: what is below the start of a plunge may be material.
-    pub(super) fed: CutBox,
+    fed: CutBox,
 }
 
 /// How a rapid goes.
@@ -71,8 +71,12 @@ impl<'a> RapidPlanner<'a> {
 
     /// The position at home, with this tool.
     pub(super) fn home(&self, tool: &Frame) -> Position {
-        let joints = self.arm.model(&self.cell.home.map(f64::to_radians)).unwrap_or_default();
-        self.at_joints(tool, (&joints, self.cell.rail_home()))
+        self.at_joints(tool, (&self.home_joints(), self.cell.rail_home()))
+    }
+
+    /// The joints at home.
+    pub(super) fn home_joints(&self) -> Joints {
+        self.arm.model(&self.cell.home.map(f64::to_radians)).unwrap_or_default()
     }
 
     /// The position of these joints, and of the rail.
