@@ -132,9 +132,19 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Action>) {
     (own, nc)
 }
 
-/// Damages `action` in the way that `how` chooses, by at least ten times the tolerance. `None` where there
+/// A direction square to the motion that follows a cut at `from`, as it begins: of an arc away from its centre.
+fn off_what_follows(from: Vec3, following: &[Action]) -> Vec3 {
+    let off = following.iter().find_map(|action| match action {
+        Action::Arc(to) => Some((from - to.center).reject_from(to.normal)),
+        action => Some((action.position()?.point - from).any_orthogonal_vector()),
+    });
+    off.and_then(Vec3::try_normalize).unwrap_or(Vec3::X)
+}
+
+/// Damages the action at `index` in the way that `how` chooses, by at least ten times the tolerance. `None` where there
 /// is no such damage, or it would not change what the machine does.
-fn damaged(action: &Action, how: usize, by: f64) -> Option<Vec<Action>> {
+fn damaged(nc: &[Action], index: usize, how: usize, by: f64) -> Option<Vec<Action>> {
+    let action = &nc[index];
     let shift = |position: &Position| {
         let mut position = *position;
         position.point[how % 3] += by;
@@ -163,8 +173,8 @@ fn damaged(action: &Action, how: usize, by: f64) -> Option<Vec<Action>> {
         (Action::Line(position), 0..3) => vec![Action::Line(shift(position))],
         (Action::Hole(position), 0..3) => vec![Action::Hole(shift(position))],
         (Action::Line(position), 5) => {
-            // Off in all axes, so that it does not lie on the next line.
-            let point = position.point + Vec3::new(by, -2.0 * by, 3.0 * by);
+            let off = off_what_follows(position.point, &nc[index + 1..]);
+            let point = position.point + off * (4.0 * by);
             vec![action.clone(), Action::Line(Position { point, ..*position })]
         }
         (Action::Arc(to), 0..3) => {
@@ -237,7 +247,7 @@ proptest! {
         prop_assert!(faithful.proven, "{:#?}", faithful.mismatches);
         for (index, action) in nc.iter().enumerate() {
             for how in 0..8 {
-                let Some(instead) = damaged(action, how, by).or_else(|| word_damaged(action)) else { continue };
+                let Some(instead) = damaged(&nc, index, how, by).or_else(|| word_damaged(action)) else { continue };
                 let word = !matches!(action, Action::Rapid(_) | Action::Line(_) | Action::Arc(_) | Action::Hole(_) | Action::Dwell(_) | Action::Stop | Action::End);
                 if word && !matters(&nc, index) {
                     continue;
