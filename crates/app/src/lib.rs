@@ -5,7 +5,7 @@
 //! A source ([`Source`]) is a file or bytes in memory; [`toolpath::read`] opens it, with what it does not say itself
 //! ([`Origin`]). [`toolpath::machine`] opens a machine; where its file and all that it extends may lie is the caller's to
 //! say ([`Reach`](machine::Reach)). [`post::proven`] writes and proves, [`prove::compare`] proves any text,
-//! [`wire::make`] and [`pcb::Job`] plan, write and prove what a wire or a board needs. [`files::save_program`] saves a
+//! [`wire::make`], [`pcb::Job`] and [`glass::Job`] plan, write and prove what a wire, a board or a block of glass needs. [`files::save_program`] saves a
 //! program with its report, or neither. Whoever waits hands over a [`Watch`], which hears of each step and may end the work.
 //!
 //! Lengths are mm, feeds mm/min, times s, as in every crate. The same input gives the same program, report and findings,
@@ -37,6 +37,7 @@ mod account;
 mod fcstd;
 pub mod files;
 pub mod fit;
+pub mod glass;
 mod input;
 mod parallel;
 pub mod pcb;

@@ -1,32 +1,28 @@
 //! `toolpost glass`: engraving inside glass.
 
 use crate::answer::{Answer, not_saved};
-use crate::args::glass::{
-    self as args, Drawn, Engrave, Filled, Glass, GlassCommand, Job, Ordering, Sorting,
-};
+use crate::args::glass::{self as args, Engrave, Glass, GlassCommand, Job};
 use crate::progress::Progress;
-use ::glass::curve::{self, Layers};
 use ::glass::engraver::State;
-use ::glass::fill::{self, Fill, Filling, Sections, Shells};
-use ::glass::job::{self, Made, Order, Placing, Settings};
 use ::glass::list::Columns;
-use ::glass::machine::{LIBRARY, Machine};
-use ::glass::mesh::{self, Form, Shape};
+use ::glass::machine::Machine;
+use ::glass::mesh::{self, Shape};
 use ::glass::optics::Ray;
 use ::glass::order::Effort;
-use ::glass::picture::{self, Manner};
 use ::glass::profile::Limits;
-use ::glass::scenario::{Blocks, Scenario};
+use ::glass::scenario::Blocks;
 use ::glass::simulate::{Events, simulate};
 use ::glass::source::surrogate::FITTED;
 use ::glass::{cloud, comparison, control, material, source};
 use app::files::{self, Target};
-use app::{Account, Stop, Verdict, Watch};
+use app::glass::job::Order;
+use app::glass::{self, Settings};
+use app::{Stop, Verdict, Watch};
 use drawing::Format;
-use program::{Diagnostic, Rule, encoding};
+use program::{Diagnostic, Rule};
 use serde_json::json;
-use std::path::{Component, Path};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::time::Instant;
 
 /// Obeys the command.
 pub fn run(args: &Glass, silent: bool) -> Result<Answer, Stop> {
@@ -137,7 +133,7 @@ const CELLS: u32 = 200;
 fn reach(name: &str, block: [f64; 3], output: &Path) -> Result<Answer, Stop> {
     let target = Target::new(output, &[Path::new(name)])?;
     let format = Format::of(output)?;
-    let machine = machine(name)?;
+    let machine = glass::machine(name)?;
     let Some(table) = machine.polar else {
         let message = format!("{} has no arm and no turning table", machine.title);
         let found = Diagnostic::error(Rule::GlassBlock, message);
@@ -172,7 +168,7 @@ fn run_of(program: &Path, machine: &Machine) -> Result<control::Run, Stop> {
     let in_program = |found: Vec<Diagnostic>| {
         found.into_iter().map(|found| found.file(files::name(program))).collect::<Vec<_>>()
     };
-    Ok(control::read(&program_text(program, machine)?, machine).map_err(in_program)?)
+    Ok(control::read(&glass::program(&program.into(), machine)?, machine).map_err(in_program)?)
 }
 
 /// What a program takes on other drives.
@@ -180,7 +176,7 @@ fn swept(program: &Path, name: &str, output: Option<&Path>) -> Result<Answer, St
     let inputs = [program, Path::new(name)];
     let drawn = output.map(|file| Ok::<_, Stop>((Target::new(file, &inputs)?, Format::of(file)?)));
     let drawn = drawn.transpose()?;
-    let machine = machine(name)?;
+    let machine = glass::machine(name)?;
     let run = run_of(program, &machine)?;
     let swept =
         comparison::sweep(&run, &machine).map_err(|found| found.file(files::name(program)))?;
@@ -229,7 +225,7 @@ fn simulated(
     output: Option<&Path>,
 ) -> Result<Answer, Stop> {
     let target = output.map(|file| Target::new(file, &[program, Path::new(name)])).transpose()?;
-    let machine = machine(name)?;
+    let machine = glass::machine(name)?;
     let run = run_of(program, &machine)?;
     if events.from as usize > run.pulses.len() {
         let message =
@@ -275,97 +271,13 @@ fn simulated(
 
 /// A file of the library.
 fn show(name: &str) -> Result<Answer, Stop> {
-    let text = if name == "materials" { material::TABLE } else { library(name)? };
+    let text = if name == "materials" { material::TABLE } else { glass::library(name)? };
     Ok(Answer::product(text, json!({ "name": name, "text": text })))
-}
-
-/// The text of a machine of the library.
-fn library(name: &str) -> Result<&'static str, Stop> {
-    ::glass::machine::library(name).ok_or_else(|| {
-        let names = LIBRARY.map(|(name, _)| name).join(", ");
-        let found =
-            Diagnostic::error(Rule::MachineUnknown, format!("there is no glass engraver `{name}`"));
-        found.help(format!("there are: {names}; or give a file ending in .toml")).into()
-    })
-}
-
-/// The form of a file, by its ending.
-fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match ending.as_str() {
-        "stl" => Ok(Form::Stl),
-        "obj" => Ok(Form::Obj),
-        "ply" => Ok(Form::Ply),
-        "3mf" => Ok(Form::ThreeMf),
-        "xyz" | "txt" | "csv" | "cft" | "asc" | "pts" => Ok(Form::List(columns)),
-        _ => {
-            let found = Diagnostic::error(
-                Rule::Form,
-                format!("`.{ending}` is no form of bodies, pictures, curves or points"),
-            );
-            Err(found.file(files::name(path)).into())
-        }
-    }
-}
-
-fn shape(path: &Path, columns: Columns) -> Result<Shape, Stop> {
-    let form = form(path, columns)?;
-    Ok(mesh::read(&files::read(path)?, form, &files::name(path))?)
-}
-
-/// A body with its colours and textures.
-fn painted(path: &Path, columns: Columns) -> Result<Shape, Stop> {
-    let form = form(path, columns)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut beside = |name: &str| {
-        // What a body names lies in its folder or below.
-        let is_below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
-        if !Path::new(name).components().all(is_below) {
-            return Err(format!("`{name:.80}` does not lie in the folder of the body"));
-        }
-        files::read(&folder.join(name)).map_err(|found| format!("{name:.80}: {}", found.message))
-    };
-    Ok(mesh::read_painted(&files::read(path)?, form, &files::name(path), Some(&mut beside))?)
-}
-
-/// What a file of a job holds.
-fn shape_of_job(path: &Path, job: &Job) -> Result<Shape, Stop> {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let curves = |form| -> Result<Shape, Stop> {
-        Ok(Shape::Curves(curve::read(&files::read(path)?, form, &files::name(path))?))
-    };
-    match ending.as_str() {
-        "png" | "jpg" | "jpeg" | "bmp" | "pcx" => {}
-        "dxf" => return curves(curve::Form::Dxf),
-        "plt" | "hpgl" | "hpg" => return curves(curve::Form::Hpgl),
-        _ if job.filling.fill == Filled::Shaded => return painted(path, job.columns),
-        _ => return shape(path, job.columns),
-    }
-    let args = &job.image;
-    let setting = picture::Setting {
-        plane: args.plane,
-        width: args.width,
-        manner: match args.manner {
-            Drawn::Dither => Manner::Dither,
-            Drawn::Raster => Manner::Raster(args.threshold),
-            // Without a depth the command line is not taken.
-            Drawn::Relief => Manner::Relief(args.depth.unwrap_or_default()),
-        },
-        invert: args.invert,
-        sheets: (args.sheets, args.sheet_distance),
-    };
-    Ok(Shape::Picture(picture::read(&files::read(path)?, setting, &files::name(path))?))
-}
-
-/// The text of a file that must be UTF-8.
-fn text(path: &Path) -> Result<String, Stop> {
-    let bytes = files::read(path)?;
-    Ok(encoding::utf_8(&bytes).map_err(|found| found.file(files::name(path)))?.to_owned())
 }
 
 /// Checks the distances of a list of points.
 fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
-    let places = match shape(path, columns)? {
+    let places = match glass::shape(&path.into(), columns)? {
         Shape::Points(places) => places,
         Shape::Mesh(mesh) => mesh.vertices,
         // No form of lists is one of these.
@@ -379,7 +291,7 @@ fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
     })?;
     let found = cloud::distances(&points, (spacing * 1e3).ceil() as i64);
     let mut rows = vec![("points", points.len().to_string())];
-    rows.push(("nearest", nearest(&found, &points)));
+    rows.push(("nearest", glass::nearest(&found, &points)));
     rows.push((
         "too close",
         format!("{} pairs under {spacing} mm, {} points", found.too_close, found.crowded),
@@ -387,127 +299,6 @@ fn check(path: &Path, spacing: f64, columns: Columns) -> Result<Answer, Stop> {
     let data = json!({ "points": points.len(), "spacing": spacing, "distances": found });
     let verdict = if found.too_close == 0 { Verdict::Done } else { Verdict::Failed };
     Ok(Answer::summary(verdict, app::summary::rows(&rows), data))
-}
-
-/// The nearest two points of a cloud.
-fn nearest(found: &cloud::Distances, points: &[cloud::Point]) -> String {
-    match found.nearest {
-        Some(cloud::Pair { points: [a, b], distance }) => {
-            let show = |i: u32| {
-                let place = cloud::place(points[i as usize]);
-                format!("{:.3} {:.3} {:.3}", place.x, place.y, place.z)
-            };
-            format!("{distance:.4} mm: {} and {}", show(a), show(b))
-        }
-        None => String::from("no two points within twice the spacing"),
-    }
-}
-
-/// What a job takes besides its bodies; the order is left as it is where there is none to make.
-fn settings(args: &Job, ray: Ray, order: Order, effort: Effort) -> Settings {
-    let placing = Placing {
-        block: args.block,
-        margin: args.placing.margin,
-        scale: args.placing.scale,
-        fit: args.placing.fit,
-        turn: args.placing.turn,
-        mirror: [0, 1, 2].map(|axis| args.placing.mirror.contains(&axis)),
-        shift: args.placing.r#move,
-    };
-    let alone = |own: &args::Alone| {
-        let args::Alone { body, scale, fit, turn, mirror, r#move } = *own;
-        (body, Placing { scale, fit, turn, mirror, shift: r#move, ..placing })
-    };
-    Settings {
-        alone: args.placing.place.iter().map(alone).collect(),
-        placing,
-        blocks: args.blocks,
-        focal: args.lens,
-        spacing: args.spacing,
-        filling: filling(&args.filling, args.image.invert),
-        shells: Shells { count: args.filling.shells, distance: args.filling.shell_distance },
-        layers: Layers {
-            count: args.filling.layers,
-            distance: args.filling.layer_distance,
-            twist: args.filling.twist.unwrap_or_default(),
-            ends: !args.filling.no_ends,
-        },
-        ray,
-        order,
-        effort,
-        seed: args.seed,
-        accept_shadowed: !args.accept.is_empty(),
-    }
-}
-
-/// How bodies become points.
-fn filling(args: &args::Filling, invert: bool) -> Filling {
-    let fill = match args.fill {
-        Filled::Surface => Fill::Surface,
-        Filled::Shaded => Fill::Shaded(invert),
-        Filled::Solid => Fill::Solid,
-        Filled::Triangles => Fill::Triangles(args.full),
-        Filled::Rays => Fill::Rays,
-        Filled::Sections => Fill::Sections(Sections {
-            layer: args.layer_distance,
-            first: args.first_distance,
-            twist: args.twist.unwrap_or_default(),
-            ends: !args.no_ends,
-        }),
-    };
-    Filling { fill, step: args.step, direction: fill::direction(args.axis, args.tilt) }
-}
-
-/// The order that is asked for, and how much is tried for it.
-fn ordering(args: &Ordering, begun: Instant) -> (Order, Effort) {
-    let order = match args.order {
-        Sorting::Fastest => Order::Fastest,
-        Sorting::Kdz => Order::Kdz(args.slopes[0], args.slopes[1]),
-        Sorting::Layers => Order::Layers(args.layer),
-        Sorting::Arcs => Order::Scenario(Scenario::Arcs),
-        Sorting::Tracks => Order::Scenario(Scenario::Tracks),
-    };
-    let until = args.seconds.and_then(|s| begun.checked_add(Duration::try_from_secs_f64(s).ok()?));
-    (order, Effort { rounds: args.rounds, until, ..Effort::default() })
-}
-
-/// A machine of the library, or of a file.
-fn machine(name: &str) -> Result<Machine, Stop> {
-    Ok(match Path::new(name) {
-        path if path.extension().is_some_and(|ending| ending == "toml") => {
-            Machine::read(&text(path)?, &files::name(path))?
-        }
-        _ => Machine::read(library(name)?, name)?,
-    })
-}
-
-/// The bytes of a program: only a binary one need not be text.
-fn program_text(program: &Path, machine: &Machine) -> Result<Vec<u8>, Stop> {
-    match machine.program.format {
-        ::glass::machine::Format::Binary => Ok(files::read(program)?),
-        _ => Ok(files::text(program)?),
-    }
-}
-
-/// The files of a job, read.
-struct Read {
-    machine: Machine,
-    material: material::Material,
-    shapes: Vec<Shape>,
-}
-
-impl Read {
-    fn new(job: &Job) -> Result<Read, Stop> {
-        let machine = machine(&job.machine)?;
-        let (table, file) = match &job.materials {
-            Some(path) => (text(path)?, files::name(path)),
-            None => (material::TABLE.to_owned(), String::from("materials.toml")),
-        };
-        let material = material::find(&table, &file, &job.material, machine.laser.wavelength)?;
-        let shapes = job.bodies.iter().map(|path| shape_of_job(path, job));
-        let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-        Ok(Read { machine, material, shapes })
-    }
 }
 
 /// The files that a job is made of, which nothing may be saved over.
@@ -529,28 +320,24 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     let drawing = Drawing::new(&args.job, &inputs)?;
     let progress = Progress::new(3, silent);
     progress.step("reading");
-    let Read { machine, material, shapes } = Read::new(&args.job)?;
-    progress.step("engraving");
-    let (order, effort) = ordering(&args.ordering, begun);
-    let settings = settings(&args.job, args.ray, order, effort);
-    let made = job::make(shapes, &material, &machine, &settings)?;
-    let mut account = account(&made, &machine, &material);
-    if account.verdict != Verdict::Done {
-        return Ok(not_saved(account));
+    let machine = glass::machine(&args.job.machine)?;
+    let settings = args.settings(begun);
+    let read = glass::Job::read(&args.job.sources(), machine, &settings, &mut glass::beside)?;
+    let made = read.make(&progress)?;
+    if made.account.verdict != Verdict::Done {
+        return Ok(not_saved(made.account));
     }
     progress.step("saving");
-    let picture = drawing
-        .as_ref()
-        .map(|drawing| drawing.drawn(&made, &material, &machine, &settings))
-        .transpose()?;
-    let report = account.report();
+    let picture = drawing.as_ref().map(|drawing| drawing.drawn(&made, &settings)).transpose()?;
+    let report = made.account.report();
     let mut saved: Vec<(&Target, &[u8])> =
-        vec![(&report_target, report.as_bytes()), (&target, &made.text)];
-    let cloud = cloud_target.as_ref().map(|target| (target, mesh::ply(&made.cloud)));
+        vec![(&report_target, report.as_bytes()), (&target, &made.made.text)];
+    let cloud = cloud_target.as_ref().map(|target| (target, mesh::ply(&made.made.cloud)));
     saved.extend(cloud.iter().map(|(target, bytes)| (*target, &bytes[..])));
     saved
         .extend(drawing.iter().zip(&picture).map(|(drawing, bytes)| (&drawing.target, &bytes[..])));
     files::save(&saved)?;
+    let mut account = made.account;
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
     let more = args.cloud.iter().chain(&args.job.picture);
@@ -578,15 +365,9 @@ impl Drawing {
         Ok(Some(Drawing { target, format, title, view }))
     }
 
-    fn drawn(
-        &self,
-        made: &Made,
-        material: &material::Material,
-        machine: &Machine,
-        settings: &Settings,
-    ) -> Result<Vec<u8>, Stop> {
-        let points = job::places(made, material, machine, settings)?;
-        let (block, view) = (settings.placing.block, self.view);
+    fn drawn(&self, made: &glass::Made, settings: &Settings) -> Result<Vec<u8>, Stop> {
+        let points = made.places(settings)?;
+        let (block, view) = (settings.job.placing.block, self.view);
         let picture = drawing::GlassPicture { block, points: &points, view };
         Ok(self.format.bytes(drawing::glass(&self.title, &picture))?)
     }
@@ -599,129 +380,16 @@ fn prove(program: &Path, job: &Job, silent: bool) -> Result<Answer, Stop> {
     inputs.push(program);
     let drawing = Drawing::new(job, &inputs)?;
     progress.step("reading");
-    let Read { machine, material, shapes } = Read::new(job)?;
-    let text = program_text(program, &machine)?;
-    progress.step("proving");
-    let settings = settings(job, Ray::Marginal, Order::Fastest, Effort::default());
-    let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
-        found.into_iter().map(|found| in_file(found, &files::name(program))).collect()
-    };
-    let made = job::prove(text, shapes, &material, &machine, &settings).map_err(in_program)?;
-    let mut account = account(&made, &machine, &material);
-    account.findings = in_program(account.findings);
-    if let Some(drawing) = drawing {
-        let picture = drawing.drawn(&made, &material, &machine, &settings)?;
+    let machine = glass::machine(&job.machine)?;
+    let settings = job.settings(Ray::Marginal, Order::Fastest, Effort::default());
+    let read = glass::Job::read(&job.sources(), machine, &settings, &mut glass::beside)?;
+    let text = read.program(&program.into())?;
+    let made = read.prove(&files::name(program), text, &progress)?;
+    let picture = drawing.as_ref().map(|drawing| drawing.drawn(&made, &settings)).transpose()?;
+    let mut account = made.account;
+    if let (Some(drawing), Some(picture)) = (drawing, picture) {
         files::save(&[(&drawing.target, &picture)])?;
         account.rows.extend(job.picture.iter().map(|file| ("picture", file.display().to_string())));
     }
     Ok(account.into())
-}
-
-/// A finding with a line is one of the program.
-fn in_file(found: Diagnostic, program: &str) -> Diagnostic {
-    match found.line > 0 && found.file.is_empty() {
-        true => found.file(program),
-        false => found,
-    }
-}
-
-/// What is reported of a job.
-fn account(made: &Made, machine: &Machine, material: &material::Material) -> Account {
-    let Made { report, cloud, findings, .. } = made;
-    let proof = &report.proof;
-    let three = |at: [f64; 3]| format!("{:.3} {:.3} {:.3}", at[0], at[1], at[2]);
-    let mut rows = vec![("machine", machine.title.clone())];
-    rows.push((
-        "material",
-        format!("{}, index {} at {} nm", material.title, material.index, material.wavelength),
-    ));
-    rows.push((
-        "points",
-        format!("{} from {} to {} mm", report.points, three(report.from), three(report.to)),
-    ));
-    for body in &report.alone {
-        let (from, to) = (three(body.from), three(body.to));
-        rows.push((
-            "placed",
-            format!("body {} by itself, scale {}, from {from} to {to} mm", body.body, body.scale),
-        ));
-    }
-    if report.welded > 0 {
-        rows.push((
-            "left out",
-            format!("{} points nearer than {} mm to another one", report.welded, report.spacing),
-        ));
-    }
-    rows.push(("nearest", nearest(&report.distances, cloud)));
-    if let Some(energy) = report.energy {
-        rows.push(("energy", format!("{energy:.3} mJ of a pulse in the glass of each block")));
-    }
-    if report.blocks > 1 {
-        rows.push(("blocks", format!("{}, each with all points", report.blocks)));
-    }
-    if let Some((moved, merged)) = report.moved {
-        rows.push((
-            "moved",
-            format!("by {moved:.3} mm at most, to where a motion passes on a tick; {merged} points fell together or out of the margin"),
-        ));
-    }
-    if report.in_motion > 0 {
-        rows.push(("in motion", format!("{} of {} pulses", report.in_motion, proof.pulses)));
-    }
-    if let Some(part) = report.unreachable {
-        rows.push(("reach", format!("the arm misses {:.1} % of the block", 100.0 * part)));
-    }
-    if made.report.planned_ticks.is_some() {
-        let ray = match report.ray {
-            Ray::Marginal => "marginal",
-            Ray::Paraxial => "paraxial",
-        };
-        rows.push((
-            "refraction",
-            format!(
-                "focus by the {ray} ray; by the other one the deepest point is {:.3} mm off",
-                report.rays_apart
-            ),
-        ));
-    }
-    rows.push((
-        "time",
-        format!(
-            "{:.2} s, {} ticks at {} Hz; {:.2} % of the pulses are used",
-            proof.seconds,
-            proof.ticks,
-            machine.laser.rate,
-            100.0 * proof.used
-        ),
-    ));
-    if let Some(least) = report.least_ticks {
-        rows.push((
-            "bound",
-            format!(
-                "no order takes fewer than {least} ticks (by assignment, with the shadow rule)"
-            ),
-        ));
-    }
-    rows.push(("travel", format!("{:.1} mm from pulse to pulse", proof.travel)));
-    rows.push(("proof", match made.proven {
-        true => format!(
-            "passed: {} pulses, each within {:.4} mm across and {:.4} mm along the beam of its point{}; {} points shadowed",
-            proof.pulses,
-            proof.across,
-            proof.along,
-            proof.nearest.map_or(String::new(), |pair| format!(", no two nearer than {:.4} mm", pair.distance)),
-            proof.shadowed
-        ),
-        false => String::from("FAILED"),
-    }));
-    if !report.accepted.is_empty() {
-        let rules: Vec<&str> = report.accepted.iter().map(|rule| rule.name()).collect();
-        rows.push(("accepted", format!("{}, which the proof would refuse", rules.join(", "))));
-    }
-    Account {
-        verdict: if made.proven { Verdict::Done } else { Verdict::Failed },
-        rows,
-        data: json!({ "machine": machine.title, "material": material.title, "glass": report }),
-        findings: findings.clone(),
-    }
 }

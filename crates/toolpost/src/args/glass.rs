@@ -1,11 +1,19 @@
 //! What can be typed after `toolpost glass`.
 
 use super::{Choice, choice, length, lengths, point};
+use ::glass::curve::Layers;
+use ::glass::fill::{self, Fill, Sections, Shells};
 use ::glass::list::Columns;
 use ::glass::optics::Ray;
-use ::glass::picture::{MOST_SHEETS, Plane};
+use ::glass::order::Effort;
+use ::glass::picture::{MOST_SHEETS, Manner, Plane, Setting};
+use ::glass::scenario::Scenario;
+use app::Source;
+use app::glass::Settings;
+use app::glass::job::{self, Order};
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// What `glass` is to do. Written by hand: clap does not derive arguments that a subcommand takes the place of.
 #[derive(Debug)]
@@ -454,6 +462,116 @@ const RAYS: [Choice<Ray>; 2] = [
 
 const AXES: [Choice<usize>; 3] =
     [("x", "Left and right", 0), ("y", "Front and back", 1), ("z", "Up and down", 2)];
+
+impl Engrave {
+    /// What the words mean to a job that has begun at a time.
+    pub fn settings(&self, begun: Instant) -> Settings {
+        let (order, effort) = self.ordering.order(begun);
+        self.job.settings(self.ray, order, effort)
+    }
+}
+
+impl Job {
+    /// The files of the bodies.
+    pub fn sources(&self) -> Vec<Source> {
+        self.bodies.iter().map(|path| Source::from(path.as_path())).collect()
+    }
+
+    /// What the words mean; the order is left as it is where there is none to make.
+    pub fn settings(&self, ray: Ray, order: Order, effort: Effort) -> Settings {
+        let placing = job::Placing {
+            block: self.block,
+            margin: self.placing.margin,
+            scale: self.placing.scale,
+            fit: self.placing.fit,
+            turn: self.placing.turn,
+            mirror: [0, 1, 2].map(|axis| self.placing.mirror.contains(&axis)),
+            shift: self.placing.r#move,
+        };
+        let alone = |own: &Alone| {
+            let Alone { body, scale, fit, turn, mirror, r#move } = *own;
+            (body, job::Placing { scale, fit, turn, mirror, shift: r#move, ..placing })
+        };
+        let job = job::Settings {
+            alone: self.placing.place.iter().map(alone).collect(),
+            placing,
+            blocks: self.blocks,
+            focal: self.lens,
+            spacing: self.spacing,
+            filling: filling(&self.filling, self.image.invert),
+            shells: Shells { count: self.filling.shells, distance: self.filling.shell_distance },
+            layers: Layers {
+                count: self.filling.layers,
+                distance: self.filling.layer_distance,
+                twist: self.filling.twist.unwrap_or_default(),
+                ends: !self.filling.no_ends,
+            },
+            ray,
+            order,
+            effort,
+            seed: self.seed,
+            accept_shadowed: !self.accept.is_empty(),
+        };
+        Settings {
+            material: self.material.clone(),
+            materials: self.materials.clone().map(Source::from),
+            columns: self.columns,
+            picture: self.image.setting(),
+            job,
+        }
+    }
+}
+
+impl Image {
+    fn setting(&self) -> Setting {
+        Setting {
+            plane: self.plane,
+            width: self.width,
+            manner: match self.manner {
+                Drawn::Dither => Manner::Dither,
+                Drawn::Raster => Manner::Raster(self.threshold),
+                // Without a depth the command line is not taken.
+                Drawn::Relief => Manner::Relief(self.depth.unwrap_or_default()),
+            },
+            invert: self.invert,
+            sheets: (self.sheets, self.sheet_distance),
+        }
+    }
+}
+
+/// How bodies become points.
+fn filling(args: &Filling, invert: bool) -> fill::Filling {
+    let fill = match args.fill {
+        Filled::Surface => Fill::Surface,
+        Filled::Shaded => Fill::Shaded(invert),
+        Filled::Solid => Fill::Solid,
+        Filled::Triangles => Fill::Triangles(args.full),
+        Filled::Rays => Fill::Rays,
+        Filled::Sections => Fill::Sections(Sections {
+            layer: args.layer_distance,
+            first: args.first_distance,
+            twist: args.twist.unwrap_or_default(),
+            ends: !args.no_ends,
+        }),
+    };
+    fill::Filling { fill, step: args.step, direction: fill::direction(args.axis, args.tilt) }
+}
+
+impl Ordering {
+    /// The order that is asked for, and how much is tried for it.
+    fn order(&self, begun: Instant) -> (Order, Effort) {
+        let order = match self.order {
+            Sorting::Fastest => Order::Fastest,
+            Sorting::Kdz => Order::Kdz(self.slopes[0], self.slopes[1]),
+            Sorting::Layers => Order::Layers(self.layer),
+            Sorting::Arcs => Order::Scenario(Scenario::Arcs),
+            Sorting::Tracks => Order::Scenario(Scenario::Tracks),
+        };
+        let until =
+            self.seconds.and_then(|s| begun.checked_add(Duration::try_from_secs_f64(s).ok()?));
+        (order, Effort { rounds: self.rounds, until, ..Effort::default() })
+    }
+}
 
 /// The sides of a block.
 fn block(text: &str) -> Result<[f64; 3], String> {
