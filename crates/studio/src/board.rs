@@ -204,6 +204,11 @@ impl Place {
             + contents / self.whole.programs.len().max(1)
     }
 
+    /// The files that the board is made of.
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.whole.inputs
+    }
+
     /// What is wrong with the board, or worth knowing.
     pub fn findings(&self) -> &[Diagnostic] {
         &self.whole.account.findings

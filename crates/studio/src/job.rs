@@ -352,6 +352,12 @@ impl Job {
             + board
     }
 
+    /// The files that it is made of.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let of_board = self.board.iter().flat_map(board::Place::inputs);
+        self.inputs.iter().chain(of_board).map(PathBuf::as_path)
+    }
+
     /// The board that it is one of the programs of.
     pub fn board(&self) -> Option<&board::Place> {
         self.board.as_ref()

@@ -1,13 +1,14 @@
 //! What the asks are answered.
 
+use super::run::{self, Order};
 use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
-    Command, CommandParams, DraftName, DraftParams, FileOrUpload, FolderParams, FormParams, Given,
-    JobParams, Listing, MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams,
-    ProveParams, SaveParams, SearchParams, TextParams,
+    CommandParams, DraftName, DraftParams, FolderParams, FormParams, JobParams, Listing,
+    MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams, ProveParams, SaveParams,
+    SearchParams, TextParams,
 };
-use crate::job::{Asked, Ended, Job, Waits};
+use crate::job::{Ended, Waits};
 use crate::machines;
 use crate::message::{Array, Frame};
 use app::Stop;
@@ -50,7 +51,7 @@ pub fn makes_job(ask: &str) -> bool {
 /// # Errors
 /// It is none, its parameters are wrong, or it has no answer.
 pub fn answer(
-    studio: &Studio,
+    studio: &Arc<Studio>,
     ask: &str,
     params: Map<String, Value>,
     arrays: Vec<Array>,
@@ -91,8 +92,8 @@ pub fn answer(
         }
         "post" => {
             let PostParams { source, machine, options, file } = read(params)?;
-            let asked = (&source, &*machine, &*options, file);
-            make(studio, asked, None, None, work)
+            let order = Order { source, machine, options, file, program: None, text: None };
+            made(studio, order, work)
         }
         "prove" => {
             let ProveParams { source, machine, options, file, program } = read(params)?;
@@ -101,8 +102,8 @@ pub fn answer(
                 (Some(program), None) => studio.source(program)?.read()?,
                 _ => return Err(wrong("a program is proven by `program`, or by the array `text`")),
             };
-            let asked = (&source, &*machine, &*options, file);
-            make(studio, asked, Some(text), program.as_ref(), work)
+            let order = Order { source, machine, options, file, program, text: Some(text) };
+            made(studio, order, work)
         }
         "job" => {
             let JobParams { revision } = read(params)?;
@@ -171,40 +172,12 @@ pub fn answer(
 }
 
 /// Makes a job, and keeps it.
-fn make(
-    studio: &Studio,
-    (source, machine, options, file): (&Given, &str, &[(String, String)], Option<String>),
-    text: Option<Vec<u8>>,
-    program: Option<&FileOrUpload>,
+fn made(
+    studio: &Arc<Studio>,
+    order: Order,
     (waits, ended): (&dyn Waits, &Ended),
 ) -> Result<Answer, Stop> {
-    let within = |file: &FileOrUpload| match file {
-        FileOrUpload::File(path) => studio.folder.target(path).ok(),
-        FileOrUpload::Upload(_) => None,
-    };
-    let more = match source {
-        Given::File(_) | Given::Upload(_) if studio.command(source, None)? != Command::Pcb => None,
-        board => studio.more(board, options)?,
-    };
-    let (source, mut inputs) = studio.sources(source)?;
-    inputs.extend(program.and_then(within));
-    let called = program.and_then(within).and_then(|path| Some(path.parent()?.to_owned()));
-    // A program of the folder keeps its name.
-    let named = match program {
-        Some(FileOrUpload::File(path)) => path.rsplit('/').next().map(str::to_owned),
-        Some(FileOrUpload::Upload(_)) | None => None,
-    };
-    let asked = Asked {
-        source,
-        machine,
-        options: &|command| studio.options(command, options, more.as_ref()),
-        file: file.or(named),
-        program: text,
-        folders: called.into_iter().collect(),
-        inputs,
-    };
-    let jobs = Job::make(asked, &studio.folder, waits, ended)?;
-    let revision = studio.jobs.keep(jobs.into_iter().map(Arc::new).collect());
+    let revision = run::made(studio, order, waits, ended)?;
     Answer::of(studio.jobs.find(revision)?.about(revision))
 }
 

@@ -4,6 +4,7 @@ mod asks;
 pub mod closed;
 mod files;
 mod metered;
+mod run;
 mod socket;
 
 use crate::ask::{Command, Field, FileOrUpload, Given, Limits};
@@ -24,6 +25,7 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use machine::Machine;
 use metered::{Metered, Trusted};
 use program::{Diagnostic, Rule};
+use run::{First, Left};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::net::{Ipv4Addr, TcpListener};
@@ -122,6 +124,9 @@ pub(crate) struct Studio {
     /// Which page that is open keeps a draft, by the names of the drafts.
     drafting: Mutex<BTreeMap<String, u64>>,
     jobs: Jobs,
+    /// The work that the command line names, until somebody asks for it or for another.
+    first: Mutex<Option<First>>,
+    left: Left,
     form: Option<Form>,
     options: Option<ReadOptions>,
 }
@@ -130,6 +135,11 @@ impl Studio {
     /// Which page that is open keeps a draft.
     fn drafting(&self) -> MutexGuard<'_, BTreeMap<String, u64>> {
         self.drafting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The work that the command line names, where nobody has asked for it or for another yet.
+    fn first(&self) -> MutexGuard<'_, Option<First>> {
+        self.first.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What options mean.
@@ -220,7 +230,7 @@ impl Studio {
 }
 
 impl Server {
-    /// Opens the folder and the port.
+    /// Opens the folder and the port, and begins the work that the settings name.
     ///
     /// # Errors
     /// One of them cannot be opened.
@@ -263,9 +273,12 @@ impl Server {
             pages: AtomicU64::default(),
             drafting: Mutex::default(),
             jobs: Jobs::new(own),
+            first: Mutex::default(),
+            left: Left::default(),
             form: settings.form,
             options: settings.options,
         });
+        First::begin(&studio);
         Ok(Server { runtime, listener, port, studio })
     }
 

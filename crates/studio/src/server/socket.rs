@@ -138,14 +138,14 @@ struct Tells<'a> {
     id: u32,
     /// The step, and when something was told last.
     last: Mutex<(&'static str, Instant)>,
-    /// What was walked since the last word of that, and when that was.
-    walked: Mutex<(Option<Shown>, Instant)>,
+    /// What was walked since the last word of that, and when that was: the first chunk is shown as soon as it is there.
+    walked: Mutex<(Option<Shown>, Option<Instant>)>,
 }
 
 impl<'a> Tells<'a> {
     fn new(page: &'a Page, id: u32) -> Tells<'a> {
         let now = Instant::now();
-        Tells { page, id, last: Mutex::new(("", now)), walked: Mutex::new((None, now)) }
+        Tells { page, id, last: Mutex::new(("", now)), walked: Mutex::default() }
     }
 
     /// Tells what was walked.
@@ -191,8 +191,8 @@ impl Waits for Tells<'_> {
         index.extend(piece.index);
         vertices.extend(piece.vertices);
         self.show(others);
-        if last.elapsed() > BETWEEN {
-            *last = Instant::now();
+        if last.is_none_or(|last| last.elapsed() > BETWEEN) {
+            *last = Some(Instant::now());
             self.show(begun.take());
         }
     }

@@ -5,6 +5,7 @@ use app::pcb::Job;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
+use std::time::{Duration, Instant};
 use toolpost_studio::Options;
 use toolpost_studio::ask::Command;
 use toolpost_studio::board::Settings;
@@ -409,4 +410,40 @@ fn a_board_tells_its_steps_and_is_ended_in_the_midst_of_them() {
     }
     page.send(&json!({ "cancel": id }), &[]);
     assert_eq!(page.answer_of(id).unwrap_err()["verdict"], "cancelled");
+}
+
+/// A layer of many tracks across each other: uniting them is one long step, which is asked in between by nobody.
+fn tangle(studio: &Studio) {
+    let mut layer = format!("{HEAD}%ADD10C,0.05*%\nD10*\n");
+    for i in 1..60_000_u64 {
+        let (x, y) = (i * 7919 % 99_000_000, i * 104_729 % 99_000_000);
+        let (to_x, to_y) = ((x + 3_000_000) % 99_000_000, (y + 1_000_000) % 99_000_000);
+        layer += &format!("X{x}Y{y}D02*\nX{to_x}Y{to_y}D01*\n");
+    }
+    fs::create_dir(studio.own().join("tangle")).unwrap();
+    fs::write(studio.own().join("tangle/b-F_Cu.gbr"), layer + "M02*\n").unwrap();
+}
+
+/// The page goes on at once, and a newer work is done beside the step that is left; no third one meanwhile.
+#[test]
+fn work_that_is_ended_in_a_long_step_is_left_at_once() {
+    let studio = studio();
+    tangle(&studio);
+    let mut page = studio.socket();
+    let mut cancelled = || {
+        let id = page.ask("post", params(json!({ "folder": "tangle" })), &[]);
+        std::thread::sleep(Duration::from_millis(500));
+        let begun = Instant::now();
+        page.send(&json!({ "cancel": id }), &[]);
+        let stop = page.answer_of(id).unwrap_err();
+        assert_eq!(stop["verdict"], "cancelled", "{stop}");
+        begun.elapsed()
+    };
+    let soon = Duration::from_millis(300);
+    let took = cancelled();
+    assert!(took < soon, "{took:?}");
+    let took = cancelled();
+    assert!(took < soon, "{took:?}");
+    let job = post(&mut page, json!({ "file": "lamp/lamp.toml" }));
+    assert_eq!(job["verdict"], "done", "{job}");
 }

@@ -24,6 +24,11 @@ impl Studio {
 
     /// The same, with options.
     pub fn with(options: Option<ReadOptions>) -> Studio {
+        Studio::started(Settings { options, ..Settings::default() })
+    }
+
+    /// The same, with settings for it.
+    pub fn started(settings: Settings) -> Studio {
         let outside = tempfile::tempdir().unwrap();
         let own = outside.path().join("own");
         std::fs::create_dir(&own).unwrap();
@@ -31,8 +36,7 @@ impl Studio {
             std::fs::copy(root().join("examples").join(name), own.join(name)).unwrap();
         }
         std::fs::write(outside.path().join("secret.cls"), "secret").unwrap();
-        let settings = Settings { folder: own, options, ..Settings::default() };
-        let server = Server::bind(&settings).unwrap();
+        let server = Server::bind(&Settings { folder: own, ..settings }).unwrap();
         let (port, link) = (server.port(), server.link());
         std::thread::spawn(move || server.run());
         let token = link.split_once('#').unwrap().1.to_owned();

@@ -2,10 +2,10 @@
 
 use crate::client::{Said, Studio, root};
 use serde_json::{Value, json};
-use toolpost_studio::Options;
 use toolpost_studio::ask::Command;
 use toolpost_studio::message::{Array, Values};
 use toolpost_studio::server::More;
+use toolpost_studio::{Options, Settings};
 
 fn f32s(bytes: &[u8]) -> Vec<f32> {
     bytes.as_chunks().0.iter().map(|chunk| f32::from_le_bytes(*chunk)).collect()
@@ -54,6 +54,38 @@ fn a_source_is_posted_and_every_place_of_it_is_one() {
     // Out of range is the nearest there is.
     assert_eq!(place("move", &json!(1e12))["move"], moves - 1);
     assert_eq!(place("time", &json!(-5))["time_s"], 0.0);
+}
+
+/// The server begins what it is started with; what has changed since, or is another work, is done by itself.
+#[test]
+fn the_first_work_is_joined_by_who_asks_for_the_same_and_nobody_else() {
+    let start = || {
+        let (source, machine) = (Some("dome.cls".into()), Some("fanuc-table-bc".into()));
+        let studio = Studio::started(Settings { source, machine, ..Settings::default() });
+        // The system's clock for files goes by steps of some milliseconds.
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        studio
+    };
+    let studio = start();
+    let job = studio.socket().post("dome.cls", "fanuc-table-bc");
+    let other = Studio::new();
+    let expected = other.socket().post("dome.cls", "fanuc-table-bc");
+    for key in ["verdict", "rows", "findings", "program", "walk"] {
+        assert_eq!(job[key], expected[key], "{key}");
+    }
+    let studio = start();
+    let job = studio.socket().post("dome.cls", "sinumerik-840d-table-ac");
+    assert_eq!(job["machine"]["name"], "sinumerik-840d-table-ac");
+    let studio = start();
+    std::fs::copy(root().join("examples/lean.cls"), studio.own().join("dome.cls")).unwrap();
+    let job = studio.socket().post("dome.cls", "fanuc-table-bc");
+    let expected = other.socket().post("lean.cls", "fanuc-table-bc");
+    assert_eq!(job["walk"]["moves"], expected["walk"]["moves"]);
+    // Why there is no job is told as to everybody, also where the file has gone meanwhile.
+    let studio = start();
+    std::fs::remove_file(studio.own().join("dome.cls")).unwrap();
+    let params = json!({ "source": { "file": "dome.cls" }, "machine": "fanuc-table-bc" });
+    assert_eq!(studio.socket().refused("post", params), "unreadable");
 }
 
 /// HEIDENHAIN: a circle takes two blocks, its centre and its end (Klartext, `CC` and `C`).

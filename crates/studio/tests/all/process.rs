@@ -12,11 +12,20 @@ use toolpost_studio::{Server, Settings};
 /// Names the folder of the child.
 const FOLDER: &str = "TOOLPOST_STUDIO_TEST_FOLDER";
 
+/// Names the source that it begins with, where there is one.
+const SOURCE: &str = "TOOLPOST_STUDIO_TEST_SOURCE";
+
+/// A machine of the library.
+const MACHINE: &str = "generic-3axis-linuxcnc";
+
 /// The server, where this process was started as one; otherwise nothing.
 #[test]
 fn serves_as_a_child() {
     let Some(folder) = std::env::var_os(FOLDER) else { return };
-    let server = Server::bind(&Settings { folder: folder.into(), ..Settings::default() }).unwrap();
+    let source = std::env::var(SOURCE).ok();
+    let machine = source.is_some().then(|| MACHINE.to_owned());
+    let settings = Settings { folder: folder.into(), source, machine, ..Settings::default() };
+    let server = Server::bind(&settings).unwrap();
     eprintln!("link {}", server.link());
     server.run();
 }
@@ -69,20 +78,69 @@ fn processor_time(process: &Process) -> f64 {
     (fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap()) / 100.0
 }
 
+/// A folder with a toolpath of so many moves.
+fn folder_with_long(moves: u32) -> tempfile::TempDir {
+    let outside = folder();
+    let mut source =
+        String::from("UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n");
+    for i in 0..moves {
+        let _ = writeln!(source, "GOTO/{}.{:03},{},-1", i / 1000, i % 1000, i % 7);
+    }
+    std::fs::write(outside.path().join("own/long.cls"), source).unwrap();
+    outside
+}
+
+/// The work that is named at the start is done whether or not a page asks yet; the one that asks does not do it again.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_first_work_begins_with_the_server() {
+    let outside = folder_with_long(100_000);
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.env(SOURCE, "long.cls");
+    let (process, studio) = Process::by(command, outside);
+    let begun = Instant::now();
+    let mut before = 0.0;
+    loop {
+        std::thread::sleep(Duration::from_millis(300));
+        let now = processor_time(&process);
+        if now > 0.1 && now - before < 0.02 {
+            break;
+        }
+        before = now;
+        assert!(begun.elapsed() < Duration::from_secs(60), "{now} s of the processor");
+    }
+    let alone = processor_time(&process);
+    let mut page = studio.socket();
+    let params = json!({ "source": { "file": "long.cls" }, "machine": MACHINE });
+    let id = page.ask("post", params.clone(), &[]);
+    let (mut steps, mut moves) = (Vec::new(), 0);
+    let job = loop {
+        let Said::Frame(frame) = page.next() else { panic!() };
+        match frame.head.get("event").and_then(|event| event.as_str()) {
+            Some("progress") => steps.extend(frame.head["step"].as_str().map(str::to_owned)),
+            Some("walked") => moves = frame.head["moves"].as_u64().unwrap(),
+            _ => break frame.head,
+        }
+    };
+    // What was told before somebody was there is told to him.
+    steps.dedup();
+    assert_eq!(steps, ["reading", "writing", "proving", "drawing"]);
+    assert!(moves > 0 && job["id"] == id, "{moves}");
+    assert_eq!(job["done"]["verdict"], "done");
+    let asked = processor_time(&process) - alone;
+    assert!(asked < 0.3 * alone, "{alone} s of the processor, and {asked} s when it was asked for");
+    // Who asks again has it done again.
+    assert_eq!(page.done("post", params)["verdict"], "done");
+    assert!(processor_time(&process) - alone > 0.3 * alone);
+}
+
 /// Work that takes long goes on for nobody.
 #[cfg(target_os = "linux")]
 #[test]
 fn work_ends_when_the_page_goes() {
-    let outside = folder();
-    let mut source =
-        String::from("UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n");
-    for i in 0..400_000 {
-        let _ = writeln!(source, "GOTO/{}.{:03},{},-1", i / 1000, i % 1000, i % 7);
-    }
-    std::fs::write(outside.path().join("own/long.cls"), source).unwrap();
-    let (process, studio) = Process::start(outside);
+    let (process, studio) = Process::start(folder_with_long(400_000));
     let mut page = studio.socket();
-    let params = json!({ "source": { "file": "long.cls" }, "machine": "generic-3axis-linuxcnc" });
+    let params = json!({ "source": { "file": "long.cls" }, "machine": MACHINE });
     page.ask("post", params, &[]);
     loop {
         let Said::Frame(frame) = page.next() else { panic!() };

@@ -1,0 +1,297 @@
+//! Work that makes jobs. Each runs in a thread of its own, so that whoever waits for it goes as soon as it is ended, whatever step it is in.
+
+use super::Studio;
+use crate::ask::{Command, FileOrUpload, Given};
+use crate::drawing::Piece;
+use crate::job::{Asked, Ended, Job, Waits};
+use app::Stop;
+use std::panic::resume_unwind;
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, SystemTime};
+
+/// How often who waits looks whether the work was ended.
+const LOOK: Duration = Duration::from_millis(4);
+
+/// How many runs that nobody waits for may be in their last step while another begins.
+const MOST_LEFT: usize = 1;
+
+/// What is to be made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Order {
+    /// The toolpath, or the board.
+    pub source: Given,
+    /// Name of the machine.
+    pub machine: String,
+    /// Options as the command line has them.
+    pub options: Vec<(String, String)>,
+    /// Name of the program's file.
+    pub file: Option<String>,
+    /// The program that is proven, where it is no edited text.
+    pub program: Option<FileOrUpload>,
+    /// What is proven; otherwise it is posted.
+    pub text: Option<Vec<u8>>,
+}
+
+/// What a run tells.
+enum Told {
+    Step(&'static str),
+    Reached(f64),
+    Walked(String, Piece),
+    Over(Result<Vec<Job>, Stop>),
+}
+
+/// Tells whoever will wait for it.
+struct Tells(Sender<Told>);
+
+impl Tells {
+    fn tell(&self, told: Told) {
+        // Nobody waits any more.
+        let _ = self.0.send(told);
+    }
+}
+
+impl Waits for Tells {
+    fn step(&self, what: &'static str) {
+        self.tell(Told::Step(what));
+    }
+
+    fn reached(&self, part: f64) {
+        self.tell(Told::Reached(part));
+    }
+
+    fn walked(&self, file: &str, piece: Piece) {
+        self.tell(Told::Walked(file.to_owned(), piece));
+    }
+}
+
+/// Work that has begun.
+#[derive(Debug)]
+struct Run {
+    told: Receiver<Told>,
+    thread: JoinHandle<()>,
+    ended: Ended,
+}
+
+impl Run {
+    fn begin(studio: &Arc<Studio>, order: Order, ended: &Ended) -> Run {
+        let (tells, told) = channel();
+        let (tells, own, studio) = (Tells(tells), ended.clone(), Arc::clone(studio));
+        let thread = thread::spawn(move || {
+            let made = make(&studio, order, &tells, &own);
+            tells.tell(Told::Over(made));
+        });
+        Run { told, thread, ended: ended.clone() }
+    }
+
+    /// Ends it, and does not wait for that.
+    fn leave(self, studio: &Studio) {
+        self.ended.end();
+        studio.left.add(self.thread);
+    }
+
+    /// Waits until it is over or `ended`.
+    fn wait(self, studio: &Studio, waits: &dyn Waits, ended: &Ended) -> Result<Vec<Job>, Stop> {
+        loop {
+            match self.told.recv_timeout(LOOK) {
+                Ok(Told::Step(what)) => waits.step(what),
+                Ok(Told::Reached(part)) => waits.reached(part),
+                Ok(Told::Walked(file, piece)) => waits.walked(&file, piece),
+                Ok(Told::Over(made)) => return made,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => match self.thread.join() {
+                    Err(panic) => resume_unwind(panic),
+                    Ok(()) => return Err(Stop::cancelled()),
+                },
+            }
+            if ended.is_ended() {
+                self.leave(studio);
+                return Err(Stop::cancelled());
+            }
+        }
+    }
+}
+
+/// Runs that nobody waits for any more, and that have not ended yet: a step that is not asked meanwhile goes on to its end.
+#[derive(Debug, Default)]
+pub struct Left(Mutex<Vec<JoinHandle<()>>>);
+
+impl Left {
+    fn add(&self, thread: JoinHandle<()>) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(thread);
+    }
+
+    fn count(&self) -> usize {
+        let mut threads = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        threads.retain(|thread| !thread.is_finished());
+        threads.len()
+    }
+
+    /// Waits until there are few enough that another run may begin.
+    ///
+    /// # Errors
+    /// That is ended meanwhile.
+    fn wait(&self, ended: &Ended) -> Result<(), Stop> {
+        while self.count() > MOST_LEFT {
+            if ended.is_ended() {
+                return Err(Stop::cancelled());
+            }
+            thread::sleep(LOOK);
+        }
+        Ok(())
+    }
+}
+
+/// The work that the command line names: it begins with the server, and who asks for the same joins it.
+#[derive(Debug)]
+pub struct First {
+    order: Order,
+    run: Run,
+    /// When it began.
+    since: SystemTime,
+}
+
+impl First {
+    /// Begins it, where source and machine are named.
+    pub fn begin(studio: &Arc<Studio>) {
+        let (Some(source), Some(machine)) = (studio.source.clone(), studio.machine.clone()) else {
+            return;
+        };
+        let (options, file, program, text) = (Vec::new(), None, None, None);
+        let order = Order { source, machine, options, file, program, text };
+        let since = SystemTime::now();
+        let run = Run::begin(studio, order.clone(), &Ended::default());
+        *studio.first() = Some(First { order, run, since });
+    }
+
+    /// Whether nothing that the order names has changed since it began.
+    fn is_new(studio: &Studio, order: &Order, since: SystemTime) -> bool {
+        let paths = match &order.source {
+            Given::File(path) | Given::Folder(path) => Some(path),
+            Given::Upload(_) | Given::Uploads(_) => None,
+        };
+        let machine = Some(&order.machine).filter(|name| machine::is_path(name));
+        let mut named = paths.into_iter().chain(machine);
+        named.all(|path| studio.folder.target(path).is_ok_and(|path| is_as_it_was(&path, since)))
+    }
+
+    /// What it has made; `None` where that would be something else today.
+    fn made(
+        self,
+        studio: &Studio,
+        waits: &dyn Waits,
+        ended: &Ended,
+    ) -> Option<Result<Vec<Job>, Stop>> {
+        let First { order, run, since } = self;
+        if !First::is_new(studio, &order, since) {
+            run.leave(studio);
+            return None;
+        }
+        let made = run.wait(studio, waits, ended);
+        let is_new = First::is_new(studio, &order, since)
+            && made.iter().flatten().flat_map(Job::inputs).all(|path| is_as_it_was(path, since));
+        is_new.then_some(made)
+    }
+}
+
+/// Whether a file, and the folder that it lies in, have not changed since a time.
+fn is_as_it_was(path: &Path, since: SystemTime) -> bool {
+    let is_old = |path: &Path| changed(path).is_some_and(|changed| changed <= since);
+    is_old(path) && path.parent().is_none_or(is_old)
+}
+
+/// When a file or its name was changed last.
+fn changed(path: &Path) -> Option<SystemTime> {
+    let metadata = path.metadata().ok()?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let seconds = Duration::from_secs(u64::try_from(metadata.ctime()).ok()?);
+        let nanoseconds = Duration::from_nanos(u64::try_from(metadata.ctime_nsec()).ok()?);
+        SystemTime::UNIX_EPOCH.checked_add(seconds + nanoseconds)
+    }
+    #[cfg(not(unix))]
+    metadata.modified().ok()
+}
+
+/// Makes what is ordered, and answers the revision of its first job. The first work of all is joined where it is this one; where it is
+/// another, it is ended.
+///
+/// # Errors
+/// Why there is no job; or that the work was ended.
+pub fn made(
+    studio: &Arc<Studio>,
+    order: Order,
+    waits: &dyn Waits,
+    ended: &Ended,
+) -> Result<u64, Stop> {
+    let first = studio.first().take();
+    let joined = match first {
+        Some(first) if first.order == order => first.made(studio, waits, ended),
+        Some(first) => {
+            first.run.leave(studio);
+            None
+        }
+        None => None,
+    };
+    let made = joined.unwrap_or_else(|| {
+        studio.left.wait(ended)?;
+        Run::begin(studio, order, ended).wait(studio, waits, ended)
+    })?;
+    Ok(studio.jobs.keep(made.into_iter().map(Arc::new).collect()))
+}
+
+/// Does the work.
+fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Result<Vec<Job>, Stop> {
+    let Order { source, machine, options, file, program, text } = order;
+    let within = |file: &FileOrUpload| match file {
+        FileOrUpload::File(path) => studio.folder.target(path).ok(),
+        FileOrUpload::Upload(_) => None,
+    };
+    let more = match &source {
+        Given::File(_) | Given::Upload(_) if studio.command(&source, None)? != Command::Pcb => None,
+        board => studio.more(board, &options)?,
+    };
+    let (source, mut inputs) = studio.sources(&source)?;
+    inputs.extend(program.as_ref().and_then(within));
+    let called = program.as_ref().and_then(within);
+    let called = called.and_then(|path| Some(path.parent()?.to_owned()));
+    // A program of the folder keeps its name.
+    let named = match &program {
+        Some(FileOrUpload::File(path)) => path.rsplit('/').next().map(str::to_owned),
+        Some(FileOrUpload::Upload(_)) | None => None,
+    };
+    let asked = Asked {
+        source,
+        machine: &machine,
+        options: &|command| studio.options(command, &options, more.as_ref()),
+        file: file.or(named),
+        program: text,
+        folders: called.into_iter().collect(),
+        inputs,
+    };
+    Job::make(asked, &studio.folder, waits, ended)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_run_begins_when_no_more_than_one_is_left() {
+        let left = Left::default();
+        let (mut ends, ended): (Vec<_>, Vec<_>) = (0..2).map(|_| channel::<()>()).unzip();
+        for ended in ended {
+            left.add(thread::spawn(move || _ = ended.recv()));
+        }
+        let one = Ended::default();
+        one.end();
+        assert!(left.wait(&one).is_err());
+        assert_eq!(left.count(), 2);
+        ends.pop();
+        left.wait(&Ended::default()).unwrap();
+        assert_eq!(left.count(), 1);
+    }
+}
