@@ -12,6 +12,7 @@
 //! row     20 bytes  a move: its end f32 s from the chunk's begin, block u32, source line u32, feed f32 (NaN: not known);
 //!         40 bytes  where any tool leans: then the tool axis 3 f32, and the first two rotary axes 2 f32, degrees;
 //!                   at the end of both its deviation from the source f32 mm (NaN: not compared)
+//! several           chunks in one answer, from the first that is asked for: how many u32, the vertices of each u32, then all vertices
 //! ```
 //! A further level, `fine`, is as the exact one, with chords of arcs within [`FINE`].
 //! All little-endian.
@@ -287,6 +288,22 @@ impl Geometry {
     }
 }
 
+/// Several chunks in one answer: the first, and of those behind it as many as there are bytes for. `None` where there is none.
+pub fn several(chunks: impl Iterator<Item = Vec<u8>>, most: usize) -> Option<Vec<u8>> {
+    let (mut counts, mut vertices) = (Vec::new(), Vec::new());
+    for chunk in chunks {
+        let is_first = counts.is_empty();
+        if !is_first && vertices.len() + chunk.len() > most {
+            break;
+        }
+        counts.push((chunk.len() / 16) as u32);
+        vertices.extend(chunk);
+    }
+    let head = [counts.len() as u32].into_iter().chain(counts.iter().copied());
+    let head = head.flat_map(u32::to_le_bytes);
+    (!counts.is_empty()).then(|| head.chain(vertices).collect())
+}
+
 /// The rows of the moves of a chunk.
 pub fn rows(walk: &Walk, chunk: u32) -> Option<Vec<u8>> {
     let moves = moves(walk, chunk)?;
@@ -545,6 +562,21 @@ pub(crate) mod tests {
         };
         assert_eq!(asks(u32::MAX), (74 + 62 + 12, true));
         assert_eq!(asks(100), (101, false));
+    }
+
+    #[test]
+    fn several_chunks_are_as_many_as_there_are_bytes_for_and_one_at_least() {
+        let chunks = || [vec![1; 32], vec![2; 16], vec![3; 48]].into_iter();
+        let heads = |most| {
+            let bytes = several(chunks(), most).unwrap();
+            let (heads, _) = bytes.as_chunks();
+            let count = u32::from_le_bytes(heads[0]) as usize;
+            (heads[..=count].iter().map(|head| u32::from_le_bytes(*head)).collect(), bytes.len())
+        };
+        assert_eq!(heads(0), (vec![1, 2], 8 + 32));
+        assert_eq!(heads(95), (vec![2, 2, 1], 12 + 48));
+        assert_eq!(heads(96), (vec![3, 2, 1, 3], 16 + 96));
+        assert_eq!(several(std::iter::empty(), 99), None);
     }
 
     #[test]

@@ -16,8 +16,8 @@
 //!
 //! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]; while a proof runs, what it has walked so far
 //! ([`ask::Walked`]). What is large goes by HTTP, with the token in the header
-//! `x-toolpost-token`: `PUT /upload/NAME`, `GET /geometry/REVISION/index`, `GET /geometry/REVISION/LEVEL/CHUNK` and
-//! `GET /moves/REVISION/CHUNK`, whose octets [`geometry`] describes.
+//! `x-toolpost-token`: `PUT /upload/NAME`, `GET /geometry/REVISION/index`, `GET /geometry/REVISION/LEVEL/CHUNK`
+//! (several chunks: `FROM-TO`, half open) and `GET /moves/REVISION/CHUNK`, whose octets [`geometry`] describes.
 //!
 //! # What it never does
 //!

@@ -463,6 +463,11 @@ impl<'a> Follower<'a> {
     fn draw(&mut self) {
         self.drawing.next(Exact::of(&self.walk, self.drawn));
         self.drawn += 1;
+        self.show();
+    }
+
+    /// Shows what has been drawn since.
+    fn show(&self) {
         for piece in self.drawing.pieces() {
             self.waits.walked(&self.file, piece);
         }
@@ -631,6 +636,7 @@ impl Observer for Follower<'_> {
         };
         (walk.by_block, walk.by_source) = (by_block, by_source);
         let Some(geometry) = self.drawing.finish() else { return };
+        self.show();
         *self.goes_to.lock().unwrap_or_else(PoisonError::into_inner) =
             Some(Drawn { walk, geometry });
     }

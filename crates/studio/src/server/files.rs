@@ -16,6 +16,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MOST_UPLOADS: usize = 32;
 const MOST_BYTES: usize = 512 << 20;
 
+/// The most bytes of several chunks in one answer, where it has more than one.
+const MOST_SEVERAL: usize = 16 << 20;
+
 /// Files that the page has sent: kept in memory, and nowhere saved.
 #[derive(Debug, Default)]
 pub struct Uploads(Mutex<Vec<Kept>>);
@@ -85,7 +88,7 @@ pub async fn upload(studio: &Studio, name: &str, request: Request) -> Response<B
 }
 
 /// Answers the geometry or the rows of a job: `geometry/REVISION/index`, `geometry/REVISION/LEVEL/CHUNK` (or `fine` for
-/// LEVEL), `moves/REVISION/CHUNK`.
+/// LEVEL, or `FROM-TO` for CHUNK), `moves/REVISION/CHUNK`.
 pub async fn drawn(studio: Arc<Studio>, path: String) -> Response<Body> {
     // Chunks are made when they are asked for.
     let made = tokio::task::spawn_blocking(move || octets(&studio, &path)).await;
@@ -110,9 +113,23 @@ fn octets(studio: &Studio, path: &str) -> Option<Vec<u8>> {
     let job = studio.jobs.find(parts.get(1)?.parse().ok()?).ok()?;
     match parts[..] {
         ["geometry", _, "index"] => Some(job.geometry().index()),
-        ["geometry", _, "fine", chunk] => job.geometry().fine(job.walk(), chunk.parse().ok()?),
-        ["geometry", _, level, chunk] => {
-            job.geometry().vertices(job.walk(), level.parse().ok()?, chunk.parse().ok()?)
+        ["geometry", _, level, chunks] => {
+            let (geometry, walk) = (job.geometry(), job.walk());
+            let level = match level {
+                "fine" => None,
+                level => Some(level.parse().ok()?),
+            };
+            let vertices = |chunk: usize| match level {
+                Some(level) => geometry.vertices(walk, level, chunk),
+                None => geometry.fine(walk, chunk),
+            };
+            match chunks.split_once('-') {
+                None => vertices(chunks.parse().ok()?),
+                Some((from, to)) => {
+                    let (from, to): (usize, usize) = (from.parse().ok()?, to.parse().ok()?);
+                    geometry::several((from..to).map_while(vertices), MOST_SEVERAL)
+                }
+            }
         }
         ["moves", _, chunk] => geometry::rows(job.walk(), chunk.parse().ok()?),
         _ => None,

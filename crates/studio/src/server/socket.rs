@@ -156,6 +156,12 @@ impl<'a> Tells<'a> {
         }
     }
 
+    /// Tells what was walked and not told yet.
+    fn show_rest(&self) {
+        let rest = self.walked.lock().unwrap_or_else(PoisonError::into_inner).0.take();
+        self.show(rest);
+    }
+
     fn tell(&self, step: &'static str, part: Option<f64>) {
         let progress = Progress { event: "progress", id: self.id, step, part };
         let _ = self.page.answers.send(message::write(&progress, &[]));
@@ -238,6 +244,7 @@ fn take(page: &Arc<Page>, frame: Frame) {
         page.running().remove(&id);
         match answer {
             Ok(Ok(Answer { done, arrays })) => {
+                tells.show_rest();
                 let _ = page.answers.send(message::write(&Done { id, done }, &arrays));
             }
             Ok(Err(stop)) => page.stop(id, stop),
