@@ -1,6 +1,6 @@
 /** What the page is at: the folder, the work, its job, and what runs. Panes read the signals and call the methods. */
 
-import { computed, signal, type Signal } from "@preact/signals";
+import { batch, computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
 import type { Arrays } from "./protocol/frames.ts";
 import { said, Stopped, type Asking, type Progress, type Seam, type State } from "./protocol/seam.ts";
@@ -55,18 +55,23 @@ export class Studio {
     /** After the first connection and after each that was lost: revisions may be others now, so the work is posted again. */
     async begin(): Promise<void> {
         const { done: opened } = await this.seam.ask("open", {});
-        this.opened.value = opened;
-        this.drafts.value = opened.drafts;
-        this.machine.value ??= this.work.value?.machine ?? opened.machine;
+        // What is worked on is asked for first, the lists behind it, without waiting for one another.
+        const work = batch(() => {
+            this.machine.value ??= this.work.value?.machine ?? opened.machine;
+            this.drafts.value = opened.drafts;
+            this.opened.value = opened;
+            if (this.edited.value !== null) return this.prove(this.edited.value);
+            if (this.work.value !== null) return this.post(this.work.value);
+            return opened.source === null ? null : this.open(opened.source);
+        });
         this.machines.value = (await this.seam.ask("machines", {})).done;
         await this.askForm();
-        if (this.edited.value !== null) return this.prove(this.edited.value);
-        if (this.work.value !== null) return this.post(this.work.value);
-        if (opened.source !== null) await this.open(opened.source);
+        await work;
     }
 
-    /** The options of the machine's command. */
+    /** The options of the machine's command; while the machines have not come, this is asked behind them. */
     private async askForm(): Promise<void> {
+        if (this.machines.value.length === 0) return;
         const kind = this.machines.value.find(({ name }) => name === this.machine.value)?.kind;
         const ofMachine: Command = kind === "wire" ? "wire" : "post";
         const work = this.work.value;
@@ -109,20 +114,32 @@ export class Studio {
         this.kept = null;
         this.isCurrent.value = false;
         const { source, machine, options } = work;
-        void this.askForm();
         if (machine === null) {
             this.job.value = null;
+            void this.askForm();
             return this.asksMachine();
         }
         // The picture of another source says nothing of this one.
         if (this.shown !== JSON.stringify(source)) this.job.value = this.board.value = null;
         this.shown = JSON.stringify(source);
-        const job = await this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done);
-        this.board.value = job?.board ?? null;
-        this.job.value = job ?? null;
-        this.isCurrent.value = job !== undefined && this.edited.value === null;
+        const posting = this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done);
+        void this.askForm();
+        const job = await posting;
+        batch(() => {
+            this.board.value = job?.board ?? null;
+            this.show(job ?? null);
+            this.isCurrent.value = job !== undefined && this.edited.value === null;
+        });
         const same = job?.board?.programs.find(({ file, revision }) => file === work.file && revision !== job.revision);
         if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
+    }
+
+    /** A job, in the place of what was walked of it. */
+    private show(job: Job | null): void {
+        batch(() => {
+            this.walking.value = null;
+            this.job.value = job;
+        });
     }
 
     /** Another program of the board. */
@@ -154,7 +171,7 @@ export class Studio {
         const job = await this.told(async (asking) => (await this.seam.ask("prove", { source, machine, options, program }, asking)).done);
         if (job === undefined) return;
         this.edited.value = null;
-        this.job.value = job;
+        this.show(job);
         this.isCurrent.value = true;
     }
 
@@ -170,7 +187,7 @@ export class Studio {
         const job = await this.told(async (asking) =>
             (await this.seam.ask("prove", { source, machine, options, file: file ?? null }, { arrays: { text: octets }, ...asking })).done);
         if (job === undefined) return;
-        this.job.value = job;
+        this.show(job);
         // Somebody may have typed on meanwhile.
         this.isCurrent.value = this.edited.value === text;
     }
@@ -275,12 +292,12 @@ export class Studio {
             if (!(error instanceof Stopped)) throw error;
             this.stopped.value = error.findings;
             this.stop.value = error.verdict;
+            this.walking.value = null;
             return undefined;
         } finally {
             if (this.abort === abort) {
                 this.abort = null;
                 this.running.value = null;
-                this.walking.value = null;
             }
         }
     }

@@ -105,14 +105,13 @@ test("what has not come is asked for, and what is there is drawn meanwhile", asy
 
 test("a chunk that is on its way is not asked for again, and what was walked before is drawn until it has come", async () => {
     const asked: string[] = [];
-    const before = { best: () => ({ vertices: server["1/0"]!, isExact: false }) } as unknown as Vertices;
-    let tell = 0;
+    const before = { chunks: [], best: () => ({ vertices: server["1/0"]!, isExact: false }) } as unknown as Vertices;
     const octets = async (path: string) => {
         asked.push(path);
         await settled();
         return server[path]!;
     };
-    const chunks = new Chunks(walk, octets, () => tell++, before);
+    const chunks = new Chunks(walk, octets, () => {}, before);
     await chunks.load();
     const one = new Scene(walk, chunks, {} as Rows);
     for (let frame = 0; frame < 3; frame++) {
@@ -123,9 +122,26 @@ test("a chunk that is on its way is not asked for again, and what was walked bef
     await settled();
     expect(asked).toEqual(["index", "1/0", "1/1"]);
     expect(one.picture(above, size, looks, marks).strips.map(({ vertices }) => vertices)).toEqual([server["1/0"], server["1/1"]]);
-    // One picture for both.
+});
+
+test("what was walked is drawn before anything of the job has come", async () => {
+    const known = new Chunks(walk, async (path) => server[path]!, () => {});
+    await known.load();
+    const before = { chunks: known.chunks.slice(0, 1), best: () => ({ vertices: server["1/0"]!, isExact: false }) } as unknown as Vertices;
+    const chunks = new Chunks(walk, () => new Promise(() => {}), () => {}, before);
+    const one = new Scene(walk, chunks, {} as Rows);
+    expect(one.picture(above, size, looks, marks).strips.map(({ vertices }) => vertices)).toEqual([server["1/0"]]);
+});
+
+test("the first chunk is shown at once, and the others that come soon behind it together", async () => {
+    let told = 0;
+    const many = { ...walk, chunks: 50 };
+    const chunks = new Chunks(many, async () => server["1/0"]!, () => told++);
+    for (let chunk = 0; chunk < 50; chunk++) chunks.best(1, chunk);
+    await settled();
+    expect(told).toBe(1);
     await new Promise((resolve) => setTimeout(resolve, 100));
-    expect(tell).toBe(2);
+    expect(told).toBe(2);
 });
 
 test("a click finds the exact move below a coarse line, and nothing where nothing is", async () => {

@@ -1,3 +1,4 @@
+import { counted } from "../numbers.ts";
 import type { Screen } from "../screen/screen.ts";
 import type { Job, Verdict, Work } from "../protocol/asks.ts";
 
@@ -79,7 +80,7 @@ function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | 
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
     if (!isCurrent) return <strong class="warning">▲ TO BE PROVEN</strong>;
     const isPartly = job.board?.verdict === "partly" && job.verdict === "done";
-    const moves = `${job.walk.moves.toLocaleString("en")} moves`;
+    const moves = `${counted(job.walk.moves)} moves`;
     return (
         <>
             <strong class={isPartly ? "partly" : job.verdict}>{isPartly ? "◐ PROVEN, PARTLY MADE" : verdicts[job.verdict]}</strong> {moves}

@@ -1,3 +1,4 @@
+import { counted } from "../numbers.ts";
 import type { Finding, Severity } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 
@@ -15,7 +16,7 @@ export function Findings({ screen }: { screen: Screen }) {
             {findings.value.slice(0, SHOWN).map((finding, number) => (
                 <Row key={number} screen={screen} finding={finding} lit={number === screen.finding.value} lead={() => screen.toFinding(number)} />
             ))}
-            {findings.value.length > SHOWN && <li class="soft">and {(findings.value.length - SHOWN).toLocaleString("en")} more</li>}
+            {findings.value.length > SHOWN && <li class="soft">and {counted(findings.value.length - SHOWN)} more</li>}
         </ol>
     );
 }
@@ -34,7 +35,7 @@ function Row({ screen, finding, lit, lead }: { screen: Screen; finding: Finding;
                 <strong class={finding.severity}>
                     {marks[finding.severity]} {finding.severity}
                 </strong>{" "}
-                {finding.message} {finding.count > 1 && <b>({finding.count.toLocaleString("en")} times)</b>} <span class="soft">[{finding.rule}]</span>
+                {finding.message} {finding.count > 1 && <b>({counted(finding.count)} times)</b>} <span class="soft">[{finding.rule}]</span>
                 {place !== "" && <span class="code soft"> {place}</span>}
             </button>
             {finding.excerpt && <div class="code">{finding.excerpt}</div>}

@@ -1,6 +1,7 @@
 import { effect, useComputed, useSignal, type ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Newest } from "../newest.ts";
+import { counted, rounded } from "../numbers.ts";
 import type { Axis, Job, Jump } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import type { Theme } from "../view/colours.ts";
@@ -54,20 +55,20 @@ function Jumps({ screen, job }: { screen: Screen; job: Job }) {
     return (
         <details class="jumps">
             <summary>
-                <strong class="warning">▼ {jumps_in_all.toLocaleString("en")}</strong> {jumps_in_all === 1 ? "cut turns a rotary axis" : "cuts turn a rotary axis"} by more than 30°
+                <strong class="warning">▼ {counted(jumps_in_all)}</strong> {jumps_in_all === 1 ? "cut turns a rotary axis" : "cuts turn a rotary axis"} by more than 30°
             </summary>
             <ol>
                 {jumps.slice(0, LISTED).map(({ axis, move, time_s, from, to }) => (
                     <li key={`${axis} ${move}`}>
                         <button type="button" onClick={() => void screen.studio.cursor.toMove(move)}>
-                            {job.machine.axes[axis]?.name} {round(from)}° → {round(to)}°
+                            {job.machine.axes[axis]?.name} {rounded(from)}° → {rounded(to)}°
                         </button>{" "}
                         <span class="soft">
-                            move {(move + 1).toLocaleString("en")}, {clock(time_s)}
+                            move {counted(move + 1)}, {clock(time_s)}
                         </span>
                     </li>
                 ))}
-                {jumps_in_all > LISTED && <li class="soft">and {(jumps_in_all - LISTED).toLocaleString("en")} more</li>}
+                {jumps_in_all > LISTED && <li class="soft">and {counted(jumps_in_all - LISTED)} more</li>}
             </ol>
         </details>
     );
@@ -113,7 +114,7 @@ function Plot({ screen, axis, number, span }: { screen: Screen; axis: Axis; numb
     return (
         <figure class="plot">
             <figcaption>
-                {axis.name} <span class="soft">{known.length === 2 ? `${round(known[0]!)} … ${round(known[1]!)} ${axis.unit}` : "–"}</span>
+                {axis.name} <span class="soft">{known.length === 2 ? `${rounded(known[0]!)} … ${rounded(known[1]!)} ${axis.unit}` : "–"}</span>
             </figcaption>
             <canvas
                 ref={canvas}
@@ -128,8 +129,6 @@ function Plot({ screen, axis, number, span }: { screen: Screen; axis: Axis; numb
         </figure>
     );
 }
-
-const round = (value: number): string => value.toLocaleString("en", { maximumFractionDigits: 4 });
 
 /** Least and most of what is known. */
 function extent({ least, most }: Band): number[] {

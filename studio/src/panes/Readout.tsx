@@ -1,3 +1,4 @@
+import { counted } from "../numbers.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** What nobody knows is a dash. */
@@ -19,7 +20,7 @@ export function Readout({ screen }: { screen: Screen }) {
         ["Comp.", place.compensation ?? "–", ""],
         ["Cycle", place.cycle ?? "–", ""],
         ["Tool", tool === null ? "–" : `${tool.number} ${tool.name}`, ""],
-        ["Move", `${(place.move + 1).toLocaleString("en")} ${place.kind}`, ""],
+        ["Move", `${counted(place.move + 1)} ${place.kind}`, ""],
     ];
     return (
         <dl class="readout" aria-label="At the cursor">

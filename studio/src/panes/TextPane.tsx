@@ -1,26 +1,31 @@
-import { effect, untracked, useSignal, type Signal } from "@preact/signals";
+import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { readText } from "../protocol/text.ts";
-import type { Blocks, Job, Text } from "../protocol/asks.ts";
 import { Programs } from "./Programs.tsx";
 import type { Screen } from "../screen/screen.ts";
-import { familyOf } from "../text/dialects.ts";
-import { Editor, type Origin } from "../text/editor.ts";
-
-type Of = "program" | "source";
+import type { Of, Shown } from "./editing.ts";
 
 /** Program or source. The cursor's line is lit; a line that one clicks becomes the cursor. */
 export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
     const { studio } = screen;
     const host = useRef<HTMLDivElement>(null);
     /** Of a program in several files, the called one that is shown; null: the program itself. */
-    const file = useSignal<string | null>(null);
+    const file: Shown["file"] = useSignal(null);
     const compared = useSignal(false);
     const text = studio.job.value?.[of] ?? null;
     const parts = of === "program" ? (studio.job.value?.parts ?? []) : [];
     const title = of === "program" ? "Program" : "Source";
 
-    useEffect(() => keepUp(screen, of, host.current!, file, compared), []);
+    useEffect(() => {
+        let end: (() => void) | null = () => {};
+        // The editor is most of the page, and the picture does not wait for it.
+        void screen.settled().then(() => import("./editing.ts")).then(({ keepUp }) => {
+            if (end !== null) end = keepUp(screen, of, host.current!, { file, compared });
+        });
+        return () => {
+            end?.();
+            end = null;
+        };
+    }, []);
 
     const isEdited = of === "program" && studio.edited.value !== null;
     return (
@@ -93,65 +98,4 @@ function Template({ screen }: { screen: Screen }) {
             <div class="code">{template.text}</div>
         </footer>
     );
-}
-
-/** The lines of a file. */
-function linesOf(blocks: Blocks[], file: string | null): number[] {
-    const ranges = blocks.filter((one) => one.file === file).flatMap((one) => one.ranges);
-    return ranges.flatMap(([from, to]) => Array.from({ length: to - from }, (_, i) => from + i));
-}
-
-/** The editor in the host, as long as the pane is there. */
-function keepUp(screen: Screen, of: Of, host: HTMLElement, file: Signal<string | null>, compared: Signal<boolean>): () => void {
-    const { studio } = screen;
-    const { cursor, seam } = studio;
-    const editor = new Editor(host, of === "program" ? "Program" : "Source", {
-        picked: (value) => {
-            if (studio.edited.peek() !== null && !studio.isCurrent.peek()) return;
-            void cursor.to({ by: of === "program" ? "block" : "source", value, file: file.peek() });
-        },
-        edited: (text) => studio.typed(text),
-    });
-    screen.editors[of] = editor;
-    host.focus = () => editor.focus();
-    let posted: string | null = null;
-
-    const origin = (job: Job, text: Text): Origin => ({
-        lines: job.parts.find((part) => part.file === file.value)?.lines ?? text.lines,
-        family: of === "source" ? familyOf(null, text.file) : familyOf(job.machine.dialect, text.file),
-        isEditable: of === "program" && job.parts.length === 0,
-        read: (from, to) => readText(seam, { revision: job.revision, of, file: file.value, from, to }),
-    });
-
-    const stops = [
-        effect(() => {
-            const job = studio.job.value;
-            const text = job?.[of] ?? null;
-            const edited = of === "program" ? untracked(() => studio.edited.value) : null;
-            if (job === null || text === null) {
-                if (edited === null) void editor.show(null);
-            } else if (edited !== null) editor.replace(edited, origin(job, text));
-            else {
-                void editor.show(origin(job, text)).then(() => (posted = editor.text)).catch(() => {});
-            }
-        }),
-        effect(() => {
-            const place = cursor.place.value;
-            const line = (of === "program" ? place?.block : place?.source) ?? null;
-            if (line !== null) file.value = line.file;
-            const name = file.value ?? studio.job.value?.[of]?.file;
-            const wrong = studio.findings.value.filter((finding) => finding.of === of && finding.line > 0 && finding.file === name).flatMap(({ line, lines }) => [line, ...lines]);
-            const also = of === "program" && place?.source ? linesOf(place.blocks, file.value) : [];
-            editor.mark({ at: line?.line ?? null, also, wrong: wrong.slice(0, 1000) });
-        }),
-        effect(() => {
-            const on = compared.value && studio.edited.value !== null;
-            void editor.compare(on ? posted : null);
-        }),
-    ];
-    return () => {
-        for (const stop of stops) stop();
-        editor.close();
-        delete screen.editors[of];
-    };
 }

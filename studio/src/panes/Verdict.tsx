@@ -1,5 +1,6 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { counted } from "../numbers.ts";
 import type { Job, Mismatch } from "../protocol/asks.ts";
 import { readText } from "../protocol/text.ts";
 import type { Screen } from "../screen/screen.ts";
@@ -42,7 +43,7 @@ function Places({ screen }: { screen: Screen }) {
                     </button>
                 </li>
             ))}
-            {places.length > SHOWN && <li class="soft">and {(places.length - SHOWN).toLocaleString("en")} more</li>}
+            {places.length > SHOWN && <li class="soft">and {counted(places.length - SHOWN)} more</li>}
         </ol>
     );
 }

@@ -1,5 +1,6 @@
 import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import { counted, rounded } from "../numbers.ts";
 import { axisOf, vector, type Screen } from "../screen/screen.ts";
 import type { Job } from "../protocol/asks.ts";
 import { VIEWS } from "../view/camera.ts";
@@ -55,7 +56,7 @@ export function View({ screen }: { screen: Screen }) {
 /** What the ramp of colours means. */
 function deviations(job: Job | null): string {
     const most = job?.walk.deviation ?? null;
-    return most === null ? "nothing is compared" : `0 to ${most.toLocaleString("en", { maximumFractionDigits: 4 })} mm; grey: not compared`;
+    return most === null ? "nothing is compared" : `0 to ${rounded(most)} mm; grey: not compared`;
 }
 
 function Toggle({ on, title, text }: { on: { value: boolean }; title: string; text: string }) {
@@ -79,8 +80,11 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
                 const tip = place === null || at === null ? null : { at, axis: axisOf(place.axis) };
                 return { scene: screen.scene.value, looks: screen.looks.value, marks: screen.marks(), tip, box: screen.all, isBoxShown: screen.box.value };
             },
-            (move) => void studio.cursor.toMove(move),
-            (at) => (screen.pointer.value = at),
+            {
+                picked: (move) => void studio.cursor.toMove(move),
+                pointed: (at) => (screen.pointer.value = at),
+                drawn: () => (screen.isDrawn.value = true),
+            },
             screen.drawing.peek(),
         );
         screen.viewers.push(viewer);
@@ -123,7 +127,7 @@ function Proving({ screen }: { screen: Screen }) {
     if (walked === null || screen.studio.job.value !== null) return null;
     return (
         <p class="proving">
-            <strong class="warning">▲ the proof runs: nothing of this is proven yet</strong> {walked.moves.toLocaleString("en")} moves so far
+            <strong class="warning">▲ the proof runs: nothing of this is proven yet</strong> {counted(walked.moves)} moves so far
         </p>
     );
 }

@@ -2,10 +2,12 @@
 
 const KEY = "toolpost-token";
 
-export function token(): string {
+/** The token, and whether the link with it was opened just now. */
+export function token(): { token: string; isNew: boolean } {
     const given = location.hash.slice(1).replace(/^token=/, "");
-    if (given === "") return sessionStorage.getItem(KEY) ?? "";
-    sessionStorage.setItem(KEY, given);
+    if (given === "") return { token: sessionStorage.getItem(KEY) ?? "", isNew: false };
     history.replaceState(null, "", location.pathname);
-    return given;
+    return { token: given, isNew: true };
 }
+
+export const keepToken = (given: string): void => sessionStorage.setItem(KEY, given);

@@ -2,12 +2,12 @@
 
 import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
 import { Player } from "../player.ts";
-import type { Job, Place, ToolUse, WalkAbout } from "../protocol/asks.ts";
+import type { Job, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Board } from "../view/board.ts";
 import { axes } from "../view/camera.ts";
-import { Chunks, type Vertices } from "../view/chunks.ts";
+import { Chunks } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
 import { bodiesOf } from "../view/linkage.ts";
 import { Rows } from "../view/rows.ts";
@@ -29,6 +29,9 @@ export function vector(coordinates: (number | null)[]): Vector | null {
 
 /** Upright where it is not known. */
 export const axisOf = (axis: (number | null)[]): Vector => vector(axis) ?? [0, 0, 1];
+
+/** What waits for the picture does not wait longer, ms. */
+const LATE = 2000;
 
 export class Screen {
     readonly dialog: Signal<Dialog | null> = signal(null);
@@ -69,8 +72,11 @@ export class Screen {
     readonly news: Signal<number> = signal(0);
     /** The source that the views were fitted to. */
     private fitted: string | null = null;
+    /** What was shown while the proof ran: it stays until the job's own lines have come. */
     private walking: Walking | null = null;
     readonly viewers: Viewer[] = [];
+    /** There has been a picture. */
+    readonly isDrawn: Signal<boolean> = signal(false);
     /** The view that had the focus last. */
     viewer: Viewer | null = null;
 
@@ -87,16 +93,34 @@ export class Screen {
         });
     }
 
+    /** When there is a picture, or none will come: what is large and behind it can be loaded. */
+    settled(): Promise<void> {
+        const { opened, work, stop: stopped, job } = this.studio;
+        const isNoneToCome = computed(() => opened.value !== null && (work.value === null || work.value.machine === null || stopped.value !== null || job.value?.walk.moves === 0));
+        const isSettled = computed(() => this.isDrawn.value || isNoneToCome.value);
+        return new Promise((resolve) => {
+            const end = (): void => {
+                stop();
+                clearTimeout(late);
+                setTimeout(resolve);
+            };
+            const late = setTimeout(end, LATE);
+            const stop = isSettled.subscribe((is) => is && requestAnimationFrame(end));
+        });
+    }
+
     /** The scene of a job that is new. */
     private begin(job: Job | null): void {
         const board = this.studio.board.value === null ? null : this.board.value;
+        const walked = this.walking;
         this.board.value = null;
+        this.walking = null;
         if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
             return;
         }
         const { walk, revision } = job;
-        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++, this.walkedBefore(walk));
+        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++, walked);
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job));
         void chunks.load().catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
@@ -128,13 +152,6 @@ export class Screen {
         this.scene.value.board = board;
         this.board.value = board;
         this.news.value++;
-    }
-
-    /** What was shown while the proof ran, where it is all of the walk. */
-    private walkedBefore({ moves }: WalkAbout): Vertices | null {
-        const { walking } = this;
-        this.walking = null;
-        return walking?.moves === moves ? walking : null;
     }
 
     /** What the proof that runs has walked. */

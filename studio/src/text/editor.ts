@@ -7,13 +7,14 @@ import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
 import { Compartment, EditorState, StateEffect, StateField, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
-import { FIRST, isNearEnd, isWithin, KEPT, LONG, missing, windowAround, type Window } from "./window.ts";
+import { firstWindow, isNearEnd, isWithin, KEPT, lastWindow, LONG, missing, type Window } from "./window.ts";
 
 /** Between two jumps to lines that are not here, ms. */
 const JUMPS = 250;
 
-/** How long the cursor rests before more lines around it are fetched, ms. */
+/** How long the cursor rests before more lines around it are fetched, ms: sooner where all will be here then. */
 const REST = 1500;
+const REST_TO_ALL = 100;
 
 /** A text that is somewhere else. */
 export interface Origin {
@@ -26,6 +27,8 @@ export interface Origin {
 export interface Listener {
     picked(line: number): void;
     edited(text: string): void;
+    /** All lines are here. */
+    whole(text: string): void;
 }
 
 /** Lines, from 1: that of the cursor, all that belong to it, those with findings. */
@@ -74,7 +77,8 @@ const look = EditorView.theme({
 export class Editor {
     private readonly view: EditorView;
     private readonly extensions: Extension;
-    readonly more = new Compartment();
+    private readonly more = new Compartment();
+    private readonly locked = new Compartment();
     private window: Window = { from: 1, to: 1 };
     private origin: Origin | null = null;
     /** Of which text the lines in the editor are. */
@@ -140,14 +144,13 @@ export class Editor {
         if (origin === null) return;
         const reading = ++this.reading;
         clearTimeout(this.resting);
-        const isLong = origin.lines > KEPT;
-        const window = windowAround(line, origin.lines, isLong ? FIRST : KEPT);
+        const window = firstWindow(line, origin.lines);
         this.coming = window;
         try {
             const text = await origin.read(window.from, window.to);
             if (reading !== this.reading) return;
             this.move(text, window);
-            if (isLong) this.growLater();
+            if (!this.isWhole) this.growLater();
         } finally {
             if (reading === this.reading) this.coming = null;
         }
@@ -155,7 +158,7 @@ export class Editor {
 
     /** Other lines of the same text take the place of these; those of another text begin anew. */
     private move(text: string, window: Window): void {
-        if (this.shown !== this.origin || this.origin === null || this.origin.lines <= KEPT) return this.set(text, window);
+        if (this.shown !== this.origin || this.origin === null) return this.set(text, window);
         const { length } = this.view.state.doc;
         this.window = window;
         this.isSetting = true;
@@ -166,7 +169,7 @@ export class Editor {
 
     private growLater(): void {
         clearTimeout(this.resting);
-        this.resting = setTimeout(() => void this.grow(), REST);
+        this.resting = setTimeout(() => void this.grow(), (this.origin?.lines ?? 0) > KEPT ? REST : REST_TO_ALL);
     }
 
     /** As many lines as are kept, round those in sight. They come in parts, so that a jump need not wait for all of them. */
@@ -174,7 +177,7 @@ export class Editor {
         const { origin } = this;
         if (origin === null) return;
         const reading = ++this.reading;
-        const kept = windowAround(this.inSight.from, origin.lines, LONG);
+        const kept = lastWindow(this.inSight.from, origin.lines);
         this.isGrowing = true;
         this.drop(kept);
         try {
@@ -185,6 +188,7 @@ export class Editor {
                 // The editor measures what was added once a frame.
                 await new Promise(requestAnimationFrame);
             }
+            if (reading === this.reading && this.isWhole) this.finish();
         } finally {
             if (reading === this.reading) this.isGrowing = false;
         }
@@ -196,6 +200,16 @@ export class Editor {
         const isAbove = part.to === from;
         const at = isAbove ? 0 : this.view.state.doc.length;
         this.change({ from: at, insert: isAbove ? `${text}\n` : `\n${text}` }, { from: Math.min(from, part.from), to: Math.max(to, part.to) });
+    }
+
+    /** All lines are here: they may be edited. */
+    private finish(): void {
+        this.view.dispatch({ effects: this.locked.reconfigure(this.lock) });
+        this.listener.whole(this.text);
+    }
+
+    private get lock(): Extension {
+        return EditorState.readOnly.of(!(this.origin?.isEditable === true && this.isWhole));
     }
 
     /** The lines that are not among the kept ones. */
@@ -229,16 +243,16 @@ export class Editor {
         this.window = window;
         const { origin } = this;
         this.shown = origin;
-        const isEditable = origin?.isEditable === true && this.isWhole;
         this.isSetting = true;
         this.view.setState(
             EditorState.create({
                 doc: text,
-                extensions: [this.extensions, coloured(origin?.family ?? "iso"), EditorState.readOnly.of(!isEditable), this.more.of([])],
+                extensions: [this.extensions, coloured(origin?.family ?? "iso"), this.locked.of(this.lock), this.more.of([])],
             }),
         );
         this.isSetting = false;
         this.draw(true);
+        if (this.isWhole) this.listener.whole(text);
     }
 
     /** Lines as they are numbered in the file; that of the cursor comes into sight. */

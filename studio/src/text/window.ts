@@ -6,17 +6,27 @@ export interface Window {
     to: number;
 }
 
+/** Texts up to so many lines are kept whole. */
 export const KEPT = 200_000;
 
-/** Of a text that is not kept whole: as many lines are fetched first, and as many are kept when the cursor rests. */
-export const FIRST = 200;
+/** Texts up to so many lines come at once; of a longer one first those round the cursor. */
+const SHORT = 5000;
+const FIRST = 200;
+
+/** Of a text that is not kept whole, as many lines are kept when the cursor rests. */
 export const LONG = 20_000;
 
 /** Lines of one answer to be added: more would hold the page up. */
 const PART = 5000;
 
+/** The lines that are fetched first. */
+export const firstWindow = (line: number, lines: number): Window => windowAround(line, lines, lines <= SHORT ? SHORT : FIRST);
+
+/** The lines that are there in the end. */
+export const lastWindow = (line: number, lines: number): Window => windowAround(line, lines, lines <= KEPT ? KEPT : LONG);
+
 /** All of a text, or as many lines as are kept, with `line` in the middle. */
-export function windowAround(line: number, lines: number, kept = KEPT): Window {
+export function windowAround(line: number, lines: number, kept: number): Window {
     if (lines <= kept) return { from: 1, to: lines + 1 };
     const from = Math.max(1, Math.min(lines - kept + 1, line - Math.floor(kept / 2)));
     return { from, to: from + kept };

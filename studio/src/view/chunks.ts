@@ -75,12 +75,14 @@ export interface Vertices {
 }
 
 export class Chunks implements Vertices {
-    chunks: Chunk[] = [];
+    chunks: Chunk[];
     private readonly kept = new Map<number, Kept>();
     private readonly wanted = new Set<number>();
     /** What is on its way. */
     private readonly coming = new Set<number>();
     private telling: ReturnType<typeof setTimeout> | undefined;
+    /** Something has come since it was told. */
+    private isNews = false;
     private running = 0;
     private bytes = 0;
     private frame = 0;
@@ -91,18 +93,26 @@ export class Chunks implements Vertices {
         private readonly changed: () => void,
         /** Of the same walk while it was proven: drawn until something better has come. */
         private readonly before: Vertices | null = null,
-    ) {}
+    ) {
+        this.chunks = [...(before?.chunks ?? [])];
+    }
 
     async load(): Promise<void> {
         this.chunks = readIndex(await this.octets("index"));
         this.changed();
     }
 
-    /** A picture for each of many chunks that come would hold them up. */
+    /** At once, and then now and then: a picture for each of many chunks that come would hold them up. */
     private tell(): void {
-        this.telling ??= setTimeout(() => {
+        if (this.telling !== undefined) {
+            this.isNews = true;
+            return;
+        }
+        this.isNews = false;
+        this.changed();
+        this.telling = setTimeout(() => {
             this.telling = undefined;
-            this.changed();
+            if (this.isNews) this.tell();
         }, Math.max(BETWEEN, BETWEEN_EACH * this.walk.chunks));
     }
 

@@ -28,6 +28,14 @@ interface Drag {
     picked: Promise<number | null>;
 }
 
+/** What a view tells. */
+export interface Tell {
+    picked(move: number): void;
+    pointed(at: Vector | null): void;
+    /** A picture with lines is drawn. */
+    drawn(): void;
+}
+
 export class Viewer {
     camera: Camera;
     /** Dragging measures. */
@@ -35,6 +43,8 @@ export class Viewer {
     private renderer: Renderer;
     private readonly over = document.createElement("canvas");
     private readonly context = this.over.getContext("2d")!;
+    /** Whether there is a graphics processor is looked for behind the first picture. */
+    private isSought: boolean;
     private drag: Drag | null = null;
     private measured: Over["drag"] = null;
     private frame = 0;
@@ -46,18 +56,19 @@ export class Viewer {
         readonly host: HTMLElement,
         view: number,
         private readonly shown: () => Shown,
-        private readonly picked: (move: number) => void,
-        private readonly pointed: (at: Vector | null) => void,
+        private readonly tell: Tell,
         how: Drawing,
     ) {
         this.camera = { ...VIEWS[view]!, middle: [0, 0, 0], scale: 1 };
-        this.renderer = this.rendererFor(how);
+        // A graphics processor takes its time to be found: the first picture does not wait for it.
+        this.renderer = how === "auto" ? new Plain() : this.rendererFor(how);
+        this.isSought = how === "auto";
         host.append(this.renderer.canvas, this.over);
         this.sizes.observe(host);
         host.addEventListener("pointerdown", (event) => this.down(event));
         host.addEventListener("pointermove", (event) => this.move(event));
         host.addEventListener("pointerup", (event) => this.up(event));
-        host.addEventListener("pointerleave", () => pointed(null));
+        host.addEventListener("pointerleave", () => tell.pointed(null));
         host.addEventListener("contextmenu", (event) => event.preventDefault());
         host.addEventListener("dblclick", () => this.fit());
         host.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
@@ -65,22 +76,38 @@ export class Viewer {
 
     /** Without WebGL, and where it is lost, by the rasteriser. */
     private rendererFor(how: Drawing): Renderer {
-        if (how === "plain") return new Plain();
+        return (how === "plain" ? null : this.webgl(how === "webgl")) ?? new Plain();
+    }
+
+    private webgl(evenSlow: boolean): Renderer | null {
         try {
-            return new Gl(() => this.drawBy("plain"), { evenSlow: how === "webgl" });
+            return new Gl(() => this.drawBy("plain"), { evenSlow });
         } catch {
-            return new Plain();
+            return null;
         }
     }
 
+    private seek(): void {
+        if (!this.isSought) return;
+        this.isSought = false;
+        const found = this.webgl(false);
+        if (found !== null) this.draws(found);
+    }
+
     drawBy(how: Drawing): void {
+        this.isSought = false;
+        this.draws(this.rendererFor(how));
+    }
+
+    private draws(renderer: Renderer): void {
         this.renderer.canvas.remove();
-        this.renderer = this.rendererFor(how);
+        this.renderer = renderer;
         this.host.prepend(this.renderer.canvas);
         this.redraw();
     }
 
     close(): void {
+        this.isSought = false;
         cancelAnimationFrame(this.frame);
         this.sizes.disconnect();
         this.host.replaceChildren();
@@ -121,6 +148,10 @@ export class Viewer {
         const picture = scene?.picture(projection, size, looks, marks) ?? { flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
         this.renderer.draw(picture, projection, size, looks.theme);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
+        if (picture.strips.length > 0) {
+            this.tell.drawn();
+            if (this.isSought) setTimeout(() => this.seek());
+        }
         overlay(this.context, { box: isBoxShown ? box : null, tip, symbols: picture.symbols, drag: this.measured }, projection, size, looks.theme, this.ratio);
     }
 
@@ -181,7 +212,7 @@ export class Viewer {
     private move(event: PointerEvent): void {
         const to = this.at(event);
         const { drag } = this;
-        if (drag === null) return this.pointed(this.pointOf(to));
+        if (drag === null) return this.tell.pointed(this.pointOf(to));
         const [dx, dy] = [to[0] - drag.last[0], to[1] - drag.last[1]];
         drag.moved ||= Math.hypot(to[0] - drag.from[0], to[1] - drag.from[1]) > 3;
         if (!drag.moved) return;
@@ -198,7 +229,7 @@ export class Viewer {
         const { drag } = this;
         this.drag = null;
         if (drag === null) return;
-        if (!drag.moved) void drag.picked.then((move) => move !== null && this.picked(move));
+        if (!drag.moved) void drag.picked.then((move) => move !== null && this.tell.picked(move));
         else if (drag.kind === "zoom") {
             this.measured = null;
             this.look(zoomTo(this.camera, drag.from, this.at(event), this.size));

@@ -7,13 +7,17 @@ import { absent, browserOfTests, covered, goTo, proven, Server, visit } from "./
 
 const MOVES = 210_000;
 
+const source = (moves: number): string => {
+    const lines = Array.from({ length: moves }, (_, i) => `GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
+    return ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...lines, "FINI", ""].join("\n");
+};
+
 describe.skipIf(absent() !== null)("a long program", () => {
     const browser = browserOfTests();
 
     test("the place is lit and stays in sight, also while the lines round the one before are on their way", async () => {
         const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
-        const moves = Array.from({ length: MOVES }, (_, i) => `GOTO/${i % 100},${(i * 7) % 90},${-(i % 5)}`);
-        writeFileSync(join(server.folder, "long.cls"), ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...moves, "FINI", ""].join("\n"));
+        writeFileSync(join(server.folder, "long.cls"), source(MOVES));
         const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
         await page.getByText("long.cls").click();
@@ -44,4 +48,32 @@ describe.skipIf(absent() !== null)("a long program", () => {
         expect(complaints).toEqual([]);
         await page.close();
     }, 150_000);
+
+    test("of a text that is kept whole the lines round the place come first; when all are here it can be edited", async () => {
+        const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
+        writeFileSync(join(server.folder, "middling.cls"), source(12_000));
+        const { page, complaints } = await visit(browser(), server.link);
+        const asked: string[] = [];
+        page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => asked.push(String(payload))));
+        await page.reload();
+        await page.keyboard.press("Control+o");
+        await page.getByText("middling.cls").click();
+        await proven(page, 60_000);
+        await page.locator(".program .cm-line.at").waitFor();
+        const first = asked.findIndex((ask) => ask.includes('"of":"program"'));
+        expect(asked[first]).toContain('"from":1,"to":201');
+        // Its last block stands beyond what came first.
+        await goTo(page, "11000");
+        await expect.poll(() => page.locator(".program .cm-content").getAttribute("aria-readonly")).toBe(null);
+        await page.locator(".program .cm-line.at").click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" (LOOK)");
+        await page.getByText("▲ edited").waitFor();
+        await proven(page, 60_000);
+        await page.getByRole("button", { name: "Differences" }).click();
+        await expect.poll(() => page.locator(".program .cm-changedLine").innerText()).toContain("(LOOK)");
+        expect(await page.locator(".program .cm-changedLine").count()).toBe(1);
+        expect(complaints).toEqual([]);
+        await page.close();
+    }, 120_000);
 });
