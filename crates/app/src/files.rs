@@ -236,6 +236,23 @@ pub fn saved() -> MutexGuard<'static, ()> {
     SAVING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// What is removed when the process ends.
+static AT_END: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Has files removed by [`remove_left`], and folders where nothing is in them then.
+pub fn remove_at_end(paths: impl IntoIterator<Item = PathBuf>) {
+    AT_END.lock().unwrap_or_else(PoisonError::into_inner).extend(paths);
+}
+
+/// Removes what is not to outlast the process: for whoever ends it.
+pub fn remove_left() {
+    let paths = std::mem::take(&mut *AT_END.lock().unwrap_or_else(PoisonError::into_inner));
+    for path in paths {
+        // What is gone already is as it should be; what cannot be removed stays.
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir(&path));
+    }
+}
+
 /// Folders in which nobody else saves anything meanwhile.
 struct Locked {
     /// Their locks, which end with the process at the latest.

@@ -33,6 +33,9 @@ const LARGEST_DRAFT: usize = 64 << 20;
 const NEW: &str = ".new";
 const LEFT: Duration = Duration::from_secs(60);
 
+/// How a page ends that nobody but this user may read.
+pub const SECRET: &str = ".html";
+
 /// What the system answers where a path leads out.
 const ESCAPES: &str = "a path led outside of the filesystem";
 
@@ -288,10 +291,38 @@ impl Folder {
         Ok(())
     }
 
+    /// Writes a page that nobody but this user may read into the studio's own folder, which is gone at the end with it, and answers
+    /// where it lies.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn keep_secret(&self, name: &str, text: &str) -> io::Result<PathBuf> {
+        self.dir.create_dir_all(OWN)?;
+        self.sweep(OWN, |name| name.ends_with(SECRET));
+        let inner = Path::new(OWN).join(name);
+        let whole = self.path.join(&inner);
+        files::remove_at_end([whole.clone(), self.path.join(OWN)]);
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        {
+            use cap_std::fs::OpenOptionsExt;
+            options.mode(0o600);
+        }
+        self.dir.open_with(&inner, &options)?.write_all(text.as_bytes())?;
+        Ok(whole)
+    }
+
+    /// Removes such a page.
+    pub fn drop_secret(&self, name: &str) {
+        // Where it is gone already, or stays, it has led to a server that is gone soon.
+        let _ = self.dir.remove_file(Path::new(OWN).join(name));
+    }
+
     /// Writes a file under another name, and puts it in the place of the one that was there.
     fn replace(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         files::check_size(bytes.len())?;
-        self.sweep();
+        self.sweep(DRAFTS, |name| name.ends_with(NEW));
         let mut new = path.as_os_str().to_owned();
         // Another server may work in the same folder.
         new.push(format!(".{}{NEW}", std::process::id()));
@@ -304,14 +335,14 @@ impl Folder {
         written().inspect_err(|_| drop(self.dir.remove_file(&new)))
     }
 
-    /// Removes what a server that was killed has begun to write.
-    fn sweep(&self) {
-        let Ok(entries) = self.dir.read_dir(DRAFTS) else { return };
+    /// Removes what a server that was killed has left of the files that `is_ours`.
+    fn sweep(&self, folder: &str, is_ours: impl Fn(&str) -> bool) {
+        let Ok(entries) = self.dir.read_dir(folder) else { return };
         for entry in entries.filter_map(Result::ok) {
             let begun = entry.metadata().and_then(|metadata| metadata.modified());
             let age = begun.ok().and_then(|begun| begun.into_std().elapsed().ok());
             let is_left = age.is_some_and(|age| age > LEFT);
-            if is_left && entry.file_name().to_string_lossy().ends_with(NEW) {
+            if is_left && is_ours(&entry.file_name().to_string_lossy()) {
                 let _ = entry.remove_file();
             }
         }
@@ -500,6 +531,31 @@ mod tests {
         folder.drop_draft("a.nc-1").unwrap();
         folder.drop_draft("a.nc-1").unwrap();
         assert!(folder.drafts().is_empty());
+    }
+
+    /// A page that leads to the server with its token.
+    #[test]
+    fn a_secret_is_left_by_nobody() {
+        let (all, folder) = folder();
+        let own = all.path().join("own/.toolpost");
+        fs::create_dir(&own).unwrap();
+        let old = own.join("open-1.html");
+        let before = std::time::SystemTime::now() - 2 * LEFT;
+        fs::File::create(&old).unwrap().set_modified(before).unwrap();
+        let kept = folder.keep_secret("open-2.html", "x").unwrap();
+        assert_eq!(kept, own.canonicalize().unwrap().join("open-2.html"));
+        assert!(!old.exists(), "a server that was killed has left it");
+        assert!(folder.keep_secret("open-2.html", "y").is_err(), "nobody else has made it");
+        assert_eq!(fs::read_to_string(&kept).unwrap(), "x");
+        folder.drop_secret("open-2.html");
+        assert!(!kept.exists());
+        folder.keep_secret("open-3.html", "x").unwrap();
+        files::remove_left();
+        assert!(!own.exists());
+        folder.keep_secret("open-4.html", "x").unwrap();
+        fs::write(own.join("other"), "x").unwrap();
+        files::remove_left();
+        assert!(!own.join("open-4.html").exists() && own.join("other").exists());
     }
 
     #[test]

@@ -39,6 +39,7 @@ fn end_cleanly() {
     // A process that has a handler of its own keeps it.
     let _ = ctrlc::set_handler(|| {
         let _whole = files::saved();
+        files::remove_left();
         // Where this cannot be printed, nobody is left to read it, and the process ends all the same.
         let _ = writeln!(std::io::stderr(), "\ninterrupted");
         std::process::exit(INTERRUPTED.into());

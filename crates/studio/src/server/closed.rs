@@ -3,12 +3,14 @@
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::header::{HOST, HeaderName, HeaderValue, ORIGIN};
-use axum::http::{self, Response, StatusCode};
+use axum::http::{self, Method, Response, StatusCode};
 
 /// The header in which requests bring the token.
 pub const TOKEN: HeaderName = HeaderName::from_static("x-toolpost-token");
 
 const FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
+const FETCH_MODE: HeaderName = HeaderName::from_static("sec-fetch-mode");
+const FETCH_DEST: HeaderName = HeaderName::from_static("sec-fetch-dest");
 
 /// What is said with every answer. `style-src` needs no exception: the page's editor sets its styles as constructed sheets.
 const HEADERS: [(&str, &str); 6] = [
@@ -97,7 +99,11 @@ impl Names {
             return Some((StatusCode::FORBIDDEN, "another page has sent this request"));
         }
         let own = ["same-origin", "none"].map(str::to_owned);
-        if is_one(FETCH_SITE, &own) == Some(false) {
+        // A window may be led to the page, as the file that the browser is started with does: it gives nothing without the token.
+        let is = |name: HeaderName, value: &str| is_one(name, &[value.to_owned()]) == Some(true);
+        let is_page = request.method() == Method::GET && request.uri().path() == "/";
+        let is_window = || is(FETCH_MODE, "navigate") && is(FETCH_DEST, "document");
+        if is_one(FETCH_SITE, &own) == Some(false) && !(is_page && is_window()) {
             return Some((StatusCode::FORBIDDEN, "another site has sent this request"));
         }
         None

@@ -8,7 +8,7 @@ mod run;
 mod socket;
 
 use crate::ask::{Command, Field, FileOrUpload, Given, Limits};
-use crate::folder::Folder;
+use crate::folder::{Folder, SECRET};
 use crate::job::{Options, Sources};
 use crate::jobs::{Jobs, MOST_JOBS};
 use crate::message;
@@ -127,6 +127,8 @@ pub(crate) struct Studio {
     /// The work that the command line names, until somebody asks for it or for another.
     first: Mutex<Option<First>>,
     left: Left,
+    /// The file that leads the browser here, until a page has come.
+    leads: Mutex<Option<String>>,
     form: Option<Form>,
     options: Option<ReadOptions>,
 }
@@ -140,6 +142,17 @@ impl Studio {
     /// The work that the command line names, where nobody has asked for it or for another yet.
     fn first(&self) -> MutexGuard<'_, Option<First>> {
         self.first.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn leads(&self) -> MutexGuard<'_, Option<String>> {
+        self.leads.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A page has come.
+    fn is_reached(&self) {
+        if let Some(name) = self.leads().take() {
+            self.folder.drop_secret(&name);
+        }
     }
 
     /// What options mean.
@@ -230,7 +243,7 @@ impl Studio {
 }
 
 impl Server {
-    /// Opens the folder and the port, and begins the work that the settings name.
+    /// Opens the folder and the port.
     ///
     /// # Errors
     /// One of them cannot be opened.
@@ -275,10 +288,10 @@ impl Server {
             jobs: Jobs::new(own),
             first: Mutex::default(),
             left: Left::default(),
+            leads: Mutex::default(),
             form: settings.form,
             options: settings.options,
         });
-        First::begin(&studio);
         Ok(Server { runtime, listener, port, studio })
     }
 
@@ -292,17 +305,30 @@ impl Server {
         format!("http://127.0.0.1:{}/#{}", self.port, self.studio.token.as_str())
     }
 
-    /// Opens the link in the browser of the system, where it has one.
+    /// Opens the page in the browser of the system, where it has one. Everybody on the computer may read what a browser is started with, so
+    /// that is not the link but a file that leads to it, which this user alone may read; it is gone as soon as a page has come, or with
+    /// [`app::files::remove_left`].
     ///
     /// # Errors
     /// Why it was not opened.
     pub fn show(&self) -> Result<(), String> {
-        open::that_detached(self.link()).map_err(|error| error.to_string())
+        let number = getrandom::u64().map_err(|error| error.to_string())?;
+        let name = format!("open-{number:016x}{SECRET}");
+        let link = self.link();
+        let text = format!(
+            "<!doctype html>\n<meta charset=\"utf-8\">\n<meta name=\"referrer\" content=\"no-referrer\">\n\
+             <meta http-equiv=\"refresh\" content=\"0; url={link}\">\n<title>Toolpost studio</title>\n<a href=\"{link}\">Toolpost studio</a>\n"
+        );
+        let studio = &self.studio;
+        let path = studio.folder.keep_secret(&name, &text).map_err(|error| error.to_string())?;
+        *studio.leads() = Some(name);
+        open::that_detached(path).map_err(|error| error.to_string())
     }
 
-    /// Answers until the process ends.
+    /// Begins the work that the settings name, and answers until the process ends.
     pub fn run(self) -> ! {
         let Server { runtime, listener, studio, .. } = self;
+        First::begin(&studio);
         runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(listener);
             serve(listener.expect("a socket that listens and does not block"), studio).await

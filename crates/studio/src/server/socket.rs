@@ -70,6 +70,7 @@ async fn talk(studio: Arc<Studio>, trusted: Trusted, mut socket: WebSocket) {
         return close(socket, NO_TOKEN, "the first message is the token of the link").await;
     }
     trusted.set();
+    studio.is_reached();
     let (answers, mut to_send) = unbounded_channel();
     let number = studio.pages.fetch_add(1, Ordering::Relaxed);
     let page = Arc::new(Page { studio, number, answers, running: Mutex::default() });

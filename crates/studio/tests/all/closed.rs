@@ -66,6 +66,36 @@ fn a_request_names_this_server_and_comes_from_no_other_page() {
     }
 }
 
+/// A window of the browser, and no frame of another page nor its script.
+#[test]
+fn a_window_may_be_led_to_the_page_from_elsewhere_and_to_nothing_else() {
+    let studio = Studio::new();
+    let led = |line: &str, mode: &str, dest: &str, more: &str| {
+        let headers = format!(
+            "Sec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: {mode}\r\nSec-Fetch-Dest: {dest}\r\n{more}"
+        );
+        studio.request(line, &headers, b"").0
+    };
+    // The page, or where none is built that there is none.
+    assert_eq!(led("GET /", "navigate", "document", ""), studio.request("GET /", "", b"").0);
+    for (line, mode, dest, more) in [
+        ("GET /", "navigate", "iframe", ""),
+        ("GET /", "no-cors", "script", ""),
+        ("GET /", "cors", "empty", ""),
+        ("GET /", "navigate", "", ""),
+        ("GET /", "navigate", "document", "Origin: null\r\n"),
+        ("GET /", "navigate", "document", "Sec-Fetch-Dest: iframe\r\n"),
+        ("POST /", "navigate", "document", ""),
+        ("GET /index.html", "navigate", "document", ""),
+        ("GET //", "navigate", "document", ""),
+        ("GET /moves/1/0", "navigate", "document", ""),
+        ("GET /socket", "navigate", "document", ""),
+        ("PUT /upload/a", "navigate", "document", ""),
+    ] {
+        assert_eq!(led(line, mode, dest, more), 403, "{line} {mode} {dest} {more}");
+    }
+}
+
 #[test]
 fn nothing_but_the_page_is_answered_without_the_token() {
     let studio = Studio::new();

@@ -15,6 +15,9 @@ const FOLDER: &str = "TOOLPOST_STUDIO_TEST_FOLDER";
 /// Names the source that it begins with, where there is one.
 const SOURCE: &str = "TOOLPOST_STUDIO_TEST_SOURCE";
 
+/// Set where it opens a browser.
+const SHOWN: &str = "TOOLPOST_STUDIO_TEST_SHOWN";
+
 /// A machine of the library.
 const MACHINE: &str = "generic-3axis-linuxcnc";
 
@@ -27,6 +30,9 @@ fn serves_as_a_child() {
     let settings = Settings { folder: folder.into(), source, machine, ..Settings::default() };
     let server = Server::bind(&settings).unwrap();
     eprintln!("link {}", server.link());
+    if std::env::var_os(SHOWN).is_some() {
+        server.show().unwrap();
+    }
     server.run();
 }
 
@@ -132,6 +138,47 @@ fn the_first_work_begins_with_the_server() {
     // Who asks again has it done again.
     assert_eq!(page.done("post", params)["verdict"], "done");
     assert!(processor_time(&process) - alone > 0.3 * alone);
+}
+
+/// A stand-in for the browser notes what it is started with, and who may read that file.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_link_is_no_argument_of_the_browser() {
+    use std::os::unix::fs::PermissionsExt;
+    let outside = folder();
+    let browser = outside.path().join("xdg-open");
+    let noted = outside.path().join("noted");
+    let script = format!(
+        "#!/bin/sh\necho \"$@\" > {noted}.new\nstat -c %a \"$1\" >> {noted}.new\ncat \"$1\" >> {noted}.new\nmv {noted}.new {noted}\n",
+        noted = noted.display()
+    );
+    std::fs::write(&browser, script).unwrap();
+    std::fs::set_permissions(&browser, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    let path = format!("{}:{}", outside.path().display(), std::env::var("PATH").unwrap());
+    command.env(SHOWN, "").env("PATH", path);
+    let (_process, studio) = Process::by(command, outside);
+    let begun = Instant::now();
+    while !noted.is_file() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "no browser");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let noted = std::fs::read_to_string(noted).unwrap();
+    let (file, rest) = noted.split_once('\n').unwrap();
+    let (rights, page) = rest.split_once('\n').unwrap();
+    assert!(!file.contains(&studio.token), "{file}");
+    assert_eq!(rights, "600");
+    let link = format!("http://127.0.0.1:{}/#{}", studio.port, studio.token);
+    assert!(page.contains(&format!("http-equiv=\"refresh\" content=\"0; url={link}\"")), "{page}");
+    assert!(!page.contains("<script"), "{page}");
+    let file = std::path::Path::new(file);
+    assert_eq!(file.parent(), Some(&*studio.own().canonicalize().unwrap().join(".toolpost")));
+    // Whoever has no token has not come.
+    let mut foreign = studio.silent_socket();
+    foreign.send(&json!({ "token": "0".repeat(64) }), &[]);
+    assert!(matches!(foreign.next(), Said::Closed(_)) && file.is_file());
+    studio.socket().done("open", json!({}));
+    assert!(!file.exists());
 }
 
 /// Work that takes long goes on for nobody.
