@@ -21,6 +21,7 @@
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
+pub mod axis_motion;
 pub mod inverse;
 pub mod kinematics;
 pub mod library;

@@ -167,9 +167,33 @@ impl Linkage {
 
     /// The tip of a tool of this length, mm, in the work frame.
     pub fn tip(&self, axes: &[f64], length: f64) -> Vec3 {
-        let frames = self.frames(axes);
+        self.tool_in_part(&self.frames(axes)).transform_point3(Vec3::new(0.0, 0.0, -length))
+    }
+
+    /// The frame of the tool in the work frame, with the links at `frames`.
+    pub(crate) fn tool_in_part(&self, frames: &[Frame]) -> Frame {
         let [tool, part] = [self.tool, self.part].map(|place| place.at(&frames[place.on]));
-        part.inverse().transform_point3(tool.transform_point3(Vec3::new(0.0, 0.0, -length)))
+        part.inverse() * tool
+    }
+
+    /// By how much each link slides (mm) or turns (radians) on the one that carries it while the axes go so far.
+    pub(crate) fn amounts<'a>(&'a self, way: &'a [f64]) -> impl Iterator<Item = (&'a Link, f64)> {
+        self.links.iter().map(|link| {
+            let amount: f64 = link.terms.iter().map(|(axis, factor)| factor * way[*axis]).sum();
+            match link.kind {
+                LinkKind::Turn => (link, amount.to_radians()),
+                LinkKind::Fixed | LinkKind::Slide => (link, amount),
+            }
+        })
+    }
+
+    /// How far the tip, at `local` in the frame of the tool, is from the line about which a link turns, mm.
+    pub(crate) fn lever(&self, link: &Link, frames: &[Frame], local: Vec3) -> f64 {
+        let tip = self.tool.at(&frames[self.tool.on]).transform_point3(local);
+        let [direction, point] = [link.direction, link.point].map(Vec3::from_array);
+        let carrier = link.on.map_or(Frame::IDENTITY, |on| frames[on]);
+        let way = tip - carrier.transform_point3(point);
+        way.reject_from_normalized(carrier.transform_vector3(direction)).length()
     }
 
     fn bed(axes: Vec<Axis>) -> Linkage {

@@ -45,14 +45,18 @@ fn rapid_of(axis: &LinearAxis) -> f64 {
 /// Seconds that a rapid takes in which the linear axes go so far, mm, and A, B and C turn by so many degrees: as the slowest axis, each
 /// from rest to rest. What is not known (NaN) takes nothing.
 pub fn rapid(machine: &Machine, way: Vec3, turn: [f64; 3]) -> f64 {
+    each(machine, way, turn).fold(0.0, f64::max)
+}
+
+/// Seconds that each axis takes for it: X, Y, Z and the rotary axes of the file.
+pub fn each(machine: &Machine, way: Vec3, turn: [f64; 3]) -> impl Iterator<Item = f64> {
     let linear = machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
         from_rest_to_rest(way, rapid_of(axis) / 60.0, axis.acceleration * 1000.0)
     });
-    let rotary = machine
-        .rotary
-        .iter()
-        .map(|axis| from_rest_to_rest(turn[axis.index()], axis.rapid / 60.0, axis.acceleration));
-    linear.chain(rotary).fold(0.0, f64::max)
+    let rotary = machine.rotary.iter().map(move |axis| {
+        from_rest_to_rest(turn[axis.index()], axis.rapid / 60.0, axis.acceleration)
+    });
+    linear.chain(rotary)
 }
 
 /// Seconds that a cut takes that takes so many at its feed: no less than each axis needs at its rapid. What is not known takes nothing.

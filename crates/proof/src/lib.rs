@@ -89,7 +89,8 @@ mod travel;
 
 pub use accepted::{ACCEPTABLE, Accepted};
 pub use observer::{
-    AxisPositions, Deviation, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose,
+    AxisPositions, Course, Deviation, MachineState, Motion, MotionKind, Observer, SpindleState,
+    ToolPose,
 };
 pub use prover::Prover;
 pub use report::{

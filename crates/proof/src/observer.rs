@@ -117,6 +117,8 @@ pub struct Motion {
     pub source_line: u32,
     /// How it goes.
     pub kind: MotionKind,
+    /// How the axes go between its ends.
+    pub course: Course,
     /// Where the tool is before it and behind it, in the work frame.
     pub tool: [ToolPose; 2],
     /// Where the axes of the machine stand behind it.
@@ -264,12 +266,26 @@ impl Walk {
 pub enum MotionKind {
     /// As fast as the axes can.
     Rapid,
-    /// At the feed, on a straight line of the tip, or as the rotary axes lead it.
+    /// At the feed, on a straight line of the tip, or as the axes lead it ([`Course`]).
     Line,
     /// At the feed, along an arc or a helix of the tip.
     Arc(Box<Arc>),
     /// All joints of an arm together, each from where it stands to where it goes: the tip goes along no line.
     Joints,
+}
+
+/// How the axes go between the ends of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// The control keeps the tip on its line or arc, and turns the tool axis on the great circle between both ends: along vectors, in a
+    /// tilted plane, and lines of an arm.
+    Tool,
+    /// The control keeps the tip on its line or arc, and each rotary axis turns evenly: tool-centre control by angles.
+    Tip,
+    /// All axes go evenly and arrive together; the tip goes where they lead it.
+    Axes,
+    /// Each axis goes as fast as it can, in a rapid; the tip goes where they lead it.
+    EachAxis,
 }
 
 /// A tool tip, mm, and a tool axis (unit vector), in the work frame.

@@ -1,11 +1,11 @@
 //! The one cursor: from a time, a move, a block or a line of the source to everything that holds there.
 
 use crate::ask::{FeedAbout, SpindleAbout};
-use crate::walk::{ARC, By, KINDS, RAPID, Walk};
+use crate::walk::{ARC, By, KINDS, Walk};
 use geom::Vec3;
 use machine::Machine;
 use program::{Compensation, Coolant, CycleKind, Feed};
-use proof::{MachineState, SpindleState};
+use proof::{Course, MachineState, SpindleState};
 
 /// A place within a move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,8 +54,8 @@ pub struct Stand {
     pub positions: Vec<f64>,
 }
 
-/// Where tool and axes are at a place. Between the ends of a move rotary axes and joints turn evenly, a cut keeps its tip on its line or arc,
-/// with the linear axes where the machine's kinematics have them, and in a rapid every axis goes evenly.
+/// Where tool and axes are at a place. Between the ends of a move they are where the control has them ([`Course`]): either the axes lead the
+/// tip, or the tip is on its line or arc, the rotary axes turn evenly, and the linear axes are where the machine's kinematics have them.
 pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
     let (before, behind) = (walk.before(at.r#move), walk.behind(at.r#move));
     let end = walk.positions(at.r#move);
@@ -63,11 +63,14 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         return Stand { tip: behind.tip, axis: behind.axis, positions: end.to_vec() };
     }
     let part = at.part;
+    if let Some(motion) = walk.led(at.r#move).filter(|_| before.tip.is_finite()) {
+        let (tip, axis) = motion.tool()(part);
+        return Stand { tip, axis, positions: motion.axes(part) };
+    }
     let tip = match walk.arc(at.r#move) {
         Some(arc) => arc.at(part),
         None => before.tip.lerp(behind.tip, part),
     };
-    let axis = before.axis.lerp(behind.axis, part).normalize_or(behind.axis);
     let start: &[f64] = match at.r#move.checked_sub(1) {
         Some(last) => walk.positions(last),
         None => &[],
@@ -77,8 +80,10 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         start + (end - start) * part
     };
     let mut positions: Vec<f64> = end.iter().enumerate().map(between).collect();
+    let mut axis = geom::between(before.axis, behind.axis, part);
     let is_mill = machine.wire.is_none() && machine.arm.is_none();
-    if walk.kind(at.r#move) != RAPID && is_mill {
+    // On the way to and from home no tip is known, and the axes go evenly.
+    if is_mill && tip.is_finite() && behind.tip.is_finite() {
         let degrees = |positions: &[f64]| {
             let mut degrees = [0.0; 3];
             for (axis, position) in machine.rotary.iter().zip(positions.iter().skip(3)) {
@@ -94,6 +99,10 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         let moved = linear(tip, &positions) - linear(behind.tip, end);
         for ((position, moved), end) in positions.iter_mut().zip(moved.to_array()).zip(end) {
             *position = end + moved;
+        }
+        let turned = machine.axis_at(degrees(&positions));
+        if walk.course(at.r#move) == Course::Tip && turned.is_finite() {
+            axis = turned;
         }
     } else if walk.kind(at.r#move) == ARC && machine.wire.is_some() {
         let moved = (tip - behind.tip).to_array();

@@ -11,9 +11,11 @@ use crate::index::Index;
 use crate::job::{Ended, Waits};
 use geom::{Arc, Vec3};
 use machine::Machine;
+use machine::axis_motion::{AxisMotion, Chain};
 use program::{Compensation, Diagnostic, Feed, Op, Program, Tool};
-use proof::{AxisPositions, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
+use proof::{AxisPositions, Course, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::{self, Mutex, PoisonError};
 
 /// How a move goes, by its number in vertices and rows.
@@ -29,6 +31,10 @@ pub const FEED: u8 = 2;
 pub const ARC: u8 = 3;
 /// All joints of an arm together.
 pub const JOINTS: u8 = 4;
+
+/// Above the number of its kind: how the axes go between the ends of a move.
+const COURSE: u32 = 4;
+const COURSES: [Course; 4] = [Course::Tool, Course::Tip, Course::Axes, Course::EachAxis];
 
 /// No tool is known, or one that is not among the first 255.
 pub const NO_TOOL: u8 = 255;
@@ -56,6 +62,7 @@ const LOOK: usize = 4096;
 /// The moves of a program.
 #[derive(Debug, Default)]
 pub struct Walk {
+    /// Kinds and courses.
     kinds: Vec<u8>,
     tools: Vec<u8>,
     marks: Vec<u8>,
@@ -72,6 +79,8 @@ pub struct Walk {
     /// Positions of the axes behind the move, so many for each.
     positions: Vec<f64>,
     stride: usize,
+    /// The axes as a chain; none of a wire, and where there are no moves.
+    chain: Option<Chain>,
     /// How far the tip is off the source, mm; NaN where nothing was compared.
     deviations: Vec<f32>,
     /// The largest of them.
@@ -105,6 +114,12 @@ fn holds<T>(list: &[(u32, T)], at: u32) -> Option<&T> {
 /// The entry of a list, ordered by moves, that is of a move alone.
 fn of<T>(list: &[(u32, T)], at: u32) -> Option<&T> {
     list.binary_search_by_key(&at, |(of, _)| *of).ok().map(|place| &list[place].1)
+}
+
+/// The entries of a list, ordered by moves, that are of some moves.
+fn among<T>(list: &[(u32, T)], moves: Range<u32>) -> &[(u32, T)] {
+    let place = |at: u32| list.partition_point(|(of, _)| *of < at);
+    &list[place(moves.start)..place(moves.end)]
 }
 
 /// Which lines moves are looked up by.
@@ -176,7 +191,29 @@ impl Walk {
 
     /// How a move goes.
     pub fn kind(&self, at: u32) -> u8 {
-        self.kinds[at as usize]
+        self.kinds[at as usize] & ((1 << COURSE) - 1)
+    }
+
+    /// How the axes go between the ends of a move.
+    pub fn course(&self, at: u32) -> Course {
+        COURSES[usize::from(self.kinds[at as usize] >> COURSE)]
+    }
+
+    /// The way on which the axes lead the tip in a move, where that is no straight line, and all of it is known.
+    pub fn led(&self, at: u32) -> Option<AxisMotion<'_>> {
+        let together = match self.course(at) {
+            Course::Tool | Course::Tip => return None,
+            Course::Axes => true,
+            Course::EachAxis => false,
+        };
+        let (from, to) = (self.positions(at.checked_sub(1)?), self.positions(at));
+        let is_mill = self.kind(at) != JOINTS;
+        let turning = if is_mill { 3 } else { 0 };
+        if from.get(turning..) == to.get(turning..) && together {
+            return None;
+        }
+        let ToolPose { tip, axis } = self.behind(at);
+        self.chain.as_ref()?.motion([from, to], (tip, axis), together)
     }
 
     /// Place of its tool among [`Walk::tool_uses`], or [`NO_TOOL`].
@@ -224,6 +261,16 @@ impl Walk {
         of(&self.arcs, at)
     }
 
+    /// The arcs among some moves.
+    pub fn arcs(&self, moves: Range<u32>) -> &[(u32, Arc)] {
+        among(&self.arcs, moves)
+    }
+
+    /// Where the tool is before those of some moves that do not begin where the one before ended.
+    pub fn starts(&self, moves: Range<u32>) -> &[(u32, ToolPose)] {
+        among(&self.starts, moves)
+    }
+
     /// Its feed.
     pub fn feed(&self, at: u32) -> Option<Feed> {
         *holds(&self.feeds, at)?
@@ -266,11 +313,6 @@ impl Walk {
             Some(before) => self.behind(before),
             None => ToolPose { tip: Vec3::NAN, axis: Vec3::NAN },
         })
-    }
-
-    /// Whether it begins where the one before it ended.
-    pub fn goes_on(&self, at: u32) -> bool {
-        of(&self.starts, at).is_none()
     }
 
     /// Where the axes are behind it.
@@ -332,12 +374,19 @@ impl Walk {
     fn push(&mut self, motion: &Motion) {
         let Ok(at) = u32::try_from(self.kinds.len()) else { return };
         let Motion { tool: [before, behind], .. } = motion;
-        self.kinds.push(match &motion.kind {
+        let kind = match &motion.kind {
             MotionKind::Rapid => RAPID,
             MotionKind::Line => FEED,
             MotionKind::Arc(_) => ARC,
             MotionKind::Joints => JOINTS,
-        });
+        };
+        let course = match motion.course {
+            Course::Tool => 0,
+            Course::Tip => 1,
+            Course::Axes => 2,
+            Course::EachAxis => 3,
+        };
+        self.kinds.push(kind | course << COURSE);
         if let MotionKind::Arc(arc) = &motion.kind {
             self.arcs.push((at, **arc));
         }
@@ -441,7 +490,10 @@ impl<'a> Follower<'a> {
         // As many moves as records, about.
         let chunks = source.records.len() / CHUNK as usize + 1;
         Follower {
-            walk: Walk::default(),
+            walk: Walk {
+                chain: machine.wire.is_none().then(|| Chain::of(machine)),
+                ..Walk::default()
+            },
             file: file.to_owned(),
             drawing: Drawing::begin(geometry::COARSEST / chunks, ended),
             drawn: 0,
@@ -544,22 +596,25 @@ impl<'a> Follower<'a> {
     }
 
     fn positions(&mut self, axes: &AxisPositions) {
-        let before = self.walk.positions.len();
+        let positions = &mut self.walk.positions;
+        let before = positions.len();
         match axes {
             AxisPositions::Mill { linear, rotary } => {
-                self.walk.positions.extend(linear.to_array());
-                self.walk.positions.extend(self.rotary.iter().map(|axis| rotary[*axis]));
+                positions.extend_from_slice(&linear.to_array());
+                for axis in &self.rotary {
+                    positions.push(rotary[*axis]);
+                }
             }
             AxisPositions::Wire { guide, lean } => {
-                self.walk.positions.extend(guide.to_array());
-                self.walk.positions.extend(lean);
+                positions.extend_from_slice(&guide.to_array());
+                positions.extend_from_slice(lean);
             }
             AxisPositions::Arm { joints, rail } => {
-                self.walk.positions.extend(joints);
-                self.walk.positions.extend(rail);
+                positions.extend_from_slice(joints);
+                positions.extend(rail);
             }
         }
-        self.walk.stride = self.walk.positions.len() - before;
+        self.walk.stride = positions.len() - before;
     }
 }
 
@@ -579,7 +634,7 @@ impl Observer for Follower<'_> {
         self.walk.tools.push(self.tool);
         self.walk.marks.push(std::mem::take(&mut self.next_marks));
         self.positions(&motion.axes);
-        if matches!(motion.axes, AxisPositions::Mill { .. }) {
+        if !self.rotary.is_empty() {
             self.jumps();
         }
         if self.walk.len().is_multiple_of(CHUNK) {
@@ -654,6 +709,7 @@ mod tests {
             record: 0,
             source_line: 10 * line,
             kind: MotionKind::Line,
+            course: Course::Axes,
             tool: [pose([0.0; 3]), pose(tip)],
             axes: AxisPositions::Mill { linear: tip.into(), rotary: [0.0; 3] },
             feed: Some(Feed::PerMinute(100.0)),

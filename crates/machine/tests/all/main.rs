@@ -4,6 +4,7 @@
 extern crate toolpost_machine as machine;
 
 mod arms;
+mod axis_motion;
 mod clock;
 mod common;
 mod inverse;

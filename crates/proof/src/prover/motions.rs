@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::observer::{
-    AxisPositions, Deviation, Motion, MotionKind as Kind, Observer, Stated, ToolPose,
+    AxisPositions, Course, Deviation, Motion, MotionKind as Kind, Observer, Stated, ToolPose,
 };
 use machine::time;
 use program::lowering::{self, HoleMove};
@@ -187,7 +187,8 @@ impl Prover<'_> {
             Way::Line | Way::Arc => time.cutting += seconds,
         }
         if self.motions.told {
-            self.tell(event, way, tool, (axes, seconds), observer);
+            let course = self.course(way, &to.position);
+            self.tell(event, (way, course), tool, (axes, seconds), observer);
         }
         self.motions.axes = Some(axes);
         (self.motions.changed, self.motions.waited) = (false, 0.0);
@@ -198,7 +199,7 @@ impl Prover<'_> {
     fn tell(
         &mut self,
         event: &Event,
-        way: Way,
+        (way, course): (Way, Course),
         tool: [ToolPose; 2],
         (axes, seconds): (AxisPositions, f64),
         observer: &mut dyn Observer,
@@ -221,6 +222,7 @@ impl Prover<'_> {
             record,
             source_line: self.source.records.get(record).map_or(0, |record| record.line),
             kind,
+            course,
             tool,
             axes,
             feed: if way == Way::Rapid { self.running.feed } else { self.feed(event) },
@@ -228,6 +230,20 @@ impl Prover<'_> {
             waited: motions.waited,
             deviation: motions.deviation,
         });
+    }
+
+    /// How the axes go in a motion to a position.
+    #[inline]
+    fn course(&self, way: Way, to: &Position) -> Course {
+        let gauge = &self.gauge;
+        match to.orientation {
+            _ if gauge.machine.wire.is_some() => Course::Tool,
+            _ if way == Way::Rapid && !gauge.straight_rapids => Course::EachAxis,
+            Orientation::Axis(_) => Course::Tool,
+            // An arc is one of the tip, whatever turns beside it.
+            Orientation::Rotary { tool_center: false, .. } if way != Way::Arc => Course::Axes,
+            Orientation::Rotary { .. } => Course::Tip,
+        }
     }
 
     /// The machine waits so many seconds.

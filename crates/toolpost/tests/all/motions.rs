@@ -4,11 +4,12 @@ use crate::clock::{Clock, times_of};
 use crate::files::{mills, root};
 use control::{Action, Event};
 use geom::Vec3;
+use machine::axis_motion::Chain;
 use machine::library::{ROBOTS, names};
 use machine::linkage::Linkage;
 use machine::{Machine, Mount};
 use program::{Builder, Feed, Op, Program, Spindle, Tool};
-use proof::{AxisPositions, Motion, MotionKind, Tolerances};
+use proof::{AxisPositions, Course, Motion, MotionKind, Tolerances};
 
 /// The proven program, and its motions.
 fn posted(source: &Program, machine: &Machine) -> (String, Vec<Motion>) {
@@ -95,6 +96,83 @@ fn the_axes_of_each_mill_bring_the_tip_to_where_the_motion_ends() {
         }
     }
     assert!(compared > 150, "{compared}");
+}
+
+/// Where rotary axes turn and the control does not keep the tip, the axes lead it, from where the motion begins to where it ends.
+#[test]
+fn between_the_ends_of_a_motion_the_axes_lead_the_tip() {
+    let (mut led, mut farthest) = (0, 0.0_f64);
+    for machine in mills().filter(|machine| !machine.rotary.is_empty()) {
+        let text = std::fs::read(root().join("machines/samples/five-axes.cls")).unwrap();
+        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let length = source.records.iter().find_map(|record| match &record.op {
+            Op::Tool(tool) => tool.length,
+            _ => None,
+        });
+        let length = length.unwrap_or_default();
+        let chain = Chain::of(&machine);
+        let mut before: Option<Vec<f64>> = None;
+        for motion in posted(&source, &machine).1 {
+            let AxisPositions::Mill { linear, rotary } = motion.axes else { panic!("{motion:?}") };
+            let letters = machine.rotary.iter().map(|axis| rotary[axis.index()]);
+            let to: Vec<f64> = linear.to_array().into_iter().chain(letters).collect();
+            let from = before.replace(to.clone());
+            let [start, end] = motion.tool;
+            let from = from.filter(|from| from[3..] != to[3..] && start.tip.is_finite());
+            let is_led = matches!(motion.course, Course::Axes | Course::EachAxis);
+            let Some(from) = from.filter(|_| is_led) else { continue };
+            let together = motion.course == Course::Axes;
+            let Some(way) = chain.motion([&from, &to], (end.tip, end.axis), together) else {
+                continue;
+            };
+            let tool = way.tool();
+            for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let axes: Vec<f64> =
+                    from.iter().zip(&to).map(|(a, b)| a + (b - a) * part).collect();
+                let mut turned = [0.0; 3];
+                for (axis, degrees) in machine.rotary.iter().zip(&axes[3..]) {
+                    turned[axis.index()] = *degrees;
+                }
+                let should = tip(&machine, Vec3::new(axes[0], axes[1], axes[2]), turned, length);
+                let off = tool(part).0.distance(Vec3::from_array(should));
+                assert!(off < 1e-9, "{}: {off} mm at {part} of {motion:?}", machine.name);
+            }
+            assert!(tool(0.0).0.distance(start.tip) < 1e-9, "{}: {motion:?}", machine.name);
+            farthest = farthest.max(tool(0.5).0.distance(start.tip.lerp(end.tip, 0.5)));
+            led += 1;
+        }
+    }
+    // Cuts leave their line by as much as they may, which is more than a line is drawn off.
+    assert!(led > 20 && farthest > 0.002, "{led} motions, {farthest} mm");
+}
+
+/// The joints of an arm lead the tip from where the motion before ends: the chain of the drawing, from the end of each motion back to its begin.
+#[test]
+fn between_the_ends_of_a_motion_of_joints_they_lead_the_tip() {
+    let (mut led, mut farthest) = (0, 0.0_f64);
+    for name in names(ROBOTS) {
+        let machine = machine::load(name).unwrap();
+        let text = std::fs::read(root().join("machines/samples/robot.cls")).unwrap();
+        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let chain = Chain::of(&machine);
+        let mut before: Option<Vec<f64>> = None;
+        for motion in posted(&source, &machine).1 {
+            let AxisPositions::Arm { joints, rail } = motion.axes else { panic!("{motion:?}") };
+            let to: Vec<f64> = joints.into_iter().chain(rail).collect();
+            let from = before.replace(to.clone());
+            assert_eq!(motion.course == Course::Axes, motion.kind == MotionKind::Joints);
+            let Some(from) = from.filter(|_| motion.course == Course::Axes) else { continue };
+            let [start, end] = motion.tool;
+            let Some(way) = chain.motion([&from, &to], (end.tip, end.axis), true) else { continue };
+            let tool = way.tool();
+            let (tip, axis) = tool(0.0);
+            let off = tip.distance(start.tip);
+            assert!(off < 1e-6 && axis.distance(start.axis) < 1e-9, "{name}: {off}, {motion:?}");
+            farthest = farthest.max(tool(0.5).0.distance(tip.lerp(end.tip, 0.5)));
+            led += 1;
+        }
+    }
+    assert!(led > 20 && farthest > 10.0, "{led} motions, {farthest} mm");
 }
 
 /// By hand: 20 degrees are 0.3491 rad, and at 2000 mm/min a UR turns the tool by 4 rad/s for each of 0.0333 m/s: 2.618 s, and not the 0.03 s of 1 mm.

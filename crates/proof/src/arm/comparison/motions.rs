@@ -3,7 +3,7 @@
 use super::super::follow::angle;
 use super::{Comparison, Running, Standing, arc_through};
 use crate::observer::{
-    AxisPositions, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose, Walk,
+    AxisPositions, Course, MachineState, Motion, MotionKind, Observer, SpindleState, ToolPose, Walk,
 };
 use control::{Action, ArmAction, ArmPath, Event};
 use geom::{Frame, Vec3};
@@ -68,6 +68,7 @@ impl Comparison<'_> {
             line: event.line,
             record,
             source_line: self.source.records.get(record).map_or(0, |record| record.line),
+            course: if kind == MotionKind::Joints { Course::Axes } else { Course::Tool },
             kind,
             tool: [start, end],
             axes: AxisPositions::Arm { joints, rail },
