@@ -7,7 +7,7 @@ CREATE = DATE 25-01-01 TIME 12:00:00;
 MODIFIED = DATE 25-01-01 TIME 12:00:00;
 FILE_NAME = ;
 VERSION = 0;
-LINE_COUNT = 62;
+LINE_COUNT = 63;
 MEMORY_SIZE = 0;
 PROTECT = READ_WRITE;
 TCD: STACK_SIZE = 0,
@@ -40,50 +40,51 @@ CONTROL_CODE = 00000000 00000000;
 19:J P[1] 20% FINE ;
 20:J P[2] 20% FINE ;
 21:L P[3] 600cm/min FINE ;
-22:AO[1]=500 ;
-23:DO[1]=ON ;
-24:WAIT 3.00(sec) ;
-25:DO[2]=ON ;
-26:L P[4] 30cm/min FINE ;
-27:L P[5] 120cm/min FINE ;
-28:C P[6]
-: P[7] 120cm/min FINE ;
-29:L P[8] 120cm/min FINE ;
-30:C P[9]
-: P[10] 120cm/min FINE ;
-31:C P[11]
-: P[12] 120cm/min FINE ;
-32:L P[13] 30cm/min FINE ;
-33:L P[14] 120cm/min FINE ;
+22:L P[4] 600cm/min FINE ;
+23:AO[1]=500 ;
+24:DO[1]=ON ;
+25:WAIT 3.00(sec) ;
+26:DO[2]=ON ;
+27:L P[5] 30cm/min FINE ;
+28:L P[6] 120cm/min FINE ;
+29:C P[7]
+: P[8] 120cm/min FINE ;
+30:L P[9] 120cm/min FINE ;
+31:C P[10]
+: P[11] 120cm/min FINE ;
+32:C P[12]
+: P[13] 120cm/min FINE ;
+33:L P[14] 30cm/min FINE ;
 34:L P[15] 120cm/min FINE ;
-35:L P[16] 600cm/min FINE ;
-36:WAIT 0.50(sec) ;
-37:!TILTED ;
-38:J P[17] 20% FINE ;
+35:L P[16] 120cm/min FINE ;
+36:L P[17] 600cm/min FINE ;
+37:WAIT 0.50(sec) ;
+38:!TILTED ;
 39:L P[18] 600cm/min FINE ;
-40:L P[19] 60cm/min FINE ;
+40:L P[19] 600cm/min FINE ;
 41:L P[20] 60cm/min FINE ;
 42:L P[21] 60cm/min FINE ;
-43:L P[22] 600cm/min FINE ;
-44:DO[2]=OFF ;
-45:!HOLES ;
-46:J P[23] 20% FINE ;
+43:L P[22] 60cm/min FINE ;
+44:L P[23] 600cm/min FINE ;
+45:DO[2]=OFF ;
+46:!HOLES ;
 47:L P[24] 600cm/min FINE ;
-48:L P[25] 15cm/min FINE ;
-49:J P[26] 20% FINE ;
+48:L P[25] 600cm/min FINE ;
+49:L P[26] 15cm/min FINE ;
 50:J P[27] 20% FINE ;
 51:J P[28] 20% FINE ;
-52:L P[29] 15cm/min FINE ;
-53:J P[30] 20% FINE ;
+52:J P[29] 20% FINE ;
+53:L P[30] 15cm/min FINE ;
 54:J P[31] 20% FINE ;
-55:L P[32] 15cm/min FINE ;
-56:J P[33] 20% FINE ;
+55:J P[32] 20% FINE ;
+56:L P[33] 15cm/min FINE ;
 57:J P[34] 20% FINE ;
-58:L P[35] 15cm/min FINE ;
-59:J P[36] 20% FINE ;
-60:L P[37] 600cm/min FINE ;
-61:DO[1]=OFF ;
-62:J P[38] 20% FINE ;
+58:J P[35] 20% FINE ;
+59:L P[36] 15cm/min FINE ;
+60:J P[37] 20% FINE ;
+61:L P[38] 600cm/min FINE ;
+62:DO[1]=OFF ;
+63:J P[39] 20% FINE ;
 /POS
 P[1]{
 GP1:
@@ -94,220 +95,226 @@ J4= 0.0000 deg, J5= -90.0000 deg, J6= 0.0000 deg
 P[2]{
 GP1:
 UF : 9, UT : 9,
-J1= 0.0000 deg, J2= 9.8339 deg, J3= -51.5435 deg,
-J4= 0.0000 deg, J5= -38.4565 deg, J6= 0.0000 deg
+J1= 0.0000 deg, J2= 8.9368 deg, J3= -50.1149 deg,
+J4= 0.0000 deg, J5= -39.8851 deg, J6= 0.0000 deg
 };
 P[3]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 0.000 mm, Y = 0.000 mm, Z = 2.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[4]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 0.000 mm, Y = 0.000 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[5]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 60.000 mm, Y = 0.000 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[6]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 74.142 mm, Y = 5.858 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[7]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 80.000 mm, Y = 20.000 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[8]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 80.000 mm, Y = 40.000 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[9]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 74.142 mm, Y = 54.142 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[10]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 60.000 mm, Y = 60.000 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[11]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 45.858 mm, Y = 54.142 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[12]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 40.000 mm, Y = 40.000 mm, Z = -1.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[13]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 40.000 mm, Y = 40.000 mm, Z = -2.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[14]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 0.000 mm, Y = 40.000 mm, Z = -2.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[15]{
-GP1:
-UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 0.000 mm, Y = 0.000 mm, Z = -2.000 mm,
-W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
-};
-P[16]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 0.000 mm, Y = 0.000 mm, Z = 30.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
+P[4]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = 2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[5]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[6]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 60.000 mm, Y = 0.000 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[7]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 74.142 mm, Y = 5.858 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[8]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 80.000 mm, Y = 20.000 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[9]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 80.000 mm, Y = 40.000 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[10]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 74.142 mm, Y = 54.142 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[11]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 60.000 mm, Y = 60.000 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[12]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 45.858 mm, Y = 54.142 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[13]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 40.000 mm, Y = 40.000 mm, Z = -1.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[14]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 40.000 mm, Y = 40.000 mm, Z = -2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[15]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 40.000 mm, Z = -2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[16]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = -2.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
 P[17]{
 GP1:
-UF : 9, UT : 9,
-J1= 3.4336 deg, J2= 9.9520 deg, J3= -51.5211 deg,
-J4= 0.0000 deg, J5= -38.4789 deg, J6= -3.4336 deg
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 0.000 mm, Z = 30.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[18]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 0.000 mm, Y = 60.000 mm, Z = 5.000 mm,
+X = 0.000 mm, Y = 60.000 mm, Z = 30.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[19]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 0.000 mm, Y = 60.000 mm, Z = 0.000 mm,
+X = 0.000 mm, Y = 60.000 mm, Z = 5.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[20]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 0.000 mm, Y = 60.000 mm, Z = 0.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[21]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 40.000 mm, Y = 60.000 mm, Z = 0.000 mm,
 W = 170.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[21]{
+P[22]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 80.000 mm, Y = 60.000 mm, Z = 0.000 mm,
 W = 160.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[22]{
+P[23]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 80.000 mm, Y = 66.840 mm, Z = 18.794 mm,
 W = 160.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[23]{
-GP1:
-UF : 9, UT : 9,
-J1= 1.1233 deg, J2= 11.1540 deg, J3= -51.2783 deg,
-J4= 0.0000 deg, J5= -38.7217 deg, J6= -1.1233 deg
-};
 P[24]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 20.000 mm, Y = 20.000 mm, Z = 2.000 mm,
+X = 20.000 mm, Y = 20.000 mm, Z = 30.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[25]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
-X = 20.000 mm, Y = 20.000 mm, Z = -4.000 mm,
+X = 20.000 mm, Y = 20.000 mm, Z = 2.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
 P[26]{
+GP1:
+UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
+X = 20.000 mm, Y = 20.000 mm, Z = -4.000 mm,
+W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
+};
+P[27]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1233 deg, J2= 12.0698 deg, J3= -52.6848 deg,
 J4= 0.0000 deg, J5= -37.3152 deg, J6= -1.1233 deg
 };
-P[27]{
+P[28]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 12.7102 deg, J3= -52.5310 deg,
 J4= 0.0000 deg, J5= -37.4690 deg, J6= -1.1124 deg
 };
-P[28]{
+P[29]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 13.0826 deg, J3= -53.0889 deg,
 J4= 0.0000 deg, J5= -36.9111 deg, J6= -1.1124 deg
 };
-P[29]{
+P[30]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 30.000 mm, Y = 20.000 mm, Z = -2.500 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[30]{
+P[31]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 13.0826 deg, J3= -53.0889 deg,
 J4= 0.0000 deg, J5= -36.9111 deg, J6= -1.1124 deg
 };
-P[31]{
+P[32]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 13.2709 deg, J3= -53.3678 deg,
 J4= 0.0000 deg, J5= -36.6322 deg, J6= -1.1124 deg
 };
-P[32]{
+P[33]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 30.000 mm, Y = 20.000 mm, Z = -5.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[33]{
+P[34]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 13.0826 deg, J3= -53.0889 deg,
 J4= 0.0000 deg, J5= -36.9111 deg, J6= -1.1124 deg
 };
-P[34]{
+P[35]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 13.3893 deg, J3= -53.5421 deg,
 J4= 0.0000 deg, J5= -36.4579 deg, J6= -1.1124 deg
 };
-P[35]{
+P[36]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 30.000 mm, Y = 20.000 mm, Z = -6.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[36]{
+P[37]{
 GP1:
 UF : 9, UT : 9,
 J1= 1.1124 deg, J2= 12.7102 deg, J3= -52.5310 deg,
 J4= 0.0000 deg, J5= -37.4690 deg, J6= -1.1124 deg
 };
-P[37]{
+P[38]{
 GP1:
 UF : 9, UT : 9, CONFIG : 'N U T, 0, 0, 0',
 X = 30.000 mm, Y = 20.000 mm, Z = 50.000 mm,
 W = 180.0000 deg, P = 0.0000 deg, R = 0.0000 deg
 };
-P[38]{
+P[39]{
 GP1:
 UF : 9, UT : 9,
 J1= 0.0000 deg, J2= 0.0000 deg, J3= 0.0000 deg,

@@ -49,6 +49,7 @@ mod rule;
 pub mod statistics;
 mod surface;
 mod technology;
+mod tops;
 
 pub use builder::Builder;
 pub use compensated::{CompensatedPath, PathEvidence};
@@ -68,3 +69,4 @@ pub use record::*;
 pub use rule::Rule;
 pub use surface::Surface;
 pub use technology::*;
+pub use tops::{ALIKE, Tops};

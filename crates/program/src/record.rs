@@ -267,18 +267,7 @@ impl Op {
     }
 }
 
-/// Tools that lean apart by no more than this lean alike, radians: what one of them passes, the other does.
-const ALIKE: f64 = 0.1;
-
 impl Program {
-    /// How high the source goes along `axis`, a unit vector, with its tool as it leans there, mm: from below that nobody knows what is around the
-    /// tool elsewhere than on the source's own way. −∞ where its tool never leans so.
-    pub fn height_along(&self, axis: Vec3) -> f64 {
-        let poses = self.records.iter().filter_map(|record| record.op.pose());
-        let alike = poses.filter(|pose| geom::angle_between(pose.axis(), axis) <= ALIKE);
-        alike.map(|pose| pose.point().dot(axis)).fold(f64::NEG_INFINITY, f64::max)
-    }
-
     /// An empty program.
     pub fn new(name: impl Into<String>) -> Program {
         Program { name: name.into(), ..Program::default() }

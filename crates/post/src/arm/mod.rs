@@ -27,7 +27,6 @@ use program::{
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 /// Entries of the code word `corner`.
 mod corner {
@@ -194,8 +193,6 @@ struct Walk<'a> {
     is_cutting: bool,
     /// The line of the last motion of the source.
     last_line: u32,
-    /// The rapids along one line that were looked at last: which steps, and where the first begins and the last ends.
-    line_of_rapids: Option<(Range<usize>, [Frame; 2])>,
     /// Whether the source calls tools of more than one number.
     changes: bool,
     /// Number of the tool that is in the spindle.
@@ -281,7 +278,6 @@ impl<'a> Walk<'a> {
             points: 0,
             is_cutting: false,
             last_line: 0,
-            line_of_rapids: None,
             changes: program.calls_several_tools(),
             held: None,
             name,
@@ -323,7 +319,7 @@ impl<'a> Walk<'a> {
                 };
                 self.last_line = motion.line;
                 let done = match motion.kind {
-                    Kind::Rapid => self.begin().and_then(|()| self.rapid(steps, index, motion)),
+                    Kind::Rapid => self.begin().and_then(|()| self.rapid(motion)),
                     Kind::Line | Kind::Arc(_) => self.begin().and_then(|()| self.cut(motion, next)),
                 };
                 (motion.line, done)
@@ -497,23 +493,70 @@ impl<'a> Walk<'a> {
     /// The joints go home, where the path is clear.
     fn home(&mut self) -> Outcome {
         let Some(tool) = self.tool.filter(|_| !self.is_home()) else { return Ok(()) };
-        let route = self.rapids.route_home(&tool, &self.here);
-        // Home is where joints lead: not down to it from above.
-        let by_joints = |route: &Vec<RapidSegment>| {
-            route.last().is_some_and(|last| last.path == RapidPath::Joints)
-        };
-        let Some(route) = route.filter(by_joints) else {
-            let message = "the way home by the joints comes too near to what is cut, or below where a feed begins";
-            let help =
-                "end with a rapid that lifts the tool off the part, or change `home` below [cell]";
-            return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
+        let home = self.rapids.home(&tool);
+        let Some(route) = self.rapids.route(&tool, [&self.here, &home]) else {
+            return Err(self.no_way([&self.here, &home]).into());
         };
         self.is_cutting = false;
         self.follow(&route)
     }
 
     fn is_home(&self) -> bool {
-        self.here.joints == self.rapids.home_joints() && self.here.rail == self.cell.rail_home()
+        self.rapids.is_home(&self.here)
+    }
+
+    /// The refusal of a rapid from one place to another.
+    fn no_way(&self, ends: [&Position; 2]) -> Diagnostic {
+        let high = "joints lead the tool off the line of the source only where it is beyond all cuts and as high, along its axis, as the source \
+                    ever goes with its tool leaning so";
+        let [from, to] = ends.map(|end| (self.rapids.is_home(end), self.rapids.below(end)));
+        let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
+        for (is_home, below) in [from, to] {
+            if is_home && below > 0.0 {
+                let message = format!(
+                    "the arm cannot go from home or there: {high}, and home is {below:.1} mm lower than that"
+                );
+                let help = format!(
+                    "a higher `home` below [cell], or {place}; or a source that does not go so high"
+                );
+                return Diagnostic::error(Rule::RapidPath, message).help(help);
+            }
+        }
+        let up = |what: &str, (_, below): (bool, f64)| match below > 0.0 {
+            true => format!("{below:.1} mm up along the tool from where the rapid {what}"),
+            false => format!("where the rapid {what}"),
+        };
+        let (what, straight) = match (from.0, to.0) {
+            (_, true) => ("the arm finds no way home", ""),
+            (true, false) => ("the arm finds no way here from home", ""),
+            (false, false) => (
+                "the arm cannot go here by rapid",
+                "; straight the posture or a turn of a joint would not fit",
+            ),
+        };
+        let message = format!(
+            "{what}: {high}, and so none leads by {} and {}{straight}",
+            up("begins", from),
+            up("ends", to)
+        );
+        let own = format!(
+            "a source that goes no higher than it has to, a rapid that lifts the tool before it turns, or {place}"
+        );
+        let [from, to] = ends.map(|at| self.arm.posture(&at.joints));
+        let changes = [
+            (from.rear() != to.rear(), "the wrist on the other side of axis 1"),
+            (from.below() != to.below(), "the elbow on the other side"),
+            (from.flip() != to.flip(), "the wrist turned over (joint 5)"),
+        ];
+        let changes: Vec<_> = changes.iter().filter(|(is, _)| *is).map(|(_, what)| *what).collect();
+        let help = match changes.is_empty() {
+            true => own,
+            false => format!(
+                "what follows is cut in another posture, {}: `home` below [cell] in that posture, or {own}",
+                changes.join(" and ")
+            ),
+        };
+        Diagnostic::error(Rule::RapidPath, message).help(help)
     }
 
     /// A straight line to where joints have led an arm that is measured one by one, and whose measures are not known here: its controller
@@ -564,7 +607,7 @@ impl<'a> Walk<'a> {
     }
 
     /// A rapid, which is a step of the source.
-    fn rapid(&mut self, steps: &[Step], index: usize, motion: &Motion) -> Outcome {
+    fn rapid(&mut self, motion: &Motion) -> Outcome {
         let Some(tool) = self.tool else { return Ok(()) };
         let apart = self.here.tool.translation.distance(motion.end.tool.translation);
         let turns = self.here.joints.iter().zip(motion.end.joints).map(|(a, b)| (a - b).abs());
@@ -573,59 +616,11 @@ impl<'a> Walk<'a> {
         if apart < self.machine.resolution() && is_same {
             return Ok(());
         }
-        // From home no line of the source leads.
-        let free = self.is_home();
-        let ends = self.line_of_rapids(steps, index, free);
-        let Some(route) = self.rapids.route(&tool, [&self.here, &motion.end], free, ends) else {
-            let message = "the arm cannot go here by rapid: by its joints the tool would come too near to what is cut or fed through, and straight the \
-                           posture or a turn of a joint would not fit";
-            let own = "a rapid that lifts the tool higher before it, or another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
-            let [from, to] = [&self.here, &motion.end].map(|at| self.arm.posture(&at.joints));
-            let changes = [
-                (from.rear() != to.rear(), "the wrist on the other side of axis 1"),
-                (from.below() != to.below(), "the elbow on the other side"),
-                (from.flip() != to.flip(), "the wrist turned over (joint 5)"),
-            ];
-            let changes: Vec<_> =
-                changes.iter().filter(|(is, _)| *is).map(|(_, what)| *what).collect();
-            let help = match changes.is_empty() {
-                true => own.to_owned(),
-                false => format!(
-                    "what follows is cut in another posture, {}: `home` below [cell] in that posture, or {own}",
-                    changes.join(" and ")
-                ),
-            };
-            return Err(Diagnostic::error(Rule::RapidPath, message).help(help).into());
+        let Some(route) = self.rapids.route(&tool, [&self.here, &motion.end]) else {
+            return Err(self.no_way([&self.here, &motion.end]).into());
         };
         self.is_cutting = false;
         self.follow(&route)
-    }
-
-    /// Where the rapids along one line begin and end of which a step is one, which may be looked at again. From home the end of that step, and that of the
-    /// rapids by which the source goes up again, where the tool leans the same way there.
-    fn line_of_rapids(&mut self, steps: &[Step], index: usize, free: bool) -> Option<[Frame; 2]> {
-        if let Some((range, ends)) = &self.line_of_rapids
-            && range.contains(&index)
-        {
-            return Some(*ends);
-        }
-        let is_rapid =
-            |at: &usize| matches!(&steps[*at], Step::Move(motion) if motion.kind == Kind::Rapid);
-        let (range, ends) = match free {
-            true => {
-                let Step::Move(motion) = &steps[index] else { return None };
-                let to = motion.end.tool;
-                let stays =
-                    |at: &usize| !matches!(&steps[*at], Step::Act(Act::Tool(_) | Act::Home, ..));
-                let up = (index + 1..steps.len()).take_while(stays).find(is_rapid);
-                let up = up.and_then(|at| plan::line_of_rapids(steps, at));
-                let up = up.map(|(_, [_, end])| end).filter(|end| plan::leans_alike(&to, end));
-                (index..index + 1, [to, up.unwrap_or(to)])
-            }
-            false => plan::line_of_rapids(steps, index)?,
-        };
-        self.line_of_rapids = Some((range, ends));
-        Some(ends)
     }
 
     /// Leaves a cut straight along the tool, turns by the joints above all cuts, and enters at the same place.

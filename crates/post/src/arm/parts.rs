@@ -72,9 +72,7 @@ impl Walk<'_> {
 
     /// Whether a file may end here: nothing is cut, and the tool is beyond all cuts.
     pub(super) fn is_border(&self) -> bool {
-        let here = [&self.here; 2];
-        !self.is_cutting
-            && self.tool.is_some_and(|tool| self.rapids.is_clear(&tool, here, None, None))
+        !self.is_cutting && self.tool.is_some() && self.rapids.is_beyond_cuts(&self.here.tool)
     }
 
     /// Writes the program in files, of which `whole` is the size of all, and then the one that calls them.

@@ -4,7 +4,7 @@ use super::rail::{Group, Stand, groups};
 use super::rapid::RapidPlanner;
 use ::arm::{Arm, Joints};
 use armpath::{Blocked, Cell as Frames, Choice, Point, Settings, Why, Worst, choose};
-use geom::{Arc, Frame, Mat3, Vec3, angle_between};
+use geom::{Arc, Frame, Mat3, Vec3};
 use machine::{Cell, Machine};
 use program::lowering::{HoleMove, feed_per_minute, hole};
 use program::{
@@ -13,7 +13,6 @@ use program::{
 };
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 /// How far the radii at the ends of an arc of the source may differ, as a part of them.
 const RADII: f64 = 0.01;
@@ -352,68 +351,6 @@ impl<'a> Stretch<'a> {
         }
         Ok(())
     }
-}
-
-/// Rapids of which the next turns off those before it by less than this go along one line, radians.
-const ONE_LINE: f64 = 0.1;
-
-/// The rapids along one line of which a step is one: which steps, and the tool where the first begins and where the last ends. What happens between them
-/// while the tool stands does not part them.
-pub(super) fn line_of_rapids(steps: &[Step], at: usize) -> Option<(Range<usize>, [Frame; 2])> {
-    let stands = |step: &Step| match step {
-        Step::Act(act, ..) => !matches!(act, Act::Tool(_) | Act::Home),
-        Step::Move(_) | Step::Reenter(_) => false,
-    };
-    let end_of = |step: &Step| match step {
-        Step::Move(motion) => Some(motion.end.tool),
-        Step::Reenter(reentry) => Some(reentry.back.tool),
-        Step::Act(..) => None,
-    };
-    // Where the motion of a step begins.
-    let start = |at: usize| {
-        let before = steps[..at].iter().rev().find(|step| !stands(step))?;
-        end_of(before)
-    };
-    let rapid = |at: usize| match steps.get(at)? {
-        Step::Move(motion) if motion.kind == Kind::Rapid => {
-            Some(Some([start(at)?, motion.end.tool]))
-        }
-        step if stands(step) => Some(None),
-        Step::Move(_) | Step::Reenter(_) | Step::Act(..) => None,
-    };
-    let mut ends = rapid(at)??;
-    let (mut first, mut last) = (at, at);
-    while let Some(before) = first.checked_sub(1).and_then(rapid) {
-        match before {
-            Some(before) if goes_on(&before, &ends) => ends[0] = before[0],
-            Some(_) => break,
-            None => {}
-        }
-        first -= 1;
-    }
-    while let Some(behind) = rapid(last + 1) {
-        match behind {
-            Some(behind) if goes_on(&ends, &behind) => ends[1] = behind[1],
-            Some(_) => break,
-            None => {}
-        }
-        last += 1;
-    }
-    Some((first..last + 1, ends))
-}
-
-/// Whether the tool leans the same way.
-pub(super) fn leans_alike(a: &Frame, b: &Frame) -> bool {
-    angle_between(a.matrix3.z_axis, b.matrix3.z_axis) <= ONE_LINE
-}
-
-/// Whether a rapid goes on along the line of those before it, with the tool leaning as it did; one that goes nowhere does.
-fn goes_on(before: &[Frame; 2], next: &[Frame; 2]) -> bool {
-    let ways = [before, next].map(|[from, to]| to.translation - from.translation);
-    let turns =
-        [&before[0], &before[1], &next[1]].into_iter().any(|end| !leans_alike(end, &next[0]));
-    let stays = ways.iter().any(|way| way.length() < 1e-9);
-    !turns && (stays || angle_between(ways[0], ways[1]) <= ONE_LINE)
 }
 
 /// A position that is chosen for a point.

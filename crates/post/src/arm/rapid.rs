@@ -1,10 +1,11 @@
-//! How a rapid of an arm goes: by its joints where the tool is then beyond all cuts and above where feeds begin, else straight.
+//! How a rapid of an arm goes: by its joints where the tool is then as high as the source ever goes and beyond all cuts, else straight.
 
 use super::plan::Position;
 use ::arm::{Arm, Joints, Posture};
-use geom::{Frame, Mat3, Quat, Vec3, nearest_on_segment, wrap};
+use geom::{Frame, Mat3, Quat, Vec3, angle_between, nearest_on_segment, wrap};
 use machine::{Capabilities, Cell, Machine};
-use program::{CutBox, Program};
+use program::{ALIKE, CutBox, Program, Tops};
+use std::cell::OnceCell;
 
 /// Joints are looked at so near to each other that the tip moves by no more than this, mm.
 const STRIDE: f64 = 0.5;
@@ -28,8 +29,8 @@ pub(super) struct RapidPlanner<'a> {
     turn_rate: Option<f64>,
     source: &'a Program,
     cuts: CutBox,
-    /// All that the source feeds through: what is below the start of a plunge may be material.
-    fed: CutBox,
+    /// How high the source goes, once that is asked for.
+    tops: OnceCell<Tops>,
 }
 
 /// How a rapid goes.
@@ -48,8 +49,13 @@ pub(super) struct RapidSegment {
     pub(super) end: Position,
 }
 
-/// How far beyond all cuts the tool is retracted, on top of the clearance, mm: the first that gives a path is taken.
-const RETRACTS: [f64; 5] = [2.0, 10.0, 30.0, 80.0, 200.0];
+/// How far the tool is retracted beyond what it has to be, mm: the first that gives a path is taken.
+const RETRACTS: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 80.0, 200.0];
+
+/// Wrist and elbow are at least so far from stretched or folded along a straight line, radians, and the wrist so far from axis 1, mm:
+/// nearer to that controllers slow down or stop.
+const NEAREST: f64 = 0.02;
+const NEAREST_AXIS: f64 = 6.0;
 
 impl<'a> RapidPlanner<'a> {
     /// For the rapids of `program`.
@@ -65,7 +71,7 @@ impl<'a> RapidPlanner<'a> {
             turn_rate: machine.turn_speed().map(|speed| 2.0 * speed),
             source: program,
             cuts: CutBox::of(program),
-            fed: CutBox::fed(program),
+            tops: OnceCell::new(),
         }
     }
 
@@ -85,34 +91,30 @@ impl<'a> RapidPlanner<'a> {
         Position { tool: at, joints: *joints, rail }
     }
 
+    /// Whether joints are those at home.
+    pub(super) fn is_home(&self, at: &Position) -> bool {
+        at.joints == self.home_joints() && at.rail == self.cell.rail_home()
+    }
+
     /// How the arm goes from one position to another, where it can: by its joints, or straight, or up along the tool, by its joints, and
-    /// down along the tool. `free` is for a path that no line of the source gives; `rapids` are the ends of the rapids along one line of which this is one.
+    /// down along the tool. From home and to home no line of the source leads.
     pub(super) fn route(
         &self,
         tool: &Frame,
         [from, to]: [&Position; 2],
-        free: bool,
-        rapids: Option<[Frame; 2]>,
     ) -> Option<Vec<RapidSegment>> {
-        let line = (!free).then_some([from, to].map(|end| end.tool.translation));
-        // Rapids into the part or out of it are made straight up to their higher end.
-        let way = rapids.filter(|ends| {
-            ends.iter().any(|end| {
-                let axis = -end.matrix3.z_axis;
-                end.translation.dot(axis) < self.fed.reach(axis) + self.can.rapid_clearance
-            })
-        });
-        let way = way.map(|ends| ends.map(|end| end.translation));
-        if self.is_clear(tool, [from, to], line, way) {
+        let is_own = !self.is_home(from) && !self.is_home(to);
+        let line = is_own.then_some([from, to].map(|end| end.tool.translation));
+        if self.is_clear(tool, [from, to], line) {
             return Some(vec![RapidSegment { path: RapidPath::Joints, end: *to }]);
         }
-        if !free && let Some(feed) = self.straight(tool, from, to) {
+        if is_own && let Some(feed) = self.straight(tool, from, to) {
             return Some(vec![RapidSegment { path: RapidPath::Straight(feed), end: *to }]);
         }
         RETRACTS.into_iter().find_map(|height| {
-            let (start, up) = self.retracted(tool, from, way, height)?;
-            let (end, down) = self.retracted(tool, to, way, height)?;
-            if !self.is_clear(tool, [&start, &end], None, way) {
+            let (start, up) = self.retracted(tool, from, height)?;
+            let (end, down) = self.retracted(tool, to, height)?;
+            if !self.is_clear(tool, [&start, &end], None) {
                 return None;
             }
             let up = up.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: start });
@@ -137,10 +139,9 @@ impl<'a> RapidPlanner<'a> {
             |end: Position, feed: f64| RapidSegment { path: RapidPath::Straight(feed), end };
         let joints = |end: Position| RapidSegment { path: RapidPath::Joints, end };
         RETRACTS.into_iter().find_map(|height| {
-            let (start, up) = self.retracted(tool, &out, None, height)?;
-            let (end, down) = self.retracted(tool, &over, None, height)?;
-            let is_clear =
-                |from: &Position, to: &Position| self.is_clear(tool, [from, to], None, None);
+            let (start, up) = self.retracted(tool, &out, height)?;
+            let (end, down) = self.retracted(tool, &over, height)?;
+            let is_clear = |from: &Position, to: &Position| self.is_clear(tool, [from, to], None);
             // Where the joints go from one posture into the other in one motion the tool may tilt too far.
             let through = match is_clear(&start, &end) {
                 true => None,
@@ -156,54 +157,44 @@ impl<'a> RapidPlanner<'a> {
         })
     }
 
-    /// How high along `axis` the tool has to be where joints lead it, which may leave it `unmeasured` mm off, mm: beyond all cuts by the clearance, and as high
-    /// as all feeds begin; of a rapid into the part or out of it, whose ends are given, as high as these.
-    fn floor(&self, axis: Vec3, way: Option<[Vec3; 2]>, unmeasured: f64) -> f64 {
-        let ends = way.into_iter().flatten().map(|end| end.dot(axis));
-        let begins = ends.fold(self.fed.reach(axis), f64::max);
-        (self.cuts.reach(axis) + self.can.rapid_clearance).max(begins) + unmeasured
+    /// How high the source goes along `axis` with its tool leaning alike, mm.
+    fn top(&self, axis: Vec3) -> f64 {
+        self.tops.get_or_init(|| Tops::of(self.source)).along(axis)
     }
 
-    /// Whether the tool is as high as [`RapidPlanner::floor`] asks for, but for what a path may be off.
-    fn is_free(&self, tool: &Frame, way: Option<[Vec3; 2]>, unmeasured: f64) -> bool {
+    /// How far the tool is below where joints may lead it from or to, mm along its axis: as high as the source ever goes, beyond all cuts by
+    /// the clearance, and higher by what joints may be off.
+    pub(super) fn below(&self, at: &Position) -> f64 {
+        let axis = -at.tool.matrix3.z_axis;
+        self.floor(axis) - at.tool.translation.dot(axis)
+    }
+
+    fn floor(&self, axis: Vec3) -> f64 {
+        let beyond = self.cuts.reach(axis) + self.can.rapid_clearance;
+        beyond.max(self.top(axis)) + self.arm.unmeasured()
+    }
+
+    /// Whether the tool is beyond all cuts along its axis by the clearance.
+    pub(super) fn is_beyond_cuts(&self, tool: &Frame) -> bool {
         let axis = -tool.matrix3.z_axis;
-        let floor = self.floor(axis, way, unmeasured);
-        tool.translation.dot(axis) >= floor - self.can.rapid_corridor / 2.0
+        let clearance = self.can.rapid_clearance + self.arm.unmeasured();
+        let beyond = tool.translation.dot(axis) - self.cuts.reach(axis);
+        beyond >= clearance - self.can.rapid_corridor / 2.0
     }
 
-    /// The position so far above what [`RapidPlanner::floor`] asks for along the tool's own axis, and the feed to go between it and `at`; none where it is
-    /// that.
+    /// The position so far above where joints may lead the tool along its own axis, and the feed to go between it and `at`; none where it is
+    /// that. Home is where it is.
     fn retracted(
         &self,
         tool: &Frame,
         at: &Position,
-        way: Option<[Vec3; 2]>,
         above: f64,
     ) -> Option<(Position, Option<f64>)> {
-        let axis = -at.tool.matrix3.z_axis;
-        let floor = self.floor(axis, way, self.arm.unmeasured()) + above;
-        let height = floor - at.tool.translation.dot(axis);
-        if height <= 0.0 || height.is_nan() {
+        let height = self.below(at) + above;
+        if height <= self.can.rapid_corridor / 2.0 || self.is_home(at) {
             return Some((*at, None));
         }
         self.raised(tool, at, height).map(|(raised, feed)| (raised, Some(feed)))
-    }
-
-    /// Home from a position: straight up along the tool to where it is as high as the source ever goes with its tool as it leans there, and by
-    /// the joints.
-    pub(super) fn route_home(&self, tool: &Frame, from: &Position) -> Option<Vec<RapidSegment>> {
-        let home = self.home(tool);
-        let axis = -from.tool.matrix3.z_axis;
-        let low = self.source.height_along(axis) - from.tool.translation.dot(axis);
-        if low <= self.can.rapid_corridor / 2.0 {
-            return self.route(tool, [from, &home], true, None);
-        }
-        let (above, feed) = self.raised(tool, from, low)?;
-        let route = self.route(tool, [&above, &home], true, None)?;
-        // Where the route goes up first anyway, that is one way.
-        let goes_up = route.first().is_some_and(|first| first.path != RapidPath::Joints);
-        let up = RapidSegment { path: RapidPath::Straight(feed), end: above };
-        Some((!goes_up).then_some(up).into_iter().chain(route).collect())
     }
 
     /// The position so many mm up along the tool, and the feed to go between it and `at`.
@@ -218,17 +209,18 @@ impl<'a> RapidPlanner<'a> {
         self.straight(tool, at, &raised).map(|feed| (raised, feed))
     }
 
-    /// Whether the tool is free of the part while the joints go, or near the line.
-    pub(super) fn is_clear(
-        &self,
-        tool: &Frame,
-        [from, to]: [&Position; 2],
-        line: Option<[Vec3; 2]>,
-        way: Option<[Vec3; 2]>,
-    ) -> bool {
+    /// Whether the tool is free of the part while the joints go, or near the line: beyond all cuts along its own axis, and as high as the source ever goes
+    /// along the axis of an end of the way: of that which it leans like, of either where it leans like neither.
+    fn is_clear(&self, tool: &Frame, [from, to]: [&Position; 2], line: Option<[Vec3; 2]>) -> bool {
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
         let unmeasured = self.arm.unmeasured();
+        let slack = self.can.rapid_corridor / 2.0;
+        let axes = [from, to].map(|end| -end.tool.matrix3.z_axis);
+        let floors = axes.map(|axis| {
+            let leans_so = self.top(axis).is_finite();
+            leans_so.then(|| self.floor(axis) - slack)
+        });
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
         (0..=count as usize).all(|step| {
@@ -237,10 +229,18 @@ impl<'a> RapidPlanner<'a> {
                 std::array::from_fn(|i| from.joints[i] + part * (to.joints[i] - from.joints[i]));
             let world = self.cell.part_from(from.rail + part * (to.rail - from.rail)).inverse();
             let at = world * self.arm.flange(&joints) * *tool;
-            let near = line.filter(|_| unmeasured == 0.0).is_some_and(|[from, to]| {
-                nearest_on_segment(from, to, at.translation).1 <= self.can.rapid_corridor / 2.0
-            });
-            near || self.is_free(&at, way, unmeasured)
+            let near = line
+                .filter(|_| unmeasured == 0.0)
+                .is_some_and(|[from, to]| nearest_on_segment(from, to, at.translation).1 <= slack);
+            if near {
+                return true;
+            }
+            let leans = axes.map(|axis| angle_between(axis, -at.matrix3.z_axis));
+            let is_high =
+                |end: usize| floors[end].map(|floor| at.translation.dot(axes[end]) >= floor);
+            let end = usize::from(leans[1] < leans[0]);
+            let otherwise = || leans[end] > ALIKE && is_high(1 - end) == Some(true);
+            self.is_beyond_cuts(&at) && (is_high(end) != Some(false) || otherwise())
         })
     }
 
@@ -288,6 +288,8 @@ impl<'a> RapidPlanner<'a> {
         let found = self.arm.inverse_in(posture, flange, before[3])?;
         let joints: Joints = std::array::from_fn(|i| before[i] + wrap(found[i] - before[i]));
         let leaps = joints.iter().zip(before).any(|(a, b)| (a - b).abs() > LEAP);
-        (!leaps && self.arm.allows(&joints)).then_some(joints)
+        let margins = self.arm.margins(&joints);
+        let is_near = margins.wrist.min(margins.elbow) < NEAREST || margins.shoulder < NEAREST_AXIS;
+        (!leaps && !is_near && self.arm.allows(&joints)).then_some(joints)
     }
 }

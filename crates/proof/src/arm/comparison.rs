@@ -18,11 +18,7 @@ use control::kernel::arc::through;
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
 use geom::{Arc, Frame, Vec3, angle_between};
 use machine::{Cell, Machine, OptionValue};
-use program::{CutBox, Diagnostic, Feed, Outcome, Pose, Program, Rule};
-use std::ops::Range;
-
-/// Rapids of which the next turns off the one before by less than this go along one line, radians.
-const ONE_LINE: f64 = 0.1;
+use program::{CutBox, Diagnostic, Feed, Outcome, Pose, Program, Rule, Tops};
 
 /// Points of a motion of joints are so near that the tip moves by no more than this between them, mm.
 const STRIDE: f64 = 1.0;
@@ -78,8 +74,8 @@ pub(super) struct Comparison<'a> {
     arm: &'a Arm,
     cell: &'a Cell,
     cuts: CutBox,
-    /// What the source reaches by feed, with the places where its feeds begin.
-    fed: CutBox,
+    /// How high the source goes.
+    tops: Tops,
     expected: Vec<Expected>,
     next: usize,
     /// How much of the next step is done, 0 to 1.
@@ -91,8 +87,6 @@ pub(super) struct Comparison<'a> {
     open: Option<Rounding>,
     /// How the spindle has turned in the cut that was the motion before: whether, and how fast.
     turned: Option<(bool, Option<f64>)>,
-    /// The rapids along one line that were looked at last: which steps, and where the first begins and the last ends.
-    line_of_rapids: Option<(Range<usize>, [Pose; 2])>,
     /// Where the tool has left a cut, to which it has to come back.
     away: Option<reentry::Away>,
     /// What a contour is compared with at its end.
@@ -139,7 +133,7 @@ impl<'a> Comparison<'a> {
             arm,
             cell,
             cuts: CutBox::of(source),
-            fed: CutBox::fed(source),
+            tops: Tops::of(source),
             expected,
             next: 0,
             done: 0.0,
@@ -161,7 +155,6 @@ impl<'a> Comparison<'a> {
             is_home: false,
             open: None,
             turned: None,
-            line_of_rapids: None,
             away: None,
             gathered: None,
             loaded: false,

@@ -1,4 +1,4 @@
-//! Robots out of holes and slots that they have plunged into, and back in: the joints lead a tool aside, which only a straight line does not.
+//! Robots out of holes, slots and pockets, and back in: the joints lead a tool aside, which only a straight line does not.
 
 use crate::robot::{joints, paths, proof_of, proven, source};
 use control::{ArmPath, Dialect};
@@ -56,6 +56,34 @@ fn ends_below() -> Program {
     )
 }
 
+/// Two holes on the floor of a pocket that was there before: entered from home by two rapids, and the tool goes across within the pocket.
+fn two_below() -> Program {
+    source(
+        "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-20\nRAPID\nGOTO/100,50,-38\nFEDRAT/MMPM,300\n\
+         GOTO/100,50,-60\nRAPID\nGOTO/100,50,-38\nRAPID\nGOTO/100,90,-38\nGOTO/100,90,-60\nRAPID\nGOTO/100,90,65\nSPINDL/OFF\nFINI\n",
+    )
+}
+
+/// Out of the same hole by ways that are no line: a kink, off the wall behind a cycle, back down.
+fn by_kinks() -> [Program; 3] {
+    let bored = "RAPID\nGOTO/100,50,-40\nGOTO/100,50,-60\n";
+    let out = |way: &str| at_100_50(&format!("{bored}{way}"));
+    [
+        out("RAPID\nGOTO/100,50,-20\nRAPID\nGOTO/110,50,65\n"),
+        out("RAPID\nGOTO/100,50,-30\nRAPID\nGOTO/100.3,50,-30\nRAPID\nGOTO/100.3,50,65\n"),
+        out(
+            "RAPID\nGOTO/100,50,-30\nRAPID\nGOTO/100,50,-35\nRAPID\nGOTO/100,50,-10\nRAPID\nGOTO/100,50,65\n",
+        ),
+    ]
+}
+
+/// The same tool is called within the hole: the arm goes home and comes back.
+fn called_below() -> Program {
+    at_100_50(
+        "RAPID\nGOTO/100,50,-40\nGOTO/100,50,-60\nRAPID\nGOTO/100,50,-30\nLOADTL/1,LENGTH,50\nRAPID\nGOTO/100,50,65\n",
+    )
+}
+
 /// The program of the KUKA, with its line behind the last cut to `tip` made by the joints.
 fn left_by_joints(text: &str, machine: &Machine, tip: [f64; 3]) -> String {
     let [x, y, z] = tip;
@@ -73,40 +101,49 @@ fn left_by_joints(text: &str, machine: &Machine, tip: [f64; 3]) -> String {
 #[test]
 fn joints_that_lead_the_tool_aside_within_a_plunge_are_refused() {
     let machine = machine::load("kuka-kr6-r900").unwrap();
-    for (source, tip, why) in [
-        (deep(), [100.0, 50.0, 65.0], "below where the source begins to feed"),
-        (pecks(), [100.0, 50.0, 65.0], "beyond the cuts"),
-        (pecks(), [100.0, 50.0, -29.0], "below where the source begins to feed"),
-        (slot(), [100.0, 90.0, 65.0], "below where the source begins to feed"),
-        (drilled_before(), [100.0, 50.0, 65.0], "not left below its higher end"),
-        (drilled_before(), [100.0, 50.0, -29.0], "not left below its higher end"),
-        (by_stops(), [100.0, 50.0, 65.0], "not left below its higher end"),
-        (by_stops(), [100.0, 50.0, -20.0], "not left below its higher end"),
-        (cycle_below(), [100.0, 50.0, 65.0], "not left below its higher end"),
+    let [kinked, off_wall, down_again] = by_kinks();
+    for (source, tip) in [
+        (deep(), [100.0, 50.0, 65.0]),
+        (pecks(), [100.0, 50.0, 65.0]),
+        (pecks(), [100.0, 50.0, -29.0]),
+        (slot(), [100.0, 90.0, 65.0]),
+        (drilled_before(), [100.0, 50.0, 65.0]),
+        (drilled_before(), [100.0, 50.0, -29.0]),
+        (by_stops(), [100.0, 50.0, 65.0]),
+        (by_stops(), [100.0, 50.0, -20.0]),
+        (cycle_below(), [100.0, 50.0, 65.0]),
+        (kinked, [110.0, 50.0, 65.0]),
+        (off_wall, [100.3, 50.0, 65.0]),
+        (down_again, [100.0, 50.0, 65.0]),
+        (two_below(), [100.0, 50.0, -20.0]),
+        (two_below(), [100.0, 90.0, -38.0]),
     ] {
         let text = left_by_joints(&proven(&source, &machine), &machine, tip);
         let report = proof_of(&source, &machine, &text);
         let found = report.mismatches.first().unwrap_or_else(|| panic!("{tip:?} proven\n{text}"));
         assert_eq!(found.rule.name(), "rapid-path", "{found}");
-        assert!(found.message.contains(why), "{found}");
+        let why = ["beyond the cuts along the tool", "lower along it than the source ever goes"];
+        assert!(why.iter().any(|why| found.message.contains(why)), "{found}");
     }
 }
 
 #[test]
-fn above_where_a_plunge_begins_the_joints_may_go() {
+fn as_high_as_the_source_goes_the_joints_may_lead_elsewhere() {
+    let source = at_100_50("RAPID\nGOTO/100,50,2\nGOTO/100,50,-5\nRAPID\nGOTO/100,-50,65\n");
     let machine = machine::load("kuka-kr6-r900").unwrap();
-    let text = proven(&deep(), &machine);
-    // Straight up to where the feed began, and on by the joints.
-    let line = "LIN {X 100.000,Y 50.000,Z 65.000,A ";
-    let (_, after) = text.split_at(text.rfind(line).unwrap());
-    let (own, _) = after.split_once("\r\n").unwrap();
-    let by_joints = left_by_joints(&text, &machine, [100.0, 50.0, 65.0]);
-    let at = by_joints.rfind("PTP {").unwrap();
-    let at = by_joints[..at].rfind("PTP {").unwrap();
-    let low = own.replace("Z 65.000", "Z 60.000");
-    let text = format!("{}{low}\r\n{}", &by_joints[..at], &by_joints[at..]);
-    let report = proof_of(&deep(), &machine, &text);
-    assert!(report.proven, "{text}\n{:#?}", report.mismatches);
+    let text = proven(&source, &machine);
+    // The source's own way is straight; instead up along the tool, and on by the joints at two heights.
+    let (before, last) = text.split_at(text.rfind("LIN {X 100.000,Y -50.000,Z 65.000,A ").unwrap());
+    let (line, after) = last.split_once("\r\n").unwrap();
+    let up = |height: f64| line.replace("Y -50.000,Z 65.000", &format!("Y 50.000,Z {height:.3}"));
+    let turn = line.split_once("A ").unwrap().1.split(',').next().unwrap().parse().unwrap();
+    let [a1, a2, a3, a4, a5, a6] = joints(&machine, [100.0, -50.0, 90.0], turn);
+    let over = format!("PTP {{A1 {a1:.4},A2 {a2:.4},A3 {a3:.4},A4 {a4:.4},A5 {a5:.4},A6 {a6:.4}}}");
+    for (height, proven) in [(90.0, true), (60.0, false)] {
+        let text = format!("{before}{}\r\n{over}\r\n{line}\r\n{after}", up(height));
+        let report = proof_of(&source, &machine, &text);
+        assert_eq!(report.proven, proven, "{height}\n{text}\n{:#?}", report.mismatches);
+    }
 }
 
 /// The ends of all motions of joints of more than 30 mm, and where the tool was before each: shorter ones stay near enough to the line.
@@ -147,19 +184,25 @@ fn out_of_plunges_and_back_in_every_robot_goes_straight() {
     let names = ["kuka-kr6-r900", "fanuc-lrmate-200id-mill", "abb-irb120-mill", "universal-ur5e"];
     let library = names.map(|name| machine::load(name).unwrap());
     for machine in library.iter().chain([&leaning]) {
-        for (source, top) in [
-            (deep(), 60.0),
-            (pecks(), 2.0),
-            (slot(), 2.0),
-            (drilled_before(), 65.0),
-            (by_stops(), 65.0),
-            (cycle_below(), 65.0),
-            (ends_below(), 65.0),
+        let [kinked, off_wall, down_again] = by_kinks();
+        for source in [
+            deep(),
+            pecks(),
+            slot(),
+            drilled_before(),
+            by_stops(),
+            cycle_below(),
+            ends_below(),
+            two_below(),
+            kinked,
+            off_wall,
+            down_again,
+            called_below(),
         ] {
             let text = proven(&source, machine);
             let lowest =
                 ends_of_joints(machine, &text).iter().fold(f64::INFINITY, |z, end| z.min(end.z));
-            assert!(lowest > top - 0.05, "{}: {lowest}\n{text}", machine.name);
+            assert!(lowest > 65.0 - 0.05, "{}: {lowest}\n{text}", machine.name);
         }
     }
 }
@@ -189,5 +232,5 @@ fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
     let report = proof_of(&source, &machine, &damaged);
     let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{damaged}"));
     assert_eq!(found.rule.name(), "rapid-path", "{found}");
-    assert!(found.message.contains("lower along the tool"), "{found}");
+    assert!(found.message.contains("lower along it than the source ever goes"), "{found}");
 }

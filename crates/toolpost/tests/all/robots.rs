@@ -584,9 +584,13 @@ fn a_tool_leaves_a_cut_with_the_spindle_as_in_the_cut() {
     );
     let hole = format!("LIN {{X 30.000,Y 20.000,Z -2.500,{at}");
     let on = "$OUT[1]=TRUE\r\nWAIT SEC 3.00\r\n";
-    assert_eq!([&bottom, &above, &hole].map(|line| text.matches(line.as_str()).count()), [1; 3]);
-    let behind =
-        |text: &str, line: &str, more: &str| text.replacen(line, &format!("{line}{more}"), 1);
+    // The first line to Z 30 comes down to it from above.
+    let lines = [&bottom, &above, &hole].map(|line| text.matches(line.as_str()).count());
+    assert_eq!(lines, [1, 2, 1]);
+    let behind = |text: &str, line: &str, more: &str| {
+        let (before, after) = text.split_at(text.rfind(line).unwrap() + line.len());
+        format!("{before}{more}{after}")
+    };
     let started = behind(&text, &above, on);
     let in_hole = text.split_once(&hole).unwrap();
     let lifted = in_hole.1.split_once("\r\n").unwrap();

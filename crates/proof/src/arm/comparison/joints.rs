@@ -14,7 +14,6 @@ const SAME_JOINTS: f64 = 1e-4;
 impl Comparison<'_> {
     /// A motion of all joints.
     pub(super) fn joints(&mut self, shown: [f64; 6], rail: f64) -> Outcome {
-        let was_home = self.is_home;
         let Some((before, now)) = self.turn_joints(shown, rail)? else {
             return Ok(());
         };
@@ -24,9 +23,6 @@ impl Comparison<'_> {
         if same && before.tool.translation.distance(at.translation) <= self.tip(true) {
             // A file of a program begins by the joints at which the one before has ended.
             return Ok(());
-        }
-        if home && !was_home {
-            self.high_enough(&before.tool)?;
         }
         let wanted = self.expected.get(self.next).map(|expected| expected.step.clone());
         let rapid = match &wanted {
@@ -45,8 +41,7 @@ impl Comparison<'_> {
             (_, Some((Some(from), to))) => Some([from.point(), to.point()]),
             (_, _) => None,
         };
-        let part_way = self.part_way();
-        self.clear([&before, &now], line.filter(|_| arrives), part_way)?;
+        self.clear([&before, &now], line.filter(|_| arrives))?;
         // From above the end of a rapid the tool goes down to it along its axis.
         let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));
         match arrives {
@@ -70,25 +65,6 @@ impl Comparison<'_> {
                 Err(found.help(self.way_to_end()).into())
             }
         }
-    }
-
-    /// Where the joints lead home no line of the source says what the tool passes.
-    ///
-    /// # Errors
-    /// The tool is lower there than the source goes with its tool as it leans there.
-    fn high_enough(&self, tool: &Frame) -> Outcome {
-        let at = self.in_part(tool);
-        let (tip, axis) = (at.translation, -at.matrix3.z_axis);
-        let low = self.source.height_along(axis) - tip.dot(axis);
-        if low <= self.machine.capabilities.rapid_corridor {
-            return Ok(());
-        }
-        let message = format!(
-            "the joints lead home from X{:.1} Y{:.1} Z{:.1}, {low:.2} mm lower along the tool than the source goes: it may stand in a hole there",
-            tip.x, tip.y, tip.z
-        );
-        let help = "go straight up along the tool first";
-        Err(Diagnostic::error(Rule::RapidPath, message).help(help).into())
     }
 
     /// Turns the joints to what the controller shows; where the arm stood, and where it stands. `None` where it was led from somewhere to home.
@@ -220,12 +196,7 @@ impl Comparison<'_> {
 
     /// # Errors
     /// On the way of the joints the tool is neither near the line of the source nor free of the part: see [`Comparison::off_line`].
-    pub(super) fn clear(
-        &self,
-        [from, to]: [&Standing; 2],
-        line: Option<[Vec3; 2]>,
-        part_way: Option<[Vec3; 2]>,
-    ) -> Outcome {
+    pub(super) fn clear(&self, [from, to]: [&Standing; 2], line: Option<[Vec3; 2]>) -> Outcome {
         let (Some(base), Some(tool)) = (self.running.base, self.running.tool) else {
             return Ok(());
         };
@@ -235,19 +206,18 @@ impl Comparison<'_> {
         let corridor = self.machine.capabilities.rapid_corridor;
         let unmeasured = self.arm.unmeasured();
         let line = line.filter(|_| unmeasured == 0.0);
-        for step in 0..=count as usize {
+        let places = (0..=count as usize).map(|step| {
             let part = step as f64 / count;
             let joints: Joints =
                 std::array::from_fn(|i| from.joints[i] + part * (to.joints[i] - from.joints[i]));
             let foot = self.cell.foot(from.rail + part * (to.rail - from.rail));
-            let at = self.in_part(&(base.inverse() * foot * self.arm.flange(&joints) * tool));
-            let (tip, axis) = (at.translation, -at.matrix3.z_axis);
-            let near =
-                line.is_some_and(|[start, end]| nearest_on_segment(start, end, tip).1 <= corridor);
-            if !near {
-                self.off_line((tip, axis), part_way, ("on the way of the joints", unmeasured))?;
-            }
-        }
-        Ok(())
+            base.inverse() * foot * self.arm.flange(&joints) * tool
+        });
+        let places = places.filter(|place| {
+            let tip = self.in_part(place).translation;
+            !line.is_some_and(|[start, end]| nearest_on_segment(start, end, tip).1 <= corridor)
+        });
+        let ends = [&from.tool, &to.tool];
+        self.off_line(places, ends, ("on the way of the joints", unmeasured))
     }
 }

@@ -61,7 +61,9 @@ impl Comparison<'_> {
         }
         let cuts = match &expected.step {
             Step::Rapid(from, to) => {
-                if !self.arrives(end, to, false) {
+                // Up to the height of a rapid that comes from home is not yet that rapid.
+                let lifts = from.is_none() && !self.is_home && self.rise(&start, &path) > 0.0;
+                if lifts || !self.arrives(end, to, false) {
                     return self.retract(line, motion, (start, path), from_corner);
                 }
                 self.is_rapid_path(&start, &at, (from.as_ref(), to), length)?;
@@ -165,7 +167,7 @@ impl Comparison<'_> {
     /// # Errors
     /// A straight rapid is neither on the line of the source, nor down along the tool to its end, nor free of the part.
     fn is_rapid_path(
-        &mut self,
+        &self,
         start: &Standing,
         at: &dyn Fn(f64) -> Frame,
         (from, to): (Option<&Pose>, &Pose),
@@ -176,15 +178,10 @@ impl Comparison<'_> {
         if is_own || self.is_above(&start.tool, to, f64::INFINITY) {
             return Ok(());
         }
-        let part_way = self.part_way();
         let count = (length / STRIDE).ceil().clamp(1.0, 1e6);
-        for step in 0..=count as usize {
-            let tool = self.in_part(&at(step as f64 / count));
-            let place = (tool.translation, -tool.matrix3.z_axis);
-            let what = "on a straight rapid that begins elsewhere than that of the source";
-            self.off_line(place, part_way, (what, 0.0))?;
-        }
-        Ok(())
+        let places = (0..=count as usize).map(|step| at(step as f64 / count));
+        let what = "on a straight rapid that begins elsewhere than that of the source";
+        self.off_line(places, [&start.tool, &at(1.0)], (what, 0.0))
     }
 
     /// An arc through a point.

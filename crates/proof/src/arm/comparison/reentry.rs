@@ -145,7 +145,7 @@ impl Comparison<'_> {
     pub(super) fn joints_away(&mut self, shown: [f64; 6], rail: f64) -> Outcome {
         let Some(away) = self.away else { return Ok(()) };
         let Some((before, now)) = self.turn_joints(shown, rail)? else { return Ok(()) };
-        self.clear([&before, &now], None, None)?;
+        self.clear([&before, &now], None)?;
         match self.is_home || self.is_above(&now.tool, &away.place, f64::INFINITY) {
             true => Ok(()),
             false => refused(
