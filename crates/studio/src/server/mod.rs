@@ -3,6 +3,7 @@
 mod asks;
 pub mod closed;
 mod files;
+mod memory;
 mod metered;
 mod run;
 mod socket;
@@ -127,6 +128,7 @@ pub(crate) struct Studio {
     /// The work that the command line names, until somebody asks for it or for another.
     first: Mutex<Option<First>>,
     left: Left,
+    runs: memory::Runs,
     /// The file that leads the browser here, until a page has come.
     leads: Mutex<Option<String>>,
     form: Option<Form>,
@@ -288,6 +290,7 @@ impl Server {
             jobs: Jobs::new(own),
             first: Mutex::default(),
             left: Left::default(),
+            runs: memory::Runs::default(),
             leads: Mutex::default(),
             form: settings.form,
             options: settings.options,
@@ -330,6 +333,7 @@ impl Server {
         let Server { runtime, listener, studio, .. } = self;
         First::begin(&studio);
         runtime.block_on(async move {
+            tokio::spawn(memory::give_back(Arc::clone(&studio)));
             let listener = tokio::net::TcpListener::from_std(listener);
             serve(listener.expect("a socket that listens and does not block"), studio).await
         })

@@ -79,7 +79,9 @@ impl Run {
     fn begin(studio: &Arc<Studio>, order: Order, ended: &Ended) -> Run {
         let (tells, told) = channel();
         let (tells, own, studio) = (Tells(tells), ended.clone(), Arc::clone(studio));
+        studio.runs.begin();
         let thread = thread::spawn(move || {
+            let _over = Over(&studio);
             let made = make(&studio, order, &tells, &own);
             tells.tell(Told::Over(made));
         });
@@ -111,6 +113,15 @@ impl Run {
                 return Err(Stop::cancelled());
             }
         }
+    }
+}
+
+/// Says that a run is over, however it ends.
+struct Over<'a>(&'a Studio);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.runs.end();
     }
 }
 

@@ -412,23 +412,23 @@ fn a_board_tells_its_steps_and_is_ended_in_the_midst_of_them() {
     assert_eq!(page.answer_of(id).unwrap_err()["verdict"], "cancelled");
 }
 
-/// A layer of many tracks across each other: uniting them is one long step, which is asked in between by nobody.
-fn tangle(studio: &Studio) {
+/// A layer of many tracks across each other: uniting them is one long step, which is asked in between by nobody, and is refused at its end.
+pub fn tangle() -> String {
     let mut layer = format!("{HEAD}%ADD10C,0.05*%\nD10*\n");
     for i in 1..60_000_u64 {
         let (x, y) = (i * 7919 % 99_000_000, i * 104_729 % 99_000_000);
         let (to_x, to_y) = ((x + 3_000_000) % 99_000_000, (y + 1_000_000) % 99_000_000);
         layer += &format!("X{x}Y{y}D02*\nX{to_x}Y{to_y}D01*\n");
     }
-    fs::create_dir(studio.own().join("tangle")).unwrap();
-    fs::write(studio.own().join("tangle/b-F_Cu.gbr"), layer + "M02*\n").unwrap();
+    layer + "M02*\n"
 }
 
 /// The page goes on at once, and a newer work is done beside the step that is left; no third one meanwhile.
 #[test]
 fn work_that_is_ended_in_a_long_step_is_left_at_once() {
     let studio = studio();
-    tangle(&studio);
+    fs::create_dir(studio.own().join("tangle")).unwrap();
+    fs::write(studio.own().join("tangle/b-F_Cu.gbr"), tangle()).unwrap();
     let mut page = studio.socket();
     let mut cancelled = || {
         let id = page.ask("post", params(json!({ "folder": "tangle" })), &[]);

@@ -140,6 +140,40 @@ fn the_first_work_begins_with_the_server() {
     assert!(processor_time(&process) - alone > 0.3 * alone);
 }
 
+/// How much memory a process has, and how much it had at the most, kB.
+#[cfg(target_os = "linux")]
+fn memory(process: &Process) -> [u64; 2] {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", process.0.id())).unwrap();
+    ["VmRSS:", "VmHWM:"].map(|key| {
+        let line = status.lines().find_map(|line| line.strip_prefix(key)).unwrap();
+        line.trim().trim_end_matches(" kB").parse().unwrap()
+    })
+}
+
+/// A board of which nothing is kept leaves no memory with the server.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[test]
+fn memory_of_work_that_is_over_is_given_back() {
+    let outside = folder();
+    std::fs::create_dir(outside.path().join("own/tangle")).unwrap();
+    let layer = outside.path().join("own/tangle/b-F_Cu.gbr");
+    std::fs::write(layer, crate::boards::tangle()).unwrap();
+    let (process, studio) = Process::start(outside);
+    let mut page = studio.socket();
+    let params = json!({ "source": { "folder": "tangle" }, "machine": "grbl-3018" });
+    assert_eq!(page.refused("post", params), "layer");
+    let begun = Instant::now();
+    loop {
+        let [now, most] = memory(&process);
+        assert!(most > 100_000, "too small for this test: {most} kB");
+        if now < most / 3 {
+            break;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(30), "{now} kB of {most}");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+}
+
 /// A stand-in for the browser notes what it is started with, and who may read that file.
 #[cfg(target_os = "linux")]
 #[test]
