@@ -9,7 +9,7 @@ use ::glass::cloud::{self, Pair, Point};
 use ::glass::curve;
 use ::glass::fill::Fill;
 use ::glass::list::Columns;
-use ::glass::machine::{Format, LIBRARY};
+use ::glass::machine::LIBRARY;
 use ::glass::material::{self, Material};
 use ::glass::mesh::{self, Form, Shape};
 use ::glass::optics::Ray;
@@ -19,8 +19,10 @@ use program::{Diagnostic, Rule, encoding};
 use serde_json::json;
 use std::path::{Component, Path};
 
+pub use ::glass::control::Run;
 pub use ::glass::job;
-pub use ::glass::machine::Machine;
+pub use ::glass::machine::{Format, Machine};
+pub use ::glass::proof::{Focus, Steps};
 
 /// What is engraved, and how.
 #[derive(Clone, Debug)]
@@ -104,6 +106,35 @@ pub fn library(name: &str) -> Result<&'static str, Stop> {
             Diagnostic::error(Rule::MachineUnknown, format!("there is no glass engraver `{name}`"));
         found.help(format!("there are: {names}; or give a file ending in .toml")).into()
     })
+}
+
+/// The names of the machines of the library.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    LIBRARY.into_iter().map(|(name, _)| name)
+}
+
+/// Whether a text is meant as a machine that fires inside glass: no other file has a table `[laser]`.
+pub fn is_machine(text: &[u8]) -> bool {
+    text.split(|byte| *byte == b'\n').any(|line| line.trim_ascii() == b"[laser]")
+}
+
+/// Whether a file is a body, a picture or a list of points, by its ending, and nothing that another machine cuts.
+pub fn is_body(source: &Source) -> bool {
+    let bodies = [
+        "stl", "obj", "ply", "3mf", "png", "jpg", "jpeg", "bmp", "pcx", "xyz", "cft", "asc", "plt",
+        "hpgl", "hpg",
+    ];
+    bodies.contains(&&*ending(source.path()))
+}
+
+/// How the names of the programs of a machine end.
+pub fn extension(machine: &Machine) -> &'static str {
+    match machine.program.format {
+        Format::Numbered => "prg",
+        Format::Points => "txt",
+        Format::Gcode => "ngc",
+        Format::Binary => "bin",
+    }
 }
 
 /// A text that must be UTF-8.
@@ -225,7 +256,9 @@ impl<'s> Job<'s> {
     pub fn make(self, watch: &dyn Watch) -> Result<Made, Stop> {
         watch.begin("engraving")?;
         let Job { machine, material, shapes, settings } = self;
-        let made = job::make(shapes, &material, &machine, &settings.job)?;
+        let watch = Engraves(watch);
+        let made = job::make_for(shapes, &material, &machine, &settings.job, &watch);
+        let made = made.map_err(|found| watch.stop(found))?;
         Ok(Made::new(made, machine, material))
     }
 
@@ -234,15 +267,36 @@ impl<'s> Job<'s> {
     /// # Errors
     /// What cannot be engraved, what the machine would not take, or that the work was ended.
     pub fn prove(self, name: &str, text: Vec<u8>, watch: &dyn Watch) -> Result<Made, Stop> {
-        watch.begin("proving")?;
         let Job { machine, material, shapes, settings } = self;
         let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
             found.into_iter().map(|found| in_file(found, name)).collect()
         };
-        let made = job::prove(text, shapes, &material, &machine, &settings.job);
-        let mut made = Made::new(made.map_err(in_program)?, machine, material);
+        let watch = Engraves(watch);
+        let made = job::prove_for(text, shapes, &material, &machine, &settings.job, &watch);
+        let made = made.map_err(|found| watch.stop(in_program(found)))?;
+        let mut made = Made::new(made, machine, material);
         made.account.findings = in_program(made.account.findings);
         Ok(made)
+    }
+}
+
+/// Whoever watches, as the crate `glass` tells it.
+struct Engraves<'a>(&'a dyn Watch);
+
+impl ::glass::watch::Watch for Engraves<'_> {
+    fn step(&self, what: &'static str) {
+        self.0.step(what);
+    }
+
+    fn is_ended(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+impl Engraves<'_> {
+    /// Why work has stopped.
+    fn stop(&self, found: Vec<Diagnostic>) -> Stop {
+        if self.0.is_cancelled() { Stop::cancelled() } else { found.into() }
     }
 }
 
@@ -250,6 +304,14 @@ impl Made {
     fn new(made: job::Made, machine: Machine, material: Material) -> Made {
         let account = account(&made, &machine, &material);
         Made { made, account, machine, material }
+    }
+
+    /// Where the beam comes to its focus.
+    ///
+    /// # Errors
+    /// The machine has no such lens.
+    pub fn focus(&self, settings: &Settings) -> Result<Focus, Stop> {
+        Ok(job::focus(&self.made, &self.material, &self.machine, &settings.job)?)
     }
 
     /// Where the pulses lie in the glass, in their order, mm.

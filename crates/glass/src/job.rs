@@ -14,6 +14,7 @@ use crate::picture::{Picture, Sheet};
 use crate::proof::{self, Proof};
 use crate::sample::Apart;
 use crate::scenario::{Blocks, Scenario};
+use crate::watch::Watch;
 use crate::{control, post, stitch, weld};
 use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
@@ -182,8 +183,24 @@ pub fn make(
     machine: &Machine,
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
-    let mut job = Job::new(shapes, material, machine, settings)?;
+    make_for(shapes, material, machine, settings, &())
+}
+
+/// As [`make`], for who may end the work.
+///
+/// # Errors
+/// As there, or that it was ended.
+pub fn make_for(
+    shapes: Vec<Shape>,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+    watch: &dyn Watch,
+) -> Result<Made, Vec<Diagnostic>> {
+    let mut job = Job::new(shapes, material, machine, settings, watch)?;
+    watch.step("ordering");
     let Ordered { axes, runs, fields, least } = job.order();
+    watch.go_on()?;
     let clock = machine.clock();
     let mut planned = 1 + fly::ticks(&axes, &runs, [0.0; 3], machine.late(), &clock);
     for pair in fields.windows(2) {
@@ -214,7 +231,22 @@ pub fn prove(
     machine: &Machine,
     settings: &Settings,
 ) -> Result<Made, Vec<Diagnostic>> {
-    Job::new(shapes, material, machine, settings)?.judge(text, None)
+    prove_for(text, shapes, material, machine, settings, &())
+}
+
+/// As [`prove`], for who may end the work.
+///
+/// # Errors
+/// As there, or that it was ended.
+pub fn prove_for(
+    text: Vec<u8>,
+    shapes: Vec<Shape>,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+    watch: &dyn Watch,
+) -> Result<Made, Vec<Diagnostic>> {
+    Job::new(shapes, material, machine, settings, watch)?.judge(text, None)
 }
 
 /// Where the axes stand at each pulse, in steps; which pulses are fired in motion; the first pulse and the middle of each field.
@@ -243,6 +275,7 @@ struct Job<'m> {
     material: &'m Material,
     machine: &'m Machine,
     settings: &'m Settings,
+    watch: &'m dyn Watch,
     findings: Vec<Diagnostic>,
 }
 
@@ -252,7 +285,9 @@ impl<'m> Job<'m> {
         material: &'m Material,
         machine: &'m Machine,
         settings: &'m Settings,
+        watch: &'m dyn Watch,
     ) -> Result<Job<'m>, Vec<Diagnostic>> {
+        watch.go_on()?;
         let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
         check(&settings.placing, &lens)?;
         let spacing = settings.spacing.unwrap_or(lens.spacing);
@@ -269,7 +304,9 @@ impl<'m> Job<'m> {
         let (mut parts, scale, alone) = placed(shapes, room, apart, settings)?;
         let mut findings = std::mem::take(&mut parts.warnings);
         findings.extend(parts.health.iter().filter_map(unhealthy));
+        watch.go_on()?;
         let (cloud, welded, left) = discretise(&parts, settings, apart)?;
+        watch.go_on()?;
         findings.extend(left_out(&left, &settings.filling));
         if let Some(chain) = &machine.chain {
             chain_reaches(&cloud, chain, machine)?;
@@ -304,13 +341,14 @@ impl<'m> Job<'m> {
             material,
             machine,
             settings,
+            watch,
             findings,
         })
     }
 
     /// Puts the cloud in the order of its pulses.
     fn order(&mut self) -> Ordered {
-        let Job { lens, beam, machine, settings, .. } = *self;
+        let Job { lens, beam, machine, settings, watch, .. } = *self;
         let clock = machine.clock();
         let on_table = blocks_of(machine, settings);
         let top = settings.placing.block[2] * 1e3;
@@ -351,7 +389,8 @@ impl<'m> Job<'m> {
         let has_bound =
             is_one && machine.stage.is_none() && !machine.program.runs && cloud.len() <= MOST_BOUND;
         // The first point's pulse counts too.
-        let least = has_bound.then(|| 1 + order::bound(cloud, &axes, Some(shadow), &clock));
+        let least =
+            has_bound.then(|| 1 + order::bound_for(cloud, &axes, Some(shadow), &clock, watch));
         let mut fields = Vec::new();
         let order = match settings.order {
             _ if machine.stage.is_some() => {
@@ -366,13 +405,15 @@ impl<'m> Job<'m> {
                     let own = |all: &[Point]| -> Vec<Point> {
                         field.points.iter().map(|&i| all[i as usize]).collect()
                     };
-                    let within =
-                        order::fastest(&own(cloud), &own(&axes), shadow, &clock, settings.effort);
+                    let (cloud, axes, effort) = (own(cloud), own(&axes), settings.effort);
+                    let within = order::fastest_for(&cloud, &axes, shadow, &clock, effort, watch);
                     order.extend(within.iter().map(|&i| field.points[i as usize]));
                 }
                 order
             }
-            Order::Fastest => order::fastest(cloud, &axes, shadow, &clock, settings.effort),
+            Order::Fastest => {
+                order::fastest_for(cloud, &axes, shadow, &clock, settings.effort, watch)
+            }
             // `on_machine` has refused it elsewhere.
             Order::Scenario(_) => (0..cloud.len() as u32).collect(),
             Order::Kdz(up, down) => order::kdz(cloud, up, down),
@@ -410,7 +451,8 @@ impl<'m> Job<'m> {
         ticks: Option<(u64, Option<u64>)>,
     ) -> Result<Made, Vec<Diagnostic>> {
         let planned = ticks.map(|(planned, _)| planned);
-        let Job { spacing, beam, material, machine, settings, moved, .. } = self;
+        let Job { spacing, beam, material, machine, settings, moved, watch, .. } = self;
+        watch.step("proving");
         let (cloud, mut findings) = (&self.cloud, std::mem::take(&mut self.findings));
         let placing = &settings.placing;
         let cut = optics::cut(cloud, placing.block, beam.slope_in_glass());
@@ -422,8 +464,10 @@ impl<'m> Job<'m> {
             return Err(error(Rule::Spacing, message, MISTAKE));
         }
         let task = task(cloud, material, machine, settings)?;
+        watch.go_on()?;
         let run = control::read(&text, machine)?;
-        let (proof, found) = proof::prove(&run, &task)?;
+        watch.go_on()?;
+        let (proof, found) = proof::prove_for(&run, &task, watch)?;
         findings.extend(found);
         if let Some(planned) = planned.filter(|planned| *planned != proof.ticks) {
             let message =
@@ -483,6 +527,19 @@ fn task<'t>(
         spacing: settings.spacing.unwrap_or(lens.spacing),
         accept_shadowed: settings.accept_shadowed,
     })
+}
+
+/// Where the beam of a program that is made comes to its focus.
+///
+/// # Errors
+/// The machine has no such lens.
+pub fn focus(
+    made: &Made,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+) -> Result<proof::Focus, Vec<Diagnostic>> {
+    Ok(proof::Focus::new(&task(&made.cloud, material, machine, settings)?))
 }
 
 /// Where the pulses of a program that is made lie in the glass, in their order, mm.

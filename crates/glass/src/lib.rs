@@ -48,4 +48,5 @@ pub mod scenario;
 pub mod simulate;
 pub mod source;
 pub mod stitch;
+pub mod watch;
 pub mod weld;

@@ -10,6 +10,7 @@ use crate::cloud::{self, Grid, Pair, Point, Slabs, in_order};
 use crate::control::{Motion, Pulse, Pulses, Run};
 use crate::machine::{Lens, Machine, Table};
 use crate::polar::Pose;
+use crate::watch::Watch;
 use glam::{DVec2, DVec3};
 use program::{Diagnostic, Findings, Rule};
 use rayon::prelude::*;
@@ -70,19 +71,69 @@ fn depth(lens: &Lens, beam: f64, index: f64) -> (f64, f64) {
     (in_air.tan() / in_glass.tan(), in_glass.tan())
 }
 
+/// Where a beam comes to its focus in the glass, by the outermost ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Focus {
+    /// Sides of each block, mm.
+    pub block: [f64; 3],
+    /// How many equal blocks there are.
+    pub blocks: u32,
+    /// How deep it is for each mm that it is driven below the top face.
+    deeper: f64,
+}
+
+impl Focus {
+    /// That of a task.
+    pub fn new(task: &Task) -> Focus {
+        let (deeper, _) = depth(&task.lens, task.machine.laser.beam, task.index);
+        Focus { block: task.block, blocks: task.blocks, deeper }
+    }
+
+    /// The same in the frame of the first block, whatever block the beam is over.
+    pub fn from_first(self) -> Focus {
+        Focus { blocks: 1, ..self }
+    }
+
+    /// Where it is with the axes of `machine` at these positions (mm or degrees): mm in the frame of the block under the beam, and the number
+    /// of that, from 0.
+    pub fn at(&self, machine: &Machine, [a, b, z]: [f64; 3]) -> (DVec3, u32) {
+        let (flat, block) = match &machine.polar {
+            Some(table) => self.on_table(a, b, table),
+            None => {
+                let chain = &machine.chain;
+                (chain.map_or(DVec2::new(a, b), |chain| chain.forward([a, b])), 0)
+            }
+        };
+        (flat.extend(self.block[2] + z * self.deeper), block)
+    }
+
+    /// Where the beam hits at these angles of arm and table (degrees): in the frame of the block under it, or of the first one where
+    /// there is none.
+    fn on_table(&self, arm: f64, turned: f64, table: &Table) -> (DVec2, u32) {
+        let polar = table.with(self.block[0]);
+        let hits = |block: u32| {
+            let turned = turned - 360.0 / f64::from(table.blocks) * f64::from(block);
+            polar.forward(Pose { arm: arm.to_radians(), table: turned.to_radians() })
+        };
+        let lies =
+            |at: DVec2| at.min_element() >= 0.0 && at.x <= self.block[0] && at.y <= self.block[1];
+        let under = (0..self.blocks).map(|block| (hits(block), block)).find(|(at, _)| lies(*at));
+        under.unwrap_or_else(|| (hits(0), 0))
+    }
+}
+
 /// Where pulses lie in the glass.
 #[derive(Clone, Copy, Debug)]
 pub struct Glass<'t> {
     pulses: &'t Pulses,
-    task: Task<'t>,
-    deeper: f64,
+    machine: &'t Machine,
+    focus: Focus,
 }
 
 impl<'t> Glass<'t> {
     /// The pulses of `run` in the blocks of `task`.
     pub fn new(run: &'t Run, task: &Task<'t>) -> Glass<'t> {
-        let (deeper, _) = depth(&task.lens, task.machine.laser.beam, task.index);
-        Glass { pulses: &run.pulses, task: *task, deeper }
+        Glass { pulses: &run.pulses, machine: task.machine, focus: Focus::new(task) }
     }
 
     /// How many pulses there are.
@@ -97,15 +148,8 @@ impl<'t> Glass<'t> {
 
     /// Where the pulse of this number lies: mm in the frame of its block, and the number of that, both from 0.
     pub fn place(&self, number: usize) -> (DVec3, u32) {
-        let [a, b, z] = self.pulses.get(number).map_or([0.0; 3], |pulse| pulse.at);
-        let (flat, block) = match &self.task.machine.polar {
-            Some(table) => on_table(a, b, table, &self.task),
-            None => {
-                let chain = &self.task.machine.chain;
-                (chain.map_or(DVec2::new(a, b), |chain| chain.forward([a, b])), 0)
-            }
-        };
-        (flat.extend(self.task.block[2] + z * self.deeper), block)
+        let at = self.pulses.get(number).map_or([0.0; 3], |pulse| pulse.at);
+        self.focus.at(self.machine, at)
     }
 }
 
@@ -145,20 +189,6 @@ impl<'t> Places<'t> {
     }
 }
 
-/// Where the beam hits at these angles of arm and table (degrees): in the frame of the block under it, or of the first one where
-/// there is none.
-fn on_table(arm: f64, turned: f64, table: &Table, task: &Task) -> (DVec2, u32) {
-    let polar = table.with(task.block[0]);
-    let hits = |block: u32| {
-        let turned = turned - 360.0 / f64::from(table.blocks) * f64::from(block);
-        polar.forward(Pose { arm: arm.to_radians(), table: turned.to_radians() })
-    };
-    let lies =
-        |at: DVec2| at.min_element() >= 0.0 && at.x <= task.block[0] && at.y <= task.block[1];
-    let under = (0..task.blocks).map(|block| (hits(block), block)).find(|(at, _)| lies(*at));
-    under.unwrap_or_else(|| (hits(0), 0))
-}
-
 /// The clouds of all blocks side by side, farther apart than a block is wide, and that distance, µm.
 fn side_by_side<'t>(task: &Task<'t>) -> (Cow<'t, [Point]>, i32) {
     let apart = ((task.block[0] + 50.0) * 1e3) as i32;
@@ -178,6 +208,18 @@ fn side_by_side<'t>(task: &Task<'t>) -> (Cow<'t, [Point]>, i32) {
 /// # Errors
 /// Where there are no pulses.
 pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Diagnostic>> {
+    prove_for(run, task, &())
+}
+
+/// As [`prove`], for who may end the work.
+///
+/// # Errors
+/// As there, or that it was ended.
+pub fn prove_for(
+    run: &Run,
+    task: &Task,
+    watch: &dyn Watch,
+) -> Result<(Proof, Vec<Diagnostic>), Vec<Diagnostic>> {
     let pulses = &run.pulses;
     if pulses.is_empty() {
         let found = Diagnostic::error(Rule::Lost, "the program makes no pulse");
@@ -191,11 +233,16 @@ pub fn prove(run: &Run, task: &Task) -> Result<(Proof, Vec<Diagnostic>), Vec<Dia
     let glass = Glass::new(run, task);
     let task = &Task { cloud: &cloud, ..*task };
     let places = Places::new(glass, f64::from(apart_by) * 1e-3, cloud::longest(task.cloud));
-    let (order, across, along) = matched(pulses, &places, task, &mut findings);
-    let (nearest, too_close) = distances(&places, task.spacing);
+    watch.go_on()?;
+    let (order, across, along) = matched(pulses, &places, task, &mut findings, watch);
+    watch.go_on()?;
+    let (nearest, too_close) = distances(&places, task.spacing, watch);
     drop(places);
+    watch.go_on()?;
     let apart = apart(nearest, too_close, pulses, task.spacing, deeper);
-    let shadowed = shadows(&order, task.cloud, slope, 500.0 * task.lens.crack[0]);
+    let radius = 500.0 * task.lens.crack[0];
+    let shadowed = shadows(&order, task.cloud, slope, radius, watch);
+    watch.go_on()?;
     let hidden = finding_of_shadows(&shadowed, &order, pulses, task);
     apart.into_iter().chain(hidden).for_each(|found| findings.push(found));
     let ticks = Steps::new(run, task.machine).sum();
@@ -381,13 +428,21 @@ impl<'r> Steps<'r> {
 }
 
 /// The nearest two of `places`, and how many pairs are nearer than `spacing` (mm). Places beyond 2 m are left out: they are stray.
-fn distances(places: &Places, spacing: f64) -> (Option<Pair>, u64) {
-    let found = distances_within(places, spacing, 1.25 * spacing);
-    if found.0.is_some() { found } else { distances_within(places, spacing, 2.0 * spacing) }
+fn distances(places: &Places, spacing: f64, watch: &dyn Watch) -> (Option<Pair>, u64) {
+    let found = distances_within(places, spacing, 1.25 * spacing, watch);
+    match found.0 {
+        Some(_) => found,
+        None => distances_within(places, spacing, 2.0 * spacing, watch),
+    }
 }
 
 /// As [`distances`]; pairs farther apart than `most` (mm, more than the spacing) are not looked at.
-fn distances_within(places: &Places, spacing: f64, most: f64) -> (Option<Pair>, u64) {
+fn distances_within(
+    places: &Places,
+    spacing: f64,
+    most: f64,
+    watch: &dyn Watch,
+) -> (Option<Pair>, u64) {
     // Places are up to a µm from their points in each axis.
     let reach = (1e3 * most).ceil() as i64 + 2;
     let join = |a: ((f64, u32, u32), u64), b: ((f64, u32, u32), u64)| {
@@ -406,7 +461,8 @@ fn distances_within(places: &Places, spacing: f64, most: f64) -> (Option<Pair>, 
         let grid = Grid::new(&points, reach);
         let of = |i: &u32| {
             let (mut nearest, mut close) = ((f64::MAX, 0, 0), 0u64);
-            let Some((i, place, point)) = known(i) else { return (nearest, close) };
+            let known = known(i).filter(|_| !watch.is_ended());
+            let Some((i, place, point)) = known else { return (nearest, close) };
             for &(j, there, _) in grid.near(point).map(|near| &seen[near as usize]) {
                 let square = place.distance_squared(there);
                 if j > i && square <= most * most {
@@ -515,8 +571,9 @@ fn matched(
     places: &Places,
     task: &Task,
     findings: &mut Findings,
+    watch: &dyn Watch,
 ) -> (Vec<u32>, f64, f64) {
-    let (found, across, along) = nearest_points(places, task);
+    let (found, across, along) = nearest_points(places, task, watch);
     let mut by: Vec<u32> = vec![NONE; task.cloud.len()];
     let mut order = Vec::with_capacity(pulses.len());
     for (i, j) in (0..).zip(found) {
@@ -555,7 +612,7 @@ fn matched(
 
 /// Of each pulse the nearest point in whose crack it lies, `NONE` where it lies in none, and the largest distances across and along
 /// the beam, mm.
-fn nearest_points(places: &Places, task: &Task) -> (Vec<u32>, f64, f64) {
+fn nearest_points(places: &Places, task: &Task, watch: &dyn Watch) -> (Vec<u32>, f64, f64) {
     let [radius, height] = task.lens.crack.map(|size| 500.0 * size);
     let reach = radius.max(height).ceil() as i64 + 1;
     let points = Slabs::new(task.cloud.len(), |i| task.cloud[i][places.axis]);
@@ -567,6 +624,9 @@ fn nearest_points(places: &Places, task: &Task) -> (Vec<u32>, f64, f64) {
         let own: Vec<Point> = seen.par_iter().map(|&j| task.cloud[j as usize]).collect();
         let grid = Grid::new(&own, reach);
         let nearest = |&i: &u32| {
+            if watch.is_ended() {
+                return (i, None);
+            }
             let place = places.at(i).to_array().map(|value| value * 1e3);
             let rounded = place.map(|value| value.round() as i32);
             let way = |near: u32| {
@@ -675,7 +735,13 @@ impl Node {
 
 /// The places in the order of points that are shadowed, each with that of the first point that shadows it. Points above are
 /// taken slab by slab, with the slabs below of which some points are made after them.
-fn shadows(order: &[u32], cloud: &[Point], slope: f64, radius: f64) -> Vec<(u32, u32)> {
+fn shadows(
+    order: &[u32],
+    cloud: &[Point],
+    slope: f64,
+    radius: f64,
+    watch: &dyn Watch,
+) -> Vec<(u32, u32)> {
     let point = |when: u32| cloud[order[when as usize] as usize];
     let heights = Slabs::new(order.len(), |when| point(when as u32)[2]);
     let slabs: Vec<(&[u32], u32)> =
@@ -685,8 +751,10 @@ fn shadows(order: &[u32], cloud: &[Point], slope: f64, radius: f64) -> Vec<(u32,
         let mut points: Vec<(Point, u32)> = above.iter().map(|&when| (point(when), when)).collect();
         let tree = Node::new(&mut points);
         for (below, _) in slabs[..=number].iter().filter(|(_, last)| *last > tree.first) {
-            let shadower =
-                |&when: &u32| Some((when, tree.shadower(point(when), when, slope, radius)?));
+            let shadower = |&when: &u32| {
+                let when = (!watch.is_ended()).then_some(when)?;
+                Some((when, tree.shadower(point(when), when, slope, radius)?))
+            };
             let found: Vec<(u32, u32)> = below.par_iter().filter_map(shadower).collect();
             for (when, by) in found {
                 first[when as usize] = first[when as usize].min(by);

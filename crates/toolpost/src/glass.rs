@@ -318,7 +318,7 @@ fn engrave(args: &Engrave, silent: bool) -> Result<Answer, Stop> {
     let report_target = Target::new(&report_path, &inputs)?;
     let cloud_target = args.cloud.as_ref().map(|file| Target::new(file, &inputs)).transpose()?;
     let drawing = Drawing::new(&args.job, &inputs)?;
-    let progress = Progress::new(3, silent);
+    let progress = Progress::new(5, silent);
     progress.step("reading");
     let machine = glass::machine(&args.job.machine)?;
     let settings = args.settings(begun);

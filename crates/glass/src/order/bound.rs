@@ -11,6 +11,7 @@
 use super::Shadow;
 use crate::clock::Clock;
 use crate::cloud::{Grid, Point, Slabs};
+use crate::watch::Watch;
 use rayon::prelude::*;
 
 /// Points of a piece.
@@ -22,12 +23,25 @@ const NONE: u32 = u32::MAX;
 /// The fewest ticks that the steps of any order of `points` (µm in the glass) take, at which the axes stand at `axes`: of those that
 /// keep the rule of `shadow`, or of all.
 pub fn bound(points: &[Point], axes: &[Point], shadow: Option<Shadow>, clock: &Clock) -> u64 {
+    bound_for(points, axes, shadow, clock, &())
+}
+
+/// As [`bound()`], for who may end the work: then it answers a number of no use.
+pub fn bound_for(
+    points: &[Point],
+    axes: &[Point],
+    shadow: Option<Shadow>,
+    clock: &Clock,
+    watch: &dyn Watch,
+) -> u64 {
     let reach = clock.reach(1);
     let grid = Grid::new(axes, reach[0].max(reach[1]).max(reach[2]));
     let by_height = Slabs::new(points.len(), |i| points[i][2]);
     let matched = |piece: &[u32]| {
+        let goes_on = |_: &&u32| !watch.is_ended();
         let followers = |&u: &u32| followers(u, points, axes, shadow, clock, &grid);
-        matching(&piece.iter().map(followers).collect::<Vec<_>>())
+        let partners: Vec<_> = piece.iter().take_while(goes_on).map(followers).collect();
+        matching(&partners, watch)
     };
     let pieces: Vec<&[u32]> = by_height.order().chunks(PIECE).collect();
     let matched: u64 = pieces.into_par_iter().map(matched).sum();
@@ -58,7 +72,7 @@ fn followers(
 }
 
 /// The size of a maximum matching: of each number on one side its possible partners on the other.
-fn matching(partners: &[Vec<u32>]) -> u64 {
+fn matching(partners: &[Vec<u32>], watch: &dyn Watch) -> u64 {
     let mut names: Vec<u32> = partners.iter().flatten().copied().collect();
     names.sort_unstable();
     names.dedup();
@@ -75,7 +89,7 @@ fn matching(partners: &[Vec<u32>]) -> u64 {
         }
     }
     let mut layer = vec![0; partners.len()];
-    while layered(&partners, &of_left, &of_right, &mut layer) {
+    while !watch.is_ended() && layered(&partners, &of_left, &of_right, &mut layer) {
         let mut tried = vec![0; partners.len()];
         for left in 0..partners.len() {
             if of_left[left] == NONE {

@@ -3,6 +3,7 @@
 use super::shadow::{Bonds, Shadow};
 use crate::clock::Clock;
 use crate::cloud::{Point, Slabs};
+use crate::watch::Watch;
 use rayon::prelude::*;
 
 /// Points in a band, at least. All of a band come before all of the band above it, so that only bonds within a band have to be known.
@@ -20,13 +21,19 @@ const FAR: usize = 400;
 
 /// A legal order of `points` (µm in the glass) at which the axes stand at `axes` (µm). Each band begins at its lowest point, so that
 /// bands do not wait for each other.
-pub(super) fn order(points: &[Point], axes: &[Point], shadow: Shadow, clock: &Clock) -> Vec<u32> {
+pub(super) fn order(
+    points: &[Point],
+    axes: &[Point],
+    shadow: Shadow,
+    clock: &Clock,
+    watch: &dyn Watch,
+) -> Vec<u32> {
     let by_height = Slabs::new(points.len(), |i| points[i][2]);
     let of_band = |band: &[u32]| -> Vec<u32> {
         let own = |all: &[Point]| -> Vec<Point> { band.iter().map(|&i| all[i as usize]).collect() };
         let axes = own(axes);
-        let bonds = Bonds::new(&own(points), &axes, shadow, clock);
-        one_band(&axes, &bonds, clock).into_iter().map(|i| band[i as usize]).collect()
+        let bonds = Bonds::new(&own(points), &axes, shadow, clock, watch);
+        one_band(&axes, &bonds, clock, watch).into_iter().map(|i| band[i as usize]).collect()
     };
     // Half as much again as the axes go in a tick: a solid of 10 million points then uses 0.958 of the pulses, not 0.910; twice as
     // much gives 0.966 for twice the time.
@@ -55,7 +62,7 @@ fn bands<'a>(by_height: &'a [u32], axes: &[Point], least: i64) -> Vec<&'a [u32]>
 }
 
 /// The order of one band, whose points come by their height.
-fn one_band(axes: &[Point], bonds: &Bonds, clock: &Clock) -> Vec<u32> {
+fn one_band(axes: &[Point], bonds: &Bonds, clock: &Clock, watch: &dyn Watch) -> Vec<u32> {
     let count = axes.len() as u32;
     let length = |list: &[u32]| list.len() as u32;
     let mut bound: Vec<u32> = (0..count).map(|i| length(bonds.before.of(i))).collect();
@@ -65,7 +72,7 @@ fn one_band(axes: &[Point], bonds: &Bonds, clock: &Clock) -> Vec<u32> {
     (0..count).filter(|&i| bound[i as usize] == 0).for_each(|i| legal.insert(i));
     let reach = clock.reach(1)[2].max(1);
     let mut order: Vec<u32> = Vec::with_capacity(axes.len());
-    while let Some(lowest) = legal.lowest() {
+    while let Some(lowest) = legal.lowest().filter(|_| !watch.is_ended()) {
         let near = order.last().map_or(&[][..], |&at| bonds.near.of(at)).iter().copied();
         // A point with few open neighbours is left behind if it is not taken now; a low one keeps those above it waiting.
         let value =

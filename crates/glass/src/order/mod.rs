@@ -10,13 +10,14 @@ mod shadow;
 mod sorted;
 mod window;
 
-pub use bound::bound;
+pub use bound::{bound, bound_for};
 pub use shadow::Shadow;
 pub use sorted::{kdz, layers};
 
 use crate::clock::Clock;
 use crate::cloud::Point;
 use crate::sample::Dice;
+use crate::watch::Watch;
 use rayon::prelude::*;
 use std::time::Instant;
 use window::Window;
@@ -56,8 +57,20 @@ pub fn fastest(
     clock: &Clock,
     effort: Effort,
 ) -> Vec<u32> {
-    let mut order = greedy::order(points, axes, shadow, clock);
-    let is_over = || effort.until.is_some_and(|until| Instant::now() >= until);
+    fastest_for(points, axes, shadow, clock, effort, &())
+}
+
+/// As [`fastest`], for who may end the work: then it answers points of no use.
+pub fn fastest_for(
+    points: &[Point],
+    axes: &[Point],
+    shadow: Shadow,
+    clock: &Clock,
+    effort: Effort,
+    watch: &dyn Watch,
+) -> Vec<u32> {
+    let mut order = greedy::order(points, axes, shadow, clock, watch);
+    let is_over = || watch.is_ended() || effort.until.is_some_and(|until| Instant::now() >= until);
     let mut left = ticks(axes, &order, clock);
     for round in 0..effort.rounds {
         if is_over() {
@@ -78,7 +91,8 @@ pub fn fastest(
             let after = pieces.get(at + 1).and_then(|after| end(after.first()));
             let own =
                 |all: &[Point]| -> Vec<Point> { piece.iter().map(|&i| all[i as usize]).collect() };
-            let mut window = Window::new(&own(points), &own(axes), [before, after], shadow, clock);
+            let mut window =
+                Window::new(&own(points), &own(axes), [before, after], (shadow, clock), watch);
             let mut dice = Dice(u64::from(round) << 32 | at as u64);
             let begun = window.ticks();
             for heat in HEAT {

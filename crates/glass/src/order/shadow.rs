@@ -2,6 +2,7 @@
 
 use crate::clock::Clock;
 use crate::cloud::{Grid, Point, bounds};
+use crate::watch::Watch;
 use rayon::prelude::*;
 
 /// The cone of the beam below a finished point: points are in its shadow that lie lower by `h` and nearer to its axis than
@@ -35,19 +36,28 @@ pub(super) struct Bonds {
 }
 
 impl Bonds {
-    /// Of `points` (µm in the glass) at which the axes stand at `axes` (µm).
-    pub(super) fn new(points: &[Point], axes: &[Point], shadow: Shadow, clock: &Clock) -> Bonds {
-        let before = before(points, shadow);
+    /// Of `points` (µm in the glass) at which the axes stand at `axes` (µm). Where the work is ended, some are missing.
+    pub(super) fn new(
+        points: &[Point],
+        axes: &[Point],
+        shadow: Shadow,
+        clock: &Clock,
+        watch: &dyn Watch,
+    ) -> Bonds {
+        let before = before(points, shadow, watch);
         let after = before.turned();
-        Bonds { near: near(axes, clock), before, after }
+        Bonds { near: near(axes, clock, watch), before, after }
     }
 }
 
 /// For each point those that the axes reach in a tick.
-fn near(axes: &[Point], clock: &Clock) -> Lists {
+fn near(axes: &[Point], clock: &Clock, watch: &dyn Watch) -> Lists {
     let reach = clock.reach(1);
     let grid = Grid::new(axes, reach[0].max(reach[1]).max(reach[2]));
     let of = |i: usize| {
+        if watch.is_ended() {
+            return Vec::new();
+        }
         let within = |&j: &u32| j as usize != i && clock.step(axes[i], axes[j as usize]) == 1;
         grid.near(axes[i]).filter(within).collect()
     };
@@ -101,7 +111,7 @@ impl Lists {
 
 /// For each of `points` those that must come before it. A point that must come before one of those anyway is left out where
 /// that is found by looking at pairs: what follows from the lists together is the whole rule.
-fn before(points: &[Point], shadow: Shadow) -> Lists {
+fn before(points: &[Point], shadow: Shadow, watch: &dyn Watch) -> Lists {
     let Some((low, high)) = bounds(points) else { return Lists::new(Vec::new()) };
     let deepest = f64::from(high[2]) - f64::from(low[2]);
     let widest = (shadow.radius + shadow.slope * deepest).ceil() as i64;
@@ -109,6 +119,9 @@ fn before(points: &[Point], shadow: Shadow) -> Lists {
     let flat: Vec<Point> = points.iter().map(|point| [point[0], point[1], 0]).collect();
     let grid = Grid::new(&flat, widest.max(1));
     let of = |i: usize| {
+        if watch.is_ended() {
+            return Vec::new();
+        }
         let here = points[i];
         let mut below: Vec<u32> =
             grid.near(flat[i]).filter(|&j| shadow.hides(here, points[j as usize])).collect();

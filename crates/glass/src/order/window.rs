@@ -5,9 +5,10 @@ use super::shadow::{Bonds, Lists, Shadow};
 use crate::clock::Clock;
 use crate::cloud::Point;
 use crate::sample::Dice;
+use crate::watch::Watch;
 
 /// After how many tries the clock on the wall is looked at.
-const OFTEN: u64 = 1 << 16;
+const OFTEN: u64 = 1 << 14;
 
 /// No number of a point.
 const NONE: u32 = u32::MAX;
@@ -71,11 +72,11 @@ impl<'c> Window<'c> {
         points: &[Point],
         axes: &[Point],
         ends: [Option<Point>; 2],
-        shadow: Shadow,
-        clock: &'c Clock,
+        (shadow, clock): (Shadow, &'c Clock),
+        watch: &dyn Watch,
     ) -> Window<'c> {
         let count = points.len() as u32;
-        let Bonds { near, before, after } = Bonds::new(points, axes, shadow, clock);
+        let Bonds { near, before, after } = Bonds::new(points, axes, shadow, clock, watch);
         let mut all = axes.to_vec();
         all.extend(ends.map(Option::unwrap_or_default));
         let order: Vec<u32> = std::iter::once(count).chain(0..count).chain([count + 1]).collect();
