@@ -30,3 +30,17 @@ export class Newest<T> {
         }
     }
 }
+
+/** What is begun in the same turn ends together: one frame shows all of it. */
+export class Together {
+    private begun: Promise<unknown>[] = [];
+
+    async end<T>(one: Promise<T>): Promise<T> {
+        if (this.begun.length === 0) queueMicrotask(() => (this.begun = []));
+        const { begun } = this;
+        begun.push(one);
+        await one;
+        await Promise.allSettled(begun);
+        return one;
+    }
+}

@@ -2,7 +2,7 @@ import { signal } from "@preact/signals";
 import { expect, test } from "vitest";
 import { Cursor, neighbour } from "../src/cursor.ts";
 import { Player } from "../src/player.ts";
-import { Newest } from "../src/newest.ts";
+import { Newest, Together } from "../src/newest.ts";
 import type { Seam } from "../src/protocol/seam.ts";
 import type { Job, Place, PlaceParams } from "../src/protocol/asks.ts";
 
@@ -91,4 +91,22 @@ test("steps that come before the answer to the one before are all made", async (
     void cursor.toMove(6);
     await cursor.turn(1);
     expect(cursor.place.value?.move).toBe(7);
+});
+
+test("what is begun in one turn ends together, whatever becomes of the others; what is begun later does not wait for it", async () => {
+    const together = new Together();
+    const ended: string[] = [];
+    const turns: [resolve: (text: string) => void, reject: (error: Error) => void][] = [];
+    const later = () => new Promise<string>((...turn) => turns.push(turn));
+    const wait = (one: Promise<string>) => void together.end(one).then((text) => ended.push(text), () => ended.push("none"));
+    wait(later());
+    wait(later());
+    await settled();
+    turns[0]![0]("first");
+    wait(Promise.resolve("later"));
+    await settled();
+    expect(ended).toEqual(["later"]);
+    turns[1]![1](new Error("no"));
+    await settled();
+    expect(ended.toSorted()).toEqual(["first", "later", "none"]);
 });

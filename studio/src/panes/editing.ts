@@ -45,7 +45,7 @@ export function keepUp(screen: Screen, of: Of, host: HTMLElement, { file, compar
         lines: job.parts.find((part) => part.file === file.value)?.lines ?? text.lines,
         family: of === "source" ? familyOf(null, text.file) : familyOf(job.machine.dialect, text.file),
         isEditable: of === "program" && job.parts.length === 0,
-        read: (from, to) => readText(seam, { revision: job.revision, of, file: file.value, from, to }),
+        read: (from, to) => screen.reading.end(readText(seam, { revision: job.revision, of, file: file.value, from, to })),
     });
 
     // The line comes before the text, of which the lines round it come first.

@@ -1,6 +1,7 @@
 /** What is on the screen and not in the work: dialogs, tabs, the views and how they look. */
 
 import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
+import { Together } from "../newest.ts";
 import { Player } from "../player.ts";
 import type { Job, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
@@ -40,6 +41,7 @@ export class Screen {
     readonly option: Signal<string> = signal("");
     /** Pane that is searched, and its editors. */
     readonly searched: Signal<"program" | "source"> = signal("program");
+    readonly reading = new Together();
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
     /** Number of the finding that was led to last. */
     readonly finding: Signal<number> = signal(-1);

@@ -144,7 +144,7 @@ export class Editor {
         if (origin === null) return;
         const reading = ++this.reading;
         clearTimeout(this.resting);
-        const window = firstWindow(line, origin.lines);
+        const window = firstWindow(line, origin.lines, Math.ceil(this.view.scrollDOM.clientHeight / this.view.defaultLineHeight));
         this.coming = window;
         try {
             const text = await origin.read(window.from, window.to);
@@ -159,12 +159,17 @@ export class Editor {
     /** Other lines of the same text take the place of these; those of another text begin anew. */
     private move(text: string, window: Window): void {
         if (this.shown !== this.origin || this.origin === null) return this.set(text, window);
-        const { length } = this.view.state.doc;
+        const { state } = this.view;
+        const insert = state.toText(text);
         this.window = window;
         this.isSetting = true;
-        this.view.dispatch({ changes: { from: 0, to: length, insert: text }, annotations: Transaction.addToHistory.of(false), selection: { anchor: 0 } });
+        this.view.dispatch({
+            changes: { from: 0, to: state.doc.length, insert },
+            annotations: Transaction.addToHistory.of(false),
+            selection: { anchor: 0 },
+            effects: this.drawn(insert, true),
+        });
         this.isSetting = false;
-        this.draw(true);
     }
 
     private growLater(): void {
@@ -286,13 +291,17 @@ export class Editor {
     }
 
     private draw(isNew: boolean): void {
+        this.view.dispatch({ effects: this.drawn(this.view.state.doc, isNew) });
+    }
+
+    /** The marks in the lines that are here; a new line of the cursor comes into sight. */
+    private drawn(doc: Text, isNew: boolean): StateEffect<unknown>[] {
         const { at, also, wrong } = this.marked;
         const here = (lines: number[]): number[] => lines.filter((one) => isWithin(this.window, one)).map((one) => one - this.window.from + 1);
         const [line = null] = at === null ? [] : here([at]);
         const effects: StateEffect<unknown>[] = [setMarked.of({ at: line, also: here(also), wrong: here(wrong) })];
-        const { doc } = this.view.state;
         if (isNew && line !== null && line <= doc.lines) effects.push(EditorView.scrollIntoView(doc.line(line).from, { y: "nearest", yMargin: 60 }));
-        this.view.dispatch({ effects });
+        return effects;
     }
 
     private updated(update: ViewUpdate): void {

@@ -11,7 +11,6 @@ export const KEPT = 200_000;
 
 /** Texts up to so many lines come at once; of a longer one first those round the cursor. */
 const SHORT = 5000;
-const FIRST = 200;
 
 /** Of a text that is not kept whole, as many lines are kept when the cursor rests. */
 export const LONG = 20_000;
@@ -19,8 +18,8 @@ export const LONG = 20_000;
 /** Lines of one answer to be added: more would hold the page up. */
 const PART = 5000;
 
-/** The lines that are fetched first. */
-export const firstWindow = (line: number, lines: number): Window => windowAround(line, lines, lines <= SHORT ? SHORT : FIRST);
+/** The lines that are fetched first: of a longer text as many as fill the pane wherever in it the line comes to stand. */
+export const firstWindow = (line: number, lines: number, inSight: number): Window => windowAround(line, lines, lines <= SHORT ? SHORT : 2 * inSight + 10);
 
 /** The lines that are there in the end. */
 export const lastWindow = (line: number, lines: number): Window => windowAround(line, lines, lines <= KEPT ? KEPT : LONG);

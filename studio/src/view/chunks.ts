@@ -16,6 +16,9 @@ const KEPT = 300e6;
 /** Requests at the same time. */
 const REQUESTS = 6;
 
+/** Chunks of one request, at the most. */
+const TOGETHER = 64;
+
 export interface Chunk {
     number: number;
     /** The middle of its box, mm, which the vertices count from. */
@@ -79,7 +82,7 @@ export class Chunks implements Vertices {
     private readonly kept = new Map<number, Kept>();
     private readonly wanted = new Set<number>();
     /** What is on its way. */
-    private readonly coming = new Set<number>();
+    private readonly coming = new Map<number, Promise<boolean>>();
     private telling: ReturnType<typeof setTimeout> | undefined;
     /** Something has come since it was told. */
     private isNews = false;
@@ -146,7 +149,10 @@ export class Chunks implements Vertices {
 
     /** The vertices at exactly this level. */
     async exact(level: number, chunk: number): Promise<ArrayBuffer | null> {
-        return this.take(level, chunk) ?? this.fetch(level, chunk);
+        const kept = this.take(level, chunk);
+        if (kept !== null) return kept;
+        await (this.coming.get(this.key(level, chunk)) ?? this.fetch(level, chunk, chunk + 1));
+        return this.take(level, chunk);
     }
 
     private take(level: number, chunk: number): ArrayBuffer | null {
@@ -158,37 +164,66 @@ export class Chunks implements Vertices {
 
     private want(key: number): void {
         if (this.coming.has(key)) return;
+        // When all that a picture wants is known.
+        if (this.wanted.size === 0) queueMicrotask(() => this.workAll());
         this.wanted.add(key);
-        void this.work();
+    }
+
+    private workAll(): void {
+        for (let request = 0; request < REQUESTS; request++) void this.work();
     }
 
     private async work(): Promise<void> {
         if (this.running >= REQUESTS) return;
         this.running++;
         try {
-            for (const key of this.wanted) {
-                this.wanted.delete(key);
-                this.coming.add(key);
-                if ((await this.fetch(Math.floor(key / this.walk.chunks) + FINE, key % this.walk.chunks)) !== null) this.tell();
-                this.coming.delete(key);
+            for (let run = this.run(); run !== null; run = this.run()) {
+                const { level, from, to } = run;
+                if (await this.fetch(level, from, to)) this.tell();
             }
         } finally {
             this.running--;
         }
     }
 
-    private async fetch(level: number, chunk: number): Promise<ArrayBuffer | null> {
-        try {
-            const vertices = await this.octets(`${level === FINE ? "fine" : level}/${chunk}`);
-            this.keep(this.key(level, chunk), vertices);
-            return vertices;
-        } catch {
-            return null;
-        }
+    /** Chunks that are wanted, one behind the other. */
+    private run(): { level: number; from: number; to: number } | null {
+        const [first] = this.wanted;
+        if (first === undefined) return null;
+        const level = Math.floor(first / this.walk.chunks) + FINE;
+        const from = first % this.walk.chunks;
+        let to = from;
+        while (to < this.walk.chunks && to - from < TOGETHER && this.wanted.delete(this.key(level, to))) to++;
+        return { level, from, to };
+    }
+
+    /** Fetches chunks of one level; whether any has come. */
+    private fetch(level: number, from: number, to: number): Promise<boolean> {
+        const come = this.get(level, from, to).then((got) => {
+            got.forEach((vertices, i) => this.keep(this.key(level, from + i), vertices));
+            return got.length > 0;
+        }, () => false);
+        const keys = Array.from({ length: to - from }, (_, i) => this.key(level, from + i));
+        for (const key of keys) this.coming.set(key, come);
+        return come.finally(() => {
+            for (const key of keys) this.coming.delete(key);
+        });
+    }
+
+    /** The vertices of chunks: the server may give fewer than were asked for. */
+    private async get(level: number, from: number, to: number): Promise<ArrayBuffer[]> {
+        const octets = await this.octets(`${level === FINE ? "fine" : level}/${from}-${to}`);
+        const data = new DataView(octets);
+        const count = data.getUint32(0, true);
+        let at = 4 + 4 * count;
+        return Array.from({ length: count }, (_, i) => {
+            const begin = at;
+            at += data.getUint32(4 + 4 * i, true) * VERTEX_BYTES;
+            return octets.slice(begin, at);
+        });
     }
 
     private keep(key: number, vertices: ArrayBuffer): void {
-        if (vertices.byteLength % VERTEX_BYTES !== 0) return;
         this.bytes += vertices.byteLength - (this.kept.get(key)?.vertices.byteLength ?? 0);
         this.kept.set(key, { vertices, used: this.frame });
         if (this.bytes <= KEPT) return;

@@ -28,6 +28,9 @@ interface Drag {
     picked: Promise<number | null>;
 }
 
+/** How long the pointer rests before what is under it is fetched, ms. */
+const REST = 40;
+
 /** What a view tells. */
 export interface Tell {
     picked(move: number): void;
@@ -48,6 +51,7 @@ export class Viewer {
     private drag: Drag | null = null;
     private measured: Over["drag"] = null;
     private frame = 0;
+    private resting: ReturnType<typeof setTimeout> | undefined;
     /** All is shown, until somebody moves or zooms: then it stays so when the window changes. */
     private isFitted = true;
     private readonly sizes = new ResizeObserver(() => (this.isFitted ? this.fit() : this.redraw()));
@@ -108,6 +112,7 @@ export class Viewer {
 
     close(): void {
         this.isSought = false;
+        clearTimeout(this.resting);
         cancelAnimationFrame(this.frame);
         this.sizes.disconnect();
         this.host.replaceChildren();
@@ -212,7 +217,10 @@ export class Viewer {
     private move(event: PointerEvent): void {
         const to = this.at(event);
         const { drag } = this;
-        if (drag === null) return this.tell.pointed(this.pointOf(to));
+        if (drag === null) {
+            this.restAt(to);
+            return this.tell.pointed(this.pointOf(to));
+        }
         const [dx, dy] = [to[0] - drag.last[0], to[1] - drag.last[1]];
         drag.moved ||= Math.hypot(to[0] - drag.from[0], to[1] - drag.from[1]) > 3;
         if (!drag.moved) return;
@@ -223,6 +231,12 @@ export class Viewer {
             this.measured = { kind: drag.kind, from: drag.from, to };
             this.redraw();
         }
+    }
+
+    /** Where the pointer rests somebody may click: the exact lines there are fetched before. */
+    private restAt(at: [number, number]): void {
+        clearTimeout(this.resting);
+        this.resting = setTimeout(() => void this.pick(...at), REST);
     }
 
     private up(event: PointerEvent): void {

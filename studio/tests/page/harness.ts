@@ -98,8 +98,10 @@ export interface Visit {
     complaints: string[];
 }
 
-export async function visit(browser: Browser, link: string, more: Parameters<Browser["newPage"]>[0] = {}): Promise<Visit> {
+/** `watch` runs in the page before anything else there. */
+export async function visit(browser: Browser, link: string, more: Parameters<Browser["newPage"]>[0] = {}, watch: () => void = () => {}): Promise<Visit> {
     const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...more });
+    await page.addInitScript(watch);
     page.setDefaultTimeout(10_000);
     const complaints: string[] = [];
     page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));

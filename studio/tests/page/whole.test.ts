@@ -261,9 +261,9 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.locator(".canvas").focus();
         await page.keyboard.press("z");
         for (let step = 0; step < 25; step++) await page.keyboard.press("PageUp");
-        await expect.poll(() => asked.at(-1)).toBe("fine/0");
+        await expect.poll(() => asked.at(-1)).toBe("fine/0-1");
         await page.waitForTimeout(300);
-        expect(asked.filter((path) => path === "fine/0").length).toBe(1);
+        expect(asked.filter((path) => path === "fine/0-1").length).toBe(1);
     });
 
     test("a file that is dropped keeps its name, also in the notice of its edit", async () => {
