@@ -132,6 +132,7 @@ pub(crate) fn write(
         let found = Diagnostic::warning(Rule::CompensatedPath, message);
         walk.findings.warn(found.help("a robot has no compensation").line(line));
     }
+    walk.comes_from_above();
     for record in program.records.iter().filter(|record| matches!(record.op, Op::Clamp(_))) {
         let message = "a clamp of a rotary axis is left out: a robot has none";
         let found = Diagnostic::warning(Rule::Clamp, message).help("nothing to do");
@@ -505,42 +506,54 @@ impl<'a> Walk<'a> {
         self.rapids.is_home(&self.here)
     }
 
+    /// Says where a toolpath stays below its zero, which may be within a hole: nothing in it says how high the part is there.
+    fn comes_from_above(&mut self) {
+        let top = self.rapids.top(Vec3::Z);
+        if !top.is_finite() || top >= 0.0 {
+            return;
+        }
+        let message = format!(
+            "the toolpath goes no higher than Z{top:.1}, below its zero: joints lead the tool from home to there and back, in a hole or a pocket through \
+             its wall"
+        );
+        let help = "begin and end the toolpath with a rapid above the part";
+        self.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
+    }
+
     /// The refusal of a rapid from one place to another.
     fn no_way(&self, ends: [&Position; 2]) -> Diagnostic {
-        let high = "joints lead the tool off the line of the source only where it is beyond all cuts and as high, along its axis, as the source \
-                    ever goes with its tool leaning so";
-        let [from, to] = ends.map(|end| (self.rapids.is_home(end), self.rapids.below(end)));
+        let high = "off the line of the source joints may lead the tool only where it is beyond all cuts and as high along its axis as the source ever \
+                    goes with it leaning so";
         let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
+        let [from, to] = ends.map(|end| (self.rapids.is_home(end), self.rapids.below(end)));
         for (is_home, below) in [from, to] {
             if is_home && below > 0.0 {
-                let message = format!(
-                    "the arm cannot go from home or there: {high}, and home is {below:.1} mm lower than that"
-                );
+                let message = format!("home is {below:.1} mm too low: {high}");
                 let help = format!(
-                    "a higher `home` below [cell], or {place}; or a source that does not go so high"
+                    "a higher `home` below [cell], a toolpath whose highest rapid is lower, or {place}"
                 );
                 return Diagnostic::error(Rule::RapidPath, message).help(help);
             }
         }
-        let up = |what: &str, (_, below): (bool, f64)| match below > 0.0 {
-            true => format!("{below:.1} mm up along the tool from where the rapid {what}"),
-            false => format!("where the rapid {what}"),
+        let up = |(_, below): (bool, f64)| match below > 0.0 {
+            true => format!("{below:.1} mm above it along the tool"),
+            false => String::from("there"),
         };
-        let (what, straight) = match (from.0, to.0) {
-            (_, true) => ("the arm finds no way home", ""),
-            (true, false) => ("the arm finds no way here from home", ""),
-            (false, false) => (
-                "the arm cannot go here by rapid",
-                "; straight the posture or a turn of a joint would not fit",
-            ),
+        let what = match (from.0, to.0) {
+            (_, true) => "the arm finds no way home",
+            (true, false) => "the arm finds no way here from home",
+            (false, false) => {
+                "the arm cannot go here by rapid: straight the posture or a turn of a joint does not fit"
+            }
         };
         let message = format!(
-            "{what}: {high}, and so none leads by {} and {}{straight}",
-            up("begins", from),
-            up("ends", to)
+            "{what}; {high}, at the beginning {}, at the end {}, and no such way is found, nor one up to {:.0} mm higher",
+            up(from),
+            up(to),
+            rapid::RETRACTS[rapid::RETRACTS.len() - 1]
         );
         let own = format!(
-            "a source that goes no higher than it has to, a rapid that lifts the tool before it turns, or {place}"
+            "a toolpath whose highest rapid is lower, a rapid that lifts the tool before it turns, or {place}"
         );
         let [from, to] = ends.map(|at| self.arm.posture(&at.joints));
         let changes = [

@@ -50,7 +50,7 @@ pub(super) struct RapidSegment {
 }
 
 /// How far the tool is retracted beyond what it has to be, mm: the first that gives a path is taken.
-const RETRACTS: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 80.0, 200.0];
+pub(super) const RETRACTS: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 80.0, 200.0];
 
 /// Wrist and elbow are at least so far from stretched or folded along a straight line, radians, and the wrist so far from axis 1, mm:
 /// nearer to that controllers slow down or stop.
@@ -158,7 +158,7 @@ impl<'a> RapidPlanner<'a> {
     }
 
     /// How high the source goes along `axis` with its tool leaning alike, mm.
-    fn top(&self, axis: Vec3) -> f64 {
+    pub(super) fn top(&self, axis: Vec3) -> f64 {
         self.tops.get_or_init(|| Tops::of(self.source)).along(axis)
     }
 

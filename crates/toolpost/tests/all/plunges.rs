@@ -122,7 +122,8 @@ fn joints_that_lead_the_tool_aside_within_a_plunge_are_refused() {
         let report = proof_of(&source, &machine, &text);
         let found = report.mismatches.first().unwrap_or_else(|| panic!("{tip:?} proven\n{text}"));
         assert_eq!(found.rule.name(), "rapid-path", "{found}");
-        let why = ["beyond the cuts along the tool", "lower along it than the source ever goes"];
+        let why =
+            ["beyond the cuts along the tool", "lower along the tool than the source ever goes"];
         assert!(why.iter().any(|why| found.message.contains(why)), "{found}");
     }
 }
@@ -232,5 +233,22 @@ fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
     let report = proof_of(&source, &machine, &damaged);
     let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{damaged}"));
     assert_eq!(found.rule.name(), "rapid-path", "{found}");
-    assert!(found.message.contains("lower along it than the source ever goes"), "{found}");
+    assert!(found.message.contains("lower along the tool than the source ever goes"), "{found}");
+}
+
+/// A source that stays within a hole: nothing tells its highest place from one above the part, but that it is below zero.
+#[test]
+fn a_source_that_never_goes_above_its_zero_is_told() {
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    let head = "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-40\nFEDRAT/MMPM,300\nGOTO/100,50,-60\nRAPID\n";
+    for (end, told) in [("GOTO/100,50,-30\n", true), ("GOTO/100,50,5\n", false)] {
+        let output = post::write(&source(&format!("{head}{end}SPINDL/OFF\nFINI\n")), &machine);
+        let warnings = output.unwrap().warnings;
+        let found = warnings.iter().find(|found| found.rule.name() == "home-height");
+        assert_eq!(
+            found.is_some_and(|found| found.message.contains("Z-30.0")),
+            told,
+            "{warnings:?}"
+        );
+    }
 }

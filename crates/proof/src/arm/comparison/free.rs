@@ -63,7 +63,7 @@ impl Comparison<'_> {
                 false => String::new(),
             };
             format!(
-                "{low:.2} mm lower along it than the source ever goes with its tool leaning so{besides}: nobody knows what is around it there"
+                "{low:.2} mm lower along the tool than the source ever goes with it leaning so{besides}: nobody knows what is around it there"
             )
         })
     }
