@@ -31,11 +31,18 @@ pub struct Settings {
     pub named: Vec<(Source, Layer)>,
     /// The options as they are typed: the report keeps them.
     pub typed: Vec<String>,
+    /// Those of them that stand in a file, and in which.
+    pub stated: Option<String>,
     /// What was found in a file with options.
     pub found: Vec<Diagnostic>,
 }
 
 impl Settings {
+    /// What of it is reported: that options of a file count.
+    fn row(&self) -> Option<(&'static str, String)> {
+        Some(("options", self.stated.clone()?))
+    }
+
     /// The files that it names.
     pub(crate) fn files(&mut self) -> impl Iterator<Item = &mut Source> {
         self.heights.iter_mut().chain(self.named.iter_mut().map(|(file, _)| file))
@@ -83,11 +90,12 @@ pub(crate) fn make(
     let settings = options.board.as_deref().cloned().unwrap_or_default();
     let (job, board) = begun(source, options, machine, &settings)?;
     let made = job.make(&board, follows)?;
-    let account = made.account(&job, settings.found.clone());
+    let mut account = made.account(&job, settings.found.clone());
     if !matches!(account.verdict, Verdict::Done | Verdict::Partly) {
         return Err(account.into());
     }
     follows.step("drawing");
+    account.rows.extend(settings.row());
     let report = format!("{:#}\n", account.data);
     let contents = made.contents(&job, &report);
     let contents = contents.into_iter().map(|(name, bytes)| (name, bytes.to_vec())).collect();
@@ -105,7 +113,7 @@ pub(crate) fn make(
         inputs,
         account,
     });
-    let (text_name, text) = shown(&made);
+    let (text_name, text) = shown(made.name(), &made.files, made.layers());
     let areas: Vec<BoardAreas> = made.programs.iter().map(|program| made.areas(program)).collect();
     let programs = made.programs.into_iter().zip(areas).enumerate();
     let job = |(number, (program, areas)): (usize, (pcb::Program, BoardAreas))| {
@@ -163,15 +171,11 @@ pub(crate) fn prove(
     let name = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let program = (encoding::without_mark(&text), &folders);
     let compared = job.prove(&board, (&name, &file), program, follows)?;
-    let pcb::Compared { account, mut toolpath, machine, widths } = compared;
+    let pcb::Compared { mut account, mut toolpath, machine, widths, board, files, layers } =
+        compared;
+    account.rows.extend(settings.row());
     let report = report_of(&account, &text, &folders, &toolpath, &machine)?;
-    let shown = match &board[..] {
-        [one] => (one.name(), one.text().unwrap_or_default()),
-        files => {
-            let names = files.iter().map(|file| format!("{}\n", file.name())).collect::<String>();
-            (toolpath.file.clone(), names.into_bytes())
-        }
-    };
+    let shown = shown(&board, &files, &layers);
     toolpath.file = shown.0;
     follows.step("drawing");
     let (origins, parts, board) = (Origins::default(), Vec::new(), None);
@@ -182,15 +186,12 @@ pub(crate) fn prove(
 
 /// What is shown as the source: the file of a board that is one file, of others what each was taken for. No line of a program is made by a
 /// line of it.
-fn shown(made: &pcb::Made) -> (String, Vec<u8>) {
-    match &made.files[..] {
+fn shown(board: &str, files: &[Source], layers: &[(String, String)]) -> (String, Vec<u8>) {
+    match files {
         [file] => (file.name(), file.text().unwrap_or_default()),
         _ => {
             let line = |(file, layer): &(String, String)| format!("{file}: {layer}\n");
-            (
-                made.name().to_owned(),
-                made.layers().iter().map(line).collect::<String>().into_bytes(),
-            )
+            (board.to_owned(), layers.iter().map(line).collect::<String>().into_bytes())
         }
     }
 }

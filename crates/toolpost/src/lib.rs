@@ -53,7 +53,7 @@ const INTERRUPTED: u8 = 130;
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let (is_quiet, is_json) = said_first(&words);
-    let settings::Expanded { words, found, origins } = match settings::expanded(words) {
+    let settings::Expanded { words, found, origins, .. } = match settings::expanded(words) {
         Ok(expanded) => expanded,
         Err(stop) => return Answer::from(stop).say(is_quiet, is_json),
     };

@@ -13,9 +13,12 @@ use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
 
 /// A command line with the options of a file in it.
+#[derive(Default)]
 pub struct Expanded {
     /// Its words.
     pub words: Vec<OsString>,
+    /// Those of them that stand in the file.
+    pub stated: Vec<String>,
     /// What was found in the file.
     pub found: Vec<Diagnostic>,
     /// Where its options stand.
@@ -68,12 +71,12 @@ const ELSEWHERE: [&str; 9] =
 /// # Errors
 /// What is wrong with the file.
 pub fn expanded(words: Vec<OsString>) -> Result<Expanded, Stop> {
-    let as_typed = |words| Ok(Expanded { words, found: Vec::new(), origins: Vec::new() });
+    let as_typed = |words| Ok(Expanded { words, ..Expanded::default() });
     let Some(typed) = of_board(&words) else { return as_typed(words) };
     let Some(file) = file(&typed) else {
         let found = lies_beside(&typed, SETTINGS[1]).map(|file| unused(&file));
         let found = found.into_iter().collect();
-        return Ok(Expanded { words, found, origins: Vec::new() });
+        return Ok(Expanded { words, found, ..Expanded::default() });
     };
     with(words, &Source::File(file))
 }
@@ -104,22 +107,16 @@ pub fn with(words: Vec<OsString>, file: &Source) -> Result<Expanded, Stop> {
     let more = spelled(&stated, &typed, file).map_err(|found| {
         Stop::invalid(found.into_iter().map(|found| found.file(&name)).collect())
     })?;
-    let mut all = Vec::with_capacity(words.len() + more.len());
-    let mut more = Some(more);
-    for word in words {
-        let is_command = word == "pcb";
-        all.push(word);
-        if is_command {
-            all.extend(more.take().into_iter().flatten().map(OsString::from));
-        }
-    }
+    let mut all = words;
+    let behind = all.iter().position(|word| word == "pcb").map_or(all.len(), |command| command + 1);
+    all.splice(behind..behind, more.iter().map(OsString::from));
     let line_of = |line: u32| text.lines().nth((line as usize).wrapping_sub(1));
     let origin = |Stated { name, line, .. }: Stated| {
         let text = line_of(line)?.to_owned();
         Some(Origin { option: name, file: file.display().to_string(), line, text })
     };
     let origins = stated.into_iter().filter_map(origin).collect();
-    Ok(Expanded { words: all, found, origins })
+    Ok(Expanded { words: all, stated: more, found, origins })
 }
 
 /// The options of a command line as they are typed, each with its value in one word, for a later proof: without those that say

@@ -149,13 +149,16 @@ fn options(
     }
     words.extend(["--", "source"].map(str::to_owned));
     let words: Vec<OsString> = words.into_iter().map(Into::into).collect();
-    let (words, found) = match more {
+    let (words, found, stated) = match more {
         Some(More { file, is_asked }) if *is_asked || file.name() == app::pcb::SETTINGS[0] => {
-            let Expanded { words, found, .. } = settings::with(words, file)?;
-            (words, found)
+            let Expanded { words, found, stated, .. } = settings::with(words, file)?;
+            let stated: Vec<&str> =
+                stated.iter().map(|word| word.trim_start_matches('-')).collect();
+            let row = format!("{} from {}", stated.join(" "), file.path().display());
+            (words, found, (!stated.is_empty()).then_some(row))
         }
-        Some(More { file, .. }) => (words, vec![settings::unused(file.path())]),
-        None => (words, Vec::new()),
+        Some(More { file, .. }) => (words, vec![settings::unused(file.path())], None),
+        None => (words, Vec::new(), None),
     };
     let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
         let message = crate::shortened(usage).render().to_string();
@@ -184,6 +187,7 @@ fn options(
                 heights: pcb.running.heights.clone().map(Source::File),
                 named: named.map(|(file, layer)| (Source::File(file), layer)).collect(),
                 typed: settings::options(&words),
+                stated,
                 found,
             };
             Ok(Options {
@@ -272,6 +276,9 @@ mod tests {
         assert_eq!(board.plan.isolation.tool, Some(0.2032));
         assert_eq!(board.plan.isolation.passes, 3);
         assert_eq!(board.heights.unwrap().path(), Path::new("lamp/map.txt"));
+        // What counts of it is said.
+        let stated = "passes=3 heights=lamp/map.txt from lamp/toolpost.toml";
+        assert_eq!(board.stated.as_deref(), Some(stated));
         // A project of pcb2gcode is used where it is asked for, and else it is said that it is not.
         let project = "metric=true\nmill-diameters=0.3\nextra-passes=2\n";
         let read = |is_asked| {

@@ -66,6 +66,12 @@ pub struct Compared {
     pub machine: Machine,
     /// As of [`Program::widths`].
     pub widths: Vec<(u32, String, f64)>,
+    /// What the board is called.
+    pub board: String,
+    /// As of [`Made::files`].
+    pub files: Vec<input::Source>,
+    /// As of [`Made::layers`].
+    pub layers: Vec<(String, String)>,
 }
 
 /// The programs of a board.
@@ -201,7 +207,7 @@ impl<'a> Job<'a> {
         watch: &dyn Watch,
     ) -> Result<Compared, Stop> {
         let running = &self.settings.running;
-        let Begun { shop, tasks, .. } = self.begun(board, watch)?;
+        let Begun { shop, tasks, layers, files, .. } = self.begun(board, watch)?;
         let is_called = |of: &str| of == name || self.file(of) == file;
         let probe = running.probe.filter(|_| is_called(PROBE) && !running.on_control);
         let (toolpath, place) = match (probe, tasks.iter().find(|task| is_called(&task.name))) {
@@ -221,7 +227,8 @@ impl<'a> Job<'a> {
         let account = prove::compare(&toolpath, &machine, text, self.tolerances, watch)?;
         let work = tasks.into_iter().find(|task| is_called(&task.name)).map(|task| task.work);
         let widths = widths(&toolpath, &work.unwrap_or_default());
-        Ok(Compared { account, toolpath, machine, widths })
+        let board = shop.front.board.name.clone();
+        Ok(Compared { account, toolpath, machine, widths, board, files, layers })
     }
 
     /// Everything up to the programs: the board is read, and what is cut of it is planned.

@@ -29,9 +29,9 @@ fn options(
     let heights = given.first().map(|(_, file)| app::Source::File(file.into()));
     // Of the file beside a board these tests take its size.
     let size = |More { file, .. }: &More| format!("{} {}", file.name(), file.read().unwrap().len());
-    let typed = beside.map(size);
-    let typed = typed.into_iter().collect();
-    let board = Settings { plan: plan(), heights, typed, ..Settings::default() };
+    let stated = beside.map(size);
+    let typed = stated.clone().into_iter().collect();
+    let board = Settings { plan: plan(), heights, typed, stated, ..Settings::default() };
     Ok(Options { board: Some(Box::new(board)), ..Options::default() })
 }
 
@@ -315,12 +315,50 @@ fn the_options_in_a_file_beside_a_board_are_taken() {
         let params = json!({ "revision": job["revision"], "path": "out", "replace": true });
         page.done("save", params);
         let report = fs::read(studio.own().join("out/report.json")).unwrap();
-        serde_json::from_slice::<Value>(&report).unwrap()["options"].clone()
+        let report = serde_json::from_slice::<Value>(&report).unwrap()["options"].clone();
+        (report, told(&job["board"]))
     };
-    assert_eq!(saved(json!({ "folder": "lamp" })), json!([]));
+    assert_eq!(saved(json!({ "folder": "lamp" })), (json!([]), None));
     fs::write(beside, "passes = 2\n").unwrap();
+    // The page says that they count.
+    let row = Some(String::from("toolpost.toml 11"));
     for source in [json!({ "folder": "lamp" }), json!({ "file": "lamp/lamp.toml" })] {
-        assert_eq!(saved(source), json!(["toolpost.toml 11"]));
+        assert_eq!(saved(source), (json!(["toolpost.toml 11"]), row.clone()));
+    }
+    let front = post(&mut page, json!({ "folder": "lamp" }));
+    assert_eq!(told(&edited(&mut page, json!({ "folder": "lamp" }), &front)), row);
+}
+
+/// What is said of options that stand in a file.
+fn told(of: &Value) -> Option<String> {
+    let mut rows = of["rows"].as_array().unwrap().iter();
+    rows.find(|row| row[0] == "options").map(|row| row[1].as_str().unwrap().to_owned())
+}
+
+/// A program of a board, edited by one blank.
+fn edited(page: &mut Socket, source: Value, job: &Value) -> Value {
+    let text = text_of(page, job).replacen("G0 ", "G0  ", 1);
+    let mut params = params(source);
+    params["file"] = job["program"]["file"].clone();
+    let frame = page.answer("prove", params, &[Array::text("text", text)]).unwrap();
+    frame.head["done"].clone()
+}
+
+#[test]
+fn beside_an_edited_program_stands_the_same_source() {
+    let studio = studio();
+    plots(&studio.own().join("plots"), &[("b.gtl", &track()), ("b.gko", &edge(CLOSED))]);
+    let mut page = studio.socket();
+    for folder in ["plots", "lamp"] {
+        let front = post(&mut page, json!({ "folder": folder }));
+        let edit = edited(&mut page, json!({ "folder": folder }), &front);
+        assert_eq!((&edit["verdict"], &edit["source"]), (&json!("done"), &front["source"]));
+        let mut source = |job: &Value| {
+            let params =
+                json!({ "revision": job["revision"], "of": "source", "from": 1, "to": 99 });
+            page.answer("text", params, &[]).unwrap().take_text("text")
+        };
+        assert_eq!(source(&edit), source(&front), "{folder}");
     }
 }
 
@@ -395,8 +433,8 @@ fn a_board_tells_its_steps_and_is_ended_in_the_midst_of_them() {
             Some(step) if frame.head["part"].is_null() => {
                 steps.push(step.as_str().unwrap().to_owned());
             }
-            Some(_) => {}
-            None => break,
+            None if frame.head.contains_key("done") => break,
+            _ => {}
         }
     }
     steps.dedup();
