@@ -4,6 +4,13 @@ import type { Screen } from "../screen/screen.ts";
 /** What nobody knows is a dash. */
 const number = (value: number | null | undefined, digits = 3): string => (value === null || value === undefined ? "–" : value.toFixed(digits));
 
+/** Why an axis or the tip is a dash. */
+export const UNKNOWN =
+    "The program alone does not tell: it depends on what is set at the machine, behind a way home or a retract in machine coordinates, or while the control leads the tip of a tool whose length is not given";
+
+/** Why something else is. */
+const NOT_SAID = "None, or the program has not said it so far";
+
 /** Axes, feed, spindle and the rest at the cursor. */
 export function Readout({ screen }: { screen: Screen }) {
     const place = screen.studio.cursor.place.value;
@@ -24,8 +31,8 @@ export function Readout({ screen }: { screen: Screen }) {
     ];
     return (
         <dl class="readout" aria-label="At the cursor">
-            {parts.map(([name, value, unit]) => (
-                <div key={name}>
+            {parts.map(([name, value, unit], row) => (
+                <div key={name} title={why(value, row <= axes.length)}>
                     <dt>{name}</dt>
                     <dd>
                         {value} <small>{unit === "degrees" ? "°" : unit}</small>
@@ -46,4 +53,10 @@ export function Readout({ screen }: { screen: Screen }) {
             )}
         </dl>
     );
+}
+
+/** Why there is a dash, where there is one: the axes and the tip come first. */
+function why(value: string, isPosition: boolean): string | undefined {
+    if (!value.includes("–")) return undefined;
+    return isPosition ? UNKNOWN : NOT_SAID;
 }

@@ -6,7 +6,7 @@ import type { Job } from "../protocol/asks.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
 import { Viewer } from "../view/viewer.ts";
-import { Readout } from "./Readout.tsx";
+import { Readout, UNKNOWN } from "./Readout.tsx";
 
 /** The picture of the walk: one view, or four. */
 export function View({ screen }: { screen: Screen }) {
@@ -40,6 +40,7 @@ export function View({ screen }: { screen: Screen }) {
                     </select>
                 </label>
                 {mode.value === "deviation" && <span class="soft">{deviations(screen.studio.job.value)}</span>}
+                <MachineAbsent screen={screen} />
             </header>
             <div class={four.value ? "body views four" : "body views"}>
                 {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
@@ -50,6 +51,17 @@ export function View({ screen }: { screen: Screen }) {
             </div>
             <Readout screen={screen} />
         </section>
+    );
+}
+
+/** Why the machine is not drawn. */
+function MachineAbsent({ screen }: { screen: Screen }) {
+    const unknown = screen.machine.value ? screen.unknownAxes : [];
+    if (unknown.length === 0) return null;
+    return (
+        <span class="soft" title={UNKNOWN}>
+            not drawn here: where {unknown.join(", ")} {unknown.length === 1 ? "stands" : "stand"} is not known
+        </span>
     );
 }
 

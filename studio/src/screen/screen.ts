@@ -13,7 +13,7 @@ import { theme, type Mode } from "../view/colours.ts";
 import { bodiesOf } from "../view/linkage.ts";
 import { Rows } from "../view/rows.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
-import { toolBody } from "../view/solids.ts";
+import { lengthOf, toolBody, wireBody } from "../view/solids.ts";
 import type { Triangles } from "../view/strip.ts";
 import { along, type Vector } from "../view/vector.ts";
 import type { Walking } from "../view/walking.ts";
@@ -30,6 +30,9 @@ export function vector(coordinates: (number | null)[]): Vector | null {
 
 /** Upright where it is not known. */
 export const axisOf = (axis: (number | null)[]): Vector => vector(axis) ?? [0, 0, 1];
+
+/** Length of a tool of which nothing is known, where the machine is drawn round it, mm. */
+const POINTER = 80;
 
 /** What waits for the picture does not wait longer, ms. */
 const LATE = 2000;
@@ -179,21 +182,34 @@ export class Screen {
     marks(): Marks {
         const { cursor, job } = this.studio;
         const place = cursor.place.value;
-        const size = 40 / Math.max(this.viewer?.camera.scale ?? 1, 1e-3);
+        const pixel = 1 / Math.max(this.viewer?.camera.scale ?? 1, 1e-3);
+        const bodies = place === null || !this.machine.value ? [] : this.bodiesAt(place);
+        const isHeld = bodies.length > 0 && job.value?.machine.kind !== "robot";
+        const size = isHeld ? POINTER : 40 * pixel;
         return {
             now: place === null ? null : place.move,
             pale: this.pale.value && cursor.by.value === "time",
             ofBlock: cursor.ofBlock.value,
             mismatch: job.value?.walk.mismatch ?? null,
-            bodies: place === null || !this.machine.value ? [] : this.bodiesAt(place),
-            tool: place === null ? null : this.toolAt(place, size),
+            bodies,
+            tool: place === null ? null : this.toolAt(place, size, pixel),
         };
     }
 
     /** The tool, where it is known where it is. */
-    private toolAt({ tool, tip, axis }: Place, size: number): Triangles | null {
+    private toolAt({ tool, tip, axis }: Place, size: number, pixel: number): Triangles | null {
+        const { job } = this.studio;
         const at = vector(tip);
-        return at === null ? null : toolBody(this.toolOf(tool), at, axisOf(axis), size);
+        if (at === null || job.value === null) return null;
+        const wire = this.wireOf(job.value);
+        return wire === null ? toolBody(this.toolOf(tool), at, axisOf(axis), size) : wireBody(at, axisOf(axis), wire, 1.5 * pixel);
+    }
+
+    /** The axes of which nobody knows where they are: then the machine is not drawn. */
+    get unknownAxes(): string[] {
+        const place = this.studio.cursor.place.value;
+        const axes = this.studio.job.value?.machine.axes ?? [];
+        return place === null ? [] : axes.flatMap(({ name }, i) => ((place.axes[i] ?? null) === null ? [name] : []));
     }
 
     /** The machine round the tool, where all its axes are known. */
@@ -203,7 +219,7 @@ export class Screen {
         if (known.length !== axes.length) return [];
         const at = vector(tip);
         if (kind === "robot") return bodiesOf(linkage, known, null);
-        return at === null ? [] : bodiesOf(linkage, known, { tip: at, length: this.toolOf(tool)?.length ?? 0 });
+        return at === null ? [] : bodiesOf(linkage, known, { tip: at, length: lengthOf(this.toolOf(tool), POINTER) });
     }
 
     toolOf(place: number | null): ToolUse | null {

@@ -26,15 +26,29 @@ function turned(tip: Vector, axis: Vector, outline: [radius: number, height: num
     return { corners: Float32Array.from(corners), colour };
 }
 
+/** How long the tool is drawn: a pointer of `size` mm where nothing of it is known. */
+export function lengthOf(tool: ToolUse | null, size: number): number {
+    const length = tool?.length ?? 0;
+    if (length > 0) return length;
+    const diameter = tool?.diameter ?? 0;
+    return diameter > 0 ? diameter * 2 : size;
+}
+
 /** The tool at its tip: its own shape where it is known, else a pointer of `size` mm. */
 export function toolBody(tool: ToolUse | null, tip: Vector, axis: Vector, size: number): Triangles {
     const radius = (tool?.diameter ?? 0) / 2;
-    if (radius <= 0) return turned(tip, axis, [[0, 0], [size / 6, size / 2], [size / 6, size]], [230, 120, 0]);
+    const length = lengthOf(tool, size);
+    if (radius <= 0) return turned(tip, axis, [[0, 0], [size / 6, size / 2], [size / 6, length]], [230, 120, 0]);
     const corner = Math.min(tool?.corner ?? 0, radius);
     const rounded = [0, 1, 2, 3, 4, 5, 6].map((i): [number, number] => {
         const angle = (i / 6) * (Math.PI / 2);
         return [radius - corner + corner * Math.sin(angle), corner - corner * Math.cos(angle)];
     });
-    const length = Math.max(tool?.length ?? 0, radius * 4);
     return turned(tip, axis, [[0, 0], ...rounded, [radius, length], [0, length]], [200, 170, 60]);
+}
+
+/** A wire from its lower end to a plane `height` mm above it. */
+export function wireBody(low: Vector, axis: Vector, height: number, radius: number): Triangles {
+    const length = height / axis[2];
+    return turned(low, axis, [[0, 0], [radius, 0], [radius, length], [0, length]], [230, 120, 0]);
 }

@@ -28,6 +28,21 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.close();
     });
 
+    test("a machine that is not drawn says why: the tip is led, and the tool's length is not given", async () => {
+        const server = await Server.start([example("dome.cls")], ["-m", "fanuc-table-bc"]);
+        const { page } = await visit(browser(), server.link);
+        await proven(page);
+        await page.getByRole("button", { name: "Machine", exact: true }).click();
+        await goTo(page, "m1146");
+        await page.getByText("not drawn here: where X, Y, Z stand is not known").waitFor();
+        expect(await page.locator(".readout > div", { hasText: "Z–" }).first().getAttribute("title")).toContain("whose length is not given");
+        // Tool 1 cuts on three axes, all of which the program says.
+        await goTo(page, "m20");
+        await page.getByText("not drawn here").waitFor({ state: "detached" });
+        await accessible(page, "machine");
+        await page.close();
+    });
+
     test("all blocks of a record are marked: on a HEIDENHAIN the centre of an arc has a block of its own", async () => {
         const server = await Server.start([example("plate.cls")], ["-m", "generic-3axis-heidenhain"]);
         const { page, complaints } = await visit(browser(), server.link);
