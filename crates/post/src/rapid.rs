@@ -586,13 +586,12 @@ impl Walk<'_> {
         })
     }
 
-    /// Whether the tool may go by these places off the straight way between two poses, where it does not turn: they are beyond all cuts; and
-    /// where one of the ends is below where a feed begins, so that the way may lead through a hole, not below the higher end.
+    /// Whether the tool may go by these places off the straight way between two poses, where it does not turn: they are beyond all cuts,
+    /// and, since a hole or a pocket may be around the tool, not below the higher end.
     fn are_free(&mut self, tips: &[Vec3], ends: [&Pose; 2]) -> bool {
         let axis = ends[1].axis();
-        let is_in = ends.iter().any(|end| self.is_near_cuts(end));
         let heights = ends.map(|end| end.point().dot(axis));
-        let floor = if is_in { heights[0].max(heights[1]) - ROUNDING } else { f64::NEG_INFINITY };
+        let floor = heights[0].max(heights[1]) - ROUNDING;
         tips.iter().all(|tip| tip.dot(axis) >= floor && self.is_beyond(*tip, axis))
     }
 

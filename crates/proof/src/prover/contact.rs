@@ -240,7 +240,7 @@ impl Prover<'_> {
     }
 
     /// Whether the tool stands where the source may have something around it.
-    pub(super) fn is_near(&mut self, at: &ResolvedPose) -> bool {
+    fn is_near(&mut self, at: &ResolvedPose) -> bool {
         if !at.place.known() {
             return false;
         }

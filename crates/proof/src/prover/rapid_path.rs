@@ -3,7 +3,7 @@
 //! A block goes near the part only on the straight way that the source goes by rapid, along the tool axis away from a
 //! place or down to it, or from home along Z. Any other way must be beyond all that the source cuts, along the tool
 //! axis as it is at each point. Where the axes of the machine go each at its own speed, the way is anywhere in the box
-//! that they span; of a way out of what is fed through, or into it, that box may not be below its higher end either.
+//! that they span, and that box may not be below its higher end either.
 
 use super::*;
 use crate::line::{blend, turn};
@@ -88,8 +88,7 @@ impl Prover<'_> {
         let slack = self.gauge.slack(here);
         if let Some(low) = self.below_its_end([here, to], &elsewhere) {
             let what = format!(
-                "leaves the straight way of the source {} mm below its higher end: one of its ends is below where the source \
-                 begins to feed, so that there may be a hole around it",
+                "leaves the straight way of the source {} mm below its higher end: there may be a hole or a pocket around it",
                 Number(low)
             );
             self.note_rapid(way, elsewhere.into_iter(), to.line);
@@ -107,9 +106,8 @@ impl Prover<'_> {
         Some(self.way_refused(to, &what))
     }
 
-    /// How far the axes, going each at its own speed, lead the tool below the higher end of a way on which it does not turn, mm, where
-    /// one of the ends is below where a feed of the source begins: in a hole that was drilled by moves the tool is beyond all cuts
-    /// everywhere but at its bottom.
+    /// How far the axes, going each at its own speed, lead the tool below the higher end of a way on which it does not turn, mm: in a
+    /// hole or a pocket that was there before, or was drilled by moves, the tool is beyond all cuts everywhere but at its bottom.
     fn below_its_end(
         &mut self,
         ends: [&ResolvedPose; 2],
@@ -117,7 +115,7 @@ impl Prover<'_> {
     ) -> Option<f64> {
         let axis = ends[1].place.axis;
         let turns = ends[0].position.orientation != ends[1].position.orientation;
-        if self.gauge.straight_rapids || turns || !ends.iter().any(|end| self.is_near(end)) {
+        if self.gauge.straight_rapids || turns {
             return None;
         }
         let height = |place: &PartialPose| place.tip.dot(axis);

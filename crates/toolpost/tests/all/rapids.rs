@@ -395,12 +395,9 @@ fn from_home_only_z_comes_down() {
     assert_eq!(refused(&source, &machine, &(all.join("\n") + "\n")), [("rapid-path", line)]);
 }
 
-/// A head that leans the tool and axes that go each at its own speed: off its straight way the tool would cut the wall of the hole, though it is
-/// beyond the bottom, which is all that a plunge cuts.
-#[test]
-fn a_hole_along_a_leaning_tool_is_left_and_entered_straight_where_each_axis_goes_at_its_own_speed()
-{
-    let machine = machine::load_text(
+/// A head that turns about Y, and axes that go each at its own speed.
+fn leaning_head() -> Machine {
+    machine::load_text(
         "head.toml",
         "extends = \"fanuc-31i\"\n[orientation]\nsimultaneous = \"tool-center-angles\"\npositioned = \"tool-center-angles\"\n\
          tolerance = 0.005\n[settings]\nrapid_path = \"independent\"\nrotary_by_sign = false\ntool_radius = \"full\"\n\
@@ -408,7 +405,15 @@ fn a_hole_along_a_leaning_tool_is_left_and_entered_straight_where_each_axis_goes
          Z = { min = -1400, max = 1400, rapid = 10000, acceleration = 4 }\n\
          [[rotary]]\nletter = \"B\"\non = \"head\"\naxis = [0, 1, 0]\npoint = [0, 0, 250]\nsign = -1\nmin = -110\nmax = 110\nrapid = 3600\nacceleration = 300\n",
     )
-    .unwrap();
+    .unwrap()
+}
+
+/// A head that leans the tool and axes that go each at its own speed: off its straight way the tool would cut the wall of the hole, though it is
+/// beyond the bottom, which is all that a plunge cuts.
+#[test]
+fn a_hole_along_a_leaning_tool_is_left_and_entered_straight_where_each_axis_goes_at_its_own_speed()
+{
+    let machine = leaning_head();
     // Drilled from (105, 5) down to (40, -60), by a peck at (46, -54).
     let at = |place: &str| format!("GOTO/{place},0.70710678,0,0.70710678\n");
     let [top, above, peck, back, bottom] =
@@ -435,4 +440,60 @@ fn a_hole_along_a_leaning_tool_is_left_and_entered_straight_where_each_axis_goes
         let found = rules(&text.replacen(own, by_rapid, 1));
         assert!(found.contains(&"rapid-path".into()), "{by_rapid}: {found:?}");
     }
+}
+
+/// In a bore that was there before nothing is fed but at its bottom: no rapid in it begins or ends where a feed does, and off its straight
+/// way each would lead the tool into the wall, though it is far beyond all cuts.
+#[test]
+fn further_rapids_in_a_bore_along_a_leaning_tool_are_straight_too() {
+    let machine = leaning_head();
+    let at = |place: &str| format!("GOTO/{place},0.70710678,0,0.70710678\n");
+    // The bore leads from (105, 5) down to (40, -60); its bottom is milled along Y, from (42, -58) on.
+    let [top, above, middle, over, bottom, beside] =
+        ["145,0,45", "105,0,5", "70,0,-30", "42,0,-58", "40,0,-60", "40,8,-60"].map(at);
+    let source = read(&format!(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\n{top}RAPID\n{above}RAPID\n{middle}\
+         RAPID\n{over}FEDRAT/MMPM,300\n{bottom}{beside}{bottom}RAPID\n{over}RAPID\n{middle}RAPID\n{above}RAPID\n{top}SPINDL/OFF\nFINI\n"
+    ));
+    let text = text(&written(&source, &machine));
+    let rules = |text: &str| {
+        let report =
+            proof::prove(&source, &machine, "job.nc", text.as_bytes(), &Default::default());
+        report.mismatches.iter().map(|found| found.rule.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(rules(&text), [""; 0], "{text}");
+    // They are written by feed; by rapid none of them is proven.
+    for (own, by_rapid) in [
+        ("N150 X70. Z-30.\nN160 ", "N150 G0 X70. Z-30.\nN160 G1 "),
+        ("N160 X42. Z-58.\nN170 ", "N160 G0 X42. Z-58.\nN170 G1 "),
+        ("N200 X42. Z-58.\nN210 ", "N200 G0 X42. Z-58.\nN210 G1 "),
+        ("N210 X70. Z-30.\nN220 ", "N210 G0 X70. Z-30.\nN220 G1 "),
+        ("N220 X105. Z5.\nN230 ", "N220 G0 X105. Z5.\nN230 G1 "),
+        ("N230 X145. Z45.", "N230 G0 X145. Z45."),
+    ] {
+        assert!(text.contains(own), "{own}: {text}");
+        let found = rules(&text.replacen(own, by_rapid, 1));
+        assert!(found.contains(&"rapid-path".into()), "{by_rapid}: {found:?}");
+    }
+}
+
+/// A pocket that was there before, wider at its top: at once X would be at the wall before Z is out.
+#[test]
+fn a_slanting_rapid_out_of_a_pocket_goes_up_first_where_each_axis_goes_at_its_own_speed() {
+    let machine = machine::load_text(
+        "plain.toml",
+        "extends = \"generic-3axis-fanuc\"\n[settings]\nrapid_path = \"independent\"\n",
+    )
+    .unwrap();
+    let source = read(
+        "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/0,0,60\nRAPID\nGOTO/0,0,-20\nFEDRAT/MMPM,300\n\
+         GOTO/0,0,-30\nGOTO/4,0,-30\nRAPID\nGOTO/5,0,-20\nRAPID\nGOTO/60,0,40\nSPINDL/OFF\nFINI\n",
+    );
+    let text = text(&written(&source, &machine));
+    let up_first = text.lines().position(|line| line.ends_with(" Z40.")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[up_first + 1].ends_with(" X60."), "{text}");
+    let at_once = text.replacen(&format!("{}\n", lines[up_first]), "", 1);
+    let at_once = at_once.replacen(" X60.", " X60. Z40.", 1);
+    assert_eq!(refused(&source, &machine, &at_once), [("rapid-path", up_first as u32 + 1)]);
 }
