@@ -552,8 +552,14 @@ impl<'a> Walk<'a> {
             up(to),
             rapid::RETRACTS[rapid::RETRACTS.len() - 1]
         );
+        let rail = match from.0 || to.0 {
+            true if self.cell.rail.is_some() => {
+                "a home of the rail nearer to the part (`home` below [cell.rail]), "
+            }
+            true | false => "",
+        };
         let own = format!(
-            "a toolpath whose highest rapid is lower, a rapid that lifts the tool before it turns, or {place}"
+            "{rail}a toolpath whose highest rapid is lower, a rapid that lifts the tool before it turns, or {place}"
         );
         let [from, to] = ends.map(|at| self.arm.posture(&at.joints));
         let changes = [
