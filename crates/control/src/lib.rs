@@ -107,6 +107,11 @@ impl Dialect {
         self == Dialect::Ls
     }
 
+    /// Whether the control keeps coordinates in single precision: it rounds them to 24 bits.
+    pub fn is_single_precision(self) -> bool {
+        self == Dialect::Rapid
+    }
+
     /// Every dialect of a control with the name that its file gives as its `reader`.
     pub const NAMES: [(&'static str, Dialect); 17] = [
         ("fanuc", Dialect::Fanuc),

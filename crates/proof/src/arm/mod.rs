@@ -30,7 +30,7 @@ use crate::report::Report;
 use crate::tolerance::{Applied, Tolerances};
 use ::arm::Arm;
 use comparison::Comparison;
-use control::{Folders, Setup};
+use control::{Dialect, Folders, Setup};
 use expected::Expected;
 use machine::{Cell, Machine};
 use program::{Diagnostic, Program};
@@ -44,7 +44,8 @@ pub(crate) fn prove(
     tolerances: &Tolerances,
     observer: &mut dyn Observer,
 ) -> Report {
-    let applied = Applied::new(machine, tolerances);
+    let mut applied = Applied::new(machine, tolerances);
+    applied.tip_mm += single_precision(source, machine);
     let mut report = Report { tolerances: applied, ..Report::default() };
     if let Some(found) = crate::compensation::unsettled_for_arm(source) {
         report.mismatch(source.compensates().unwrap_or_default(), found);
@@ -91,4 +92,14 @@ pub(crate) fn prove(
         observer.mismatched(first);
     }
     report
+}
+
+/// How far a control of single precision puts a tip from where its words do, mm: half a step of 24 bits on each axis.
+fn single_precision(source: &Program, machine: &Machine) -> f64 {
+    if !Dialect::named(&machine.reader).is_some_and(Dialect::is_single_precision) {
+        return 0.0;
+    }
+    let poses = source.records.iter().filter_map(|record| record.op.pose());
+    let largest = poses.map(|pose| pose.point().abs().max_element()).fold(0.0, f64::max);
+    3f64.sqrt() * largest * 2f64.powi(-24)
 }

@@ -138,3 +138,12 @@ fn a_zone_whose_orientation_is_passed_in_a_wider_one_is_refused() {
     let found: Vec<&str> = report.mismatches.iter().map(|found| found.rule.name()).collect();
     assert_eq!(found, ["path-tolerance"], "{damaged}");
 }
+
+/// The control rounds 101.103 to 101.10299682: the end is then 0.000870 mm from that of the source, where the words alone leave 0.000866.
+#[test]
+fn an_end_half_a_step_off_on_each_axis_is_rounded_to_single_precision_besides() {
+    let text = "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/101.1035,57.1335,65\nFEDRAT/MMPM,300\n\
+                GOTO/101.1035,57.1335,-33.9865\nRAPID\nGOTO/101.1035,57.1335,65\nSPINDL/OFF\nFINI\n";
+    let text = proven(&source(text), &irb120());
+    assert!(text.contains("MoveL [[101.103,57.133,-33.986]"), "{text}");
+}
