@@ -322,6 +322,8 @@ pub enum MachineKind {
     Wire,
     /// An arm with its control.
     Robot,
+    /// A laser that fires inside glass.
+    Glass,
 }
 
 /// One of the texts of a job.
@@ -400,6 +402,8 @@ pub enum Command {
     Wire,
     /// Circuit boards.
     Pcb,
+    /// Points inside glass.
+    Glass,
 }
 
 /// `command { source, machine }`: answers the [`Command`] that writes programs of a source for a machine.
@@ -490,6 +494,18 @@ pub struct Job {
     pub mismatch: Option<Mismatch>,
     /// All programs of the board that it is one of; null where it is of no board.
     pub board: Option<BoardAbout>,
+    /// The blocks of glass that it fires in, in the frame of the first; none of another machine.
+    pub blocks: Vec<GlassBlock>,
+}
+
+/// A block of glass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct GlassBlock {
+    /// A corner of it, mm.
+    pub corner: [f64; 3],
+    /// Its sides from there, mm.
+    pub sides: [[f64; 3]; 3],
 }
 
 /// `job { revision }`: answers the [`Job`] again, as another program of a board.
@@ -1184,6 +1200,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             ProveParams,
             Job,
             JobParams,
+            GlassBlock,
             BoardAbout,
             BoardProgram,
             LeftOut,

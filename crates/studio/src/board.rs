@@ -7,6 +7,7 @@ use crate::ask::{
 use crate::folder::Folder;
 use crate::job::{Follows, Job, Made, Options, Sources, report_of, rows};
 use crate::lines::Lines;
+use crate::machines::Any;
 use crate::message::{Array, Values};
 use ::post::Origins;
 use app::pcb::{AreaKind, Axis, BoardAreas, Layer};
@@ -128,7 +129,8 @@ pub(crate) fn make(
         let board = Some(Place { whole: Arc::clone(&whole), number, areas, width });
         let made =
             Made { toolpath, account, text: written, origins, parts, report: None, widths, board };
-        Job::of(made, Lines::of(text.clone()), (file, (machine_name, machine)), Vec::new(), follows)
+        let machine = (machine_name, Any::Moves(machine.into()));
+        Job::of(made, Lines::of(text.clone()), (file, machine), Vec::new(), follows)
     };
     programs.map(job).collect()
 }
@@ -180,7 +182,8 @@ pub(crate) fn prove(
     follows.step("drawing");
     let (origins, parts, board) = (Origins::default(), Vec::new(), None);
     let made = Made { toolpath, account, text, origins, parts, report, widths, board };
-    let job = Job::of(made, Lines::of(shown.1), (file, (machine_name, machine)), inputs, follows)?;
+    let machine = (machine_name, Any::Moves(machine.into()));
+    let job = Job::of(made, Lines::of(shown.1), (file, machine), inputs, follows)?;
     Ok(job.keeping_its_name())
 }
 

@@ -3,7 +3,8 @@
 //! A chunk has 4,096 moves. Its polyline begins where its first move begins; each further vertex ends a segment that belongs to the
 //! vertex's move, or, of kind `gap`, draws no line: the tool has gone there by a way that is not known. Level 0 is exact, arcs, and moves
 //! in which the axes lead the tip, as chords within [`EXACT`]; a line of level `n` is nowhere further from that than `EXACT` times 4 to
-//! the power of `n`. Only the coarsest level is kept; the others are made of the walk when they are asked for.
+//! the power of `n`. Only the coarsest level is kept; the others are made of the walk when they are asked for. Of kind `pulse` a vertex is a
+//! point and no line leads to it; a level leaves out points that are as near to one that it has.
 //!
 //! ```text
 //! vertex  16 bytes  x y z f32 from the chunk's origin, mm; u32: move in the chunk (12 bits), kind (4), tool (8), marks (8)
@@ -17,9 +18,10 @@
 //! A further level, `fine`, is as the exact one, with chords of arcs within [`FINE`].
 //! All little-endian.
 
-use crate::walk::{GAP, Walk};
+use crate::walk::{GAP, PULSE, Walk};
 use geom::Vec3;
 use program::Feed;
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// How many moves a chunk has.
@@ -372,6 +374,13 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
         if !behind.is_finite() {
             continue;
         }
+        if walk.kind(at) == PULSE {
+            if vertices.is_empty() {
+                vertices.push(Vertex { at: behind, packed: packed(GAP) });
+            }
+            vertices.push(Vertex { at: behind, packed: packed(PULSE) });
+            continue;
+        }
         let is_drawn = from.is_finite();
         let goes_on = start.is_none() && !vertices.is_empty();
         if is_drawn && !goes_on {
@@ -418,6 +427,12 @@ fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
     let mut kept = Vec::new();
     let mut from = 0;
     while let Some(first) = finer.get(from) {
+        if first.kind() == PULSE {
+            let points = finer[from..].iter().take_while(|vertex| vertex.kind() == PULSE);
+            from += points.clone().count();
+            sparse(points, most, &mut kept);
+            continue;
+        }
         // A stretch of segments that look alike, from the vertex before it.
         let alike = |vertex: &&Vertex| vertex.look() == first.look() && vertex.kind() != GAP;
         let to = from + finer[from..].iter().take(STRETCH).take_while(alike).count().max(1);
@@ -428,6 +443,14 @@ fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
         from = to;
     }
     kept
+}
+
+/// Keeps of points those of which none before is within a cube whose diagonal is `most`.
+fn sparse<'v>(points: impl Iterator<Item = &'v Vertex>, most: f64, kept: &mut Vec<Vertex>) {
+    let side = most / 3f64.sqrt();
+    let mut taken = HashSet::new();
+    let cube = |vertex: &Vertex| vertex.at.to_array().map(|value| (value / side).floor() as i64);
+    kept.extend(points.filter(|vertex| taken.insert((vertex.look(), cube(vertex)))));
 }
 
 /// Keeps of a line, without its first point, what no chord may leave out.
@@ -462,13 +485,55 @@ fn distance(point: Vec3, a: Vec3, b: Vec3) -> f64 {
 pub(crate) mod tests {
     use super::*;
     use crate::job::Ended;
-    use crate::walk::Follower;
-    use crate::walk::Slot;
+    use crate::walk::{Follower, Pulse, Slot};
     use geom::Arc;
     use machine::Machine;
     use program::Program;
     use proof::{AxisPositions, Course, Motion, MotionKind, Observer, Report, ToolPose};
     use std::f64::consts::TAU;
+
+    /// Points by chance and in rows, in three chunks: each level has one within its error of each of them, and the coarsest has few.
+    #[test]
+    fn of_points_each_level_has_one_near_each_of_them() {
+        let mut seed = 7_u64;
+        let mut chance = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 40) as f64 / f64::from(1 << 24)
+        };
+        let point = |number: u32| match number % 2 {
+            0 => Vec3::new(chance(), chance(), 0.1 * chance()) * 20.0,
+            _ => Vec3::new(0.1 * f64::from(number % 200), 0.05 * f64::from(number / 200), 0.0),
+        };
+        let points: Vec<Vec3> = (0..10_000).map(point).collect();
+        let pulse = |(number, at): (usize, &Vec3)| Pulse {
+            line: number as u32 + 1,
+            at: *at,
+            positions: at.to_array().to_vec(),
+            end: number as f64,
+            operation: None,
+        };
+        let walk = Walk::of_pulses(points.iter().enumerate().map(pulse), &|| true).unwrap();
+        let chunks: Vec<Vec<Vertex>> = (0..3).map(|chunk| polyline(&walk, chunk, EXACT)).collect();
+        assert_eq!(chunks.iter().map(Vec::len).sum::<usize>(), 10_000 + 3);
+        let mut levels = chunks.clone();
+        let mut counts = Vec::new();
+        for level in 1..MOST_LEVELS {
+            levels = levels.iter().map(|finer| simplified(finer, level)).collect();
+            counts.push(levels.iter().map(Vec::len).sum::<usize>());
+            for (chunk, kept) in chunks.iter().zip(&levels) {
+                assert_eq!(kept[0].kind(), GAP);
+                assert!(kept.is_sorted_by_key(|vertex| vertex.packed & 4095));
+                let far = |vertex: &Vertex| {
+                    let own = kept[1..].iter().map(|kept| kept.at.distance_squared(vertex.at));
+                    own.fold(f64::MAX, f64::min).sqrt()
+                };
+                let most = chunk[1..].iter().step_by(7).map(far).fold(0.0, f64::max);
+                assert!(most <= error(level), "{level}: {most}");
+            }
+        }
+        assert!(counts.is_sorted_by(|a, b| a >= b), "{counts:?}");
+        assert!(counts[MOST_LEVELS - 2] <= 3 * 10, "{counts:?}");
+    }
 
     /// A walk of moves that each end at a point; an arc goes there where one is given.
     pub(crate) fn walk(moves: impl IntoIterator<Item = (MotionKind, Vec3)>) -> Walk {

@@ -8,10 +8,11 @@ use crate::board;
 use crate::drawing::Piece;
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
+use crate::glass::{self, Glass};
 use crate::lines::{Lines, readable};
-use crate::machines;
+use crate::machines::{self, Any};
 use crate::message::{Array, Values};
-use crate::place::{self, At};
+use crate::place::{self, At, Stand};
 use crate::plots::{Plots, What};
 use crate::walk::{By, Drawn, Follower, KINDS, NO_TOOL, Slot, Walk};
 use ::post::{Origins, Part};
@@ -19,7 +20,6 @@ use app::report::{self, Digests};
 use app::toolpath::{self, Toolpath};
 use app::{Account, Source, Stop, Verdict, Watch, files, post, prove, wire};
 use control::Folders;
-use machine::linkage::Linkage;
 use machine::{Machine, Reach, library};
 use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
 use proof::{Observer, Tolerances};
@@ -52,6 +52,8 @@ pub struct Options {
     pub wire: Option<wire::Settings>,
     /// How a board is made.
     pub board: Option<Box<board::Settings>>,
+    /// How bodies are engraved inside glass.
+    pub glass: Option<Box<app::glass::Settings>>,
 }
 
 impl Options {
@@ -73,7 +75,8 @@ impl Options {
         };
         let upper = self.wire.as_mut().and_then(|wire| wire.upper.as_mut());
         let named = self.board.iter_mut().flat_map(|board| board.files());
-        for source in origin.tools.iter_mut().chain(upper).chain(named) {
+        let materials = self.glass.as_mut().and_then(|glass| glass.materials.as_mut());
+        for source in origin.tools.iter_mut().chain(upper).chain(named).chain(materials) {
             in_memory(source)?;
         }
         if let Some(from) = origin.from.as_deref().filter(|from| machine::is_path(from)) {
@@ -197,13 +200,15 @@ pub enum Sources {
 
 impl Sources {
     /// What writes the programs.
-    pub fn command(&self, machine: Option<&Machine>) -> Command {
-        match self {
-            Sources::One(file) if !app::pcb::is_board(file) => match machine {
-                Some(machine) if machine.wire.is_some() => Command::Wire,
-                _ => Command::Post,
-            },
-            Sources::One(_) | Sources::Several(_) | Sources::Folder(..) => Command::Pcb,
+    pub fn command(&self, machine: Option<&Any>) -> Command {
+        match (self, machine) {
+            (_, Some(Any::Fires(_))) => Command::Glass,
+            (Sources::One(file), _) if app::pcb::is_board(file) => Command::Pcb,
+            (Sources::One(file), _) if app::glass::is_body(file) => Command::Glass,
+            (Sources::One(_), Some(Any::Moves(machine))) if machine.wire.is_some() => Command::Wire,
+            (Sources::One(_), _) => Command::Post,
+            (Sources::Several(files), _) if files.iter().all(app::glass::is_body) => Command::Glass,
+            (Sources::Several(_) | Sources::Folder(..), _) => Command::Pcb,
         }
     }
 }
@@ -215,7 +220,7 @@ pub struct Job {
     /// What is saved next to the program, where it is proven.
     report: Option<String>,
     machine_name: String,
-    machine: Machine,
+    machine: Any,
     machine_files: BTreeMap<String, Lines>,
     toolpath: Toolpath,
     source: Lines,
@@ -230,6 +235,8 @@ pub struct Job {
     plots: Plots,
     /// The board that it is one of the programs of.
     board: Option<board::Place>,
+    /// Where its pulses are, where it fires inside glass.
+    glass: Option<Glass>,
     /// Whether its name says which program of a board it is.
     keeps_name: bool,
 }
@@ -247,11 +254,31 @@ impl Job {
     ) -> Result<Vec<Job>, Stop> {
         let follows = Follows { waits, ended, walks: Mutex::default() };
         follows.step("reading");
-        let mut machine = machines::open(asked.machine, folder)?;
+        let machine = machines::open(asked.machine, folder)?;
         let command = asked.source.command(Some(&machine));
         let (options, read) = (asked.options)(command)?.within(folder)?;
         let mut inputs = asked.inputs;
         inputs.extend(read);
+        let mut machine = match (machine, command) {
+            (Any::Fires(machine), _) => {
+                let (machine, program) = ((asked.machine, machine), (asked.file, asked.program));
+                let files = (inputs, folder);
+                return Ok(vec![glass::make(
+                    asked.source,
+                    &options,
+                    machine,
+                    program,
+                    files,
+                    &follows,
+                )?]);
+            }
+            (Any::Moves(machine), Command::Glass) => {
+                let message = format!("{} does not fire inside glass", machine.title);
+                let found = Diagnostic::error(Rule::StudioAsk, message);
+                return Err(found.help("choose a machine whose name begins with `glass-`").into());
+            }
+            (Any::Moves(machine), _) => *machine,
+        };
         for (name, value) in &options.machine {
             machine.set_option(name, value)?;
         }
@@ -287,7 +314,7 @@ impl Job {
             }
         };
         follows.step("drawing");
-        let machine = (asked.machine, machine);
+        let machine = (asked.machine, Any::Moves(machine.into()));
         let text = source_lines(&made.toolpath, &source);
         Ok(vec![Job::of(made, text, (file, machine), inputs, &follows)?])
     }
@@ -299,24 +326,41 @@ impl Job {
     pub(crate) fn of(
         made: Made,
         source: Lines,
-        (file, (machine_name, machine)): (String, (&str, Machine)),
-        mut inputs: Vec<PathBuf>,
+        named: (String, (&str, Any)),
+        inputs: Vec<PathBuf>,
         follows: &Follows,
     ) -> Result<Job, Stop> {
-        let Drawn { mut walk, geometry } = follows.drawn(&file);
+        let drawn = follows.drawn(&named.0);
         if follows.ended.is_ended() {
             return Err(Stop::cancelled());
         }
+        Ok(Job::drawn(made, drawn, source, named, inputs))
+    }
+
+    /// The same with a walk that is at hand.
+    pub(crate) fn drawn(
+        made: Made,
+        Drawn { mut walk, geometry }: Drawn,
+        source: Lines,
+        (file, (machine_name, machine)): (String, (&str, Any)),
+        mut inputs: Vec<PathBuf>,
+    ) -> Job {
         walk.set_widths(&made.widths);
         let Made { toolpath, account, text, origins, parts, report, board, .. } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
-        inputs.extend(machine.loaded_from.files.iter().cloned());
+        let machine_files = match &machine {
+            Any::Moves(machine) => {
+                inputs.extend(machine.loaded_from.files.iter().cloned());
+                texts_of(machine)
+            }
+            Any::Fires(_) => BTreeMap::new(),
+        };
         let part = |Part { file, text, origins }| (file, (Lines::of(text), origins));
-        Ok(Job {
+        Job {
             account,
             report,
             machine_name: machine_name.to_owned(),
-            machine_files: texts_of(&machine),
+            machine_files,
             source,
             toolpath,
             machine,
@@ -329,8 +373,14 @@ impl Job {
             geometry,
             plots: Plots::default(),
             board,
+            glass: None,
             keeps_name: false,
-        })
+        }
+    }
+
+    /// The same, of pulses inside glass.
+    pub(crate) fn with_glass(self, glass: Glass) -> Job {
+        Job { glass: Some(glass), ..self }
     }
 
     /// The same, of which the name of its file says which program of a board it is.
@@ -350,6 +400,7 @@ impl Job {
             + self.walk.bytes()
             + self.geometry.bytes()
             + board
+            + self.glass.as_ref().map_or(0, Glass::bytes)
     }
 
     /// The files that it is made of.
@@ -396,21 +447,25 @@ impl Job {
             verdict: self.account.verdict.into(),
             rows: rows(&self.account),
             findings: findings.into_iter().map(|found| self.finding(found)).collect(),
-            program: Some(text(&self.file, &self.program)),
+            program: Some(text(&self.file, self.shown_program())),
             parts: self.parts.iter().map(|(file, (lines, _))| text(file, lines)).collect(),
             source: text(&self.toolpath.file, &self.source),
             machine: JobMachine {
                 name: self.machine_name.clone(),
-                title: self.machine.title.clone(),
-                kind: machines::kind(&self.machine),
-                dialect: self.machine.reader.clone(),
-                axes: machines::axes(&self.machine),
+                title: self.machine.title().to_owned(),
+                kind: self.machine.kind(),
+                dialect: self.machine.dialect().to_owned(),
+                axes: self.machine.axes(),
                 files: self.machine_files.iter().map(|(file, lines)| text(file, lines)).collect(),
-                linkage: Linkage::of(&self.machine),
+                linkage: self.machine.linkage(),
             },
             walk: self.walk_about(),
             mismatch: self.mismatch(),
             board: self.board.as_ref().map(|board| board.about(revision)),
+            blocks: match (&self.glass, &self.machine) {
+                (Some(glass), Any::Fires(machine)) => glass.blocks(machine),
+                _ => Vec::new(),
+            },
         }
     }
 
@@ -459,14 +514,22 @@ impl Job {
         Finding { of, ..Finding::from(found) }
     }
 
+    /// The program as it is shown: a binary one as its control reads it.
+    fn shown_program(&self) -> &Lines {
+        self.glass.as_ref().and_then(|glass| glass.listing.as_ref()).unwrap_or(&self.program)
+    }
+
     fn lines(&self, of: Of, file: Option<&str>) -> Result<&Lines, Stop> {
         let found = match (of, file) {
-            (Of::Program, None) => Some(&self.program),
-            (Of::Program, Some(file)) if file == self.file => Some(&self.program),
+            (Of::Program, None) => Some(self.shown_program()),
+            (Of::Program, Some(file)) if file == self.file => Some(self.shown_program()),
             (Of::Program, Some(file)) => self.parts.get(file).map(|(lines, _)| lines),
             (Of::Source, None) => Some(&self.source),
             (Of::Source, Some(file)) => (file == self.toolpath.file).then_some(&self.source),
-            (Of::Machine, None) => self.machine_files.get(&self.machine.file),
+            (Of::Machine, None) => match &self.machine {
+                Any::Moves(machine) => self.machine_files.get(&machine.file),
+                Any::Fires(_) => None,
+            },
             (Of::Machine, Some(file)) => self.machine_files.get(file),
         };
         found.ok_or_else(|| {
@@ -520,17 +583,24 @@ impl Job {
 
     fn place_at(&self, at: At) -> Place {
         let (walk, number) = (&self.walk, at.r#move);
-        let stand = place::stand(walk, &self.machine, at);
+        let stand = match (&self.machine, &self.glass) {
+            (Any::Fires(machine), Some(glass)) => glass.stand(walk, machine, at),
+            (Any::Moves(machine), _) => place::stand(walk, machine, at),
+            (Any::Fires(_), None) => Stand::unknown(),
+        };
         let known = |value: f64| value.is_finite().then_some(value);
         let state = walk.state(number);
         let (file, line) = (walk.file(number), walk.line(number));
         let (lines, origins) = match file.and_then(|file| self.parts.get(file)) {
             Some((lines, origins)) => (Some(lines), origins),
-            None => (file.is_none().then_some(&self.program), &self.origins),
+            None => (file.is_none().then(|| self.shown_program()), &self.origins),
         };
         let shown = |lines: &Lines, line: u32| readable(lines.line(line)).0;
         let template = origins.of(line).map(|origin| {
-            let block = origin.template(&self.machine);
+            let block = match &self.machine {
+                Any::Moves(machine) => origin.template(machine),
+                Any::Fires(_) => None,
+            };
             Template {
                 name: origin.block.to_owned(),
                 file: block.map(|block| block.file.clone()),
@@ -621,7 +691,7 @@ impl Job {
     /// # Errors
     /// There is no such axis.
     pub fn plot(&self, what: &str, times: [f64; 2], pixels: u32) -> Result<Vec<Array>, Stop> {
-        let axis = || machines::axes(&self.machine).iter().position(|axis| axis.name == what);
+        let axis = || self.machine.axes().iter().position(|axis| axis.name == what);
         let what = match what {
             "feed" => What::Feed,
             "deviation" => What::Deviation,
@@ -659,7 +729,8 @@ impl Job {
         if target.exists() && !replace {
             return Err(refused("it is there already", "give another name, or replace it"));
         }
-        if self.machine.cell.is_some() && files::name(&target) != self.file {
+        let calls_itself = matches!(&self.machine, Any::Moves(machine) if machine.cell.is_some());
+        if calls_itself && files::name(&target) != self.file {
             let message =
                 format!("the program calls itself by the name of its file, {}", self.file);
             return Err(refused(&message, "post it under the name that it is to be saved by"));

@@ -29,6 +29,7 @@ pub mod board;
 pub mod drawing;
 pub mod folder;
 pub mod geometry;
+pub mod glass;
 mod index;
 pub mod job;
 pub mod jobs;

@@ -2,41 +2,124 @@
 
 use crate::ask::{Axis, AxisKind, Finding, MachineEntry, MachineKind};
 use crate::folder::Folder;
-use app::{Stop, toolpath};
+use app::{Stop, glass, toolpath};
+use machine::linkage::Linkage;
 use machine::{Machine, Reach, is_path, library};
 use program::{Diagnostic, Rule};
 use std::sync::OnceLock;
+
+/// A machine that was opened, whatever makes its programs.
+#[derive(Clone, Debug)]
+pub enum Any {
+    /// It moves a tool, a wire or an arm.
+    Moves(Box<Machine>),
+    /// It fires inside glass.
+    Fires(Box<glass::Machine>),
+}
+
+impl Any {
+    /// What a person calls it.
+    pub fn title(&self) -> &str {
+        match self {
+            Any::Moves(machine) => &machine.title,
+            Any::Fires(machine) => &machine.title,
+        }
+    }
+
+    /// What it is.
+    pub fn kind(&self) -> MachineKind {
+        match self {
+            Any::Fires(_) => MachineKind::Glass,
+            Any::Moves(machine) => match (&machine.wire, &machine.arm) {
+                (Some(_), _) => MachineKind::Wire,
+                (_, Some(_)) => MachineKind::Robot,
+                _ => MachineKind::Mill,
+            },
+        }
+    }
+
+    /// The dialect of its programs.
+    pub fn dialect(&self) -> &str {
+        match self {
+            Any::Moves(machine) => &machine.reader,
+            Any::Fires(_) => "glass",
+        }
+    }
+
+    /// The control that it has, in a word.
+    fn control(&self) -> &str {
+        match self {
+            Any::Moves(machine) => &machine.control,
+            Any::Fires(_) => "glass",
+        }
+    }
+
+    /// Its axes, in the order in which their positions are kept.
+    pub fn axes(&self) -> Vec<Axis> {
+        match self {
+            Any::Moves(machine) => axes(machine, self.kind()),
+            Any::Fires(machine) => crate::glass::axes(machine),
+        }
+    }
+
+    /// What carries what.
+    pub fn linkage(&self) -> Linkage {
+        match self {
+            Any::Moves(machine) => Linkage::of(machine),
+            Any::Fires(_) => crate::glass::linkage(&self.axes()),
+        }
+    }
+
+    fn entry(&self, name: &str) -> MachineEntry {
+        MachineEntry {
+            name: name.to_owned(),
+            title: self.title().to_owned(),
+            kind: self.kind(),
+            control: self.control().to_owned(),
+            axes: self.axes().into_iter().map(|axis| axis.name).collect(),
+            is_own: false,
+            findings: Vec::new(),
+        }
+    }
+}
 
 /// Opens the machine of a name in the library, or of a file of the folder; what it extends lies there too.
 ///
 /// # Errors
 /// Where there is none, its file has a mistake, or leads out of the folder.
-pub fn open(name: &str, folder: &Folder) -> Result<Machine, Stop> {
+pub fn open(name: &str, folder: &Folder) -> Result<Any, Stop> {
     let reach = Reach::Folder(folder.path().to_owned());
     if !is_path(name) {
-        return toolpath::machine_within(name, &reach);
+        return match glass::library(name) {
+            Ok(text) => Ok(Any::Fires(glass::machine_of(text.as_bytes(), name)?.into())),
+            Err(_) => Ok(Any::Moves(toolpath::machine_within(name, &reach)?.into())),
+        };
     }
-    let text = String::from_utf8(folder.read(name)?).map_err(|_| {
+    let text = folder.read(name)?;
+    if glass::is_machine(&text) {
+        return Ok(Any::Fires(glass::machine_of(&text, name)?.into()));
+    }
+    let text = String::from_utf8(text).map_err(|_| {
         let found = Diagnostic::error(Rule::MachineFile, "this is no text in UTF-8").file(name);
         found.help("save it in UTF-8")
     })?;
     let path = folder.target(name)?;
-    toolpath::machine_of(&path.to_string_lossy(), &text, &reach)
+    Ok(Any::Moves(toolpath::machine_of(&path.to_string_lossy(), &text, &reach)?.into()))
 }
 
 /// All that can be picked: the library's in the order of their names, then the folder's own.
 pub fn list(folder: &Folder) -> Vec<MachineEntry> {
     static LIBRARY: OnceLock<Vec<MachineEntry>> = OnceLock::new();
     let library = LIBRARY.get_or_init(|| {
-        let names = library::names(library::CONTROLLED);
-        names.filter_map(|name| Some(entry(&toolpath::machine(name).ok()?, name))).collect()
+        let names = library::names(library::CONTROLLED).chain(glass::names());
+        names.filter_map(|name| Some(open(name, folder).ok()?.entry(name))).collect()
     });
     let mut all = library.clone();
     let (entries, _) = folder.list("").unwrap_or_default();
     let own = entries.iter().map(|entry| entry.path.as_str());
     for name in own.filter(|name| name.ends_with(".toml")) {
         match open(name, folder) {
-            Ok(machine) => all.push(MachineEntry { is_own: true, ..entry(&machine, name) }),
+            Ok(machine) => all.push(MachineEntry { is_own: true, ..machine.entry(name) }),
             Err(stop) if is_meant(name, folder) => {
                 let findings = stop.findings.into_iter().map(Finding::from).collect();
                 let (title, control) = (String::new(), String::new());
@@ -54,39 +137,19 @@ pub fn list(folder: &Folder) -> Vec<MachineEntry> {
 /// Whether a file that has a mistake is meant as a machine.
 fn is_meant(name: &str, folder: &Folder) -> bool {
     let text = folder.read(name).unwrap_or_default();
-    text.split(|byte| *byte == b'\n').any(|line| line.starts_with(b"extends"))
+    let extends = |line: &[u8]| line.starts_with(b"extends");
+    text.split(|byte| *byte == b'\n').any(extends) || glass::is_machine(&text)
 }
 
-/// What a machine is.
-pub fn kind(machine: &Machine) -> MachineKind {
-    match (&machine.wire, &machine.arm) {
-        (Some(_), _) => MachineKind::Wire,
-        (_, Some(_)) => MachineKind::Robot,
-        _ => MachineKind::Mill,
-    }
-}
-
-fn entry(machine: &Machine, name: &str) -> MachineEntry {
-    MachineEntry {
-        name: name.to_owned(),
-        title: machine.title.clone(),
-        kind: kind(machine),
-        control: machine.control.clone(),
-        axes: axes(machine).into_iter().map(|axis| axis.name).collect(),
-        is_own: false,
-        findings: Vec::new(),
-    }
-}
-
-/// The axes of a machine, in the order in which their positions are kept.
-pub fn axes(machine: &Machine) -> Vec<Axis> {
+/// The axes of a machine that moves something.
+fn axes(machine: &Machine, kind: MachineKind) -> Vec<Axis> {
     let known = |value: f64| value.is_finite().then_some(value);
     let axis = |name: String, kind, unit, low: f64, high: f64| {
         let (low, high) = (known(low), known(high));
         Axis { name, kind, unit, low, high }
     };
-    match kind(machine) {
-        MachineKind::Mill => {
+    match kind {
+        MachineKind::Mill | MachineKind::Glass => {
             // Travels count from the zero of the machine; so do positions where the work zero is known.
             let counts = machine.work_zero.is_some();
             let linear = ["X", "Y", "Z"].into_iter().zip(&machine.linear).map(|(name, linear)| {
@@ -148,7 +211,7 @@ mod tests {
             .unwrap();
         fs::write(own.join("board.toml"), "[board]\nsize = [1, 2]\n").unwrap();
         let folder = Folder::open(&own).unwrap();
-        assert_eq!(open("better.toml", &folder).unwrap().title, "Better");
+        assert_eq!(open("better.toml", &folder).unwrap().title(), "Better");
         for name in ["leads-out.toml", "whole.toml"] {
             let stop = open(name, &folder).unwrap_err();
             assert!(

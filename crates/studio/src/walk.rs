@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::sync::{self, Mutex, PoisonError};
 
 /// How a move goes, by its number in vertices and rows.
-pub const KINDS: [&str; 5] = ["gap", "rapid", "feed", "arc", "joints"];
+pub const KINDS: [&str; 6] = ["gap", "rapid", "feed", "arc", "joints", "pulse"];
 
 /// No line is drawn to this vertex.
 pub const GAP: u8 = 0;
@@ -31,6 +31,8 @@ pub const FEED: u8 = 2;
 pub const ARC: u8 = 3;
 /// All joints of an arm together.
 pub const JOINTS: u8 = 4;
+/// To a place at which a laser fires: that alone is drawn.
+pub const PULSE: u8 = 5;
 
 /// Above the number of its kind: how the axes go between the ends of a move.
 const COURSE: u32 = 4;
@@ -131,7 +133,61 @@ pub enum By<'a> {
     Source,
 }
 
+/// A pulse of a laser.
+#[derive(Clone, Debug)]
+pub struct Pulse {
+    /// The line of its block.
+    pub line: u32,
+    /// Where it is, mm.
+    pub at: Vec3,
+    /// Where the axes are.
+    pub positions: Vec<f64>,
+    /// When it fires, s.
+    pub end: f64,
+    /// What begins with it.
+    pub operation: Option<String>,
+}
+
 impl Walk {
+    /// That of a laser, whose pulses come in their order, for as long as `goes_on` says so.
+    pub fn of_pulses(
+        pulses: impl Iterator<Item = Pulse>,
+        goes_on: &dyn Fn() -> bool,
+    ) -> Option<Walk> {
+        let mut walk = Walk::default();
+        for Pulse { line, at, positions, end, operation } in pulses {
+            if walk.kinds.len().is_multiple_of(LOOK) {
+                walk.is_full |= walk.bytes() > MOST_BYTES;
+                goes_on().then_some(())?;
+            }
+            if walk.is_full {
+                walk.left_out += 1;
+                continue;
+            }
+            if walk.is_empty() {
+                let nowhere = ToolPose { tip: Vec3::NAN, axis: Vec3::NAN };
+                walk.starts.push((0, nowhere));
+            }
+            if let Some(name) = operation.filter(|_| walk.operations.len() < MOST_NAMED) {
+                let (r#move, time_s) = (walk.len(), walk.seconds());
+                walk.operations.push(Operation { name, r#move, time_s });
+            }
+            walk.kinds.push(PULSE);
+            walk.tools.push(NO_TOOL);
+            walk.marks.push(0);
+            walk.lines.push(line);
+            walk.source_lines.push(0);
+            walk.ends.push(end);
+            walk.tips.push(at);
+            walk.stride = positions.len();
+            walk.positions.extend(positions);
+            walk.deviations.push(f32::NAN);
+        }
+        walk.by_block = Index::of(&walk.lines, goes_on)?;
+        walk.by_source = Index::of(&walk.source_lines, goes_on)?;
+        Some(walk)
+    }
+
     /// How many moves there are.
     pub fn len(&self) -> u32 {
         self.kinds.len() as u32

@@ -1,6 +1,7 @@
 //! `toolpost studio`: the server of the page, until Ctrl-C.
 
 use crate::answer::Answer;
+use crate::args::glass::Glass;
 use crate::args::{Closeness, Command, CommandLine, Studio};
 use crate::settings::{self, Expanded};
 use ::studio::ask::{self, Field};
@@ -14,6 +15,7 @@ use serde_json::json;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Starts the server, says its link, and answers until the process ends. Ctrl-C ends it with all its work; files that are being
 /// saved are whole then.
@@ -83,13 +85,17 @@ fn below(folder: &Path, path: &Path) -> Result<String, Stop> {
 }
 
 /// Arguments that the page gives by itself, or does by itself.
-const GIVEN: [&str; 7] = ["machine", "output", "path", "board", "help", "picture", "select"];
+const GIVEN: [&str; 13] = [
+    "machine", "output", "path", "board", "help", "picture", "select", "bodies", "cloud", "camera",
+    "distance", "zoom", "grid",
+];
 
 fn name(command: ask::Command) -> &'static str {
     match command {
         ask::Command::Post => "post",
         ask::Command::Wire => "wire",
         ask::Command::Pcb => "pcb",
+        ask::Command::Glass => "glass",
     }
 }
 
@@ -173,6 +179,7 @@ fn options(
         machine,
         wire,
         board: None,
+        glass: None,
     };
     match parsed.command {
         Command::Post(post) => Ok(of(&post.source, &post.closeness, post.option, None)),
@@ -198,6 +205,13 @@ fn options(
                 ..Options::default()
             })
         }
+        Command::Glass(glass) => Ok(Options {
+            glass: match *glass {
+                Glass::Engrave(engraved) => Some(Box::new(engraved.settings(Instant::now()))),
+                Glass::Command(_) => None,
+            },
+            ..Options::default()
+        }),
         _ => Ok(Options::default()),
     }
 }
@@ -305,6 +319,19 @@ mod tests {
         let wire = options(ask::Command::Wire, &side, None).unwrap().wire.unwrap();
         assert_eq!(wire.cutting.side, Some(wire::cutting::Side::Inside));
         assert!(options(ask::Command::Post, &side, None).is_err());
+        // Of glass those of a job, and not where the command saves and how it draws.
+        let form = form(ask::Command::Glass);
+        let named = |name: &str| form.iter().any(|field| field.name == name);
+        assert!(["block", "material", "lens", "order", "place"].into_iter().all(named));
+        for given in ["bodies", "machine", "output", "cloud", "picture", "camera", "zoom"] {
+            assert!(!named(given), "{given}");
+        }
+        let list = [("block", "20x20x30"), ("material", "k9"), ("lens", "70"), ("order", "arcs")];
+        let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
+        let glass = options(ask::Command::Glass, &list, None).unwrap().glass.unwrap();
+        assert_eq!((glass.job.placing.block, &*glass.material), ([20.0, 20.0, 30.0], "k9"));
+        let stop = options(ask::Command::Glass, &list[1..], None).unwrap_err();
+        assert!(stop.findings[0].message.contains("--block"), "{:?}", stop.findings);
         // What looks like another option is a value.
         assert_eq!(
             given(&[("from", "--strict")]).unwrap().origin.from.as_deref(),

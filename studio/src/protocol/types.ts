@@ -243,7 +243,7 @@ export type Given = { "file": string } | { "upload": string } | { "folder": stri
 /**
  * What programs are written by: that says whose options a form has.
  */
-export type Command = "post" | "wire" | "pcb";
+export type Command = "post" | "wire" | "pcb" | "glass";
 
 /**
  * `command { source, machine }`: answers the [`Command`] that writes programs of a source for a machine.
@@ -342,7 +342,7 @@ findings: Array<Finding>, };
 /**
  * What a machine is.
  */
-export type MachineKind = "mill" | "wire" | "robot";
+export type MachineKind = "mill" | "wire" | "robot" | "glass";
 
 /**
  * One of the texts of a job.
@@ -505,7 +505,11 @@ mismatch: Mismatch | null,
 /**
  * All programs of the board that it is one of; null where it is of no board.
  */
-board: BoardAbout | null, };
+board: BoardAbout | null, 
+/**
+ * The blocks of glass that it fires in, in the frame of the first; none of another machine.
+ */
+blocks: Array<GlassBlock>, };
 
 /**
  * `job { revision }`: answers the [`Job`] again, as another program of a board.
@@ -515,6 +519,19 @@ export type JobParams = {
  * Of the job.
  */
 revision: number, };
+
+/**
+ * A block of glass.
+ */
+export type GlassBlock = { 
+/**
+ * A corner of it, mm.
+ */
+corner: [number, number, number], 
+/**
+ * Its sides from there, mm.
+ */
+sides: [[number, number, number], [number, number, number], [number, number, number]], };
 
 /**
  * A board, and all that is made of it.

@@ -12,6 +12,7 @@ use crate::ask::{Command, Field, FileOrUpload, Given, Limits};
 use crate::folder::{Folder, SECRET};
 use crate::job::{Options, Sources};
 use crate::jobs::{Jobs, MOST_JOBS};
+use crate::machines::Any;
 use crate::message;
 use crate::page;
 use app::{Source, Stop};
@@ -23,7 +24,6 @@ use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
-use machine::Machine;
 use metered::{Metered, Trusted};
 use program::{Diagnostic, Rule};
 use run::{First, Left};
@@ -228,10 +228,15 @@ impl Studio {
     }
 
     /// What writes the programs of something: a file is read where its name does not say it.
-    fn command(&self, given: &Given, machine: Option<&Machine>) -> Result<Command, Stop> {
+    fn command(&self, given: &Given, machine: Option<&Any>) -> Result<Command, Stop> {
         match given {
-            Given::Folder(_) | Given::Uploads(_) => Ok(Command::Pcb),
-            Given::File(_) | Given::Upload(_) => Ok(self.sources(given)?.0.command(machine)),
+            Given::Folder(_) => Ok(match machine {
+                Some(Any::Fires(_)) => Command::Glass,
+                _ => Command::Pcb,
+            }),
+            Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
+                Ok(self.sources(given)?.0.command(machine))
+            }
         }
     }
 

@@ -262,8 +262,8 @@ fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Resu
         FileOrUpload::Upload(_) => None,
     };
     let more = match &source {
-        Given::File(_) | Given::Upload(_) if studio.command(&source, None)? != Command::Pcb => None,
-        board => studio.more(board, &options)?,
+        board if studio.command(board, None)? == Command::Pcb => studio.more(board, &options)?,
+        _ => None,
     };
     let (source, mut inputs) = studio.sources(&source)?;
     inputs.extend(program.as_ref().and_then(within));

@@ -4,5 +4,6 @@ mod bad_input;
 mod boards;
 mod client;
 mod closed;
+mod glass;
 mod jobs;
 mod process;
