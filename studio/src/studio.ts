@@ -73,7 +73,7 @@ export class Studio {
     private async askForm(): Promise<void> {
         if (this.machines.value.length === 0) return;
         const kind = this.machines.value.find(({ name }) => name === this.machine.value)?.kind;
-        const ofMachine: Command = kind === "wire" ? "wire" : "post";
+        const ofMachine: Command = kind === "wire" || kind === "glass" ? kind : "post";
         const work = this.work.value;
         // What cannot be read says so when it is posted.
         const command = work === null ? ofMachine : await this.seam.ask("command", { source: work.source, machine: this.machine.value })

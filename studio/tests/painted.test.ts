@@ -2,7 +2,7 @@ import { expect, test } from "vitest";
 import type { Chunk } from "../src/view/chunks.ts";
 import { RAMP, RAMP_STEPS, UNKNOWN } from "../src/view/colours.ts";
 import { needlesOf } from "../src/view/needles.ts";
-import { byDeviation, byFeed, byOperation } from "../src/view/painted.ts";
+import { byDeviation, byFeed, byOperation, byOrder } from "../src/view/painted.ts";
 import type { Rows } from "../src/view/rows.ts";
 import { wordOf } from "../src/view/strip.ts";
 
@@ -47,4 +47,11 @@ test("a needle stands at the tip and goes along the tool", () => {
     const points = [1, 2, 3, 4].map((i) => Array.from(numbers.slice(i * 4, i * 4 + 3)));
     expect(points).toEqual([[1, 2, 3], [1, 2, 13], [4, 5, 6], [10, 5, 14]]);
     expect([strip.from, strip.to]).toEqual([1, 5]);
+});
+
+test("the order runs through the ramp from the first move to the last", () => {
+    const paint = byOrder({ moves: 4096 + 65 });
+    expect(paint(chunk(0))![0]).toBe(RAMP);
+    expect(paint(chunk(1))![64]).toBe(RAMP + RAMP_STEPS - 1);
+    expect(paint(chunk(0))![2080]).toBe(RAMP + RAMP_STEPS / 2);
 });

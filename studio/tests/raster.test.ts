@@ -139,3 +139,23 @@ test("a face covers the pixels whose middles are in it, and hides what is behind
     const picture = Array.from(raster.seen, (colour) => (colour === face ? "#" : colour === 99 ? "." : "a")).join("");
     expect(picture.match(/.{4}/g)).toEqual(["####", "###a", "##..", "#..."]);
 });
+
+test("a point is a square of its width at its vertex, and no line leads to it", () => {
+    const styles = Uint8Array.from({ length: 16 }, (_, kind) => (kind === 5 ? Style.dot : Style.hidden));
+    const points = [[1.5, 1.5, 0], [1.5, 1.5, 0, 5], [6.5, 2.5, 0, 5]];
+    expect(shown(drawn(8, 4, strip(points, { paint: paint({ styles }) })))).toEqual([
+        "........",
+        ".a......",
+        "......b.",
+        "........",
+    ]);
+    expect(shown(drawn(8, 4, strip(points, { paint: paint({ styles, width: 3 }) })))).toEqual([
+        "aaa.....",
+        "aaa..bbb",
+        "aaa..bbb",
+        ".....bbb",
+    ]);
+    // The nearer one is seen; what is out of the picture is not.
+    const hidden = [[1, 1, 5], [1, 1, 5, 5], [1, 1, 2, 5], [1, 1, 9, 5], [-50, 1, 0, 5]];
+    expect(shown(drawn(2, 2, strip(hidden, { paint: paint({ styles }) })))).toEqual(["..", ".b"]);
+});

@@ -1,5 +1,6 @@
-import { expect, test, vi } from "vitest";
+import { describe, expect, test, vi } from "vitest";
 import type { WalkAbout } from "../src/protocol/asks.ts";
+import { Blocks } from "../src/view/blocks.ts";
 import { project, VIEWS } from "../src/view/camera.ts";
 import { Chunks, FINE, inSight, levelFor, readIndex, type Vertices } from "../src/view/chunks.ts";
 import { MARKED, theme } from "../src/view/colours.ts";
@@ -7,7 +8,7 @@ import { Raster } from "../src/view/raster.ts";
 import { Painting } from "../src/view/renderer.ts";
 import type { Rows } from "../src/view/rows.ts";
 import { Scene, type Looks, type Marks } from "../src/view/scene.ts";
-import { wordOf } from "../src/view/strip.ts";
+import { Style, wordOf } from "../src/view/strip.ts";
 
 const size = { width: 100, height: 50 };
 const above = project({ ...VIEWS[0]!, middle: [0, 0, 0], scale: 1 }, size);
@@ -230,4 +231,41 @@ test("while the cursor moves, only what is marked is drawn anew; the picture is 
     draw(painting, 4096, { ...looks, width: 2 });
     expect(drawn).toHaveBeenCalledTimes(3);
     drawn.mockRestore();
+});
+
+describe("pulses in a block of glass", () => {
+    const sides: [[number, number, number], [number, number, number], [number, number, number]] = [[4, 0, 0], [0, 3, 0], [0, 0, 2]];
+    const blocks = new Blocks([{ corner: [0, 0, 0], sides }, { corner: [10, 0, 0], sides }]);
+    const pulses: WalkAbout = { ...walk, kinds: ["gap", "pulse"] };
+
+    async function within(levels: WalkAbout["levels"]): Promise<Scene> {
+        const chunks = new Chunks({ ...pulses, levels }, async (path) => answer(server, path), () => {});
+        await chunks.load();
+        for (const level of [0, 1]) for (const chunk of [0, 1]) await chunks.exact(level, chunk);
+        return new Scene({ ...pulses, levels }, chunks, {} as Rows, null, blocks);
+    }
+
+    test("are dots, also where they are picked out, and the blocks are their twelve edges each, which are no moves", async () => {
+        const one = await within(walk.levels);
+        const { strips, over } = one.picture(above, size, looks, { ...marks, now: 1 });
+        expect(strips[0]!.paint.styles[1]).toBe(Style.dot);
+        expect(over[0]!.paint.styles[1]).toBe(Style.dot);
+        const edges = strips.at(-1)!;
+        expect(edges.vertices.byteLength).toBe(2 * 12 * 2 * 16);
+        const lengths = Array.from({ length: 24 }, (_, edge) => {
+            const ends = new Float32Array(edges.vertices);
+            return Math.hypot(...[0, 1, 2].map((axis) => ends[edge * 8 + 4 + axis]! - ends[edge * 8 + axis]!));
+        });
+        expect(lengths.toSorted()).toEqual([2, 3, 4].flatMap((length) => Array.from({ length: 8 }, () => length)));
+        expect(edges.first).toBe(-1);
+        expect(blocks.box).toEqual({ low: [0, 0, 0], high: [14, 3, 2] });
+        expect(await one.pick(above, looks, 55, 50)).toBe(null);
+    });
+
+    test("come at a coarser level where too many are in sight", async () => {
+        const few = await within([{ error: 0.1, vertices: 1e6 }, { error: 9, vertices: 4 }]);
+        expect(few.picture(above, size, looks, marks).strips[0]!.vertices).toEqual(server["0/0"]);
+        const many = await within([{ error: 0.1, vertices: 4e6 }, { error: 9, vertices: 4 }]);
+        expect(many.picture(above, size, looks, marks).strips[0]!.vertices).toEqual(server["1/0"]);
+    });
 });

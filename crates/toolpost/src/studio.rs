@@ -9,6 +9,7 @@ use ::studio::board::Settings;
 use ::studio::server::{More, SETTINGS};
 use ::studio::{Options, Server};
 use app::{Source, Stop, Verdict};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, CommandFactory, Parser};
 use program::{Diagnostic, Rule};
 use serde_json::json;
@@ -129,6 +130,16 @@ fn field(arg: &Arg) -> Option<Field> {
     })
 }
 
+/// The options that a command cannot do without and that were not given.
+fn missing(usage: &clap::Error) -> Option<String> {
+    let Some(ContextValue::Strings(names)) = usage.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    let name = |usage: &String| usage.split(' ').next().unwrap_or_default().to_owned();
+    let is_missing = usage.kind() == ErrorKind::MissingRequiredArgument;
+    is_missing.then(|| names.iter().map(name).collect::<Vec<_>>().join(", "))
+}
+
 /// What options of the form mean, with those of a file beside the board: they are read as the command line reads them.
 ///
 /// # Errors
@@ -167,10 +178,15 @@ fn options(
         None => (words, Vec::new(), None),
     };
     let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
+        let missing = missing(&usage);
         let message = crate::shortened(usage).render().to_string();
         let first = message.split("\n\n").next().unwrap_or_default();
         let message = first.trim_start_matches("error: ").replace('\n', " ");
-        Diagnostic::error(Rule::StudioAsk, message).help("correct the option in the form")
+        let found = Diagnostic::error(Rule::StudioAsk, message);
+        match missing {
+            Some(names) => found.help(format!("set {names}")),
+            None => found.help("correct the option in the form"),
+        }
     })?;
     let of = |source: &crate::args::Source, closeness: &Closeness, machine, wire| Options {
         strict: source.strict,
@@ -331,7 +347,7 @@ mod tests {
         let glass = options(ask::Command::Glass, &list, None).unwrap().glass.unwrap();
         assert_eq!((glass.job.placing.block, &*glass.material), ([20.0, 20.0, 30.0], "k9"));
         let stop = options(ask::Command::Glass, &list[1..], None).unwrap_err();
-        assert!(stop.findings[0].message.contains("--block"), "{:?}", stop.findings);
+        assert_eq!(stop.findings[0].help, "set --block");
         // What looks like another option is a value.
         assert_eq!(
             given(&[("from", "--strict")]).unwrap().origin.from.as_deref(),

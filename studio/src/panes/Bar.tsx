@@ -80,7 +80,7 @@ function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | 
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
     if (!isCurrent) return <strong class="warning">▲ TO BE PROVEN</strong>;
     const isPartly = job.board?.verdict === "partly" && job.verdict === "done";
-    const moves = `${counted(job.walk.moves)} moves`;
+    const moves = `${counted(job.walk.moves)} ${job.machine.kind === "glass" ? "pulses" : "moves"}`;
     return (
         <>
             <strong class={isPartly ? "partly" : job.verdict}>{isPartly ? "◐ PROVEN, PARTLY MADE" : verdicts[job.verdict]}</strong> {moves}

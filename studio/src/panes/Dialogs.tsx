@@ -7,6 +7,7 @@ import { Find } from "./Find.tsx";
 import { Folder } from "./Folder.tsx";
 import { Go } from "./Go.tsx";
 import { Keys } from "./Keys.tsx";
+import { Machines } from "./Machines.tsx";
 import { Options } from "./Options.tsx";
 import { Save } from "./Save.tsx";
 
@@ -42,18 +43,7 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
                 />
             )}
             {open === "keys" && <Keys commands={commands} />}
-            {open === "machine" && (
-                <Choose
-                    label="Search the machines"
-                    close={close}
-                    choices={studio.machines.value.map((machine) => ({
-                        name: machine.name,
-                        title: `${machine.name}: ${machine.title}`,
-                        more: `${machine.control}, ${machine.axes.join(" ")}`,
-                        run: () => void studio.choose(machine.name),
-                    }))}
-                />
-            )}
+            {open === "machine" && <Machines screen={screen} close={close} />}
             {open === "source" && (
                 <Folder
                     screen={screen}

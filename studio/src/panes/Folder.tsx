@@ -54,7 +54,7 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
         <>
             <p>
                 <label>
-                    {takeFolder === undefined ? "A file from elsewhere" : "A file from elsewhere, or those of a board"}{" "}
+                    {takeFolder === undefined ? "A file from elsewhere" : "A file from elsewhere, or those of a board or a block of glass"}{" "}
                     <input
                         type="file"
                         multiple={takeFolder !== undefined}

@@ -18,9 +18,17 @@ export function Readout({ screen }: { screen: Screen }) {
     const tool = screen.toolOf(place?.tool ?? null);
     const pointer = screen.pointer.value;
     const { net } = screen;
-    const parts: [string, string, string][] = place === null ? [] : [
+    const job = screen.studio.job.value;
+    const isGlass = job?.machine.kind === "glass";
+    const own: [string, string, string][] = place === null ? [] : [
         ...axes.map(({ name, unit }, i): [string, string, string] => [name, number(place.axes[i]), unit]),
-        ["Tip", place.tip.map((part) => number(part)).join("  "), "mm"],
+        [isGlass ? "Focus" : "Tip", place.tip.map((part) => number(part)).join("  "), "mm"],
+    ];
+    const parts: [string, string, string][] = place === null ? [] : isGlass ? [
+        ...own,
+        ["Pulse", `${counted(place.move + 1)} of ${counted(job.walk.moves)}`, ""],
+    ] : [
+        ...own,
         ["Feed", number(place.feed?.value, 0), place.feed?.unit ?? ""],
         ["Spindle", place.spindle === null ? "–" : `${place.spindle.turns} ${place.spindle.speed ?? ""}`, "1/min"],
         ["Coolant", place.coolant ?? "–", ""],

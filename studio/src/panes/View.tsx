@@ -147,7 +147,7 @@ function Proving({ screen }: { screen: Screen }) {
 function Empty({ screen }: { screen: Screen }) {
     return (
         <div class="empty">
-            <p>{screen.studio.work.value === null ? "Drop a toolpath here (CL data, or an NC program), or the files of a circuit board." : "There is no program: see the findings below."}</p>
+            <p>{screen.studio.work.value === null ? "Drop a toolpath here (CL data, or an NC program), the files of a circuit board, or bodies to engrave inside glass." : "There is no program: see the findings below."}</p>
             <p>
                 <button type="button" onClick={() => (screen.dialog.value = "source")}>
                     Open a file…

@@ -6,6 +6,7 @@ import { Player } from "../player.ts";
 import type { Job, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
+import { Blocks } from "../view/blocks.ts";
 import { Board } from "../view/board.ts";
 import { axes } from "../view/camera.ts";
 import { Chunks } from "../view/chunks.ts";
@@ -126,7 +127,7 @@ export class Screen {
         }
         const { walk, revision } = job;
         const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++, walked);
-        this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job));
+        this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job), this.blocksOf(job));
         void chunks.load().catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
         else if (board !== null) this.show(board);
@@ -141,6 +142,10 @@ export class Screen {
         const given = ["height", "uv-height"].map((name) => Number(this.studio.work.value?.options.find(([option]) => option === name)?.[1]));
         const guide = machine.linkage.bodies.find(({ name }) => name === "upper guide")?.low[2] ?? 0;
         return given.find((height) => height > 0) ?? guide;
+    }
+
+    private blocksOf({ blocks }: Job): Blocks | null {
+        return blocks.length === 0 ? null : new Blocks(blocks);
     }
 
     /** The board below the cuts. */
@@ -230,10 +235,10 @@ export class Screen {
         if (this.studio.job.value === null) return this.studio.walking.value?.walking.box ?? null;
         const [low, high] = this.studio.job.value.walk.box ?? [];
         if (low === undefined || high === undefined) return null;
-        const board = this.board.value?.box ?? { low, high };
+        const round = this.board.value?.box ?? this.blocksOf(this.studio.job.value)?.box ?? { low, high };
         const of = (way: (...parts: number[]) => number, a: Vector, b: Vector): Vector => [way(a[0], b[0]), way(a[1], b[1]), way(a[2], b[2])];
         const wire = this.wireOf(this.studio.job.value) ?? 0;
-        return { low: of(Math.min, low, board.low), high: of(Math.max, [high[0], high[1], high[2] + wire], board.high) };
+        return { low: of(Math.min, low, round.low), high: of(Math.max, [high[0], high[1], high[2] + wire], round.high) };
     }
 
     /** Leads to the finding's place, in every pane. */

@@ -2,13 +2,14 @@
 
 import { rgb } from "./raster.ts";
 
-export type Mode = "kind" | "tool" | "operation" | "feed" | "deviation";
+export type Mode = "kind" | "tool" | "operation" | "feed" | "deviation" | "order";
 export const MODES: { name: Mode; title: string }[] = [
     { name: "kind", title: "kind" },
     { name: "tool", title: "tool" },
     { name: "operation", title: "operation" },
     { name: "feed", title: "feed" },
     { name: "deviation", title: "deviation" },
+    { name: "order", title: "order" },
 ];
 
 type Colour = [number, number, number];

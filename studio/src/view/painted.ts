@@ -1,4 +1,4 @@
-/** Colours that vertices do not tell: by operation, feed and deviation. One byte a move, made where a chunk is first seen. */
+/** Colours that vertices do not tell: by operation, order, feed and deviation. One byte a move, made where a chunk is first seen. */
 
 import type { WalkAbout } from "../protocol/asks.ts";
 import type { Chunk } from "./chunks.ts";
@@ -10,6 +10,7 @@ export type Painter = (chunk: Chunk) => Uint8Array | null;
 
 export function painterOf(mode: Mode, walk: WalkAbout, rows: Rows): Painter | null {
     if (mode === "operation") return byOperation(walk);
+    if (mode === "order") return byOrder(walk);
     if (mode === "deviation") return byDeviation(rows, walk.deviation ?? 0);
     return mode === "feed" ? byFeed(rows) : null;
 }
@@ -39,6 +40,18 @@ export function byOperation({ operations, moves }: Pick<WalkAbout, "operations" 
             const end = operations[operation + 1]?.move ?? moves;
             if (end > first && move < first + CHUNK_MOVES) places.fill(operation % 64, Math.max(0, move - first), end - first);
         });
+        made.set(number, places);
+        return places;
+    };
+}
+
+/** From the first move to the last. */
+export function byOrder({ moves }: Pick<WalkAbout, "moves">): Painter {
+    const made = new Map<number, Uint8Array>();
+    return ({ number, first }) => {
+        const known = made.get(number);
+        if (known !== undefined) return known;
+        const places = Uint8Array.from({ length: CHUNK_MOVES }, (_, move) => step(first + move, 0, moves - 1));
         made.set(number, places);
         return places;
     };

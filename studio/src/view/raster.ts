@@ -61,7 +61,8 @@ export class Raster {
                     const dash = style === Style.dashed;
                     const index = dash && dashed >= 0 ? dashed : byMove === null ? (word >>> shift) & mask : byMove[word & 4095]!;
                     const seen = isMoves ? first + (word & 4095) + 1 : palette[index]!;
-                    if (round) this.stroke([x0, y0, z0], [x1, y1, z1], seen, width / 2);
+                    if (style === Style.dot) this.square(x1, y1, z1, seen, width);
+                    else if (round) this.stroke([x0, y0, z0], [x1, y1, z1], seen, width / 2);
                     else this.line(x0, y0, z0, x1, y1, z1, seen, width, dash);
                 }
             }
@@ -122,6 +123,14 @@ export class Raster {
             if (dashed && (step & 7) >= 5) continue;
             const [x, y, z] = [x0 + step * sx, y0 + step * sy, z0 + step * sz];
             for (let side = -half; side <= half; side++) this.dot(isWide ? x : x + side, isWide ? y + side : y, z, seen);
+        }
+    }
+
+    /** A point of `width` pixels. */
+    private square(x: number, y: number, z: number, seen: number, width: number): void {
+        const half = (width - 1) / 2;
+        for (let down = -half; down <= half; down++) {
+            for (let side = -half; side <= half; side++) this.dot(x + side, y + down, z, seen);
         }
     }
 

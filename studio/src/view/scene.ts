@@ -2,6 +2,7 @@
 
 import type { Range } from "../cursor.ts";
 import type { WalkAbout } from "../protocol/asks.ts";
+import type { Blocks } from "./blocks.ts";
 import type { Board, Flat } from "./board.ts";
 import { toScreen, type Projection, type Size } from "./camera.ts";
 import { inSight, levelFor, type Chunk, type Vertices } from "./chunks.ts";
@@ -53,6 +54,9 @@ type Best = NonNullable<ReturnType<Vertices["best"]>>;
 /** The most places of a board that are marked. */
 const PLACES = 400;
 
+/** The most points in a picture. */
+const POINTS = 1.5e6;
+
 const SURFACE: Triangles["colour"] = [205, 218, 235];
 
 /** Pixels round the pointer in which a line is looked for. */
@@ -76,6 +80,8 @@ export class Scene {
         private readonly rows: Rows,
         /** Of a wire: how high its upper end is over the lower one, mm. */
         private readonly wire: number | null = null,
+        /** The blocks of glass that pulses are in. */
+        private readonly blocks: Blocks | null = null,
     ) {}
 
     /** The surface of a chunk, made once. */
@@ -95,9 +101,9 @@ export class Scene {
         const over: Strip[] = [];
         const symbols: Symbol[] = [];
         const surfaces: Triangles[] = [];
-        const level = levelFor(this.walk, projection.scale);
-        for (const chunk of this.chunks.chunks) {
-            if (!inSight(chunk, projection, size)) continue;
+        const chunks = this.chunks.chunks.filter((chunk) => inSight(chunk, projection, size));
+        const level = this.levelOf(projection.scale, chunks.length);
+        for (const chunk of chunks) {
             const best = this.chunks.best(level, chunk.number);
             if (best === null) continue;
             const { vertices } = best;
@@ -108,11 +114,27 @@ export class Scene {
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
             symbolsOf(symbols, chunk, vertices, projection, size);
         }
+        const edges = this.blocks?.edges(looks.theme) ?? null;
+        if (edges !== null) strips.push(edges);
         const tabs = this.board?.tabLines(looks.theme) ?? null;
         if (tabs !== null) strips.push(tabs);
         const flats = this.board?.flats(looks.theme) ?? [];
         this.places(symbols, projection, size);
         return { flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+    }
+
+    /** Points of a laser, which no lines join. */
+    private get isPoints(): boolean {
+        return this.blocks !== null;
+    }
+
+    /** The level at a scale. Points do not thin out as lines do: where too many are in sight, a coarser one. */
+    private levelOf(scale: number, inSight: number): number {
+        const { levels, chunks } = this.walk;
+        let level = levelFor(this.walk, scale);
+        if (!this.isPoints) return level;
+        while (level + 1 < levels.length && (levels[level]!.vertices * inSight) / Math.max(1, chunks) > POINTS) level++;
+        return level;
     }
 
     /** Places of the board that are to be looked at. */
@@ -197,13 +219,14 @@ export class Scene {
         const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, looks.rapids));
         const bits = looks.mode === "tool" ? { shift: 16, mask: 63 } : { shift: 12, mask: 15 };
         // On the edge of a surface lines lie over it.
-        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width: looks.width, tool: -1, round: false, lift: this.wire === null ? 0 : 1.5 };
+        const width = looks.width + (this.isPoints ? 1 : 0);
+        const paint = { palette, byMove: null, ...bits, styles, dashed: RAPID, width, tool: -1, round: false, lift: this.wire === null ? 0 : 1.5 };
         this.alike.paints.set(palette, paint);
         return paint;
     }
 
     private plain(place: number, looks: Looks, wider: number, lift: number): Paint {
-        const styles = Uint8Array.from({ length: 16 }, (_, kind) => (this.walk.kinds[kind] === "gap" ? Style.hidden : Style.line));
+        const styles = Uint8Array.from({ length: 16 }, (_, kind) => this.styleOf(kind, true)).map((style) => (style === Style.dashed ? Style.line : style));
         const palette = new Uint32Array([looks.theme.done[place]!]);
         return { palette, byMove: null, shift: 0, mask: 0, styles, dashed: -1, width: looks.width + wider, tool: -1, round: false, lift };
     }
@@ -211,6 +234,7 @@ export class Scene {
     private styleOf(kind: number, rapids: boolean): number {
         const name = this.walk.kinds[kind];
         if (name === "gap") return Style.hidden;
+        if (name === "pulse") return Style.dot;
         if (name !== "rapid") return Style.line;
         return rapids ? Style.dashed : Style.hidden;
     }
@@ -231,7 +255,7 @@ export class Scene {
     /** What is drawn of the chunks that reach to the pixel. */
     private near(camera: Projection, looks: Looks, x: number, y: number): Strip[] {
         const strips: Strip[] = [];
-        const level = levelFor(this.walk, camera.scale);
+        const level = this.levelOf(camera.scale, this.chunks.chunks.length);
         const reach = REACH + Math.max(0, ...this.bandPaints(looks, camera.scale).map(({ width }) => width / 2));
         const round = { ...camera, at: [camera.at[0] - x + reach, camera.at[1] - y + reach, camera.at[2]] as Vector };
         for (const chunk of this.chunks.chunks) {

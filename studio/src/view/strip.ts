@@ -13,7 +13,7 @@ export const wordOf = (move: number, kind: number, tool: number, marks = 0): num
     (move | (kind << 12) | (tool << 16) | (marks << 24)) >>> 0;
 
 /** How a kind of move is drawn. */
-export const Style = { line: 0, dashed: 1, hidden: 2 } as const;
+export const Style = { line: 0, dashed: 1, hidden: 2, dot: 3 } as const;
 
 /** How lines get their colours: by a table of the chunk's moves, or by bits of the vertex's word. */
 export interface Paint {
@@ -35,7 +35,7 @@ export interface Paint {
     lift: number;
 }
 
-/** A polyline: the segment that ends at a vertex belongs to the vertex's move. */
+/** A polyline: the segment that ends at a vertex, or the dot at it, belongs to the vertex's move. */
 export interface Strip {
     vertices: ArrayBuffer;
     origin: Vector;

@@ -23,7 +23,7 @@ uniform sampler2D palette;
 uniform vec3 right, down, away, at;
 uniform vec2 size;
 uniform float reach, lift, width;
-uniform uint shift, mask, hidden, dashes;
+uniform uint shift, mask, hidden, dashes, dots;
 uniform int dashed, tool;
 uniform bool byMove, rounded;
 out vec4 colour;
@@ -48,6 +48,8 @@ void main() {
     uint kind = (end.w >> 12u) & 15u;
     if (((hidden >> kind) & 1u) == 1u || (tool >= 0 && int((end.w >> 16u) & 255u) != tool)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
     bool dash = ((dashes >> kind) & 1u) == 1u;
+    bool point = ((dots >> kind) & 1u) == 1u;
+    if (point) a = b;
     uint place = byMove ? texelFetch(moves, ivec2(int(end.w & 4095u), 0), 0).r : (end.w >> shift) & mask;
     if (dash && dashed >= 0) place = uint(dashed);
     colour = texelFetch(palette, ivec2(int(place), 0), 0);
@@ -56,7 +58,7 @@ void main() {
     way = length_ > 0.0 ? way / length_ : vec2(1.0, 0.0);
     bool last = corner == 1 || corner == 2 || corner == 4;
     float side = (corner == 0 || corner == 1 || corner == 3) ? -0.5 : 0.5;
-    float beyond = rounded ? width * 0.5 : 0.5;
+    float beyond = rounded || point ? max(width, 1.0) * 0.5 : 0.5;
     vec2 p = (last ? b.xy + way * beyond : a.xy - way * beyond) + vec2(-way.y, way.x) * side * max(width, 1.0);
     place_ = p;
     ends = vec4(a.xy, b.xy);
@@ -212,6 +214,7 @@ export class Gl implements Renderer {
         gl.uniform1ui(lines.at("mask"), paint.mask);
         gl.uniform1ui(lines.at("hidden"), bits(paint, Style.hidden));
         gl.uniform1ui(lines.at("dashes"), bits(paint, Style.dashed));
+        gl.uniform1ui(lines.at("dots"), bits(paint, Style.dot));
         gl.uniform1i(lines.at("dashed"), paint.dashed);
         gl.drawArrays(gl.TRIANGLES, (from - 1) * 6, (to - from) * 6);
     }
