@@ -221,7 +221,9 @@ fn drawn(made: &glass::Made, settings: &Settings, watch: &dyn Watch) -> Result<D
         }
     });
     let mut goes_on = || !watch.is_cancelled();
-    let walk = Walk::of_pulses(pulses, &goes_on).ok_or_else(Stop::cancelled)?;
+    let mut walk = Walk::of_pulses(pulses, &goes_on).ok_or_else(Stop::cancelled)?;
+    let wrong = made.account.findings.iter().filter(|found| found.is_error());
+    walk.mark_blocks(wrong.flat_map(|found| found.places.iter().copied().chain([found.line])));
     let mut geometry = Geometry::default();
     for chunk in 0..walk.len().div_ceil(CHUNK) {
         let exact = Exact::of(&walk, chunk);

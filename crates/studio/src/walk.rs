@@ -188,6 +188,16 @@ impl Walk {
         Some(walk)
     }
 
+    /// Marks the first move of each of these blocks as one of a mismatch.
+    pub fn mark_blocks(&mut self, lines: impl Iterator<Item = u32>) {
+        for line in lines {
+            if let Some([first, _]) = self.moves_of(By::Block(None), line, 1).first() {
+                self.marks[*first as usize] |= MISMATCH;
+                self.mismatch = Some(self.mismatch.map_or(*first, |known| known.min(*first)));
+            }
+        }
+    }
+
     /// How many moves there are.
     pub fn len(&self) -> u32 {
         self.kinds.len() as u32

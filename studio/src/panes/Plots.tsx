@@ -23,7 +23,9 @@ export function Plots({ screen }: { screen: Screen }) {
         zoomed.value = [from, from + 2 * half];
     };
     const plain = (name: string, unit: string): Axis => ({ name, unit, kind: "linear", low: null, high: null });
-    const axes = [...job.machine.axes, plain("feed", "mm/min"), ...(job.walk.deviation === null ? [] : [plain("deviation", "mm")])];
+    // Pulses have no feed.
+    const feed = job.machine.kind === "glass" ? [] : [plain("feed", "mm/min")];
+    const axes = [...job.machine.axes, ...feed, ...(job.walk.deviation === null ? [] : [plain("deviation", "mm")])];
     return (
         <div class="plots">
             <p>

@@ -252,6 +252,13 @@ fn an_edit_is_proven_against_the_body_and_one_that_fires_elsewhere_is_refused() 
     assert_eq!((&found["of"], &found["line"]), (&json!("program"), &json!(3)), "{found}");
     let save = json!({ "revision": job["revision"], "path": "x.prg", "replace": false });
     assert_eq!(page.refused("save", save), "output-file");
+    // That pulse is marked, and no other.
+    assert_eq!(job["walk"]["mismatch"], 1);
+    let marks = [0, 1, 2].map(|number| {
+        let place = json!({ "revision": job["revision"], "by": "move", "value": number });
+        page.done("place", place)["marks"].clone()
+    });
+    assert_eq!(marks, [0, 4, 0]);
     // What the machine would not take has its line.
     let stop = prove(&mut page, &posted.replace("N3 PULSE", "N3 PULSES")).unwrap_err();
     let found = &stop["findings"][0];
