@@ -76,6 +76,68 @@ fn a_helix_of_a_hundred_thousand_turns_is_read_and_the_page_is_told() {
     assert!(!head["findings"].as_array().unwrap().is_empty());
 }
 
+/// Of a walk that is empty all is asked that a page asks.
+#[test]
+fn a_source_without_moves_is_a_program_without_places() {
+    let studio = Studio::new();
+    for text in ["", "UNITS/MM\nFINI\n", "UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nFINI\n"] {
+        let job = match post(&studio, text, "generic-3axis-linuxcnc") {
+            Ok(job) => job,
+            Err(stop) => {
+                assert_ne!(stop["findings"][0]["help"], "", "{stop}");
+                continue;
+            }
+        };
+        let mut page = studio.socket();
+        let revision = &job["revision"];
+        assert!(job["walk"]["box"].is_null(), "{}", job["walk"]);
+        for by in ["time", "move", "block", "source"] {
+            let place = page.done("place", json!({ "revision": revision, "by": by, "value": 1 }));
+            assert!(place.is_null() || place["tip"][0].is_null(), "{place}");
+        }
+        let plot = json!({ "revision": revision, "what": "X", "from": 0, "to": 1, "pixels": 10 });
+        page.done("plot", plot);
+        studio.get(&format!("/geometry/{revision}/index"));
+    }
+}
+
+#[test]
+fn what_is_no_number_is_refused_on_its_line() {
+    let studio = Studio::new();
+    for wrong in ["NaN", "nan", "inf", "-inf", "1e999", "0x10", "1.2.3", "--1"] {
+        let text = format!("{HEAD}GOTO/1,0,-1\nGOTO/{wrong},0,-1\n{END}");
+        let stop = post(&studio, &text, "generic-3axis-linuxcnc").unwrap_err();
+        let found = &stop["findings"][0];
+        assert_eq!((&found["severity"], &found["line"]), (&json!("error"), &json!(8)), "{stop}");
+    }
+    // The same in a program that is proven.
+    let job =
+        post(&studio, &format!("{HEAD}GOTO/1,0,-1\n{END}"), "generic-3axis-linuxcnc").unwrap();
+    let mut page = studio.socket();
+    let lines = json!({ "revision": job["revision"], "of": "program", "from": 1, "to": 99 });
+    let text = page.answer("text", lines, &[]).unwrap().take_text("text").unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let line = 1 + text.lines().position(|line| line.contains("X1")).unwrap();
+    for wrong in ["NaN", "nan", "inf", "-inf", "1e999", "1.2.3"] {
+        let program = text.replacen("X1", &format!("X{wrong}"), 1);
+        let params = json!({ "source": { "file": "odd.cls" }, "machine": "generic-3axis-linuxcnc", "file": "odd.ngc" });
+        let answer = page.answer("prove", params, &[Array::text("text", program)]);
+        let head = answer.map_or_else(|stop| stop, |frame| frame.head["done"].clone());
+        let found = &head["findings"][0];
+        assert_ne!(head["verdict"], "done", "{wrong}");
+        assert_eq!((&found["severity"], &found["line"]), (&json!("error"), &json!(line)), "{head}");
+    }
+    // What is asked for: JSON has no such numbers, and those that are too large for any are none either.
+    let job =
+        post(&studio, &format!("{HEAD}GOTO/1,0,-1\n{END}"), "generic-3axis-linuxcnc").unwrap();
+    let mut page = studio.socket();
+    let place = json!({ "revision": job["revision"], "by": "time", "value": null });
+    assert_eq!(page.refused("place", place), "studio-ask");
+    let plot = json!({ "revision": job["revision"], "what": "X", "from": 1e300, "to": -1e300, "pixels": 4_000_000_000_u32 });
+    let frame = page.answer("plot", plot, &[]);
+    assert!(frame.is_err() || frame.is_ok_and(|frame| frame.arrays.len() == 2));
+}
+
 #[test]
 fn a_machine_without_travels_has_none() {
     let studio = Studio::new();

@@ -5,7 +5,10 @@ use serde_json::json;
 use std::io::Write;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
+use toolpost_studio::Options;
+use toolpost_studio::ask::Command;
 use toolpost_studio::message::Array;
+use toolpost_studio::server::More;
 
 #[test]
 fn a_request_names_this_server_and_comes_from_no_other_page() {
@@ -262,6 +265,60 @@ fn no_more_sockets_and_no_more_asks_than_there_are_places() {
         page.send(&json!({ "id": 7, "ask": "machines", "params": {} }), &[]);
     }
     assert!(page.done("open", json!({}))["version"].is_string());
+}
+
+/// Options that name a tool table (`tools`) and folders of called programs (`folders`).
+fn naming(_: Command, given: &[(String, String)], _: Option<&More>) -> Result<Options, app::Stop> {
+    let mut options = Options::default();
+    options.origin.from = Some(String::from("linuxcnc-mill"));
+    for (name, value) in given {
+        match &**name {
+            "tools" => options.origin.tools = Some(app::Source::File(value.into())),
+            _ => options.origin.folders.push(value.into()),
+        }
+    }
+    Ok(options)
+}
+
+/// LinuxCNC: a program of a file of its own, called by its name (`O<sub> CALL`), and the table of tools.
+#[cfg(unix)]
+#[test]
+fn no_tool_table_and_no_called_program_lies_outside() {
+    let studio = Studio::with(Some(naming));
+    let (own, outside) = (studio.own(), studio.outside.path());
+    let sub = "o<sub> sub\nG1 X7 F100\no<sub> endsub\nM2\n";
+    for folder in [outside.join("subs"), own.join("subs")] {
+        std::fs::create_dir(&folder).unwrap();
+        std::fs::write(folder.join("sub.ngc"), sub).unwrap();
+    }
+    std::fs::create_dir(own.join("led")).unwrap();
+    std::fs::create_dir(own.join("empty")).unwrap();
+    std::os::unix::fs::symlink(outside.join("subs/sub.ngc"), own.join("led/sub.ngc")).unwrap();
+    std::os::unix::fs::symlink(outside.join("subs"), own.join("out")).unwrap();
+    std::fs::write(outside.join("tool.tbl"), "T1 P1 D6\n").unwrap();
+    std::fs::write(own.join("tool.tbl"), "T1 P1 D6\n").unwrap();
+    std::os::unix::fs::symlink("../tool.tbl", own.join("link.tbl")).unwrap();
+    let program = "G21 G90 G17 G94 G40\nT1 M6\nS900 M3\nG0 X0 Y0 Z10\no<sub> call\nG0 Z20\nM2\n";
+    std::fs::write(own.join("main.ngc"), program).unwrap();
+    let mut page = studio.socket();
+    let mut post = |name: &str, value: &str| {
+        let params = json!({ "source": { "file": "main.ngc" }, "machine": "linuxcnc-mill", "options": [[name, value]] });
+        match page.answer("post", params, &[]) {
+            Ok(frame) => frame.head["done"]["verdict"].as_str().unwrap().to_owned(),
+            Err(stop) => stop["findings"][0]["rule"].as_str().unwrap().to_owned(),
+        }
+    };
+    assert_eq!(post("folders", "subs"), "done");
+    for path in ["../subs", "out", "/etc", &outside.join("subs").display().to_string()] {
+        assert_eq!(post("folders", path), "folder-reach", "{path}");
+    }
+    // A link in a folder that is named: there is no such program.
+    assert_eq!([post("folders", "led"), post("folders", "empty")], ["o-word", "o-word"]);
+    // Which table there is does not matter to a program without compensation; that one is read does.
+    assert_ne!(post("tools", "tool.tbl"), "folder-reach");
+    for path in ["../tool.tbl", "link.tbl", "/etc/passwd"] {
+        assert_eq!(post("tools", path), "folder-reach", "{path}");
+    }
 }
 
 #[test]
