@@ -224,7 +224,9 @@ export class Screen {
         if (known.length !== axes.length) return [];
         const at = vector(tip);
         if (kind === "robot") return bodiesOf(linkage, known, null);
-        return at === null ? [] : bodiesOf(linkage, known, { tip: at, length: lengthOf(this.toolOf(tool), POINTER) });
+        // The lower end of a wire is in the plane that the machine's own zero is in.
+        const length = kind === "wire" ? 0 : lengthOf(this.toolOf(tool), POINTER);
+        return at === null ? [] : bodiesOf(linkage, known, { tip: at, length });
     }
 
     toolOf(place: number | null): ToolUse | null {
