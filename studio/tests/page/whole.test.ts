@@ -45,6 +45,25 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         expect(page.url()).not.toContain(new URL(server.link).hash.slice(1));
     });
 
+    test("a reload shows what was worked on; the link, opened again in the same tab, what its command named", async () => {
+        const page = await begin();
+        const button = page.getByTitle("Open a source (Ctrl O)");
+        const named = await button.innerText();
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("generic-3axis-haas");
+        await page.keyboard.press("Enter");
+        const machine = page.getByTitle("Choose the machine (Ctrl M)");
+        await expect.poll(() => machine.innerText()).toBe("generic-3axis-haas");
+        await proven(page);
+        await page.reload();
+        await proven(page);
+        expect([await button.innerText(), await machine.innerText()]).toEqual([named, "generic-3axis-haas"]);
+        await page.goto("about:blank");
+        await page.goto(server.link);
+        await proven(page);
+        expect([await button.innerText(), await machine.innerText()]).toEqual([named, "generic-3axis-fanuc"]);
+    });
+
     test.each([1, 2, 0.5])("a click on a move lights its block and its record, and the axes stand where the record goes; zoom %d", async (deviceScaleFactor) => {
         const page = await begin({ deviceScaleFactor });
         const view = (await page.locator(".canvas").boundingBox())!;
