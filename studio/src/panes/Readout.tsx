@@ -1,3 +1,5 @@
+import type { RefObject } from "preact";
+import { useEffect, useRef } from "preact/hooks";
 import { counted } from "../numbers.ts";
 import type { Screen } from "../screen/screen.ts";
 
@@ -18,6 +20,8 @@ export function Readout({ screen }: { screen: Screen }) {
     const tool = screen.toolOf(place?.tool ?? null);
     const pointer = screen.pointer.value;
     const { net } = screen;
+    const list = useRef<HTMLDListElement>(null);
+    useEffect(() => keepHeight(list), [axes.length]);
     const job = screen.studio.job.value;
     const isGlass = job?.machine.kind === "glass";
     const own: [string, string, string][] = place === null ? [] : [
@@ -38,7 +42,7 @@ export function Readout({ screen }: { screen: Screen }) {
         ["Move", `${counted(place.move + 1)} ${place.kind}`, ""],
     ];
     return (
-        <dl class="readout" aria-label="At the cursor">
+        <dl ref={list} class="readout" aria-label="At the cursor">
             {parts.map(([name, value, unit], row) => (
                 <div key={name} title={why(value, row <= axes.length)}>
                     <dt>{name}</dt>
@@ -61,6 +65,19 @@ export function Readout({ screen }: { screen: Screen }) {
             )}
         </dl>
     );
+}
+
+/** What needs more lines for a while keeps them: else the picture above would change its size with each place, and with the pointer. */
+function keepHeight(list: RefObject<HTMLElement | null>): () => void {
+    const element = list.current!;
+    let width = -1;
+    const sizes = new ResizeObserver(() => {
+        if (element.offsetWidth !== width) element.style.minHeight = "";
+        width = element.offsetWidth;
+        element.style.minHeight = `${element.offsetHeight}px`;
+    });
+    sizes.observe(element);
+    return () => sizes.disconnect();
 }
 
 /** Why there is a dash, where there is one: the axes and the tip come first. */

@@ -40,12 +40,12 @@ export function View({ screen }: { screen: Screen }) {
                     </select>
                 </label>
                 {mode.value === "deviation" && <span class="soft">{deviations(screen.studio.job.value)}</span>}
-                <MachineAbsent screen={screen} />
             </header>
             <div class={four.value ? "body views four" : "body views"}>
                 {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
                     <One key={view} screen={screen} view={view} first={number === 0} />
                 ))}
+                <MachineAbsent screen={screen} />
                 <Proving screen={screen} />
                 {screen.studio.job.value === null && screen.studio.running.value === null && <Empty screen={screen} />}
             </div>
@@ -59,9 +59,9 @@ function MachineAbsent({ screen }: { screen: Screen }) {
     const unknown = screen.machine.value ? screen.unknownAxes : [];
     if (unknown.length === 0) return null;
     return (
-        <span class="soft" title={UNKNOWN}>
-            not drawn here: where {unknown.join(", ")} {unknown.length === 1 ? "stands" : "stand"} is not known
-        </span>
+        <p class="absent soft" title={UNKNOWN}>
+            machine not drawn here: where {unknown.join(", ")} {unknown.length === 1 ? "stands" : "stand"} is not known
+        </p>
     );
 }
 

@@ -39,6 +39,14 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         // Tool 1 cuts on three axes, all of which the program says.
         await goTo(page, "m20");
         await page.getByText("not drawn here").waitFor({ state: "detached" });
+        // The picture keeps its size, whatever is said beside it.
+        await page.mouse.move(700, 300);
+        await page.waitForTimeout(200);
+        const size = await page.locator(".canvas").boundingBox();
+        await page.mouse.move(700, 700);
+        await goTo(page, "m1");
+        await expect.poll(async () => (await readout(page)).X).toMatch(/^–/);
+        expect(await page.locator(".canvas").boundingBox()).toEqual(size);
         await accessible(page, "machine");
         await page.close();
     });
