@@ -93,6 +93,9 @@ export class Screen {
         this.dark.value = dark.matches;
         dark.addEventListener("change", () => (this.dark.value = dark.matches));
         effect(() => {
+            if (studio.stop.value === "invalid") this.tab.value = "findings";
+        });
+        effect(() => {
             const job = studio.job.value;
             const walked = studio.walking.value;
             untracked(() => (job === null && walked !== null ? this.meanwhile(walked.walking) : this.begin(job)));
