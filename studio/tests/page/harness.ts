@@ -106,11 +106,16 @@ export async function visit(browser: Browser, link: string, more: Parameters<Bro
     const complaints: string[] = [];
     page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
     page.on("pageerror", (error) => complaints.push(String(error)));
+    await visitOn(page, link);
+    return { page, complaints };
+}
+
+/** In a page that is there. */
+export async function visitOn(page: Page, link: string): Promise<void> {
     if (newer !== undefined) await page.route(/\/(assets\/.*)?$/, (route) => serve(route, newer));
     await page.goto(link);
     // The keys are listened to from here on.
     await page.getByRole("button", { name: /^Commands/ }).waitFor();
-    return { page, complaints };
 }
 
 /** While the page is worked on: the folder of a build that the command has not in it yet. The headers are the command's. */

@@ -1,7 +1,13 @@
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import { absent, accessible, browserOfTests, covered, example, goTo, lit, proven, readout, Server, visit } from "./harness.ts";
+import type { Job, Place } from "../../src/protocol/asks.ts";
+import { read } from "../../src/protocol/frames.ts";
+import { place, tipOf } from "../../src/view/linkage.ts";
+import { absent, accessible, browserOfTests, covered, example, goTo, lit, proven, readout, Server, visit, visitOn } from "./harness.ts";
+
+/** Of a tool of dome.cls, which says none, in the cell of universal-ur10e, mm. */
+const LENGTH = 50;
 
 describe.skipIf(absent() !== null)("the same part on machines of other kinds", () => {
     const browser = browserOfTests();
@@ -25,6 +31,35 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         // The program has three decimals.
         tip.forEach((part, i) => expect(Math.abs(part - to[i]!)).toBeLessThan(0.002));
         expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("in the midst of moves by joints the arm as it is drawn leads to the tip as it is read out", async () => {
+        const server = await Server.start([example("dome.cls")], ["-m", "universal-ur10e"]);
+        const page = await browser().newPage();
+        const [jobs, places]: [Job[], Place[]] = [[], []];
+        page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
+            const { done } = read(Uint8Array.from(payload as Buffer).buffer).head as { done?: Partial<Job & Place> };
+            if (done?.machine !== undefined) jobs.push(done as Job);
+            if (done?.tip !== undefined) places.push(done as Place);
+        }));
+        await visitOn(page, server.link);
+        await proven(page);
+        // From home to the part, which takes some seconds of twenty minutes, by fractions of a second.
+        await page.getByLabel("Time of the machine").evaluate(async (slider: HTMLInputElement) => {
+            for (let time = 0; time < 8; time += 0.1) {
+                slider.value = String(time);
+                slider.dispatchEvent(new Event("input", { bubbles: true }));
+                await new Promise((resolve) => setTimeout(resolve, 30));
+            }
+        });
+        const { linkage } = jobs.at(-1)!.machine;
+        const byJoints = places.filter(({ kind }) => kind === "joints");
+        expect(byJoints.length).toBeGreaterThan(5);
+        for (const { axes, tip } of byJoints) {
+            const drawn = tipOf(linkage, place(linkage, axes as number[]), LENGTH);
+            drawn.forEach((part, i) => expect(Math.abs(part - tip[i]!)).toBeLessThan(1e-9));
+        }
         await page.close();
     });
 
