@@ -56,18 +56,19 @@ impl Chain {
 
     /// The motion from positions to positions, at the end of which the tool is known. `together`: all axes go evenly and arrive at the same
     /// time; otherwise each one goes as fast as it can, and arrives as [`time::each`] has it. Nothing where something is not known.
-    pub fn motion<'a>(
-        &'a self,
-        [from, to]: [&'a [f64]; 2],
+    pub fn motion(
+        &self,
+        [from, to]: [&[f64]; 2],
         end: Tool,
         together: bool,
-    ) -> Option<AxisMotion<'a>> {
+    ) -> Option<AxisMotion<'_>> {
         let count = self.linkage.axes.len();
         let known = |axes: &[f64]| axes.len() == count && axes.iter().all(|at| at.is_finite());
         if !known(from) || !known(to) || !end.0.is_finite() || !end.1.is_finite() {
             return None;
         }
         let arrivals = if together { Vec::new() } else { self.arrivals(from, to) };
+        let [from, to] = [from, to].map(<[f64]>::to_vec);
         Some(AxisMotion { chain: self, from, to, end, arrivals })
     }
 
@@ -89,8 +90,8 @@ impl Chain {
 #[derive(Clone, Debug)]
 pub struct AxisMotion<'a> {
     chain: &'a Chain,
-    from: &'a [f64],
-    to: &'a [f64],
+    from: Vec<f64>,
+    to: Vec<f64>,
     end: Tool,
     /// When each axis arrives, as a part of the time of the motion; empty where all of them arrive at its end.
     arrivals: Vec<f64>,
@@ -99,7 +100,7 @@ pub struct AxisMotion<'a> {
 impl AxisMotion<'_> {
     /// Where the axes are at a part of the time, 0 to 1.
     pub fn axes(&self, part: f64) -> Vec<f64> {
-        let ends = self.from.iter().zip(self.to).enumerate();
+        let ends = self.from.iter().zip(&self.to).enumerate();
         ends.map(|(axis, (from, to))| {
             let arrives = self.arrivals.get(axis).copied().unwrap_or(1.0);
             if part >= arrives { *to } else { from + (to - from) * (part / arrives) }

@@ -166,9 +166,9 @@ impl Chunk {
 fn octets(vertices: &[Vertex], origin: Vec3) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(vertices.len() * 16);
     for Vertex { at, packed } in vertices {
-        let at = (*at - origin).to_array();
-        bytes.extend(at.iter().flat_map(|value| (*value as f32).to_le_bytes()));
-        bytes.extend(packed.to_le_bytes());
+        let [x, y, z] = (*at - origin).to_array().map(|value| (value as f32).to_bits());
+        let words = [x, y, z, *packed].map(u32::to_le_bytes);
+        bytes.extend_from_slice(words.as_flattened());
     }
     bytes
 }
@@ -355,7 +355,8 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
     let Some(moves) = moves(walk, chunk) else { return Vec::new() };
     let mut arcs = walk.arcs(moves.clone()).iter().peekable();
     let mut starts = walk.starts(moves.clone()).iter().peekable();
-    let led = moves.clone().filter(|at| walk.led(*at).is_some()).count();
+    let can_lead = walk.stride() > 3 || !walk.goes_together();
+    let led = moves.clone().filter(|at| can_lead && walk.led(*at).is_some()).count();
     let most_chords = (MOST_VERTICES / arcs.len().max(1)).max(16);
     let most_led = (MOST_LED / led.max(1)).max(16);
     let mut vertices = Vec::with_capacity(moves.len() + 1);

@@ -9,26 +9,32 @@ const BITS: u32 = 11;
 /// The moves of a column of lines, ordered by their lines and, within one, by themselves.
 #[derive(Debug, Default)]
 pub struct Index {
-    /// The moves in that order, without those of line 0; none where the column is in that order itself.
+    /// The moves in that order, without those of line 0; none where the column is in that order itself, but for those of line 0 at its end.
     order: Option<Vec<u32>>,
+    /// How many moves the column has up to the last one that is not of line 0.
+    count: usize,
 }
 
 impl Index {
     /// Of a column, for as long as `goes_on` says so.
     pub fn of(lines: &[u32], goes_on: &dyn Fn() -> bool) -> Option<Index> {
+        // The program goes home behind the last record.
+        let count = lines.iter().rposition(|line| *line != 0).map_or(0, |last| last + 1);
+        let lines = &lines[..count];
         let mut order = Vec::new();
         let (mut before, mut is_ascending, mut most) = (0, true, 0);
         for stretch in lines.chunks(STRETCH) {
             if !goes_on() {
                 return None;
             }
-            for line in stretch {
-                is_ascending &= before <= *line;
-                (before, most) = (*line, most.max(*line));
-            }
+            is_ascending = is_ascending
+                && stretch.first().is_none_or(|first| before <= *first)
+                && stretch.is_sorted();
+            before = stretch.last().copied().unwrap_or(before);
+            most = stretch.iter().fold(most, |most, line| most.max(*line));
         }
         if is_ascending {
-            return Some(Index { order: None });
+            return Some(Index { order: None, count });
         }
         order.extend((0..lines.len() as u32).filter(|at| lines[*at as usize] != 0));
         // Bits by bits from the lowest on: each pass keeps the order of the one before (radix sort).
@@ -37,7 +43,7 @@ impl Index {
             order = ordered(lines, &order, shift, goes_on)?;
             shift += BITS;
         }
-        Some(Index { order: Some(order) })
+        Some(Index { order: Some(order), count })
     }
 
     /// The lines from `line` on that make moves, in their order, each with the move: a line that makes several, several times.
@@ -47,11 +53,12 @@ impl Index {
         line: u32,
     ) -> impl Iterator<Item = (u32, u32)> + 'a {
         let order = self.order.as_deref();
+        let lines = &lines[..self.count];
         let first = match order {
             Some(order) => order.partition_point(|at| lines[*at as usize] < line),
             None => lines.partition_point(|own| *own < line),
         };
-        let count = order.map_or(lines.len(), <[u32]>::len);
+        let count = order.map_or(self.count, <[u32]>::len);
         (first..count).map(move |place| {
             let at = order.map_or(place as u32, |order| order[place]);
             (lines[at as usize], at)
@@ -121,9 +128,10 @@ mod tests {
 
     #[test]
     fn a_column_that_goes_up_takes_no_memory() {
-        let lines = [0, 0, 2, 2, 9];
+        let lines = [0, 0, 2, 2, 9, 0, 0];
         let index = of(&lines);
         assert_eq!(index.bytes(), 0);
+        assert_eq!(index.from(&lines, 1).count(), 3);
         assert_eq!(index.from(&lines, 2).collect::<Vec<_>>(), [(2, 2), (2, 3), (9, 4)]);
         assert_eq!(index.from(&lines, 10).next(), None);
         assert_eq!(of(&[]).from(&[], 1).next(), None);

@@ -78,12 +78,9 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         Some(arc) => arc.at(part),
         None => before.tip.lerp(behind.tip, part),
     };
-    let start: &[f64] = match at.r#move.checked_sub(1) {
-        Some(last) => walk.positions(last),
-        None => &[],
-    };
+    let start = at.r#move.checked_sub(1).map(|last| walk.positions(last));
     let between = |(place, end): (usize, &f64)| {
-        let start = start.get(place).copied().unwrap_or(f64::NAN);
+        let start = start.as_ref().and_then(|start| start.get(place).copied()).unwrap_or(f64::NAN);
         start + (end - start) * part
     };
     let mut positions: Vec<f64> = end.iter().enumerate().map(between).collect();
@@ -103,8 +100,8 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
             machine.linear_for(tip, degrees(positions), length.unwrap_or(0.0))
         };
         // What positions count from is the same at the end of the move.
-        let moved = linear(tip, &positions) - linear(behind.tip, end);
-        for ((position, moved), end) in positions.iter_mut().zip(moved.to_array()).zip(end) {
+        let moved = linear(tip, &positions) - linear(behind.tip, &end);
+        for ((position, moved), end) in positions.iter_mut().zip(moved.to_array()).zip(&*end) {
             *position = end + moved;
         }
         let turned = machine.axis_at(degrees(&positions));
@@ -113,7 +110,7 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         }
     } else if walk.kind(at.r#move) == ARC && machine.wire.is_some() {
         let moved = (tip - behind.tip).to_array();
-        for ((position, moved), end) in positions.iter_mut().zip(moved).zip(end) {
+        for ((position, moved), end) in positions.iter_mut().zip(moved).zip(&*end) {
             *position = end + moved;
         }
     }

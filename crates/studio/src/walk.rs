@@ -1,7 +1,7 @@
 //! The walk: all moves of a program in the control's order, as columns. Whatever the page asks is looked up here.
 //!
-//! A move takes 71 bytes on three axes (8 more for each further axis, 24 where any tool leans, 4 where its lines do not go up with the
-//! moves), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
+//! A move takes 47 bytes on three axes (those of a machine that has more take 8 bytes each, 24 more where any tool leans, 4 where its lines
+//! do not go up with the moves), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
 //! before it ended.
 
 use crate::ask::{Jump, Operation, ToolUse};
@@ -15,7 +15,7 @@ use machine::axis_motion::{AxisMotion, Chain};
 use program::{Compensation, Diagnostic, Feed, Op, Program, Tool};
 use proof::{AxisPositions, Course, MachineState, Motion, MotionKind, Observer, Report, ToolPose};
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::sync::{self, Mutex, PoisonError};
 
 /// How a move goes, by its number in vertices and rows.
@@ -61,6 +61,27 @@ const MOST_JUMPS: usize = 1000;
 /// After so many moves it is looked at.
 const LOOK: usize = 4096;
 
+/// Six joints and a rail are the most.
+const MOST_AXES: usize = 7;
+
+/// How far X, Y and Z may be from where they are taken to be, mm.
+const SAME: f64 = 1e-9;
+
+/// Where the axes are.
+#[derive(Clone, Copy, Debug)]
+pub struct Positions {
+    values: [f64; MOST_AXES],
+    count: usize,
+}
+
+impl Deref for Positions {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
 /// The moves of a program.
 #[derive(Debug, Default)]
 pub struct Walk {
@@ -78,9 +99,13 @@ pub struct Walk {
     tips: Vec<Vec3>,
     /// The tool axis behind the move; empty where no tool leans.
     axes: Vec<Vec3>,
-    /// Positions of the axes behind the move, so many for each.
+    /// Positions of the axes behind the move, so many for each; none of a mill without rotary axes, where they go with the tip.
     positions: Vec<f64>,
     stride: usize,
+    /// How far X, Y and Z of such a mill are from the tip, from which move on.
+    offsets: Vec<(u32, Vec3)>,
+    /// Whether in some rapid each axis goes at its own speed.
+    goes_apart: bool,
     /// The axes as a chain; none of a wire, and where there are no moves.
     chain: Option<Chain>,
     /// How far the tip is off the source, mm; NaN where nothing was compared.
@@ -265,6 +290,11 @@ impl Walk {
         COURSES[usize::from(self.kinds[at as usize] >> COURSE)]
     }
 
+    /// Whether in all moves the axes go together.
+    pub fn goes_together(&self) -> bool {
+        !self.goes_apart
+    }
+
     /// The way on which the axes lead the tip in a move, where that is no straight line, and all of it is known.
     pub fn led(&self, at: u32) -> Option<AxisMotion<'_>> {
         let together = match self.course(at) {
@@ -272,14 +302,17 @@ impl Walk {
             Course::Axes => true,
             Course::EachAxis => false,
         };
+        // A mill goes straight where nothing turns; a joint always turns something.
+        let turning = if self.kind(at) == JOINTS { 0 } else { 3 };
+        if together && self.stride <= turning {
+            return None;
+        }
         let (from, to) = (self.positions(at.checked_sub(1)?), self.positions(at));
-        let is_mill = self.kind(at) != JOINTS;
-        let turning = if is_mill { 3 } else { 0 };
-        if from.get(turning..) == to.get(turning..) && together {
+        if together && from.get(turning..) == to.get(turning..) {
             return None;
         }
         let ToolPose { tip, axis } = self.behind(at);
-        self.chain.as_ref()?.motion([from, to], (tip, axis), together)
+        self.chain.as_ref()?.motion([&from, &to], (tip, axis), together)
     }
 
     /// Place of its tool among [`Walk::tool_uses`], or [`NO_TOOL`].
@@ -382,9 +415,14 @@ impl Walk {
     }
 
     /// Where the axes are behind it.
-    pub fn positions(&self, at: u32) -> &[f64] {
-        let from = at as usize * self.stride;
-        &self.positions[from..from + self.stride]
+    pub fn positions(&self, at: u32) -> Positions {
+        let (mut values, count) = ([f64::NAN; MOST_AXES], self.stride);
+        let own = match holds(&self.offsets, at) {
+            Some(offset) => &(self.tips[at as usize] + *offset).to_array()[..],
+            None => &self.positions[at as usize * count..][..count],
+        };
+        values[..count].copy_from_slice(own);
+        Positions { values, count }
     }
 
     /// The move that is under way at a time, s.
@@ -432,7 +470,8 @@ impl Walk {
         let rare = self.starts.len() * size_of::<(u32, ToolPose)>()
             + self.arcs.len() * size_of::<(u32, Arc)>()
             + self.feeds.len() * size_of::<(u32, Option<Feed>)>()
-            + self.states.len() * size_of::<(u32, MachineState)>();
+            + self.states.len() * size_of::<(u32, MachineState)>()
+            + self.offsets.len() * size_of::<(u32, Vec3)>();
         let axes = self.axes.len() * size_of::<Vec3>() + self.positions.len() * size_of::<f64>();
         self.kinds.len() * each + axes + rare + self.by_block.bytes() + self.by_source.bytes()
     }
@@ -452,6 +491,7 @@ impl Walk {
             Course::Axes => 2,
             Course::EachAxis => 3,
         };
+        self.goes_apart |= motion.course == Course::EachAxis;
         self.kinds.push(kind | course << COURSE);
         if let MotionKind::Arc(arc) = &motion.kind {
             self.arcs.push((at, **arc));
@@ -665,6 +705,20 @@ impl<'a> Follower<'a> {
         let positions = &mut self.walk.positions;
         let before = positions.len();
         match axes {
+            AxisPositions::Mill { linear, .. } if self.rotary.is_empty() => {
+                let tip = self.walk.tips[self.walk.tips.len() - 1];
+                let offset = *linear - tip;
+                // Where neither is known, nothing has changed.
+                let is_like = |last: Vec3| {
+                    let unknown = linear.is_nan_mask() & tip.is_nan_mask();
+                    ((offset - last).abs().cmple(Vec3::splat(SAME)) | unknown).all()
+                };
+                if !self.walk.offsets.last().is_some_and(|(_, last)| is_like(*last)) {
+                    self.walk.offsets.push((self.walk.len() - 1, offset));
+                }
+                self.walk.stride = 3;
+                return;
+            }
             AxisPositions::Mill { linear, rotary } => {
                 positions.extend_from_slice(&linear.to_array());
                 for axis in &self.rotary {
@@ -829,7 +883,7 @@ mod tests {
         assert_eq!((walk.at_time(99.0), Walk::default().at_time(0.0)), (Some(2), None));
     }
 
-    /// 1 + 1 + 1 + 4 + 4 + 4 + 8 + 24, and 8 for each of three axes.
+    /// 1 + 1 + 1 + 4 + 4 + 4 + 8 + 24: X, Y and Z go with the tip.
     #[test]
     fn a_move_takes_as_much_memory_as_the_front_page_says() {
         let walk = followed(|follower| {
@@ -841,7 +895,7 @@ mod tests {
                 before = behind;
             }
         });
-        assert!((walk.bytes() as f64 / 1000.0 - 71.0).abs() < 1.0, "{}", walk.bytes());
+        assert!((walk.bytes() as f64 / 1000.0 - 47.0).abs() < 1.0, "{}", walk.bytes());
     }
 
     /// A failed proof marks its last move when the chunk of that has been drawn.
@@ -857,6 +911,33 @@ mod tests {
         let marks = vertices.chunks(16).map(|vertex| vertex[15]);
         // Each of these moves begins at the zero point: two vertices each.
         assert_eq!(marks.rev().take(4).collect::<Vec<_>>(), [MISMATCH, MISMATCH, 0, 0]);
+    }
+
+    #[test]
+    fn axes_that_go_with_the_tip_are_where_they_were_told_to_be() {
+        let told = [
+            ([f64::NAN, f64::NAN, f64::NAN], [1.0, 2.0, f64::NAN]),
+            ([1.0, 2.0, f64::NAN], [101.0, 202.0, f64::NAN]),
+            ([1.0, 2.0, 3.0], [101.0, 202.0, 303.0]),
+            ([4.0, 5.0, f64::NAN], [104.0, 205.0, f64::NAN]),
+            // The tip is known and the axes are not, with another work offset, and again with the one before.
+            ([4.0, 5.0, 6.0], [104.0, f64::NAN, 306.0]),
+            ([4.0, 5.0, 6.0], [14.0, 25.0, 36.0]),
+            ([4.0, 5.0, 6.0], [104.0, 205.0, 306.0]),
+        ];
+        let walk = followed(|follower| {
+            for (tip, linear) in told {
+                let axes = AxisPositions::Mill { linear: linear.into(), rotary: [0.0; 3] };
+                follower.moved(&Motion { axes, ..motion(1, tip) });
+            }
+        });
+        let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 || a.is_nan() && b.is_nan();
+        for (at, (_, linear)) in (1..).zip(&told[1..]) {
+            let found = walk.positions(at);
+            assert!(found.len() == 3 && found.iter().zip(linear).all(is_near), "{at}: {found:?}");
+        }
+        // Where no tip is known, nothing is said of the axes.
+        assert!(walk.positions(0).iter().all(|at| at.is_nan()));
     }
 
     #[test]
