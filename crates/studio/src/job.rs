@@ -222,8 +222,10 @@ pub struct Job {
     machine_name: String,
     machine: Any,
     machine_files: BTreeMap<String, Lines>,
-    toolpath: Toolpath,
+    source_file: String,
     source: Lines,
+    /// The lines of the toolpath's records; 0 for none.
+    record_lines: Vec<u32>,
     file: String,
     program: Lines,
     parts: BTreeMap<String, (Lines, Origins)>,
@@ -362,7 +364,8 @@ impl Job {
             machine_name: machine_name.to_owned(),
             machine_files,
             source,
-            toolpath,
+            record_lines: toolpath.program.records.iter().map(|record| record.line).collect(),
+            source_file: toolpath.file,
             machine,
             file,
             program: Lines::of(text),
@@ -390,7 +393,7 @@ impl Job {
 
     /// How much memory it takes, bytes.
     pub fn bytes(&self) -> usize {
-        let records = size_of_val(&self.toolpath.program.records[..]);
+        let records = size_of_val(&self.record_lines[..]);
         let parts: usize = self.parts.values().map(|(lines, _)| lines.bytes()).sum();
         let texts = self.source.bytes() + self.program.bytes() + parts;
         let board = self.board.as_ref().map_or(0, board::Place::bytes);
@@ -449,7 +452,7 @@ impl Job {
             findings: findings.into_iter().map(|found| self.finding(found)).collect(),
             program: Some(text(&self.file, self.shown_program())),
             parts: self.parts.iter().map(|(file, (lines, _))| text(file, lines)).collect(),
-            source: text(&self.toolpath.file, &self.source),
+            source: text(&self.source_file, &self.source),
             machine: JobMachine {
                 name: self.machine_name.clone(),
                 title: self.machine.title().to_owned(),
@@ -507,7 +510,7 @@ impl Job {
         let of = match &*found.file {
             "" => None,
             file if file == self.file || self.parts.contains_key(file) => Some(Of::Program),
-            file if file == self.toolpath.file => Some(Of::Source),
+            file if file == self.source_file => Some(Of::Source),
             file if self.machine_files.contains_key(file) => Some(Of::Machine),
             _ => None,
         };
@@ -525,7 +528,7 @@ impl Job {
             (Of::Program, Some(file)) if file == self.file => Some(self.shown_program()),
             (Of::Program, Some(file)) => self.parts.get(file).map(|(lines, _)| lines),
             (Of::Source, None) => Some(&self.source),
-            (Of::Source, Some(file)) => (file == self.toolpath.file).then_some(&self.source),
+            (Of::Source, Some(file)) => (file == self.source_file).then_some(&self.source),
             (Of::Machine, None) => match &self.machine {
                 Any::Moves(machine) => self.machine_files.get(&machine.file),
                 Any::Fires(_) => None,
@@ -654,7 +657,6 @@ impl Job {
         for at in moves.iter().flat_map(|[first, behind]| *first..*behind).take(MOST_BLOCKS) {
             lines.entry(walk.file(at)).or_default().insert(walk.line(at));
         }
-        let records = &self.toolpath.program.records;
         for (file, lines) in &mut lines {
             let origins = match file {
                 Some(file) => self.parts.get(*file).map(|(_, origins)| origins),
@@ -666,7 +668,7 @@ impl Job {
             let is_of_it = |line: u32| match (record(line), source_line) {
                 (None, _) => false,
                 (record, 0) => record == own,
-                (Some(at), _) => records.get(at).is_some_and(|of| of.line == source_line),
+                (Some(at), _) => self.record_lines.get(at) == Some(&source_line),
             };
             *lines = grown(lines, is_of_it);
         }
