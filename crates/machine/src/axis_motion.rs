@@ -11,7 +11,9 @@
 
 use crate::linkage::{LinkKind, Linkage};
 use crate::{Machine, time};
-use geom::{Frame, Vec3};
+use arm::{Joints, Structure};
+use geom::{Frame, Mat3, Quat, Vec3};
+use std::f64::consts::TAU;
 
 /// At so many places at the most the distance of the tip from the lines of the axes is looked at.
 const MOST_SAMPLES: f64 = 64.0;
@@ -70,6 +72,47 @@ impl Chain {
         let arrivals = if together { Vec::new() } else { self.arrivals(from, to) };
         let [from, to] = [from, to].map(<[f64]>::to_vec);
         Some(AxisMotion { chain: self, from, to, end, arrivals })
+    }
+
+    /// Where the axes of an arm are at a part of a motion, 0 to 1, in which the control keeps the tip on its way and turns the tool evenly about
+    /// one axis, and the tool axis there. `ends` are the positions of the axes before and behind it, `end` is where the tool is behind it, and `tip`
+    /// where it is then. Nothing where something is not known, or the arm does not reach it as it stands at the end.
+    pub fn keeping_tip(
+        &self,
+        ends: [&[f64]; 2],
+        end: Tool,
+        tip: Vec3,
+        part: f64,
+    ) -> Option<(Vec<f64>, Vec3)> {
+        let (arm, cell) = (self.machine.arm.as_ref()?, self.machine.cell.as_ref()?);
+        let rails = ends.map(|axes| axes.get(6).copied().unwrap_or(0.0));
+        let joints = |axes: &[f64]| {
+            let shown: Joints = axes.get(..6)?.try_into().ok()?;
+            arm.model(&shown.map(f64::to_radians))
+        };
+        let models = [joints(ends[0])?, joints(ends[1])?];
+        let flange = |i: usize| cell.foot(rails[i]) * arm.flange(&models[i]);
+        let flanges = [flange(0), flange(1)];
+        let inverse = flanges[1].inverse();
+        let off = inverse.transform_point3(cell.part.transform_point3(end.0));
+        let axis = inverse.transform_vector3(cell.part.transform_vector3(end.1));
+        let [from, to] = flanges.map(|flange| Quat::from_mat3(&flange.matrix3));
+        let turned = Mat3::from_quat(from.slerp(to, part));
+        let origin = cell.part.transform_point3(tip) - turned * off;
+        let rail = rails[0] + (rails[1] - rails[0]) * part;
+        let foot = cell.foot(rail).inverse();
+        let there = foot * Frame::from_mat3_translation(turned, origin);
+        let even: Joints =
+            std::array::from_fn(|i| models[0][i] + (models[1][i] - models[0][i]) * part);
+        let free =
+            if matches!(arm.structure(), Structure::Spherical(_)) { even[3] } else { even[5] };
+        let found = arm.inverse_in(arm.posture(&models[1]), &there, free)?;
+        // Of all turns those that are nearest to where the joint is on its even way.
+        let found: Joints =
+            std::array::from_fn(|i| found[i] + ((even[i] - found[i]) / TAU).round() * TAU);
+        let shown = arm.shown(&found)?.map(f64::to_degrees);
+        let axes = shown.into_iter().chain(ends[1].get(6).map(|_| rail)).collect();
+        Some((axes, cell.part.inverse().transform_vector3(turned * axis)))
     }
 
     /// When each axis arrives, as a part of the time that the slowest takes.

@@ -62,7 +62,8 @@ impl Stand {
 }
 
 /// Where tool and axes are at a place. Between the ends of a move they are where the control has them ([`Course`]): either the axes lead the
-/// tip, or the tip is on its line or arc, the rotary axes turn evenly, and the linear axes are where the machine's kinematics have them.
+/// tip, or the tip is on its line or arc, the rotary axes turn evenly, and the linear axes, or the joints of an arm, are where the machine's
+/// kinematics have them.
 pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
     let (before, behind) = (walk.before(at.r#move), walk.behind(at.r#move));
     let end = walk.positions(at.r#move);
@@ -78,6 +79,9 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
         Some(arc) => arc.at(part),
         None => before.tip.lerp(behind.tip, part),
     };
+    if let Some((positions, axis)) = walk.keeping_tip(at.r#move, tip, part) {
+        return Stand { tip, axis, positions };
+    }
     let start = at.r#move.checked_sub(1).map(|last| walk.positions(last));
     let between = |(place, end): (usize, &f64)| {
         let start = start.as_ref().and_then(|start| start.get(place).copied()).unwrap_or(f64::NAN);

@@ -315,6 +315,16 @@ impl Walk {
         self.chain.as_ref()?.motion([&from, &to], (tip, axis), together)
     }
 
+    /// Where the axes of an arm are, and its tool axis, where its control keeps the tip on its way in a move, and the tip is there at a part of it.
+    pub fn keeping_tip(&self, at: u32, tip: Vec3, part: f64) -> Option<(Vec<f64>, Vec3)> {
+        if self.course(at) != Course::Tool {
+            return None;
+        }
+        let ends = [self.positions(at.checked_sub(1)?), self.positions(at)];
+        let ToolPose { tip: end, axis } = self.behind(at);
+        self.chain.as_ref()?.keeping_tip([&ends[0], &ends[1]], (end, axis), tip, part)
+    }
+
     /// Place of its tool among [`Walk::tool_uses`], or [`NO_TOOL`].
     pub fn tool(&self, at: u32) -> u8 {
         self.tools[at as usize]

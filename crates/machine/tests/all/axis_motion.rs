@@ -3,6 +3,7 @@
 use geom::Vec3;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use toolpost_machine::axis_motion::Chain;
+use toolpost_machine::linkage::Linkage;
 use toolpost_machine::{load, load_text};
 
 fn near(found: Vec3, wanted: [f64; 3]) {
@@ -142,4 +143,48 @@ fn the_first_joint_of_an_arm_draws_a_circle_about_its_axis() {
     near(begin, [600.0, 0.0, 200.0]);
     let middle = base.transform_point3(motion.tool()(0.5).0);
     near(middle, [300.0 * 3f64.sqrt(), 300.0, 200.0]);
+}
+
+/// The links of the drawing, which know nothing of how joints are found, lead the tip to where the control keeps it.
+#[test]
+fn while_an_arm_keeps_its_tip_on_a_line_its_joints_lead_it_there() {
+    for (name, from, to) in [
+        (
+            "universal-ur5e",
+            [10.0, -80.0, 95.0, -105.0, -90.0, 20.0],
+            [40.0, -95.0, 80.0, -80.0, -70.0, 10.0],
+        ),
+        (
+            "kuka-kr6-r900",
+            [0.0, -80.0, 95.0, 10.0, 60.0, 170.0],
+            [30.0, -70.0, 80.0, -20.0, 45.0, 200.0],
+        ),
+        (
+            "fanuc-lrmate-200id-mill",
+            [0.0, 20.0, -30.0, 10.0, -60.0, 0.0],
+            [20.0, 30.0, -40.0, 20.0, -45.0, 10.0],
+        ),
+    ] {
+        let machine = load(name).unwrap();
+        let (chain, linkage) = (Chain::of(&machine), Linkage::of(&machine));
+        let tip = |axes: &[f64]| linkage.tip(axes, 80.0);
+        // The axis of a tool leads from its tip to the spindle.
+        let axis = |axes: &[f64]| (linkage.tip(axes, 79.0) - tip(axes)).normalize();
+        let end = (tip(&to), axis(&to));
+        for part in [0.0, 0.25, 0.5, 0.9, 1.0] {
+            let wanted = tip(&from).lerp(tip(&to), part);
+            let (axes, leans) = chain.keeping_tip([&from, &to], end, wanted, part).unwrap();
+            let off = tip(&axes).distance(wanted);
+            assert!(off < 1e-6 && axis(&axes).distance(leans) < 1e-9, "{name} at {part}: {off}");
+            for (joint, [a, b]) in axes.iter().zip(from.iter().zip(to).map(|(a, b)| [*a, b])) {
+                assert!((joint - a.midpoint(b)).abs() < 40.0, "{name} at {part}: {axes:?}");
+            }
+        }
+    }
+    // Nothing of what is not known, and of what is out of reach.
+    let chain = Chain::of(&load("universal-ur5e").unwrap());
+    let joints = [10.0, -80.0, 95.0, -105.0, -90.0, 20.0];
+    let far = Vec3::new(0.0, 0.0, 5000.0);
+    assert!(chain.keeping_tip([&joints; 2], (Vec3::ZERO, Vec3::Z), far, 0.5).is_none());
+    assert!(chain.keeping_tip([&joints[..5]; 2], (Vec3::ZERO, Vec3::Z), Vec3::ZERO, 0.5).is_none());
 }

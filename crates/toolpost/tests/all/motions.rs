@@ -175,6 +175,49 @@ fn between_the_ends_of_a_motion_of_joints_they_lead_the_tip() {
     assert!(led > 20 && farthest > 10.0, "{led} motions, {farthest} mm");
 }
 
+/// On the lines and arcs of an arm its joints are those before it at the beginning and those behind it at the end, and in between the links lead the
+/// tip to where it is on its way.
+#[test]
+fn on_lines_and_arcs_of_an_arm_its_joints_lead_the_tip_along_them() {
+    let (mut kept, mut farthest) = (0, 0.0_f64);
+    for name in names(ROBOTS) {
+        let machine = machine::load(name).unwrap();
+        let text = std::fs::read(root().join("machines/samples/robot.cls")).unwrap();
+        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+        let chain = Chain::of(&machine);
+        let mut before: Option<Vec<f64>> = None;
+        for motion in posted(&source, &machine).1 {
+            let AxisPositions::Arm { joints, rail } = motion.axes else { panic!("{motion:?}") };
+            let to: Vec<f64> = joints.into_iter().chain(rail).collect();
+            let from = before.replace(to.clone());
+            let Some(from) = from.filter(|_| motion.course == Course::Tool) else { continue };
+            let [start, end] = motion.tool;
+            let behind = (end.tip, end.axis);
+            let at = |part: f64| match &motion.kind {
+                MotionKind::Arc(arc) => arc.at(part),
+                _ => start.tip.lerp(end.tip, part),
+            };
+            let axes =
+                |part: f64| chain.keeping_tip([&from, &to], behind, at(part), part).unwrap().0;
+            for (part, told) in [(0.0, &from), (1.0, &to)] {
+                let off =
+                    axes(part).iter().zip(told).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-4, "{name}: {off} at {part} of {motion:?}");
+            }
+            let half = axes(0.5);
+            let way = chain.motion([&half, &to], behind, true).unwrap();
+            let off = way.tool()(0.0).0.distance(at(0.5));
+            assert!(off < 1e-6, "{name}: {off} mm in the midst of {motion:?}");
+            // Joints that go evenly would leave it.
+            let even: Vec<f64> = from.iter().zip(&to).map(|(a, b)| a.midpoint(*b)).collect();
+            let way = chain.motion([&even, &to], behind, true).unwrap();
+            farthest = farthest.max(way.tool()(0.0).0.distance(at(0.5)));
+            kept += 1;
+        }
+    }
+    assert!(kept > 60 && farthest > 1.0, "{kept} motions, {farthest} mm");
+}
+
 /// By hand: 20 degrees are 0.3491 rad, and at 2000 mm/min a UR turns the tool by 4 rad/s for each of 0.0333 m/s: 2.618 s, and not the 0.03 s of 1 mm.
 #[test]
 fn a_cut_in_which_the_tool_turns_takes_as_long_as_the_control_needs_for_that() {
