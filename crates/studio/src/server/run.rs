@@ -178,14 +178,14 @@ impl First {
     }
 
     /// Whether nothing that the order names has changed since it began.
-    fn is_new(studio: &Studio, order: &Order, since: SystemTime) -> bool {
+    fn is_new(studio: &Studio, order: &Order, is_as_it_was: impl Fn(&Path) -> bool) -> bool {
         let paths = match &order.source {
             Given::File(path) | Given::Folder(path) => Some(path),
             Given::Upload(_) | Given::Uploads(_) => None,
         };
         let machine = Some(&order.machine).filter(|name| machine::is_path(name));
         let mut named = paths.into_iter().chain(machine);
-        named.all(|path| studio.folder.target(path).is_ok_and(|path| is_as_it_was(&path, since)))
+        named.all(|path| studio.folder.target(path).is_ok_and(|path| is_as_it_was(&path)))
     }
 
     /// What it has made; `None` where that would be something else today.
@@ -196,21 +196,22 @@ impl First {
         ended: &Ended,
     ) -> Option<Result<Vec<Job>, Stop>> {
         let First { order, run, since } = self;
-        if !First::is_new(studio, &order, since) {
+        let is_old = |path: &Path| changed(path).is_some_and(|changed| changed <= since);
+        if !First::is_new(studio, &order, is_old) {
             run.leave(studio);
             return None;
         }
         let made = run.wait(studio, waits, ended);
-        let is_new = First::is_new(studio, &order, since)
-            && made.iter().flatten().flat_map(Job::inputs).all(|path| is_as_it_was(path, since));
+        let mut jobs = made.iter().flatten();
+        // A board is made of what lies in its folder, and nobody knows what else would have been read of work that was stopped.
+        let counts_folder = made.is_err() || jobs.clone().any(|job| job.board().is_some());
+        let is_as_it_was = |path: &Path| {
+            is_old(path) && !(counts_folder && path.parent().is_some_and(|folder| !is_old(folder)))
+        };
+        let is_new = First::is_new(studio, &order, is_as_it_was)
+            && jobs.all(|job| job.inputs().all(is_as_it_was));
         is_new.then_some(made)
     }
-}
-
-/// Whether a file, and the folder that it lies in, have not changed since a time.
-fn is_as_it_was(path: &Path, since: SystemTime) -> bool {
-    let is_old = |path: &Path| changed(path).is_some_and(|changed| changed <= since);
-    is_old(path) && path.parent().is_none_or(is_old)
 }
 
 /// When a file or its name was changed last.

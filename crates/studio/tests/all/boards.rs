@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use toolpost_studio::Options;
 use toolpost_studio::ask::Command;
-use toolpost_studio::board::Settings;
+use toolpost_studio::board::Settings as BoardSettings;
 use toolpost_studio::message::{Array, Values};
 use toolpost_studio::server::More;
+use toolpost_studio::{Options, Settings};
 
 const MACHINE: &str = "grbl-3018";
 
@@ -31,7 +31,7 @@ fn options(
     let size = |More { file, .. }: &More| format!("{} {}", file.name(), file.read().unwrap().len());
     let stated = beside.map(size);
     let typed = stated.clone().into_iter().collect();
-    let board = Settings { plan: plan(), heights, typed, stated, ..Settings::default() };
+    let board = BoardSettings { plan: plan(), heights, typed, stated, ..BoardSettings::default() };
     Ok(Options { board: Some(Box::new(board)), ..Options::default() })
 }
 
@@ -327,6 +327,31 @@ fn the_options_in_a_file_beside_a_board_are_taken() {
     }
     let front = post(&mut page, json!({ "folder": "lamp" }));
     assert_eq!(told(&edited(&mut page, json!({ "folder": "lamp" }), &front)), row);
+}
+
+/// A board that the server was started with is what its folder is when a page comes.
+#[test]
+fn what_comes_to_a_board_after_the_start_counts() {
+    for (kind, path, comes) in [
+        ("folder", "lamp", false),
+        ("folder", "lamp", true),
+        ("file", "lamp/lamp.toml", false),
+        ("file", "lamp/lamp.toml", true),
+    ] {
+        let (source, machine) = (Some(path.into()), Some(MACHINE.into()));
+        let settings = Settings { source, machine, options: Some(options), ..Settings::default() };
+        let studio = Studio::started(settings, |own| {
+            fs::create_dir(own.join("lamp")).unwrap();
+            fs::copy(root().join("examples/lamp.toml"), own.join("lamp/lamp.toml")).unwrap();
+        });
+        // The system's clock for files goes by steps of some milliseconds.
+        std::thread::sleep(Duration::from_millis(50));
+        if comes {
+            fs::write(studio.own().join("lamp/toolpost.toml"), "passes = 2\n").unwrap();
+        }
+        let job = post(&mut studio.socket(), json!({ kind: path }));
+        assert_eq!(told(&job["board"]).is_some(), comes, "{path}");
+    }
 }
 
 /// What is said of options that stand in a file.

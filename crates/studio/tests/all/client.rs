@@ -24,11 +24,11 @@ impl Studio {
 
     /// The same, with options.
     pub fn with(options: Option<ReadOptions>) -> Studio {
-        Studio::started(Settings { options, ..Settings::default() })
+        Studio::started(Settings { options, ..Settings::default() }, |_| {})
     }
 
-    /// The same, with settings for it.
-    pub fn started(settings: Settings) -> Studio {
+    /// The same, with settings for it and what else is in the folder.
+    pub fn started(settings: Settings, fill: impl FnOnce(&Path)) -> Studio {
         let outside = tempfile::tempdir().unwrap();
         let own = outside.path().join("own");
         std::fs::create_dir(&own).unwrap();
@@ -36,6 +36,7 @@ impl Studio {
             std::fs::copy(root().join("examples").join(name), own.join(name)).unwrap();
         }
         std::fs::write(outside.path().join("secret.cls"), "secret").unwrap();
+        fill(&own);
         let server = Server::bind(&Settings { folder: own, ..settings }).unwrap();
         let (port, link) = (server.port(), server.link());
         std::thread::spawn(move || server.run());

@@ -61,7 +61,7 @@ fn a_source_is_posted_and_every_place_of_it_is_one() {
 fn the_first_work_is_joined_by_who_asks_for_the_same_and_nobody_else() {
     let start = || {
         let (source, machine) = (Some("dome.cls".into()), Some("fanuc-table-bc".into()));
-        let studio = Studio::started(Settings { source, machine, ..Settings::default() });
+        let studio = Studio::started(Settings { source, machine, ..Settings::default() }, |_| {});
         // The system's clock for files goes by steps of some milliseconds.
         std::thread::sleep(std::time::Duration::from_millis(50));
         studio
