@@ -264,8 +264,8 @@ describe("pulses in a block of glass", () => {
 
     test("come at a coarser level where too many are in sight", async () => {
         const few = await within([{ error: 0.1, vertices: 1e6 }, { error: 9, vertices: 4 }]);
-        expect(few.picture(above, size, looks, marks).strips[0]!.vertices).toEqual(server["0/0"]);
+        expect(few.picture(above, size, looks, marks).strips[0]!.vertices.byteLength).toBe(4 * 16);
         const many = await within([{ error: 0.1, vertices: 4e6 }, { error: 9, vertices: 4 }]);
-        expect(many.picture(above, size, looks, marks).strips[0]!.vertices).toEqual(server["1/0"]);
+        expect(many.picture(above, size, looks, marks).strips[0]!.vertices.byteLength).toBe(2 * 16);
     });
 });

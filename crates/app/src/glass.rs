@@ -19,9 +19,10 @@ use program::{Diagnostic, Rule, encoding};
 use serde_json::json;
 use std::path::{Component, Path};
 
+pub use ::glass::chain::Moves;
 pub use ::glass::control::Run;
 pub use ::glass::job;
-pub use ::glass::machine::{Format, Machine};
+pub use ::glass::machine::{Format, Machine, Table};
 pub use ::glass::proof::{Focus, Steps};
 
 /// What is engraved, and how.

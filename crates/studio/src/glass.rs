@@ -9,20 +9,24 @@ use crate::machines::Any;
 use crate::place::{At, Stand};
 use crate::walk::{Drawn, Pulse, Walk};
 use ::post::Origins;
-use app::glass::{Focus, Format, Machine, Run, Settings, Steps, job};
+use app::glass::{Focus, Format, Machine, Moves, Run, Settings, Steps, Table, job};
 use app::toolpath::Toolpath;
 use app::{Source, Stop, Verdict, Watch, glass};
 use geom::{Vec2, Vec3};
-use machine::linkage::{self, Link, LinkKind, Linkage};
+use machine::linkage::{self, Link, LinkBody, LinkKind, Linkage};
 use program::{Diagnostic, Program, Rule};
+use std::borrow::Borrow;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// What a job of such a machine has more than others.
+/// The machine of a job, and what the job says of it.
 #[derive(Debug)]
 pub struct Glass {
+    machine: Machine,
     focus: Focus,
+    /// Focal length of the lens, mm.
+    focal: f64,
     /// A binary program as its control reads it: a line for each pulse.
     pub listing: Option<Lines>,
 }
@@ -44,34 +48,131 @@ pub fn axes(machine: &Machine) -> Vec<Axis> {
     stage.chain(own).collect()
 }
 
-/// No bodies: no machine file says what such a machine looks like.
-pub fn linkage(axes: &[Axis]) -> Linkage {
-    let bed = Link {
-        name: String::from("bed"),
-        on: None,
-        kind: LinkKind::Fixed,
-        direction: [0.0; 3],
-        point: [0.0; 3],
-        zero: 0.0,
-        terms: Vec::new(),
-    };
-    let at_bed = linkage::Place {
-        on: 0,
-        frame: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]],
-    };
-    let axis = |axis: &Axis| linkage::Axis {
-        name: axis.name.clone(),
-        unit: axis.unit,
-        low: axis.low,
-        high: axis.high,
-    };
-    Linkage {
-        axes: axes.iter().map(axis).collect(),
-        links: vec![bed],
-        bodies: Vec::new(),
-        tool: at_bed,
-        part: at_bed,
+/// What carries what, in a frame whose Z is up and whose Z 0 is the top face of the block.
+struct Carried {
+    linkage: Linkage,
+    /// The links that carry the block and the beam.
+    block: usize,
+    beam: usize,
+}
+
+impl Carried {
+    /// The bed alone, of a machine with these axes.
+    fn bed(axes: &[Axis]) -> Carried {
+        let bed = Link {
+            name: String::from("bed"),
+            on: None,
+            kind: LinkKind::Fixed,
+            direction: [0.0; 3],
+            point: [0.0; 3],
+            zero: 0.0,
+            terms: Vec::new(),
+        };
+        let axis = |axis: &Axis| linkage::Axis {
+            name: axis.name.clone(),
+            unit: axis.unit,
+            low: axis.low,
+            high: axis.high,
+        };
+        let linkage = Linkage {
+            axes: axes.iter().map(axis).collect(),
+            links: vec![bed],
+            bodies: Vec::new(),
+            tool: seat(0, Vec3::ZERO),
+            part: seat(0, Vec3::ZERO),
+        };
+        Carried { linkage, block: 0, beam: 0 }
     }
+
+    /// An axis moves what carries the block, or the beam: along a way, or about an upright line through a point.
+    fn add(&mut self, axis: usize, moves: Moves, kind: LinkKind, [direction, point]: [Vec3; 2]) {
+        let name = self.linkage.axes[axis].name.clone();
+        let link = self.linkage.links.len();
+        let carrier = match moves {
+            Moves::Block => &mut self.block,
+            Moves::Beam => &mut self.beam,
+        };
+        let on = Some(std::mem::replace(carrier, link));
+        let [direction, point] = [direction, point].map(|vector| vector.to_array());
+        let terms = vec![(axis, 1.0)];
+        self.linkage.links.push(Link { name, on, kind, direction, point, zero: 0.0, terms });
+    }
+
+    fn body(&mut self, name: &str, on: usize, low: [f64; 3], high: [f64; 3]) {
+        self.linkage.bodies.push(LinkBody {
+            name: name.to_owned(),
+            on,
+            low,
+            high,
+            is_given: false,
+        });
+    }
+}
+
+fn seat(on: usize, at: Vec3) -> linkage::Place {
+    let [x, y, z] = Vec3::AXES.map(|axis| axis.to_array());
+    linkage::Place { on, frame: [x, y, z, at.to_array()] }
+}
+
+/// What carries what of a machine while blocks of these sides (mm) are on it, with boxes for the table, the lens and what leads it: its file
+/// says nothing of their shapes.
+pub fn linkage(machine: &Machine, [x, y, z]: [f64; 3], focal: f64) -> Linkage {
+    let mut carried = Carried::bed(&axes(machine));
+    let along = |way: [f64; 2]| [Vec2::from(way).normalize_or_zero().extend(0.0), Vec3::ZERO];
+    let about = |point: [f64; 2]| [Vec3::Z, Vec2::from(point).extend(0.0)];
+    let (slide, turn) = (LinkKind::Slide, LinkKind::Turn);
+    // Where the block's corner and the beam are while all axes stand at zero.
+    let (mut corner, mut spot, mut first) = (Vec2::ZERO, Vec2::ZERO, 0);
+    match (machine.polar, &machine.chain) {
+        (Some(table), _) => {
+            carried.add(1, Moves::Block, turn, about([0.0; 2]));
+            carried.add(0, Moves::Beam, turn, about([0.0, table.distance]));
+            corner = Vec2::new(-0.5 * x, table.offset);
+            spot = Vec2::new(0.0, table.distance - table.arm);
+        }
+        (None, Some(chain)) => {
+            for (axis, joint) in [chain.a, chain.b].into_iter().enumerate() {
+                match (joint.about, joint.along) {
+                    (Some(point), _) => carried.add(axis, joint.moves, turn, about(point)),
+                    (None, way) => {
+                        carried.add(axis, joint.moves, slide, along(way.unwrap_or_default()));
+                    }
+                }
+            }
+            (corner, spot) = (chain.corner.into(), chain.spot.into());
+        }
+        (None, None) => {
+            // A growing position brings the beam to where it grows in the block.
+            carried.add(1, Moves::Block, slide, along([0.0, -1.0]));
+            carried.add(0, Moves::Block, slide, along([-1.0, 0.0]));
+            if machine.stage.is_some() {
+                first = 2;
+                carried.add(2, Moves::Beam, slide, along([1.0, 0.0]));
+                carried.add(3, Moves::Beam, slide, along([0.0, 1.0]));
+            }
+        }
+    }
+    let (head, table) = (carried.beam, carried.block);
+    carried.add(first + 2, Moves::Beam, slide, [Vec3::Z, Vec3::ZERO]);
+    let lens = carried.beam;
+    let [a, b] = spot.to_array();
+    carried.body("lens", lens, [a - 12.0, b - 12.0, focal], [a + 12.0, b + 12.0, focal + 12.0]);
+    match machine.polar {
+        Some(Table { radius, distance, .. }) => {
+            carried.body("table", table, [-radius, -radius, -z - 10.0], [radius, radius, -z]);
+            let arm = [[-10.0, b - 12.0, focal + 20.0], [10.0, distance + 12.0, focal + 35.0]];
+            carried.body("arm", head, arm[0], arm[1]);
+        }
+        None => {
+            let [c, d] = corner.to_array();
+            let low = [c - 10.0, d - 10.0, -z - 10.0];
+            carried.body("table", table, low, [c + x + 10.0, d + y + 10.0, -z]);
+        }
+    }
+    let mut linkage = carried.linkage;
+    linkage.tool = seat(lens, spot.extend(0.0));
+    linkage.part = seat(table, corner.extend(-z));
+    linkage
 }
 
 /// Writes the program of bodies and proves it, or proves one that is there.
@@ -158,9 +259,9 @@ pub(crate) fn make(
         widths: Vec::new(),
         board: None,
     };
-    let glass = Glass { focus, listing };
-    let named = (file, (machine_name, Any::Fires(machine)));
-    Ok(Job::drawn(made, drawn, source, named, inputs).with_glass(glass))
+    let glass = Glass { machine: *machine, focus, focal: settings.job.focal, listing };
+    let named = (file, (machine_name, Any::Fires(glass.into())));
+    Ok(Job::drawn(made, drawn, source, named, inputs))
 }
 
 /// What is shown as the source: the text of a body, where it is one; of others what they are.
@@ -232,14 +333,26 @@ fn drawn(made: &glass::Made, settings: &Settings, watch: &dyn Watch) -> Result<D
     Ok(Drawn { walk, geometry })
 }
 
+impl Borrow<Machine> for Glass {
+    fn borrow(&self) -> &Machine {
+        &self.machine
+    }
+}
+
 impl Glass {
     /// How much memory it takes, bytes.
     pub fn bytes(&self) -> usize {
         self.listing.as_ref().map_or(0, Lines::bytes)
     }
 
+    /// What carries what.
+    pub fn linkage(&self) -> Linkage {
+        linkage(&self.machine, self.focus.block, self.focal)
+    }
+
     /// The blocks, in the frame of the first.
-    pub fn blocks(&self, machine: &Machine) -> Vec<GlassBlock> {
+    pub fn blocks(&self) -> Vec<GlassBlock> {
+        let machine = &self.machine;
         let Focus { block: [x, y, z], blocks, .. } = self.focus;
         let block = |number: u32| match machine.polar {
             Some(table) => {
@@ -264,7 +377,8 @@ impl Glass {
     }
 
     /// Where the beam and the axes are at a place: between pulses every axis goes evenly, one that turns on and on the shorter way.
-    pub fn stand(&self, walk: &Walk, machine: &Machine, at: At) -> Stand {
+    pub fn stand(&self, walk: &Walk, at: At) -> Stand {
+        let machine = &self.machine;
         let end = walk.positions(at.r#move);
         if at.part >= 1.0 {
             let tip = walk.behind(at.r#move).tip;
@@ -289,5 +403,67 @@ impl Glass {
             _ => [f64::NAN; 3],
         };
         Stand { tip: self.focus.from_first().at(machine, axes).0, axis: Vec3::Z, positions }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two turning axes, one on the block and one on the beam.
+    const CHAIN: &str = "[chain]\na = { moves = \"beam\", about = [0, 200] }\nb = { moves = \"block\", about = [0, 0] }\nspot = [0, 65]\ncorner = [-10, 70]\nnear = [-20, 20]\n";
+
+    fn machines() -> Vec<Machine> {
+        let mut machines: Vec<Machine> =
+            glass::names().map(|name| glass::machine(name).unwrap()).collect();
+        let plain = glass::library("glass-xyz-100hz").unwrap();
+        let chain = plain
+            .replace("kind = \"xyz\"", "kind = \"chain\"")
+            .replace("travel = [0, 170]", "travel = [-90, 90]")
+            .replace("[axes.x]", "[axes.a]")
+            .replace("[axes.y]", "[axes.b]");
+        machines.push(glass::machine_of(format!("{chain}\n{CHAIN}").as_bytes(), "c.toml").unwrap());
+        machines
+    }
+
+    /// Through its links each machine brings the beam to the place of the block at which its virtual control has it; the focus is where it
+    /// would be in air.
+    #[test]
+    fn links_lead_the_beam_to_where_the_virtual_control_has_it() {
+        for machine in machines() {
+            let block = [20.0, 22.0, 30.0];
+            let linkage = linkage(&machine, block, 70.0);
+            let coordinates = machine.coordinates();
+            assert_eq!(
+                linkage.axes.len(),
+                coordinates.len() + 2 * usize::from(machine.stage.is_some())
+            );
+            let task = ::glass::proof::Task {
+                cloud: &[],
+                machine: &machine,
+                lens: machine.lens(70.0).unwrap(),
+                index: 1.5195,
+                block,
+                blocks: 1,
+                spacing: 0.13,
+                accept_shadowed: false,
+            };
+            let focus = Focus::new(&task);
+            for number in 0..27 {
+                let part = [number % 3, number / 3 % 3, number / 9].map(|n| f64::from(n) / 2.0);
+                let at = [0, 1, 2].map(|axis| {
+                    let [low, high] = coordinates[axis].axis.travel;
+                    low + (high - low) * part[axis]
+                });
+                let positions = match machine.stage {
+                    Some(_) => vec![3.0, 4.0, at[0] - 3.0, at[1] - 4.0, at[2]],
+                    None => at.to_vec(),
+                };
+                let (found, expected) = (linkage.tip(&positions, 0.0), focus.at(&machine, at).0);
+                let flat = found.truncate().distance(expected.truncate());
+                assert!(flat < 1e-9, "{}: {found} {expected}", machine.title);
+                assert!((found.z - (30.0 + at[2])).abs() < 1e-9, "{}: {found}", machine.title);
+            }
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::glass::{self, Glass};
 use crate::lines::{Lines, readable};
 use crate::machines::{self, Any};
 use crate::message::{Array, Values};
-use crate::place::{self, At, Stand};
+use crate::place::{self, At};
 use crate::plots::{Plots, What};
 use crate::walk::{By, Drawn, Follower, KINDS, NO_TOOL, Slot, Walk};
 use ::post::{Origins, Part};
@@ -20,6 +20,7 @@ use app::report::{self, Digests};
 use app::toolpath::{self, Toolpath};
 use app::{Account, Source, Stop, Verdict, Watch, files, post, prove, wire};
 use control::Folders;
+use machine::linkage::Linkage;
 use machine::{Machine, Reach, library};
 use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
 use proof::{Observer, Tolerances};
@@ -220,7 +221,7 @@ pub struct Job {
     /// What is saved next to the program, where it is proven.
     report: Option<String>,
     machine_name: String,
-    machine: Any,
+    machine: Any<Glass>,
     machine_files: BTreeMap<String, Lines>,
     source_file: String,
     source: Lines,
@@ -237,8 +238,6 @@ pub struct Job {
     plots: Plots,
     /// The board that it is one of the programs of.
     board: Option<board::Place>,
-    /// Where its pulses are, where it fires inside glass.
-    glass: Option<Glass>,
     /// Whether its name says which program of a board it is.
     keeps_name: bool,
 }
@@ -328,7 +327,7 @@ impl Job {
     pub(crate) fn of(
         made: Made,
         source: Lines,
-        named: (String, (&str, Any)),
+        named: (String, (&str, Any<Glass>)),
         inputs: Vec<PathBuf>,
         follows: &Follows,
     ) -> Result<Job, Stop> {
@@ -344,7 +343,7 @@ impl Job {
         made: Made,
         Drawn { mut walk, geometry }: Drawn,
         source: Lines,
-        (file, (machine_name, machine)): (String, (&str, Any)),
+        (file, (machine_name, machine)): (String, (&str, Any<Glass>)),
         mut inputs: Vec<PathBuf>,
     ) -> Job {
         walk.set_widths(&made.widths);
@@ -376,14 +375,8 @@ impl Job {
             geometry,
             plots: Plots::default(),
             board,
-            glass: None,
             keeps_name: false,
         }
-    }
-
-    /// The same, of pulses inside glass.
-    pub(crate) fn with_glass(self, glass: Glass) -> Job {
-        Job { glass: Some(glass), ..self }
     }
 
     /// The same, of which the name of its file says which program of a board it is.
@@ -397,13 +390,17 @@ impl Job {
         let parts: usize = self.parts.values().map(|(lines, _)| lines.bytes()).sum();
         let texts = self.source.bytes() + self.program.bytes() + parts;
         let board = self.board.as_ref().map_or(0, board::Place::bytes);
+        let listing = match &self.machine {
+            Any::Fires(glass) => glass.bytes(),
+            Any::Moves(_) => 0,
+        };
         texts
             + records
             + 5 * self.origins.lines()
             + self.walk.bytes()
             + self.geometry.bytes()
             + board
-            + self.glass.as_ref().map_or(0, Glass::bytes)
+            + listing
     }
 
     /// The files that it is made of.
@@ -460,14 +457,17 @@ impl Job {
                 dialect: self.machine.dialect().to_owned(),
                 axes: self.machine.axes(),
                 files: self.machine_files.iter().map(|(file, lines)| text(file, lines)).collect(),
-                linkage: self.machine.linkage(),
+                linkage: match &self.machine {
+                    Any::Moves(machine) => Linkage::of(machine),
+                    Any::Fires(glass) => glass.linkage(),
+                },
             },
             walk: self.walk_about(),
             mismatch: self.mismatch(),
             board: self.board.as_ref().map(|board| board.about(revision)),
-            blocks: match (&self.glass, &self.machine) {
-                (Some(glass), Any::Fires(machine)) => glass.blocks(machine),
-                _ => Vec::new(),
+            blocks: match &self.machine {
+                Any::Moves(_) => Vec::new(),
+                Any::Fires(glass) => glass.blocks(),
             },
         }
     }
@@ -519,7 +519,10 @@ impl Job {
 
     /// The program as it is shown: a binary one as its control reads it.
     fn shown_program(&self) -> &Lines {
-        self.glass.as_ref().and_then(|glass| glass.listing.as_ref()).unwrap_or(&self.program)
+        match &self.machine {
+            Any::Fires(glass) => glass.listing.as_ref().unwrap_or(&self.program),
+            Any::Moves(_) => &self.program,
+        }
     }
 
     fn lines(&self, of: Of, file: Option<&str>) -> Result<&Lines, Stop> {
@@ -586,10 +589,9 @@ impl Job {
 
     fn place_at(&self, at: At) -> Place {
         let (walk, number) = (&self.walk, at.r#move);
-        let stand = match (&self.machine, &self.glass) {
-            (Any::Fires(machine), Some(glass)) => glass.stand(walk, machine, at),
-            (Any::Moves(machine), _) => place::stand(walk, machine, at),
-            (Any::Fires(_), None) => Stand::unknown(),
+        let stand = match &self.machine {
+            Any::Moves(machine) => place::stand(walk, machine, at),
+            Any::Fires(glass) => glass.stand(walk, at),
         };
         let known = |value: f64| value.is_finite().then_some(value);
         let state = walk.state(number);

@@ -3,26 +3,26 @@
 use crate::ask::{Axis, AxisKind, Finding, MachineEntry, MachineKind};
 use crate::folder::Folder;
 use app::{Stop, glass, toolpath};
-use machine::linkage::Linkage;
 use machine::{Machine, Reach, is_path, library};
 use program::{Diagnostic, Rule};
+use std::borrow::Borrow;
 use std::sync::OnceLock;
 
 /// A machine that was opened, whatever makes its programs.
 #[derive(Clone, Debug)]
-pub enum Any {
+pub enum Any<G = glass::Machine> {
     /// It moves a tool, a wire or an arm.
     Moves(Box<Machine>),
-    /// It fires inside glass.
-    Fires(Box<glass::Machine>),
+    /// It fires inside glass: the machine, or what has it.
+    Fires(Box<G>),
 }
 
-impl Any {
+impl<G: Borrow<glass::Machine>> Any<G> {
     /// What a person calls it.
     pub fn title(&self) -> &str {
         match self {
             Any::Moves(machine) => &machine.title,
-            Any::Fires(machine) => &machine.title,
+            Any::Fires(glass) => &(**glass).borrow().title,
         }
     }
 
@@ -58,15 +58,7 @@ impl Any {
     pub fn axes(&self) -> Vec<Axis> {
         match self {
             Any::Moves(machine) => axes(machine, self.kind()),
-            Any::Fires(machine) => crate::glass::axes(machine),
-        }
-    }
-
-    /// What carries what.
-    pub fn linkage(&self) -> Linkage {
-        match self {
-            Any::Moves(machine) => Linkage::of(machine),
-            Any::Fires(_) => crate::glass::linkage(&self.axes()),
+            Any::Fires(glass) => crate::glass::axes((**glass).borrow()),
         }
     }
 

@@ -54,13 +54,6 @@ pub struct Stand {
     pub positions: Vec<f64>,
 }
 
-impl Stand {
-    /// Nobody knows where.
-    pub fn unknown() -> Stand {
-        Stand { tip: Vec3::NAN, axis: Vec3::NAN, positions: Vec::new() }
-    }
-}
-
 /// Where tool and axes are at a place. Between the ends of a move they are where the control has them ([`Course`]): either the axes lead the
 /// tip, or the tip is on its line or arc, the rotary axes turn evenly, and the linear axes, or the joints of an arm, are where the machine's
 /// kinematics have them.

@@ -226,7 +226,7 @@ export class Screen {
         const known = axes.filter((position) => position !== null);
         if (known.length !== axes.length) return [];
         const at = vector(tip);
-        if (kind === "robot") return bodiesOf(linkage, known, null);
+        if (kind === "robot" || kind === "glass") return bodiesOf(linkage, known, null);
         // The lower end of a wire is in the plane that the machine's own zero is in.
         const length = kind === "wire" ? 0 : lengthOf(this.toolOf(tool), POINTER);
         return at === null ? [] : bodiesOf(linkage, known, { tip: at, length });

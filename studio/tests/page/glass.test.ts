@@ -81,6 +81,11 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
         await expect.poll(async () => (await readout(page)).Pulse).toMatch(/^1 of/);
         for (const colours of ["order", "operation"]) await page.getByLabel("Colour by").selectOption(colours);
         await page.getByLabel("Colour by").selectOption("order");
+        // The engraver round it.
+        const alone = await canvas.evaluate(covered);
+        await view.focus();
+        await page.keyboard.press("m");
+        await expect.poll(() => canvas.evaluate(covered)).toBeGreaterThan(alone + 0.01);
         await accessible(page, "glass");
         expect(complaints).toEqual([]);
         await page.close();
@@ -114,14 +119,16 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
         await page.close();
     });
 
-    test("a body that is dropped is offered the machines that can take it, and is drawn by WebGL as by the rasteriser", async () => {
+    test("points that are dropped are offered the machines that can take them, and are drawn by WebGL as by the rasteriser", async () => {
         const server = await Server.start([], []);
         const { page, complaints } = await visit(browser(), server.link);
+        // So far apart that lines between them would be seen.
+        const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => `${12 * (i & 1)} ${6 * (i & 2)} ${5 * (i & 4)}\n`).join("");
         const data = await page.evaluateHandle((text) => {
             const transfer = new DataTransfer();
-            transfer.items.add(new File([text], "ball.stl"));
+            transfer.items.add(new File([text], "corners.xyz"));
             return transfer;
-        }, ball(4));
+        }, corners);
         await page.dispatchEvent(".view", "drop", { dataTransfer: data });
         await page.getByRole("dialog", { name: "Machine" }).waitFor();
         const options = page.getByRole("dialog").getByRole("option");
