@@ -10,6 +10,11 @@ import type { Rows } from "../src/view/rows.ts";
 import { Scene, type Looks, type Marks } from "../src/view/scene.ts";
 import { Style, wordOf } from "../src/view/strip.ts";
 
+/** Buffers are alike when their bytes are: vitest by itself compares nothing of them. */
+expect.addEqualityTesters([
+    (a: unknown, b: unknown) => (a instanceof ArrayBuffer && b instanceof ArrayBuffer ? Buffer.from(a).equals(Buffer.from(b)) : undefined),
+]);
+
 const size = { width: 100, height: 50 };
 const above = project({ ...VIEWS[0]!, middle: [0, 0, 0], scale: 1 }, size);
 
