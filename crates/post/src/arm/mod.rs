@@ -525,9 +525,13 @@ impl<'a> Walk<'a> {
         let high = "off the line of the source joints may lead the tool only where it is beyond all cuts and as high along its axis as the source ever \
                     goes with it leaning so";
         let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
-        let [from, to] = ends.map(|end| (self.rapids.is_home(end), self.rapids.below(end)));
+        let slack = self.machine.capabilities.rapid_corridor / 2.0;
+        let [from, to] = ends.map(|end| {
+            let below = self.rapids.below(end);
+            (self.rapids.is_home(end), Some(below).filter(|below| *below > slack))
+        });
         for (is_home, below) in [from, to] {
-            if is_home && below > 0.0 {
+            if let (true, Some(below)) = (is_home, below) {
                 let message = format!("home is {below:.1} mm too low: {high}");
                 let help = format!(
                     "a higher `home` below [cell], a toolpath whose highest rapid is lower, or {place}"
@@ -535,9 +539,9 @@ impl<'a> Walk<'a> {
                 return Diagnostic::error(Rule::RapidPath, message).help(help);
             }
         }
-        let up = |(_, below): (bool, f64)| match below > 0.0 {
-            true => format!("{below:.1} mm above it along the tool"),
-            false => String::from("there"),
+        let up = |(_, below): (bool, Option<f64>)| match below {
+            Some(below) => format!("{below:.1} mm above it along the tool"),
+            None => String::from("there"),
         };
         let what = match (from.0, to.0) {
             (_, true) => "the arm finds no way home",
@@ -552,14 +556,16 @@ impl<'a> Walk<'a> {
             up(to),
             rapid::RETRACTS[rapid::RETRACTS.len() - 1]
         );
-        let rail = match from.0 || to.0 {
-            true if self.cell.rail.is_some() => {
-                "a home of the rail nearer to the part (`home` below [cell.rail]), "
-            }
-            true | false => "",
+        let rail = match self.cell.rail {
+            Some(_) => ", or of the rail nearer to the part (`home` below [cell.rail])",
+            None => "",
+        };
+        let other = match from.0 || to.0 {
+            true => format!("a `home` below [cell] with the tool leaning more as here{rail}, "),
+            false => String::new(),
         };
         let own = format!(
-            "{rail}a toolpath whose highest rapid is lower, a rapid that lifts the tool before it turns, or {place}"
+            "{other}a toolpath whose highest rapid is lower, a rapid that lifts the tool before it turns, or {place}"
         );
         let [from, to] = ends.map(|at| self.arm.posture(&at.joints));
         let changes = [
