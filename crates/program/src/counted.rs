@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn the_places_of_those_that_are_counted_are_kept_and_not_reported() {
+    fn the_places_of_those_that_are_counted_are_kept() {
         let many =
             (1..=30).map(|i| found(Rule::MachineWord, format!("no word is called `W{i}`"), i));
         let kept = many.collect::<Findings>().finish();

@@ -44,8 +44,8 @@ pub struct Diagnostic {
     /// Lines of the first few findings like this one that are not listed; see [`crate::Findings`].
     pub lines: Vec<u32>,
     /// Lines of those that [`Diagnostic::count`] counts besides this one, in the order in which they were found, the first
-    /// [`MOST_PLACES`]: for whoever leads from one to the next. Reports and messages leave them out.
-    #[serde(skip)]
+    /// [`MOST_PLACES`]: for whoever leads from one to the next. Messages leave them out, and answers and reports where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub places: Vec<u32>,
 }
 

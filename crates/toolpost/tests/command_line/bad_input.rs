@@ -139,6 +139,14 @@ fn many_like_findings_are_a_few_and_their_count() {
         answer["errors"].as_array().unwrap().iter().map(|e| e["count"].as_u64().unwrap()).collect();
     assert_eq!(counts, [1, 1, 19_998]);
     assert_eq!(answer["errors"][2]["lines"].as_array().unwrap().len(), 5);
+    // Words are looked at by their names, WORD0 stands on line 3. The third stands for all others, of which the first ten thousand are listed.
+    let mut words: Vec<(String, u64)> = (0..20_000).map(|i| (format!("WORD{i}"), i + 3)).collect();
+    words.sort();
+    let lines: Vec<u64> = words.into_iter().map(|(_, line)| line).collect();
+    let places = answer["errors"][2]["places"].as_array().unwrap();
+    let places: Vec<u64> = places.iter().map(|line| line.as_u64().unwrap()).collect();
+    assert_eq!((answer["errors"][2]["line"].as_u64(), &places[..]), (Some(13), &lines[3..10_003]));
+    assert!(answer["errors"][1].get("places").is_none());
 }
 
 #[test]
