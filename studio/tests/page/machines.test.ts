@@ -34,7 +34,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.close();
     });
 
-    test("in the midst of moves by joints the arm as it is drawn leads to the tip as it is read out", async () => {
+    test("in the midst of each move the arm as it is drawn leads to the tip as it is read out", async () => {
         const server = await Server.start([example("dome.cls")], ["-m", "universal-ur10e"]);
         const page = await browser().newPage();
         const [jobs, places]: [Job[], Place[]] = [[], []];
@@ -45,18 +45,17 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         }));
         await visitOn(page, server.link);
         await proven(page);
-        // From home to the part, which takes some seconds of twenty minutes, by fractions of a second.
+        // From home to the part by fractions of a second, and on through lines and arcs.
         await page.getByLabel("Time of the machine").evaluate(async (slider: HTMLInputElement) => {
-            for (let time = 0; time < 8; time += 0.1) {
+            for (let time = 0; time < 60; time += time < 8 ? 0.1 : 2) {
                 slider.value = String(time);
                 slider.dispatchEvent(new Event("input", { bubbles: true }));
                 await new Promise((resolve) => setTimeout(resolve, 30));
             }
         });
         const { linkage } = jobs.at(-1)!.machine;
-        const byJoints = places.filter(({ kind }) => kind === "joints");
-        expect(byJoints.length).toBeGreaterThan(5);
-        for (const { axes, tip } of byJoints) {
+        for (const one of ["joints", "feed", "arc"]) expect(places.filter(({ kind }) => kind === one).length).toBeGreaterThan(5);
+        for (const { axes, tip } of places) {
             const drawn = tipOf(linkage, place(linkage, axes as number[]), LENGTH);
             drawn.forEach((part, i) => expect(Math.abs(part - tip[i]!)).toBeLessThan(1e-9));
         }
