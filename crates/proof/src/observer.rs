@@ -127,7 +127,7 @@ pub struct Motion {
     /// spindle's speed, mm/min. None where it has read none.
     pub feed: Option<Feed>,
     /// How long it takes, s, as [`machine::time`] estimates it of what the control has read: a rapid as its slowest axis, each from
-    /// rest to rest, a cut by its feed. A way that is not known, as to and from home, takes nothing.
+    /// rest to rest, a cut by its feed, a probing move as if it went to its end. A way that is not known, as to and from home, takes nothing.
     pub seconds: f64,
     /// How long the machine waits before it, s: dwells, and [`machine::time::TOOL_CHANGE`] for each tool change.
     pub waited: f64,

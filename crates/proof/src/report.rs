@@ -235,7 +235,7 @@ pub struct Summary {
     /// Path length of the tip in rapid moves between known places, as straight lines, mm.
     pub rapid_length_mm: f64,
     /// How long it takes, s, as [`machine::time`] estimates it of what the control has read: rapids as the program makes them, axis by axis
-    /// and by way of a retract. Ways from and to a place that is not known, as home, take nothing.
+    /// and by way of a retract, probing moves as if they went to their ends. Ways from and to a place that is not known, as home, take nothing.
     pub time_s: Times,
     /// Programmed positions of X, Y and Z, mm.
     pub linear_extents_mm: [Extent; 3],

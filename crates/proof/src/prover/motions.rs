@@ -179,8 +179,15 @@ impl Prover<'_> {
         observer: &mut dyn Observer,
     ) {
         let (axes, end) = (self.axis_positions(&to.position), self.motions.told_pose(to));
-        let (ends, tool) = ([before, &to.position], [from, end]);
-        let seconds = self.seconds(event, way, ends, &tool, &axes);
+        let tool = [from, end];
+        let seconds = if let Action::Probe(probe) = &event.action {
+            // Where it touches nobody knows: at its end at the latest.
+            let last = self.gauge.resolve(event.line, probe.end);
+            let axes = self.axis_positions(&last.position);
+            self.seconds(event, way, [before, &last.position], &[from, last.place.into()], &axes)
+        } else {
+            self.seconds(event, way, [before, &to.position], &tool, &axes)
+        };
         let time = &mut self.report.program.time_s;
         match way {
             Way::Rapid => time.rapid += seconds,

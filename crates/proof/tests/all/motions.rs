@@ -1,7 +1,9 @@
 //! The motions that a proof hands out: line, record, way, and where the axes stand.
 
 use geom::Vec3;
-use program::{Builder, Coolant, Cycle, CycleKind, Diagnostic, Feed, Program, Spindle, Tool};
+use program::{
+    Builder, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Probe, Program, Spindle, Tool,
+};
 use toolpost_proof::{
     AxisPositions, MachineState, Motion, MotionKind, Observer, Report, SpindleState, Tolerances,
     prove_for,
@@ -478,6 +480,32 @@ fn a_thread_in_step_with_the_spindle_has_its_pitch_by_the_speed_as_feed() {
         (a.0, a.1) == (b.0, b.1) && (a.2 - b.2).abs() < 1e-9
     };
     assert!(cuts.len() == 3 && cuts.iter().zip(&should).all(near), "{cuts:?}");
+}
+
+/// Where the probe touches nobody knows: 15 mm at 300 mm/min are 3 s at the most. The way back from there is not known.
+#[test]
+fn a_probing_move_takes_as_long_as_it_takes_to_its_end_at_the_most() {
+    let mut source = Builder::new("probe");
+    source.tool(Tool { number: 1, ..Tool::default() }).unwrap();
+    source.feed(Feed::PerMinute(300.0)).unwrap();
+    source.rapid([0.0, 0.0, 5.0], None).unwrap();
+    let mut source = source.build();
+    let at = |z: f64| Pose::upright(Vec3::new(0.0, 0.0, z)).unwrap();
+    let probe = Probe { end: at(-10.0), away: false, must_answer: true, place: None };
+    source.push(5, Op::Probe(Box::new(probe)));
+    source.push(6, Op::Rapid(at(5.0)));
+    let start = START.replace("S5000 M3\n", "");
+    let text = format!("{start}G0 X0 Y0\nZ5\nG38.2 Z-10 F300\nG0 Z5\nG53 G0 Z0\nM2\n");
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let (mut found, tolerances) = (Vec::<Motion>::new(), Tolerances::default());
+    let report = prove_for(&source, &machine, "p.ngc", text.as_bytes(), &tolerances, &mut found);
+    assert!(report.proven, "{:#?}", report.mismatches);
+    let at_line = |line: u32| found.iter().find(|motion| motion.line == line).unwrap();
+    let probed = at_line(8);
+    assert!((probed.seconds - 3.0).abs() < 1e-9, "{probed:?}");
+    assert!((report.program.time_s.cutting - 3.0).abs() < 1e-9, "{:?}", report.program.time_s);
+    assert!(probed.tool[1].tip.z.is_nan(), "{probed:?}");
+    assert_eq!(at_line(9).seconds, 0.0);
 }
 
 /// A table that is turned by B brings the tip along the tool axis where Z of the machine goes home, and not along Z of the part: where it is
