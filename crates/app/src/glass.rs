@@ -62,6 +62,7 @@ pub struct Job<'s> {
     material: Material,
     shapes: Vec<Shape>,
     settings: &'s Settings,
+    most: u64,
 }
 
 /// A program with its verdict.
@@ -239,13 +240,18 @@ impl<'s> Job<'s> {
         let material = material::find(table, &file, &settings.material, wavelength)?;
         let shapes = bodies.iter().map(|body| shape_of_job(body, settings, beside));
         let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-        Ok(Job { machine, material, shapes, settings })
+        Ok(Job { machine, material, shapes, settings, most: u64::MAX })
+    }
+
+    /// The same for who has memory for so many pulses: more are refused before they are made.
+    pub fn within(self, most: u64) -> Job<'s> {
+        Job { most, ..self }
     }
 
     /// The text of a program of its machine.
     ///
     /// # Errors
-    /// As [`program`].
+    /// As [`program()`].
     pub fn program(&self, source: &Source) -> Result<Vec<u8>, Stop> {
         program(source, &self.machine)
     }
@@ -256,8 +262,8 @@ impl<'s> Job<'s> {
     /// What cannot be engraved, or that the work was ended.
     pub fn make(self, watch: &dyn Watch) -> Result<Made, Stop> {
         watch.begin("engraving")?;
-        let Job { machine, material, shapes, settings } = self;
-        let watch = Engraves(watch);
+        let Job { machine, material, shapes, settings, most } = self;
+        let watch = Engraves { watch, most };
         let made = job::make_for(shapes, &material, &machine, &settings.job, &watch);
         let made = made.map_err(|found| watch.stop(found))?;
         Ok(Made::new(made, machine, material))
@@ -268,11 +274,11 @@ impl<'s> Job<'s> {
     /// # Errors
     /// What cannot be engraved, what the machine would not take, or that the work was ended.
     pub fn prove(self, name: &str, text: Vec<u8>, watch: &dyn Watch) -> Result<Made, Stop> {
-        let Job { machine, material, shapes, settings } = self;
+        let Job { machine, material, shapes, settings, most } = self;
         let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
             found.into_iter().map(|found| in_file(found, name)).collect()
         };
-        let watch = Engraves(watch);
+        let watch = Engraves { watch, most };
         let made = job::prove_for(text, shapes, &material, &machine, &settings.job, &watch);
         let made = made.map_err(|found| watch.stop(in_program(found)))?;
         let mut made = Made::new(made, machine, material);
@@ -282,22 +288,29 @@ impl<'s> Job<'s> {
 }
 
 /// Whoever watches, as the crate `glass` tells it.
-struct Engraves<'a>(&'a dyn Watch);
+struct Engraves<'a> {
+    watch: &'a dyn Watch,
+    most: u64,
+}
 
 impl ::glass::watch::Watch for Engraves<'_> {
     fn step(&self, what: &'static str) {
-        self.0.step(what);
+        self.watch.step(what);
+    }
+
+    fn most_pulses(&self) -> u64 {
+        self.most
     }
 
     fn is_ended(&self) -> bool {
-        self.0.is_cancelled()
+        self.watch.is_cancelled()
     }
 }
 
 impl Engraves<'_> {
     /// Why work has stopped.
     fn stop(&self, found: Vec<Diagnostic>) -> Stop {
-        if self.0.is_cancelled() { Stop::cancelled() } else { found.into() }
+        if self.watch.is_cancelled() { Stop::cancelled() } else { found.into() }
     }
 }
 

@@ -305,7 +305,7 @@ impl<'m> Job<'m> {
         let mut findings = std::mem::take(&mut parts.warnings);
         findings.extend(parts.health.iter().filter_map(unhealthy));
         watch.go_on()?;
-        let (cloud, welded, left) = discretise(&parts, settings, apart)?;
+        let (cloud, welded, left) = discretise(&parts, settings, apart, watch.most_pulses())?;
         watch.go_on()?;
         findings.extend(left_out(&left, &settings.filling));
         if let Some(chain) = &machine.chain {
@@ -317,6 +317,9 @@ impl<'m> Job<'m> {
         let health = parts.health;
         let turns = machine.polar.map_or(1, |_| u64::from(settings.blocks));
         let pulses = cloud.len() as u64 * turns;
+        if pulses > watch.most_pulses() {
+            return Err(too_many(pulses as f64, watch.most_pulses()));
+        }
         if pulses > machine.program.points {
             let message = format!(
                 "{pulses} points are more than the {} that {} holds",
@@ -998,6 +1001,7 @@ fn discretise(
     parts: &Parts,
     settings: &Settings,
     apart: Apart,
+    most: u64,
 ) -> Result<(Vec<Point>, u64, Left), Vec<Diagnostic>> {
     let Parts { mesh, points, .. } = parts;
     let Settings { filling, layers, seed, .. } = settings;
@@ -1014,6 +1018,9 @@ fn discretise(
         let message =
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
         return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
+    }
+    if 0.7 * expected > most as f64 {
+        return Err(too_many(0.7 * expected, most));
     }
     let fill::Points { sampled: mut cloud, mut others, left } =
         fill::points(mesh, filling, apart, *seed);
@@ -1057,6 +1064,18 @@ fn discretise(
     }
     let left_out = (asked - cloud.len()) as u64;
     Ok((cloud, left_out, left))
+}
+
+/// That there is no memory for so many pulses.
+fn too_many(pulses: f64, most: u64) -> Vec<Diagnostic> {
+    let millions = |count: f64| (count * 1e-6).ceil();
+    let message = format!(
+        "some {} million points are more than the {} million that there is memory for here",
+        millions(pulses),
+        millions(most as f64)
+    );
+    let help = "take a larger --spacing or a smaller --scale, or the command `toolpost glass`";
+    error(Rule::Points, message, help)
 }
 
 /// Layers of curves stay within the margins.

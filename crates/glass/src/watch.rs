@@ -7,6 +7,11 @@ pub trait Watch: Sync {
     /// The next step begins: `ordering`, `proving`.
     fn step(&self, _what: &'static str) {}
 
+    /// How many pulses there is memory for.
+    fn most_pulses(&self) -> u64 {
+        u64::MAX
+    }
+
     /// Whether the work shall end. It is asked often, from many threads.
     fn is_ended(&self) -> bool {
         false

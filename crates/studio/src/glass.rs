@@ -20,6 +20,9 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+/// The most pulses of a program: while it is made, each takes some 220 bytes.
+const MOST_PULSES: u64 = 12_000_000;
+
 /// The machine of a job, and what the job says of it.
 #[derive(Debug)]
 pub struct Glass {
@@ -222,6 +225,7 @@ pub(crate) fn make(
         format!("{stem}.{}", glass::extension(&machine))
     });
     let job = glass::Job::read(&bodies, (*machine).clone(), settings, &mut beside)?;
+    let job = job.within(MOST_PULSES);
     let made = match program {
         Some(text) => {
             let text = job.program(&Source::memory(&file, text))?;

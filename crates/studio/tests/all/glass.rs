@@ -22,7 +22,11 @@ const MACHINE: &str = "glass-xyz-100hz";
 fn settings(given: &[(String, String)]) -> app::glass::Settings {
     let of = |name: &str| given.iter().find(|(own, _)| own == name).map(|(_, value)| &**value);
     let placing = Placing {
-        block: [20.0, 20.0, 30.0],
+        block: if of("block") == Some("large") {
+            [1700.0, 1700.0, 30.0]
+        } else {
+            [20.0, 20.0, 30.0]
+        },
         margin: 2.0,
         scale: None,
         fit: false,
@@ -376,6 +380,11 @@ fn what_is_no_job_of_glass_is_refused_with_the_way_out() {
     assert_eq!(refused(file("ball.stl"), "bad.toml", &[]).0, "machine-file");
     assert_eq!(refused(file("ball.stl"), "glass-xyz-300hz", &[]).0, "machine-unknown");
     assert_eq!(refused(file("../secret.stl"), MACHINE, &[]).0, "folder-reach");
+    // A square of 1.6 m would be 100 million points: that is said before they are made.
+    let square = "v 0 0 0\nv 1600 0 0\nv 1600 1600 0\nv 0 1600 0\nf 1 2 3\nf 1 3 4\n";
+    fs::write(studio.own().join("square.obj"), square).unwrap();
+    let (rule, help) = refused(file("square.obj"), MACHINE, &[("block", "large")]);
+    assert!(rule == "points" && help.contains("toolpost glass"), "{rule}: {help}");
 }
 
 /// An OBJ names its colours by `mtllib`: they are read from its own folder, and never from without.
