@@ -69,4 +69,4 @@ pub use record::*;
 pub use rule::Rule;
 pub use surface::Surface;
 pub use technology::*;
-pub use tops::{ALIKE, Tops};
+pub use tops::Tops;

@@ -1,40 +1,37 @@
-//! How high a program goes, by how its tool leans.
+//! How high a program goes.
 
 use crate::{ArcTo, Cycle, Op, Pose, Program};
 use geom::{Vec3, angle_between, reach_of_box};
 
-/// Tools that lean apart by no more than this lean alike, radians: what one of them passes, the other does.
-pub const ALIKE: f64 = 0.1;
-
-/// So many poses are looked at one by one.
+/// So many points are looked at one by one.
 const FEW: usize = 16;
 
-/// The poses of a program, so arranged that the highest of those with a tool that leans alike is found without a look at each.
+/// The places to which a program goes, so arranged that the highest along any axis is found without a look at each.
 #[derive(Clone, Debug)]
 pub struct Tops {
-    poses: Vec<Pose>,
-    /// Boxes around halves of the poses, halves of these and so on: each before those of its own halves.
-    boxes: Vec<PoseBox>,
+    points: Vec<Vec3>,
+    /// Boxes around halves of the points, halves of these and so on: each before those of its own halves.
+    boxes: Vec<PointBox>,
 }
 
-/// The box around some of the poses.
+/// The box around some of the points.
 #[derive(Clone, Copy, Debug)]
-struct PoseBox {
-    points: [Vec3; 2],
-    axes: [Vec3; 2],
-    /// The first pose, and the one behind the last.
-    poses: [usize; 2],
-    /// The number of the box of the second half; 0 where the poses are few.
+struct PointBox {
+    low: Vec3,
+    high: Vec3,
+    /// The first point, and the one behind the last.
+    points: [usize; 2],
+    /// The number of the box of the second half; 0 where the points are few.
     second: usize,
 }
 
 impl Tops {
-    /// Those of `program`, whose poses are in the work frame: where its motions end, how high its arcs rise, and the heights from which
+    /// Those of `program`, in the work frame: where its motions end, how high its arcs rise along the tool, and the heights from which
     /// and to which the tool goes at its holes.
     pub fn of(program: &Program) -> Tops {
         let mut here: Option<Pose> = None;
         let mut cycle: Option<&Cycle> = None;
-        let mut poses = Vec::new();
+        let mut points = Vec::new();
         for record in &program.records {
             if let Op::Cycle(new) = &record.op {
                 cycle = Some(new);
@@ -47,18 +44,18 @@ impl Tops {
             } else {
                 0.0
             };
-            poses.push(pose.lifted(height).unwrap_or(*pose));
+            points.push(pose.point() + pose.axis() * height);
             here = Some(*pose);
         }
-        let mut tops = Tops { boxes: Vec::with_capacity(2 * poses.len() / FEW + 1), poses };
-        if !tops.poses.is_empty() {
-            tops.divide([0, tops.poses.len()]);
+        let mut tops = Tops { boxes: Vec::with_capacity(2 * points.len() / FEW + 1), points };
+        if !tops.points.is_empty() {
+            tops.divide([0, tops.points.len()]);
         }
         tops
     }
 
-    /// How high the program goes along `axis`, a unit vector, with its tool as it leans there, mm from the origin: from below that nobody
-    /// knows what is around the tool elsewhere than on the program's own way. −∞ where its tool never leans so.
+    /// How high the program goes along `axis`, a unit vector, mm from the origin, however its tool leans: from below that nobody knows what
+    /// is around the tool elsewhere than on the program's own way. −∞ where it goes nowhere.
     pub fn along(&self, axis: Vec3) -> f64 {
         let mut highest = f64::NEG_INFINITY;
         if !self.boxes.is_empty() {
@@ -67,47 +64,35 @@ impl Tops {
         highest
     }
 
-    /// Puts a box around poses, and others around each half of them.
+    /// Puts a box around points, and others around each half of them.
     fn divide(&mut self, [first, end]: [usize; 2]) {
-        let poses = &mut self.poses[first..end];
-        let [points, axes] = [Pose::point, Pose::axis].map(|part| {
-            let parts = || poses.iter().map(part);
-            [parts().fold(Vec3::INFINITY, Vec3::min), parts().fold(Vec3::NEG_INFINITY, Vec3::max)]
-        });
+        let points = &mut self.points[first..end];
+        let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+        let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
         let number = self.boxes.len();
-        self.boxes.push(PoseBox { points, axes, poses: [first, end], second: 0 });
-        if poses.len() <= FEW {
+        self.boxes.push(PointBox { low, high, points: [first, end], second: 0 });
+        if points.len() <= FEW {
             return;
         }
-        let widest = |[low, high]: [Vec3; 2]| {
-            let wide = high - low;
-            let longest = if wide.x >= wide.y { 0 } else { 1 };
-            let longest = if wide[longest] >= wide.z { longest } else { 2 };
-            (wide[longest], longest)
-        };
-        let (lean, by_axis) = widest(axes);
-        let part: (fn(&Pose) -> Vec3, usize) = match lean > ALIKE {
-            true => (Pose::axis, by_axis),
-            false => (Pose::point, widest(points).1),
-        };
-        let of = |pose: &Pose| part.0(pose)[part.1];
-        let half = poses.len() / 2;
-        poses.select_nth_unstable_by(half, |a, b| of(a).total_cmp(&of(b)));
+        let wide = high - low;
+        let longest = if wide.x >= wide.y { 0 } else { 1 };
+        let longest = if wide[longest] >= wide.z { longest } else { 2 };
+        let half = points.len() / 2;
+        points.select_nth_unstable_by(half, |a, b| a[longest].total_cmp(&b[longest]));
         self.divide([first, first + half]);
         self.boxes[number].second = self.boxes.len();
         self.divide([first + half, end]);
     }
 
-    /// Looks for a pose within a box that is higher than the highest so far.
+    /// Looks for a point within a box that is higher than the highest so far.
     fn look(&self, number: usize, axis: Vec3, highest: &mut f64) {
-        let PoseBox { poses: [first, end], second, .. } = self.boxes[number];
+        let PointBox { points: [first, end], second, .. } = self.boxes[number];
         if self.most(number, axis) <= *highest {
             return;
         }
         if second == 0 {
-            let poses = self.poses[first..end].iter();
-            let alike = poses.filter(|pose| angle_between(pose.axis(), axis) <= ALIKE);
-            *highest = alike.map(|pose| pose.point().dot(axis)).fold(*highest, f64::max);
+            let points = self.points[first..end].iter();
+            *highest = points.map(|point| point.dot(axis)).fold(*highest, f64::max);
             return;
         }
         let mut halves = [number + 1, second];
@@ -119,14 +104,9 @@ impl Tops {
         }
     }
 
-    /// How high the poses of a box can be at the most; −∞ where none of them leans alike.
+    /// How high the points of a box can be at the most.
     fn most(&self, number: usize, axis: Vec3) -> f64 {
-        let PoseBox { points: [low, high], axes, .. } = self.boxes[number];
-        // Chords are shorter than their arcs.
-        match axis.clamp(axes[0], axes[1]).distance(axis) <= ALIKE {
-            true => reach_of_box(low, high, axis),
-            false => f64::NEG_INFINITY,
-        }
+        reach_of_box(self.boxes[number].low, self.boxes[number].high, axis)
     }
 }
 
@@ -168,31 +148,17 @@ mod tests {
     }
 
     #[test]
-    fn the_tree_finds_what_a_look_at_each_pose_finds() {
+    fn the_tree_finds_what_a_look_at_each_point_finds() {
         let mut number = numbers();
         let mut any = || Vec3::new(number(), number(), number()) * 2.0 - 1.0;
-        for lean in [0.0, 0.02, 0.3, 10.0] {
-            let poses: Vec<Pose> = (0..3000)
-                .map(|_| Pose::new(any() * 200.0, (Vec3::Z + any() * lean).normalize()).unwrap())
-                .collect();
-            let tops = Tops::of(&program(poses.iter().copied().map(Op::Rapid)));
-            for _ in 0..200 {
-                let axis = (Vec3::Z + any() * lean).normalize();
-                let alike = poses.iter().filter(|pose| angle_between(pose.axis(), axis) <= 0.1);
-                let highest =
-                    alike.map(|pose| pose.point().dot(axis)).fold(f64::NEG_INFINITY, f64::max);
-                assert_eq!(tops.along(axis), highest);
-            }
+        let points: Vec<Vec3> = (0..3000).map(|_| any() * 200.0).collect();
+        let rapids = points.iter().map(|point| Op::Rapid(Pose::upright(*point).unwrap()));
+        let tops = Tops::of(&program(rapids));
+        for _ in 0..200 {
+            let axis = any().normalize();
+            let heights = points.iter().map(|point| point.dot(axis));
+            assert_eq!(tops.along(axis), heights.fold(f64::NEG_INFINITY, f64::max));
         }
-    }
-
-    #[test]
-    fn a_tool_that_leans_otherwise_does_not_count() {
-        let sideways = Pose::new(Vec3::new(90.0, 0.0, 300.0), Vec3::X).unwrap();
-        let upright = Pose::upright(Vec3::new(10.0, 0.0, 65.0)).unwrap();
-        let tops = Tops::of(&program([Op::Rapid(sideways), Op::Rapid(upright)]));
-        assert_eq!([Vec3::Z, Vec3::X].map(|axis| tops.along(axis)), [65.0, 90.0]);
-        assert_eq!(tops.along(Vec3::Y), f64::NEG_INFINITY);
         assert_eq!(Tops::of(&Program::new("t")).along(Vec3::Z), f64::NEG_INFINITY);
     }
 

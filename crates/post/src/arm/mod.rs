@@ -522,8 +522,8 @@ impl<'a> Walk<'a> {
 
     /// The refusal of a rapid from one place to another.
     fn no_way(&self, ends: [&Position; 2]) -> Diagnostic {
-        let high = "off the line of the source joints may lead the tool only where it is beyond all cuts and as high along its axis as the source ever \
-                    goes with it leaning so";
+        let high = "off the line of the source joints may lead the tool only where it is beyond all cuts and as high along it as the source ever \
+                    goes";
         let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
         let slack = self.machine.capabilities.rapid_corridor / 2.0;
         let [from, to] = ends.map(|end| {

@@ -4,7 +4,7 @@ use super::plan::Position;
 use ::arm::{Arm, Joints, Posture};
 use geom::{Frame, Mat3, Quat, Vec3, angle_between, nearest_on_segment, wrap};
 use machine::{Capabilities, Cell, Machine};
-use program::{ALIKE, CutBox, Program, Tops};
+use program::{CutBox, Program, Tops};
 use std::cell::OnceCell;
 
 /// Joints are looked at so near to each other that the tip moves by no more than this, mm.
@@ -157,7 +157,7 @@ impl<'a> RapidPlanner<'a> {
         })
     }
 
-    /// How high the source goes along `axis` with its tool leaning alike, mm.
+    /// How high the source goes along `axis`, mm.
     pub(super) fn top(&self, axis: Vec3) -> f64 {
         self.tops.get_or_init(|| Tops::of(self.source)).along(axis)
     }
@@ -209,18 +209,15 @@ impl<'a> RapidPlanner<'a> {
         self.straight(tool, at, &raised).map(|feed| (raised, feed))
     }
 
-    /// Whether the tool is free of the part while the joints go, or near the line: beyond all cuts along its own axis, and as high as the source ever goes
-    /// along the axis of an end of the way: of that which it leans like, of either where it leans like neither.
+    /// Whether the tool is free of the part while the joints go, or near the line: beyond all cuts along its own axis, and as high as the source ever goes,
+    /// along the tool as it leans at the nearer end, or along Z.
     fn is_clear(&self, tool: &Frame, [from, to]: [&Position; 2], line: Option<[Vec3; 2]>) -> bool {
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
         let unmeasured = self.arm.unmeasured();
         let slack = self.can.rapid_corridor / 2.0;
-        let axes = [from, to].map(|end| -end.tool.matrix3.z_axis);
-        let floors = axes.map(|axis| {
-            let leans_so = self.top(axis).is_finite();
-            leans_so.then(|| self.floor(axis) - slack)
-        });
+        let ends = [from, to].map(|end| -end.tool.matrix3.z_axis);
+        let floors = [ends[0], ends[1], Vec3::Z].map(|axis| (axis, self.floor(axis) - slack));
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
         (0..=count as usize).all(|step| {
@@ -235,12 +232,10 @@ impl<'a> RapidPlanner<'a> {
             if near {
                 return true;
             }
-            let leans = axes.map(|axis| angle_between(axis, -at.matrix3.z_axis));
-            let is_high =
-                |end: usize| floors[end].map(|floor| at.translation.dot(axes[end]) >= floor);
-            let end = usize::from(leans[1] < leans[0]);
-            let otherwise = || leans[end] > ALIKE && is_high(1 - end) == Some(true);
-            self.is_beyond_cuts(&at) && (is_high(end) != Some(false) || otherwise())
+            let leans = ends.map(|axis| angle_between(axis, -at.matrix3.z_axis));
+            let along = [usize::from(leans[1] < leans[0]), 2].map(|number| floors[number]);
+            let mut is_high = along.iter().map(|(axis, floor)| at.translation.dot(*axis) >= *floor);
+            self.is_beyond_cuts(&at) && is_high.any(|is_high| is_high)
         })
     }
 

@@ -753,7 +753,7 @@ rules! {
         "fanuc: `G28`";
     HomeHeight "home-height" []
         "The way from home to the first point may meet the part."
-        "send Z home at the start, or set `safe_height` of the machine"
+        "send Z home at the start, or set `safe_height` of the machine; for a robot begin and end the toolpath with a rapid above the part"
         "Z not at its upper end when the first rapid begins";
     Hpgl "hpgl" []
         "A command of an HP-GL file is none that is read, or lacks numbers."

@@ -222,18 +222,30 @@ fn from_home_the_tool_comes_into_a_hole_from_above() {
     assert_eq!(report.mismatches[0].rule.name(), "rapid-path", "{by_joints}");
 }
 
+/// In a hole that was there before the tool leans by 12 degrees, as it does nowhere above; the arm goes home from there.
+fn leans_below() -> Program {
+    let lean = "0.2079117,0,0.9781476";
+    source(&format!(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,65,0,0,1\nRAPID\nGOTO/100,50,-38,0,0,1\n\
+         RAPID\nGOTO/100,50,-38,{lean}\nFEDRAT/MMPM,300\nGOTO/97.921,50,-47.781,{lean}\nRAPID\nGOTO/100,50,-38,{lean}\nSPINDL/OFF\nFINI\n"
+    ))
+}
+
 #[test]
 fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
-    let (source, machine) = (ends_below(), machine::load("kuka-kr6-r900").unwrap());
-    let text = proven(&source, &machine);
-    // Without the line up to there.
-    let at = text.rfind("LIN {X 100.000,Y 50.000,Z 65.000,").unwrap_or_else(|| panic!("{text}"));
-    let end = at + text[at..].find("\r\n").unwrap() + 2;
-    let damaged = format!("{}{}", &text[..at], &text[end..]);
-    let report = proof_of(&source, &machine, &damaged);
-    let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{damaged}"));
-    assert_eq!(found.rule.name(), "rapid-path", "{found}");
-    assert!(found.message.contains("lower along the tool than the source ever goes"), "{found}");
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    for source in [ends_below(), leans_below()] {
+        let text = proven(&source, &machine);
+        // Without the line up to there.
+        let at = text.rfind("LIN {").unwrap_or_else(|| panic!("{text}"));
+        let end = at + text[at..].find("\r\n").unwrap() + 2;
+        let damaged = format!("{}{}", &text[..at], &text[end..]);
+        let report = proof_of(&source, &machine, &damaged);
+        let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{damaged}"));
+        assert_eq!(found.rule.name(), "rapid-path", "{found}");
+        let why = "lower along the tool than the source ever goes";
+        assert!(found.message.contains(why), "{found}");
+    }
 }
 
 /// A source that stays within a hole: nothing tells its highest place from one above the part, but that it is below zero.
