@@ -3,6 +3,9 @@
 use crate::{ArcTo, Cycle, Op, Pose, Program};
 use geom::{Vec3, angle_between, reach_of_box};
 
+/// A program that stays below its zero may be within a hole from there: it counts as going so far above zero, mm.
+const ABOVE_ZERO: f64 = 1.0;
+
 /// So many points are looked at one by one.
 const FEW: usize = 16;
 
@@ -12,6 +15,7 @@ pub struct Tops {
     points: Vec<Vec3>,
     /// Boxes around halves of the points, halves of these and so on: each before those of its own halves.
     boxes: Vec<PointBox>,
+    below_zero: Option<f64>,
 }
 
 /// The box around some of the points.
@@ -27,7 +31,8 @@ struct PointBox {
 
 impl Tops {
     /// Those of `program`, in the work frame: where its motions end, how high its arcs rise along the tool, and the heights from which
-    /// and to which the tool goes at its holes.
+    /// and to which the tool goes at its holes. Where all are below zero, which is then the part's top for all that is known, the same places 1 mm
+    /// above it, too.
     pub fn of(program: &Program) -> Tops {
         let mut here: Option<Pose> = None;
         let mut cycle: Option<&Cycle> = None;
@@ -47,7 +52,14 @@ impl Tops {
             points.push(pose.point() + pose.axis() * height);
             here = Some(*pose);
         }
-        let mut tops = Tops { boxes: Vec::with_capacity(2 * points.len() / FEW + 1), points };
+        let highest = points.iter().map(|point: &Vec3| point.z).fold(f64::NEG_INFINITY, f64::max);
+        let below_zero = (highest < 0.0 && !points.is_empty()).then_some(highest);
+        if below_zero.is_some() {
+            let above = points.iter().map(|point| Vec3::new(point.x, point.y, ABOVE_ZERO));
+            points.extend(above.collect::<Vec<_>>());
+        }
+        let boxes = Vec::with_capacity(2 * points.len() / FEW + 1);
+        let mut tops = Tops { boxes, points, below_zero };
         if !tops.points.is_empty() {
             tops.divide([0, tops.points.len()]);
         }
@@ -62,6 +74,11 @@ impl Tops {
             self.look(0, axis, &mut highest);
         }
         highest
+    }
+
+    /// How high a program goes that stays below its zero, Z in mm; `None` of one that does not.
+    pub fn below_zero(&self) -> Option<f64> {
+        self.below_zero
     }
 
     /// Puts a box around points, and others around each half of them.
@@ -160,6 +177,17 @@ mod tests {
             assert_eq!(tops.along(axis), heights.fold(f64::NEG_INFINITY, f64::max));
         }
         assert_eq!(Tops::of(&Program::new("t")).along(Vec3::Z), f64::NEG_INFINITY);
+    }
+
+    #[test]
+    fn what_stays_below_zero_counts_as_going_above_it() {
+        let at = |z: f64| Op::Rapid(Pose::upright(Vec3::new(100.0, 50.0, z)).unwrap());
+        let tops = |heights: [f64; 2]| Tops::of(&program(heights.map(at)));
+        assert_eq!(tops([-40.0, -30.0]).along(Vec3::Z), 1.0);
+        assert_eq!(tops([-40.0, -30.0]).below_zero(), Some(-30.0));
+        assert_eq!(tops([-40.0, -30.0]).along(Vec3::X), 100.0);
+        assert_eq!(tops([-40.0, 0.0]).along(Vec3::Z), 0.0);
+        assert_eq!(tops([-40.0, 0.0]).below_zero(), None);
     }
 
     /// By hand: over a hole at Z 0 the tool goes 7 mm back, and half a circle of radius 10 that stands upright rises to Z 10.

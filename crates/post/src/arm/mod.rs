@@ -132,7 +132,14 @@ pub(crate) fn write(
         let found = Diagnostic::warning(Rule::CompensatedPath, message);
         walk.findings.warn(found.help("a robot has no compensation").line(line));
     }
-    walk.comes_from_above();
+    if let Some(height) = walk.rapids.tops().below_zero() {
+        let message = format!(
+            "the toolpath goes no higher than Z{height:.1}, below its zero, which is taken for the top of the part: joints lead the tool from home to 1 mm above \
+             zero, and it goes straight along its axis from there"
+        );
+        let help = "begin and end the toolpath with a rapid above the part";
+        walk.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
+    }
     for record in program.records.iter().filter(|record| matches!(record.op, Op::Clamp(_))) {
         let message = "a clamp of a rotary axis is left out: a robot has none";
         let found = Diagnostic::warning(Rule::Clamp, message).help("nothing to do");
@@ -504,20 +511,6 @@ impl<'a> Walk<'a> {
 
     fn is_home(&self) -> bool {
         self.rapids.is_home(&self.here)
-    }
-
-    /// Says where a toolpath stays below its zero, which may be within a hole: nothing in it says how high the part is there.
-    fn comes_from_above(&mut self) {
-        let top = self.rapids.top(Vec3::Z);
-        if !top.is_finite() || top >= 0.0 {
-            return;
-        }
-        let message = format!(
-            "the toolpath goes no higher than Z{top:.1}, below its zero: joints lead the tool from home to there and back, in a hole or a pocket through \
-             its wall"
-        );
-        let help = "begin and end the toolpath with a rapid above the part";
-        self.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
     }
 
     /// The refusal of a rapid from one place to another.

@@ -157,9 +157,9 @@ impl<'a> RapidPlanner<'a> {
         })
     }
 
-    /// How high the source goes along `axis`, mm.
-    pub(super) fn top(&self, axis: Vec3) -> f64 {
-        self.tops.get_or_init(|| Tops::of(self.source)).along(axis)
+    /// How high the source goes.
+    pub(super) fn tops(&self) -> &Tops {
+        self.tops.get_or_init(|| Tops::of(self.source))
     }
 
     /// How far the tool is below where joints may lead it from or to, mm along its axis: as high as the source ever goes, beyond all cuts by
@@ -171,7 +171,7 @@ impl<'a> RapidPlanner<'a> {
 
     fn floor(&self, axis: Vec3) -> f64 {
         let beyond = self.cuts.reach(axis) + self.can.rapid_clearance;
-        beyond.max(self.top(axis)) + self.arm.unmeasured()
+        beyond.max(self.tops().along(axis)) + self.arm.unmeasured()
     }
 
     /// Whether the tool is beyond all cuts along its axis by the clearance.

@@ -248,19 +248,25 @@ fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
     }
 }
 
-/// A source that stays within a hole: nothing tells its highest place from one above the part, but that it is below zero.
+/// A source that stays within a hole: its zero is taken for the top of the part, and that is told.
 #[test]
-fn a_source_that_never_goes_above_its_zero_is_told() {
+fn into_a_hole_that_the_source_never_leaves_the_tool_comes_from_above_its_zero() {
     let machine = machine::load("kuka-kr6-r900").unwrap();
     let head = "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-40\nFEDRAT/MMPM,300\nGOTO/100,50,-60\nRAPID\n";
     for (end, told) in [("GOTO/100,50,-30\n", true), ("GOTO/100,50,5\n", false)] {
-        let output = post::write(&source(&format!("{head}{end}SPINDL/OFF\nFINI\n")), &machine);
-        let warnings = output.unwrap().warnings;
+        let source = source(&format!("{head}{end}SPINDL/OFF\nFINI\n"));
+        let warnings = post::write(&source, &machine).unwrap().warnings;
         let found = warnings.iter().find(|found| found.rule.name() == "home-height");
         assert_eq!(
             found.is_some_and(|found| found.message.contains("Z-30.0")),
             told,
             "{warnings:?}"
         );
+        let text = proven(&source, &machine);
+        let lowest =
+            ends_of_joints(&machine, &text).iter().fold(f64::INFINITY, |z, end| z.min(end.z));
+        assert!(lowest > 0.95, "{lowest}\n{text}");
+        let low = left_by_joints(&text, &machine, [100.0, 50.0, -40.0]);
+        assert!(!proof_of(&source, &machine, &low).proven, "{low}");
     }
 }
