@@ -158,6 +158,7 @@ export class Studio {
         this.work.value = ofProgram(this.work.value, this.job.value);
         this.edited.value = text;
         this.isCurrent.value = false;
+        this.stop.value = null;
         clearTimeout(this.typing);
         this.typing = setTimeout(() => void this.prove(text), 400);
     }

@@ -117,7 +117,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 /// Whether a text is meant as a machine that fires inside glass: no other file has a table `[laser]`.
 pub fn is_machine(text: &[u8]) -> bool {
-    text.split(|byte| *byte == b'\n').any(|line| line.trim_ascii() == b"[laser]")
+    text.split(|byte| *byte == b'\n').any(|line| line.trim_ascii().starts_with(b"[laser]"))
 }
 
 /// Whether a file is a body, a picture or a list of points, by its ending, and nothing that another machine cuts.
@@ -165,6 +165,17 @@ fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
             );
             Err(found.file(files::name(path)).into())
         }
+    }
+}
+
+/// Whether a file has the form of a body, a picture, curves or points.
+///
+/// # Errors
+/// It has none of them.
+pub fn check(source: &Source) -> Result<(), Stop> {
+    match ending(source.path()).as_str() {
+        "png" | "jpg" | "jpeg" | "bmp" | "pcx" | "dxf" | "plt" | "hpgl" | "hpg" => Ok(()),
+        _ => form(source.path(), Columns::default()).map(|_| ()),
     }
 }
 

@@ -305,7 +305,7 @@ impl<'m> Job<'m> {
         let mut findings = std::mem::take(&mut parts.warnings);
         findings.extend(parts.health.iter().filter_map(unhealthy));
         watch.go_on()?;
-        let (cloud, welded, left) = discretise(&parts, settings, apart, watch.most_pulses())?;
+        let (cloud, welded, left) = discretise(&parts, settings, apart, watch)?;
         watch.go_on()?;
         findings.extend(left_out(&left, &settings.filling));
         if let Some(chain) = &machine.chain {
@@ -1001,7 +1001,7 @@ fn discretise(
     parts: &Parts,
     settings: &Settings,
     apart: Apart,
-    most: u64,
+    watch: &dyn Watch,
 ) -> Result<(Vec<Point>, u64, Left), Vec<Diagnostic>> {
     let Parts { mesh, points, .. } = parts;
     let Settings { filling, layers, seed, .. } = settings;
@@ -1019,6 +1019,7 @@ fn discretise(
             format!("some {:.0} million points are more than can be made", 0.7 * expected * 1e-6);
         return Err(error(Rule::Points, message, "take a larger --spacing or a smaller --scale"));
     }
+    let most = watch.most_pulses();
     if 0.7 * expected > most as f64 {
         return Err(too_many(0.7 * expected, most));
     }
@@ -1043,6 +1044,7 @@ fn discretise(
     }
     given.extend(along);
     for (number, (picture, sheet)) in parts.sheets().enumerate() {
+        watch.go_on()?;
         given.extend(picture.points(&sheet, apart, seed.wrapping_add(number as u64)));
     }
     asked += given.len();

@@ -178,6 +178,22 @@ pub fn linkage(machine: &Machine, [x, y, z]: [f64; 3], focal: f64) -> Linkage {
     linkage
 }
 
+/// Whether a source is bodies, by their names.
+///
+/// # Errors
+/// It is a folder, or a file that is none.
+pub(crate) fn check(source: &Sources) -> Result<(), Stop> {
+    match source {
+        Sources::One(body) => glass::check(body),
+        Sources::Several(bodies) => bodies.iter().try_for_each(glass::check),
+        Sources::Folder(name, _) => {
+            let message = format!("{name} is a folder: a block of glass is made of bodies");
+            let found = Diagnostic::error(Rule::StudioAsk, message);
+            Err(found.help("open the file of a body, or drop several bodies").into())
+        }
+    }
+}
+
 /// Writes the program of bodies and proves it, or proves one that is there.
 ///
 /// # Errors
@@ -192,12 +208,7 @@ pub(crate) fn make(
 ) -> Result<Job, Stop> {
     let bodies = match source {
         Sources::One(body) => vec![body],
-        Sources::Several(bodies) => bodies,
-        Sources::Folder(name, _) => {
-            let message = format!("{name} is a folder: a block of glass is made of bodies");
-            let found = Diagnostic::error(Rule::StudioAsk, message);
-            return Err(found.help("open the file of a body, or drop several bodies").into());
-        }
+        Sources::Several(bodies) | Sources::Folder(_, bodies) => bodies,
     };
     let settings = options.glass.as_deref().ok_or_else(|| {
         Stop::from(Diagnostic::error(Rule::StudioAsk, "there are no options for glass here"))

@@ -257,11 +257,21 @@ impl Job {
         follows.step("reading");
         let machine = machines::open(asked.machine, folder)?;
         let command = asked.source.command(Some(&machine));
+        // What can never be is said before its options are asked for.
+        match (&machine, command) {
+            (Any::Fires(_), _) => glass::check(&asked.source)?,
+            (Any::Moves(machine), Command::Glass) => {
+                let message = format!("{} does not fire inside glass", machine.title);
+                let found = Diagnostic::error(Rule::StudioAsk, message);
+                return Err(found.help("choose a machine whose name begins with `glass-`").into());
+            }
+            (Any::Moves(_), _) => {}
+        }
         let (options, read) = (asked.options)(command)?.within(folder)?;
         let mut inputs = asked.inputs;
         inputs.extend(read);
-        let mut machine = match (machine, command) {
-            (Any::Fires(machine), _) => {
+        let mut machine = match machine {
+            Any::Fires(machine) => {
                 let (machine, program) = ((asked.machine, machine), (asked.file, asked.program));
                 let files = (inputs, folder);
                 return Ok(vec![glass::make(
@@ -273,12 +283,7 @@ impl Job {
                     &follows,
                 )?]);
             }
-            (Any::Moves(machine), Command::Glass) => {
-                let message = format!("{} does not fire inside glass", machine.title);
-                let found = Diagnostic::error(Rule::StudioAsk, message);
-                return Err(found.help("choose a machine whose name begins with `glass-`").into());
-            }
-            (Any::Moves(machine), _) => *machine,
+            Any::Moves(machine) => *machine,
         };
         for (name, value) in &options.machine {
             machine.set_option(name, value)?;

@@ -78,6 +78,7 @@ function Running({ screen }: { screen: Screen }) {
 function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | null; isCurrent: boolean }) {
     if (job === null && stop === null) return <span class="soft">no program yet</span>;
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
+    if (!isCurrent && stop === "invalid") return <strong class="failed">{verdicts.failed}</strong>;
     if (!isCurrent) return <strong class="warning">▲ TO BE PROVEN</strong>;
     const isPartly = job.board?.verdict === "partly" && job.verdict === "done";
     const moves = `${counted(job.walk.moves)} ${job.machine.kind === "glass" ? "pulses" : "moves"}`;

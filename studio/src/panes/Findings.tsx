@@ -43,7 +43,7 @@ function Row({ screen, finding, lit, lead }: { screen: Screen; finding: Finding;
                 <div class="soft">
                     → {finding.help}{" "}
                     {optionsIn(finding.help, screen.studio.form.value).map((name) => (
-                        <button key={name} type="button" class="small" onClick={() => screen.toOption(name)}>
+                        <button key={name} type="button" class="small" onClick={() => screen.toOption(name, optionsIn(finding.help, screen.studio.form.value))}>
                             Set --{name}…
                         </button>
                     ))}

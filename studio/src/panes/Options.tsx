@@ -16,8 +16,11 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
     };
     const work = studio.work.value;
     const found = matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`);
-    // The one that is named comes before those that speak of it.
-    const fields = found.toSorted((a, b) => Number(b.name === search.value) - Number(a.name === search.value));
+    const isLedTo = search.value !== "" && search.value === screen.option.value;
+    const also = isLedTo ? studio.form.value.filter((field) => screen.options.value.includes(field.name) && !found.includes(field)) : [];
+    // The one that is named comes before those that its finding names too, and these before those that speak of it.
+    const rank = ({ name }: Field): number => Number(name === search.value) * 2 + Number(isLedTo && screen.options.value.includes(name));
+    const fields = [...found, ...also].toSorted((a, b) => rank(b) - rank(a));
     const into = (name: string | undefined): void => document.querySelector<HTMLElement>(`#option-${name}`)?.focus();
     // Who was led to an option types into it.
     useEffect(() => {

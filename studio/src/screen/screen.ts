@@ -43,6 +43,8 @@ export class Screen {
     readonly tab: Signal<Tab> = signal("findings");
     /** What the options are searched for when they are shown. */
     readonly option: Signal<string> = signal("");
+    /** Those that are shown with it: named by the same finding. */
+    readonly options: Signal<string[]> = signal([]);
     /** Pane that is searched, and its editors. */
     readonly searched: Signal<"program" | "source"> = signal("program");
     readonly reading = new Together();
@@ -136,6 +138,7 @@ export class Screen {
         else if (board !== null) this.show(board);
         const isOther = this.fitted !== job.source.file;
         this.fitted = job.source.file;
+        if (isOther) this.begun(job);
         for (const viewer of this.viewers) viewer.refit(isOther);
     }
 
@@ -145,6 +148,12 @@ export class Screen {
         const given = ["height", "uv-height"].map((name) => Number(this.studio.work.value?.options.find(([option]) => option === name)?.[1]));
         const guide = machine.linkage.bodies.find(({ name }) => name === "upper guide")?.low[2] ?? 0;
         return given.find((height) => height > 0) ?? guide;
+    }
+
+    /** Another source: pulses are all of one kind, and their order shows more of a body. */
+    private begun({ machine }: Job): void {
+        const [from, to]: [Mode, Mode] = machine.kind === "glass" ? ["kind", "order"] : ["order", "kind"];
+        if (this.mode.value === from) this.mode.value = to;
     }
 
     private blocksOf({ blocks }: Job): Blocks | null {
@@ -273,8 +282,9 @@ export class Screen {
     }
 
     /** The form, at an option. */
-    toOption(name: string): void {
+    toOption(name: string, also: string[] = []): void {
         this.option.value = name;
+        this.options.value = also;
         this.dialog.value = "options";
     }
 

@@ -26,7 +26,7 @@ async function give(page: Page, options: Record<string, string>): Promise<void> 
     const [first] = Object.keys(options);
     await page.getByRole("button", { name: `Set --${first}…` }).first().click();
     await expect.poll(() => page.evaluate(() => document.activeElement?.id)).toBe(`option-${first}`);
-    await page.getByLabel("Search the options").fill("");
+    // The others that it names stand below it.
     for (const [name, value] of Object.entries(options)) await page.locator(`#option-${name}`).fill(value);
     await page.getByRole("button", { name: "Post" }).click();
 }
@@ -79,7 +79,8 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
         await goTo(page, "1");
         // The first line tells what the program is: the first pulse is what it leads to.
         await expect.poll(async () => (await readout(page)).Pulse).toMatch(/^1 of/);
-        for (const colours of ["order", "operation"]) await page.getByLabel("Colour by").selectOption(colours);
+        expect(await page.getByLabel("Colour by").inputValue()).toBe("order");
+        for (const colours of ["kind", "operation"]) await page.getByLabel("Colour by").selectOption(colours);
         await page.getByLabel("Colour by").selectOption("order");
         // The engraver round it.
         const alone = await canvas.evaluate(covered);
@@ -113,6 +114,10 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
         await page.keyboard.type("999");
         await page.getByText("✗ NOT PROVEN").waitFor();
         expect(await page.locator(".findings").innerText()).toMatch(/stray|lost/);
+        // What its control does not take is not proven either.
+        await page.keyboard.type(" X");
+        await page.getByText("a word too many").waitFor();
+        await page.getByText("✗ NOT PROVEN").waitFor();
         await page.getByRole("button", { name: "Discard" }).click();
         await proven(page);
         expect(complaints).toEqual([]);

@@ -363,7 +363,7 @@ fn what_is_no_job_of_glass_is_refused_with_the_way_out() {
     let studio = studio();
     fs::create_dir(studio.own().join("two")).unwrap();
     fs::write(studio.own().join("two/a.stl"), sphere(2.0)).unwrap();
-    fs::write(studio.own().join("bad.toml"), "[laser]\nrate = 100\n").unwrap();
+    fs::write(studio.own().join("bad.toml"), "[laser] # and no more\nrate = 100\n").unwrap();
     let mut page = studio.socket();
     let mut refused = |source: Value, machine: &str, options: &[(&str, &str)]| {
         let params = json!({ "source": source, "machine": machine, "options": options });
@@ -377,6 +377,9 @@ fn what_is_no_job_of_glass_is_refused_with_the_way_out() {
     assert!(rule == "studio-ask" && help.contains("glass-"), "{help}");
     assert_eq!(refused(file("dome.cls"), MACHINE, &[]).0, "form");
     assert_eq!(refused(json!({ "folder": "two" }), MACHINE, &[]).0, "studio-ask");
+    // Before anything is asked that it would need.
+    let plain = Studio::new();
+    assert_eq!(plain.socket().refused("post", params("dome.cls", MACHINE, &[])), "form");
     assert_eq!(refused(file("ball.stl"), "bad.toml", &[]).0, "machine-file");
     assert_eq!(refused(file("ball.stl"), "glass-xyz-300hz", &[]).0, "machine-unknown");
     assert_eq!(refused(file("../secret.stl"), MACHINE, &[]).0, "folder-reach");

@@ -170,13 +170,13 @@ pub struct Job {
     /// Sides of the block along X, Y and Z.
     #[arg(long, value_name = "XxYxZ", value_parser = block)]
     pub block: [f64; 3],
-    /// What the block is made of: a name of the table of materials.
+    /// What the block is made of: a name of the table of materials (that of Toolpost has k9, bk7 and silica).
     #[arg(long, value_name = "NAME")]
     pub material: String,
     /// Table of materials instead of that of Toolpost (`toolpost glass show materials`).
     #[arg(long, value_name = "FILE")]
     pub materials: Option<PathBuf>,
-    /// Focal length of the lens.
+    /// Focal length of the lens (machines of the library have 43 and 70).
     #[arg(long, value_name = "MM", value_parser = length)]
     pub lens: f64,
     /// Name in the library, or a file ending in .toml.
