@@ -478,8 +478,12 @@ impl<'a> Conversion<'a> {
                         ", below the safe height of {safe} mm of the machine it was written for"
                     )
                 });
+                let height = match z.is_nan() {
+                    true => String::from("a height that is not known"),
+                    false => format!("{z} mm"),
+                };
                 let message = format!(
-                    "Z goes to {z} mm in machine coordinates{below}: where that is in the work is \
+                    "Z goes to {height} in machine coordinates{below}: where that is in the work is \
                      not known"
                 );
                 return Err(refuse(Rule::MachinePosition, message, machine::SAFE_HEIGHT_HELP));

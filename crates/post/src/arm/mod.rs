@@ -515,8 +515,17 @@ impl<'a> Walk<'a> {
 
     /// The refusal of a rapid from one place to another.
     fn no_way(&self, ends: [&Position; 2]) -> Diagnostic {
-        let high = "off the line of the source joints may lead the tool only where it is beyond all cuts and as high along it as the source ever \
-                    goes";
+        let unmeasured = self.arm.unmeasured();
+        let (besides, measured) = match unmeasured > 0.0 {
+            true => (
+                format!(" ({unmeasured:.0} mm more for an arm whose calibration is not stated)"),
+                "the `calibration` of the arm below [arm], ",
+            ),
+            false => (String::new(), ""),
+        };
+        let high = format!(
+            "off the line of the source joints may lead the tool only beyond all cuts and as high along it, or along Z, as the source ever goes{besides}"
+        );
         let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
         let slack = self.machine.capabilities.rapid_corridor / 2.0;
         let [from, to] = ends.map(|end| {
@@ -527,14 +536,14 @@ impl<'a> Walk<'a> {
             if let (true, Some(below)) = (is_home, below) {
                 let message = format!("home is {below:.1} mm too low: {high}");
                 let help = format!(
-                    "a higher `home` below [cell], a toolpath whose highest rapid is lower, or {place}"
+                    "{measured}a higher `home` below [cell], a toolpath whose highest rapid is lower, or {place}"
                 );
                 return Diagnostic::error(Rule::RapidPath, message).help(help);
             }
         }
         let up = |(_, below): (bool, Option<f64>)| match below {
-            Some(below) => format!("{below:.1} mm above it along the tool"),
-            None => String::from("there"),
+            Some(below) => format!("{below:.1} mm up along the tool"),
+            None => String::from("where it is"),
         };
         let what = match (from.0, to.0) {
             (_, true) => "the arm finds no way home",
@@ -544,7 +553,7 @@ impl<'a> Walk<'a> {
             }
         };
         let message = format!(
-            "{what}; {high}, at the beginning {}, at the end {}, and no such way is found, nor one up to {:.0} mm higher",
+            "{what}; {high}. That is, at its beginning, {}, and at its end {}: between those, and from up to {:.0} mm higher, there is none",
             up(from),
             up(to),
             rapid::RETRACTS[rapid::RETRACTS.len() - 1]
@@ -554,12 +563,10 @@ impl<'a> Walk<'a> {
             None => "",
         };
         let other = match from.0 || to.0 {
-            true => format!("a `home` below [cell] with the tool leaning more as here{rail}, "),
-            false => String::new(),
+            true => format!("a `home` below [cell] with the tool leaning more as here{rail}"),
+            false => String::from("a rapid that lifts the tool before it turns"),
         };
-        let own = format!(
-            "{other}a toolpath whose highest rapid is lower, a rapid that lifts the tool before it turns, or {place}"
-        );
+        let own = format!("{other}, {measured}a toolpath whose highest rapid is lower, or {place}");
         let [from, to] = ends.map(|at| self.arm.posture(&at.joints));
         let changes = [
             (from.rear() != to.rear(), "the wrist on the other side of axis 1"),

@@ -570,8 +570,8 @@ impl<'a> Walk<'a, '_> {
     fn hole(&mut self, line: u32, at: &Pose) -> Outcome {
         let moves = self.cycle.and_then(|cycle| Some((cycle, hole(cycle, at, self.spindle)?)));
         let Some((cycle, moves)) = moves else {
-            let message = "a robot has no such hole cycle, and moves cannot do it";
-            let help = "have the CAM system write the holes as moves";
+            let message = "a robot has no cycle that taps or bores backwards or with an oriented spindle, and moves cannot do it";
+            let help = "leave these holes out of the toolpath, and make them elsewhere";
             return Err(Diagnostic::error(Rule::NoCycle, message).help(help).into());
         };
         let rapid = (self.cell.rapid, 0.0);
