@@ -524,7 +524,7 @@ impl<'a> Walk<'a> {
             false => (String::new(), ""),
         };
         let high = format!(
-            "off the line of the source joints may lead the tool only beyond all cuts and as high along it, or along Z, as the source ever goes{besides}"
+            "off the line of the source joints may lead the tool only beyond all cuts and as high along it as the source ever goes{besides}"
         );
         let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
         let slack = self.machine.capabilities.rapid_corridor / 2.0;

@@ -210,14 +210,14 @@ impl<'a> RapidPlanner<'a> {
     }
 
     /// Whether the tool is free of the part while the joints go, or near the line: beyond all cuts along its own axis, and as high as the source ever goes,
-    /// along the tool as it leans at the nearer end, or along Z.
+    /// along the tool as it leans at the nearer end.
     fn is_clear(&self, tool: &Frame, [from, to]: [&Position; 2], line: Option<[Vec3; 2]>) -> bool {
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
         let unmeasured = self.arm.unmeasured();
         let slack = self.can.rapid_corridor / 2.0;
         let ends = [from, to].map(|end| -end.tool.matrix3.z_axis);
-        let floors = [ends[0], ends[1], Vec3::Z].map(|axis| (axis, self.floor(axis) - slack));
+        let floors = ends.map(|axis| self.floor(axis) - slack);
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
         (0..=count as usize).all(|step| {
@@ -233,9 +233,8 @@ impl<'a> RapidPlanner<'a> {
                 return true;
             }
             let leans = ends.map(|axis| angle_between(axis, -at.matrix3.z_axis));
-            let along = [usize::from(leans[1] < leans[0]), 2].map(|number| floors[number]);
-            let mut is_high = along.iter().map(|(axis, floor)| at.translation.dot(*axis) >= *floor);
-            self.is_beyond_cuts(&at) && is_high.any(|is_high| is_high)
+            let end = usize::from(leans[1] < leans[0]);
+            self.is_beyond_cuts(&at) && at.translation.dot(ends[end]) >= floors[end]
         })
     }
 

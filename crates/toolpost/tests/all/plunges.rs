@@ -270,3 +270,27 @@ fn into_a_hole_that_the_source_never_leaves_the_tool_comes_from_above_its_zero()
         assert!(!proof_of(&source, &machine, &low).proven, "{low}");
     }
 }
+
+/// A bore in a side wall, entered and left at its upper Z: as high as that along Z the joints would still be within it.
+#[test]
+fn within_a_bore_of_a_side_wall_the_height_along_z_frees_no_tool() {
+    let machine = crate::robot::changed(
+        "kuka-kr6-r900",
+        &[("part = [450, 0, 150, 0, 0, 0]", "part = [450, 0, 250, 0, 0, 0]")],
+    );
+    let goto = |y: f64, z: f64| format!("GOTO/0,{y},{z},0,-1,0\n");
+    let [out, within, low, deep] =
+        [goto(-95.0, 80.0), goto(-45.0, 80.0), goto(-45.0, 60.0), goto(-25.0, 60.0)];
+    let source = source(&format!(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\n{out}RAPID\n{within}RAPID\n{low}FEDRAT/MMPM,300\n\
+         {deep}RAPID\n{low}RAPID\n{within}SPINDL/OFF\nFINI\n"
+    ));
+    let text = proven(&source, &machine);
+    // Without the line out of it, to where the source has come from.
+    let at = text.rfind("LIN {").unwrap();
+    let out = text[at..].strip_prefix("LIN {X 0.000,Y ").unwrap().split_once(',').unwrap().0;
+    assert!(out.parse::<f64>().unwrap() <= -95.0, "{text}");
+    let end = at + text[at..].find("\r\n").unwrap() + 2;
+    let report = proof_of(&source, &machine, &format!("{}{}", &text[..at], &text[end..]));
+    assert_eq!(report.mismatches[0].rule.name(), "rapid-path", "{text}");
+}

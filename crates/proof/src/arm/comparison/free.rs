@@ -25,11 +25,11 @@ impl Comparison<'_> {
     }
 
     /// Why the tool is not free of the part with its tip there, `unmeasured` mm off at the most. It is where it is `rapid_clearance` beyond all cuts along its
-    /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest, or along Z.
+    /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest.
     fn blocked(
         &self,
         (tip, axis): (Vec3, Vec3),
-        (ends, up): (&[Top; 2], &Top),
+        ends: &[Top; 2],
         unmeasured: f64,
     ) -> Option<String> {
         let can = &self.machine.capabilities;
@@ -42,7 +42,7 @@ impl Comparison<'_> {
         }
         let leans = ends.map(|end| angle_between(axis, end.axis));
         let along = ends[usize::from(leans[1] < leans[0])];
-        let low = along.short(tip).min(up.short(tip)) + unmeasured;
+        let low = along.short(tip) + unmeasured;
         (low > can.rapid_corridor).then(|| {
             let besides = match unmeasured > 0.0 {
                 true => format!(" and the {unmeasured} mm that its joints may be off"),
@@ -65,11 +65,10 @@ impl Comparison<'_> {
         (what, unmeasured): (&str, f64),
     ) -> Outcome {
         let tops = ends.map(|tool| self.top(-self.in_part(tool).matrix3.z_axis));
-        let up = self.top(Vec3::Z);
         for tool in places {
             let at = self.in_part(&tool);
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
-            let Some(why) = self.blocked((tip, axis), (&tops, &up), unmeasured) else { continue };
+            let Some(why) = self.blocked((tip, axis), &tops, unmeasured) else { continue };
             let message =
                 format!("{what} the tip comes to X{:.1} Y{:.1} Z{:.1}, {why}", tip.x, tip.y, tip.z);
             let help = "go there by a straight line, or straight up along the tool first and down along it at the end; a program of an earlier version: post it again";
