@@ -395,11 +395,18 @@ fn parts_in(report: &Path) -> Vec<String> {
     parts.filter_map(|part| part["file"].as_str().map(str::to_owned)).collect()
 }
 
-/// Files of the program that has been saved at `path` before, which the new one with these `parts` does not call any more.
-pub fn parts_left(path: &Path, parts: &[&str]) -> Vec<String> {
+/// Names files of the program that has been saved at `path` before, which the new one with these `parts` does not call any more; `None` where there are none.
+pub fn parts_left(path: &Path, parts: &[&str]) -> Option<Diagnostic> {
     let mut left = parts_in(&report_of(path));
     left.retain(|part| !parts.contains(&&**part) && path.with_file_name(part).is_file());
-    left
+    (!left.is_empty()).then(|| {
+        let message = format!(
+            "{} of the program that was here before stay in the folder, and nothing calls them",
+            left.join(", ")
+        );
+        let found = Diagnostic::warning(Rule::OutputFile, message);
+        found.help("remove them, and from the controller").file(name(path))
+    })
 }
 
 /// Checks that a program at `path` does not take the place of a part of another one beside it.

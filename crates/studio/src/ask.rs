@@ -1093,7 +1093,7 @@ pub struct SaveParams {
 pub struct Saved {
     /// Paths in the folder, the program first.
     pub files: Vec<String>,
-    /// Reports beside them that are of other programs now.
+    /// Reports beside them that are of other programs now, and parts that nothing calls any more.
     pub findings: Vec<Finding>,
 }
 

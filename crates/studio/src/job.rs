@@ -767,21 +767,20 @@ impl Job {
         let parts: Vec<(&str, &[u8])> = parts.collect();
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let text = self.program.text();
+        let own: Vec<&str> = parts.iter().map(|(file, _)| *file).collect();
+        let left = files::parts_left(&target, &own).map(|found| found.file(path).into());
         files::save_program(&target, text, &parts, self.report.as_deref(), &inputs)?;
         let of_board = target.with_file_name(board::REPORT);
-        let findings = match self.keeps_name && of_board.exists() {
-            true => vec![
-                Diagnostic::warning(
-                    Rule::ReportPair,
-                    format!("is of the board as it was posted, not of this {}", self.file),
-                )
-                .help("what is said of this program stands in its own report beside it")
-                .file(within(board::REPORT))
-                .into(),
-            ],
-            false => Vec::new(),
-        };
-        Ok(Saved { files: saved, findings })
+        let stale = (self.keeps_name && of_board.exists()).then(|| {
+            Diagnostic::warning(
+                Rule::ReportPair,
+                format!("is of the board as it was posted, not of this {}", self.file),
+            )
+            .help("what is said of this program stands in its own report beside it")
+            .file(within(board::REPORT))
+            .into()
+        });
+        Ok(Saved { files: saved, findings: stale.into_iter().chain(left).collect() })
     }
 }
 

@@ -8,7 +8,7 @@ use app::post::{Posted, proven};
 use app::toolpath::{self, Toolpath};
 use app::{Stop, Verdict, Watch};
 use machine::Machine;
-use program::{Diagnostic, Purpose, Rule};
+use program::Purpose;
 use std::path::Path;
 
 /// Writes the program, proves it, and only then saves it with its report.
@@ -56,14 +56,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     saved.push((&target, &posted.text));
     files::save(&saved)?;
     let Posted { mut account, .. } = posted;
-    if !left.is_empty() {
-        let message = format!(
-            "{} of the program that was here before stay in the folder, and nothing calls them",
-            left.join(", ")
-        );
-        let found = Diagnostic::warning(Rule::OutputFile, message);
-        account.findings.push(found.help("remove them, and from the controller").file(file));
-    }
+    account.findings.extend(left);
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
     Ok(account.into())

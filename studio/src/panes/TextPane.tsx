@@ -44,6 +44,11 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
                         ))}
                     </select>
                 )}
+                {parts.length > 0 && (
+                    <span class="soft" title="A program of several files is not edited here: save it, edit its files, and prove them with `toolpost prove`">
+                        read only: several files
+                    </span>
+                )}
                 {of === "program" && <Programs screen={screen} />}
                 {of === "program" && <Turns screen={screen} />}
                 {isEdited && (

@@ -560,3 +560,37 @@ fn a_finding_that_stands_for_many_leads_to_all_of_them() {
     assert_eq!(many["places"], json!(lines[1..]));
     assert_eq!(many["of"], "source");
 }
+
+/// Files of a divided program that a shorter one in its place does not call stay on the controller too: they are named, as `toolpost post` names them.
+#[test]
+fn parts_of_a_longer_program_are_named_where_a_shorter_one_takes_its_place() {
+    let studio = Studio::new();
+    let rows = |count: usize| {
+        let row = |i: usize| {
+            let (y, cut) = (30.0 + i as f64, "GOTO/80,{},0\nGOTO/100,{},0\nGOTO/120,{},0\n");
+            let cut = cut.replace("{}", &y.to_string());
+            format!("RAPID\nGOTO/80,{y},20\nFEDRAT/MMPM,600\n{cut}RAPID\nGOTO/120,{y},20\n")
+        };
+        let rows: String = (0..count).map(row).collect();
+        format!(
+            "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\n{rows}SPINDL/OFF\nFINI\n"
+        )
+    };
+    let own = "extends = \"fanuc-lrmate-200id-mill\"\n\n[capabilities]\nprogram_lines = 60\n";
+    for (name, text) in [("mine.toml", own), ("long.cls", &rows(30)), ("short.cls", &rows(2))] {
+        std::fs::write(studio.own().join(name), text).unwrap();
+    }
+    let mut page = studio.socket();
+    let save =
+        |job: &Value| json!({ "revision": job["revision"], "path": "job.ls", "replace": true });
+    let post = |source: &str| json!({ "source": { "file": source }, "machine": "mine.toml", "options": [], "file": "job.ls" });
+    let long = page.done("post", post("long.cls"));
+    assert!(long["parts"].as_array().unwrap().len() > 1, "{}", long["parts"]);
+    assert_eq!(page.done("save", save(&long))["findings"], json!([]));
+    let short = page.done("post", post("short.cls"));
+    assert_eq!(short["parts"], json!([]));
+    let found = &page.done("save", save(&short))["findings"][0];
+    assert_eq!((&found["rule"], &found["file"]), (&json!("output-file"), &json!("job.ls")));
+    let message = found["message"].as_str().unwrap();
+    assert!(message.starts_with("job_1.ls, job_2.ls"), "{message}");
+}
