@@ -74,6 +74,12 @@ impl Chain {
         Some(AxisMotion { chain: self, from, to, end, arrivals })
     }
 
+    /// How long the tool of a mill is, mm, whose tip is there with the axes at these positions.
+    pub fn tool_length(&self, axes: &[f64], tip: Vec3) -> f64 {
+        let frame = self.linkage.tool_in_part(&self.linkage.frames(axes));
+        -frame.inverse().transform_point3(tip).z
+    }
+
     /// Where the axes of an arm are at a part of a motion, 0 to 1, in which the control keeps the tip on its way and turns the tool evenly about
     /// one axis, and the tool axis there. `ends` are the positions of the axes before and behind it, `end` is where the tool is behind it, and `tip`
     /// where it is then. Nothing where something is not known, or the arm does not reach it as it stands at the end.

@@ -92,10 +92,8 @@ pub fn stand(walk: &Walk, machine: &Machine, at: At) -> Stand {
             }
             degrees
         };
-        let length = walk.state(at.r#move).and_then(|state| state.tool.as_ref()?.length);
-        let linear = |tip, positions: &[f64]| {
-            machine.linear_for(tip, degrees(positions), length.unwrap_or(0.0))
-        };
+        let length = walk.tool_length(at.r#move).unwrap_or(0.0);
+        let linear = |tip, positions: &[f64]| machine.linear_for(tip, degrees(positions), length);
         // What positions count from is the same at the end of the move.
         let moved = linear(tip, &positions) - linear(behind.tip, &end);
         for ((position, moved), end) in positions.iter_mut().zip(moved.to_array()).zip(&*end) {
@@ -171,5 +169,60 @@ pub fn cycle(kind: CycleKind) -> &'static str {
         CycleKind::Bore => "bore",
         CycleKind::FineBore(_) => "fine bore",
         CycleKind::BackBore { .. } => "back bore",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Ended;
+    use crate::walk::{Follower, Slot};
+    use program::Program;
+    use proof::{AxisPositions, Course, Motion, MotionKind, Observer, Report, ToolPose};
+
+    /// B of a head, 200 mm above the gauge point, and a tool of 100 mm: the tip is 300 mm from the axis. The tip stays where it is while B turns from 0
+    /// to 60 degrees, so that at 30 the axis is 300 mm from it at 30 degrees: X 150, and Z 259.81 - 200 = 59.81 with the gauge point at Z 100 at B 0.
+    /// No block says how long the tool is.
+    #[test]
+    fn a_head_keeps_the_tip_with_the_arm_of_head_and_tool() {
+        let text = "reader = \"fanuc\"\nwork_zero = [0, 0, 0]\n[orientation]\nsimultaneous = \"tool-center-angles\"\ntolerance = 0.01\n\
+                    [words]\nX = { decimals = 3 }\nB = { decimals = 3 }\n\
+                    [[rotary]]\nletter = \"B\"\non = \"head\"\naxis = [0, 1, 0]\npoint = [0, 0, 200]\nrapid = 1e4\nacceleration = 100\n";
+        let machine = machine::load_text("head.toml", text).unwrap();
+        let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
+        let to = Slot::clone(&handed);
+        let mut follower = Follower::new("x.nc", &source, &machine, (&(), &ended), to);
+        let (s, c) = 60_f64.to_radians().sin_cos();
+        let stands = [
+            (Vec3::new(0.0, 0.0, 100.0), 0.0, Vec3::Z),
+            (Vec3::new(300.0 * s, 0.0, 300.0 * c - 200.0), 60.0, Vec3::new(s, 0.0, c)),
+        ];
+        let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
+        for (line, (linear, b, axis)) in (1..).zip(stands) {
+            let behind = ToolPose { tip: Vec3::ZERO, axis };
+            follower.moved(&Motion {
+                file: None,
+                line,
+                record: 0,
+                source_line: line,
+                kind: MotionKind::Line,
+                course: Course::Tip,
+                tool: [before, behind],
+                axes: AxisPositions::Mill { linear, rotary: [0.0, b, 0.0] },
+                feed: None,
+                seconds: 1.0,
+                waited: 0.0,
+                deviation: None,
+            });
+            before = behind;
+        }
+        follower.ended(&Report::default());
+        let walk = handed.lock().unwrap().take().unwrap().walk;
+        let found = stand(&walk, &machine, At { r#move: 1, part: 0.5, seconds: 1.5 });
+        let (s, c) = 30_f64.to_radians().sin_cos();
+        let wanted = [300.0 * s, 0.0, 300.0 * c - 200.0, 30.0];
+        let off = found.positions.iter().zip(wanted).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-9, "{found:?}, not {wanted:?}");
+        assert!(found.tip.length() < 1e-9 && found.axis.distance(Vec3::new(s, 0.0, c)) < 1e-9);
     }
 }

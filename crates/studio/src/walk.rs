@@ -315,6 +315,12 @@ impl Walk {
         self.chain.as_ref()?.motion([&from, &to], (tip, axis), together)
     }
 
+    /// How long the tool of a mill is behind a move, mm, as its tip and the axes say: the control need not know it.
+    pub fn tool_length(&self, at: u32) -> Option<f64> {
+        let length = self.chain.as_ref()?.tool_length(&self.positions(at), self.behind(at).tip);
+        length.is_finite().then_some(length)
+    }
+
     /// Where the axes of an arm are, and its tool axis, where its control keeps the tip on its way in a move, and the tip is there at a part of it.
     pub fn keeping_tip(&self, at: u32, tip: Vec3, part: f64) -> Option<(Vec<f64>, Vec3)> {
         if self.course(at) != Course::Tool {
