@@ -1,4 +1,5 @@
 import { useSignal } from "@preact/signals";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { matching } from "../commands.ts";
 
 export interface Choice {
@@ -11,6 +12,9 @@ export interface Choice {
 
 /** A list that one searches as one types: arrows and Enter choose. */
 export function Choose({ label, choices, close }: { label: string; choices: Choice[]; close(): void }) {
+    const field = useRef<HTMLInputElement>(null);
+    // Also where the list is another one in a dialog that is open.
+    useLayoutEffect(() => field.current?.focus(), []);
     const search = useSignal("");
     const at = useSignal(0);
     const found = matching(choices, search.value, ({ name, title, more }) => `${name} ${title} ${more ?? ""}`).slice(0, 300);
@@ -31,6 +35,7 @@ export function Choose({ label, choices, close }: { label: string; choices: Choi
     return (
         <>
             <input
+                ref={field}
                 type="text"
                 role="combobox"
                 list={undefined}

@@ -66,7 +66,7 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
                     />
                 </label>
             </p>
-            <Choose key={path.value} label={`Search the folder ${path.value}`} choices={[...up, ...whole, ...choices]} close={() => {}} />
+            <Choose key={path.value} label={`Search the folder ${path.value}`} choices={[...choices, ...up, ...whole]} close={() => {}} />
         </>
     );
 }

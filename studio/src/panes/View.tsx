@@ -23,7 +23,7 @@ export function View({ screen }: { screen: Screen }) {
                 <button type="button" title="Fit (F)" onClick={() => screen.viewer?.fit()}>
                     Fit
                 </button>
-                <Toggle on={four} title="Four views (Q)" text="4" />
+                <Toggle on={four} title="Four views (Q)" text="Four" />
                 <Toggle on={rapids} title="Rapids (R)" text="Rapids" />
                 <Toggle on={screen.axes} title="Tool axes (V)" text="Axes" />
                 <Toggle on={screen.machine} title="Machine (M)" text="Machine" />

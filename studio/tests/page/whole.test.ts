@@ -1,4 +1,4 @@
-import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, test } from "vitest";
@@ -62,6 +62,21 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.goto(server.link);
         await proven(page);
         expect([await button.innerText(), await machine.innerText()]).toEqual([named, "generic-3axis-fanuc"]);
+    });
+
+    test("by keyboard alone a source in a folder below is opened", async () => {
+        const page = await begin();
+        mkdirSync(join(server.folder, "below"), { recursive: true });
+        copyFileSync(example("plate.cls"), join(server.folder, "below/other.cls"));
+        await page.keyboard.press("Control+o");
+        await page.getByText("below/").waitFor();
+        await page.keyboard.type("below");
+        await page.keyboard.press("Enter");
+        await page.getByText("other.cls").waitFor();
+        // The first entry is a file, not all of them as a board.
+        await page.keyboard.press("Enter");
+        await expect.poll(() => page.getByTitle("Open a source (Ctrl O)").innerText()).toBe("other.cls");
+        await proven(page);
     });
 
     test.each([1, 2, 0.5])("a click on a move lights its block and its record, and the axes stand where the record goes; zoom %d", async (deviceScaleFactor) => {
