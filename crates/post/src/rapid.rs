@@ -181,12 +181,9 @@ impl Walk<'_> {
             Kind::ToolCenter | Kind::Vectors => is_along(Vec3::Z) && !self.place.begins,
         };
         if is_level && is_along(axis) {
-            // Z that comes down while nobody knows X and Y has room above all cuts alone, and where the source goes highest.
+            // Z that comes down while nobody knows X and Y has room above all cuts alone.
             let z_last = self.machine.approach.last().is_some_and(|group| group == "Z");
-            let height = pose.point().dot(axis);
-            if !(z_last
-                || self.is_beyond(pose.point(), axis) && height >= self.top_along(axis) - ROUNDING)
-            {
+            if !z_last && !self.is_beyond(pose.point(), axis) {
                 return self.in_groups(pose, stop, ["XY", "Z"]);
             }
             return self.in_groups(pose, stop, in_order);
@@ -372,12 +369,7 @@ impl Walk<'_> {
         let mut farthest = 0.0;
         for &up in ups {
             let rise = axis.dot(up);
-            let mut below = self.below(pose, up)?;
-            if same(axis, up) {
-                // A hole or a pocket that was there before is no deeper than from where the source goes highest.
-                let low = self.top_along(axis) - tip.dot(axis);
-                below = if low > ROUNDING { below.max(low) } else { below };
-            }
+            let below = self.below(pose, up)?;
             if below <= 0.0 {
                 continue;
             }

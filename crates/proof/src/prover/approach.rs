@@ -40,26 +40,10 @@ impl Prover<'_> {
         if let Some(found) = self.low_home(to) {
             return Some(found);
         }
-        if self.comes_straight_down(to, &ups) {
-            return None;
-        }
         let short =
             ups.iter().map(|up| self.short_below(to, *up)).fold(f64::NEG_INFINITY, f64::max);
-        let allowed = self.rounding(to);
-        // A hole or a pocket that was there before is no deeper than from where the source goes highest.
-        let PartialPose { tip, axis } = to.place;
-        let is_upright = is_along(&self.gauge, &ups, axis);
-        let low = if is_upright { self.top_along(axis) - tip.dot(axis) } else { 0.0 };
-        if short.max(low) <= allowed {
+        if short <= self.rounding(to) || self.comes_straight_down(to, &ups) {
             return None;
-        }
-        if short <= allowed {
-            let what = format!(
-                "comes from home while other axes are still on their way, {} mm below where the source goes highest: there may be a hole \
-                 or a pocket around it",
-                Number(low)
-            );
-            return Some(self.way_refused(to, &what));
         }
         let clearance = Number(self.gauge.machine.capabilities.rapid_clearance);
         let what = format!(

@@ -190,11 +190,6 @@ impl Prover<'_> {
         self.cuts().reach(direction)
     }
 
-    /// How high the source goes along the unit vector `axis` with its tool as it leans there, mm.
-    pub(super) fn top_along(&mut self, axis: Vec3) -> f64 {
-        self.tops.get_or_insert_with(|| Tops::of(self.source)).along(axis)
-    }
-
     pub(super) fn way_refused(&self, to: &ResolvedPose, what: &str) -> Diagnostic {
         let message = format!(
             "{}the program goes by rapid to {} and {what}",

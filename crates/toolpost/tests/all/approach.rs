@@ -79,8 +79,8 @@ fn a_length_begins_with_a_position_above_all_cuts() {
         let machine = fanuc_by_position(setting);
         let good = written(&source, &machine);
         proven(&source, &machine, &good);
-        let entry = "G43.4 X0. Y-260. Z20. H1";
-        let apart = with(&good, entry, &["G43.4 H1", "X0. Y-260. Z20."]);
+        let entry = "G43.4 X0. Y-201.01 Z20. H1";
+        let apart = with(&good, entry, &["G43.4 H1", "X0. Y-201.01 Z20."]);
         if setting.contains("false") {
             proven(&source, &machine, &apart);
         } else {
@@ -132,20 +132,20 @@ fn x_and_y_first_dive_next_to_a_part_that_the_table_has_swung_up() {
     let (source, machine) = (read(LEDGE), fanuc());
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
-    // All axes together to Y -260, as high as the source goes with its tool so, then down along the tool.
-    assert!(good.contains("G43.4 H1\n") && good.contains(" X0. Y-260. Z20.\n"), "{good}");
+    // All axes together to 1 mm over Y -200, then down along the tool.
+    assert!(good.contains("G43.4 H1\n") && good.contains(" X0. Y-201.01 Z20.\n"), "{good}");
     assert!(good.lines().any(|line| words(line) == "Y-145."), "{good}");
     // From home, tip at Z 300, X0 Y-145 sends Z of the machine to 45 wherever its Y is: 55 mm under what stands at Z 100.
-    let dives = with(&good, "X0. Y-260. Z20.", &["X0. Y-145.", "Z20."]);
+    let dives = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-145.", "Z20."]);
     let dives = with(&dives, "Y-145.", &[]);
     assert_eq!(refused(&source, &machine, &dives), ("rapid-path", "X0. Y-145.".into()));
     // The same in one block comes down aslant next to what stands out.
-    let aslant = with(&good, "X0. Y-260. Z20.", &["X0. Y-145. Z20."]);
+    let aslant = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-145. Z20."]);
     let aslant = with(&aslant, "Y-145.", &[]);
     assert_eq!(refused(&source, &machine, &aslant), ("rapid-path", "X0. Y-145. Z20.".into()));
-    // So does one that ends 0.1 mm short of where the source goes highest.
-    let low = with(&good, "X0. Y-260. Z20.", &["X0. Y-259.9 Z20."]);
-    assert_eq!(refused(&source, &machine, &low), ("rapid-path", "X0. Y-259.9 Z20.".into()));
+    // So does one that ends 0.1 mm short of the clearance.
+    let low = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-200.9 Z20."]);
+    assert_eq!(refused(&source, &machine, &low), ("rapid-path", "X0. Y-200.9 Z20.".into()));
 }
 
 /// `TRAORI` and `M128` count on the part as `G43.4` does.
@@ -153,10 +153,10 @@ fn x_and_y_first_dive_next_to_a_part_that_the_table_has_swung_up() {
 fn x_and_y_first_dive_under_traori_and_m128_too() {
     let source = read(LEDGE);
     for (control, entry, then, first, second) in [
-        ("sinumerik-840d", "X0 Y-260 Z20", "Y-145", "X0 Y-145", "Z20"),
+        ("sinumerik-840d", "X0 Y-201.01 Z20", "Y-145", "X0 Y-145", "Z20"),
         (
             "heidenhain-tnc640",
-            "L X+0 Y-260 Z+20 R0 FMAX",
+            "L X+0 Y-201.01 Z+20 R0 FMAX",
             "L Y-145 R0 FMAX",
             "L X+0 Y-145 R0 FMAX",
             "L Z+20 R0 FMAX",
@@ -189,7 +189,7 @@ fn z_alone_comes_down_where_x_and_y_stand_over_the_place_before_the_tip_is_kept(
     let over = |y: &str| {
         let before = format!("G0 X0. {y}");
         let text = with(&good, "G43.4 H1", &[&before, "G43.4 H1"]);
-        with(&with(&text, "X0. Y-260. Z20.", &["X0. Y-145. Z20."]), "Y-145.", &[])
+        with(&with(&text, "X0. Y-201.01 Z20.", &["X0. Y-145. Z20."]), "Y-145.", &[])
     };
     proven(&source, &machine, &over("Y120."));
     let aside = over("Y119.");
@@ -232,7 +232,7 @@ fn each_return_from_home_is_looked_at_as_the_first_approach_is() {
     }
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
-    let entry = "X0. Y-260. Z20.";
+    let entry = "X0. Y-201.01 Z20.";
     let is_entry = |line: &str| words(line).trim_start_matches("G0 ") == entry;
     let entries: Vec<usize> =
         (0..).zip(good.lines()).filter(|(_, line)| is_entry(line)).map(|(at, _)| at).collect();

@@ -497,21 +497,3 @@ fn a_slanting_rapid_out_of_a_pocket_goes_up_first_where_each_axis_goes_at_its_ow
     let at_once = at_once.replacen(" X60.", " X60. Z40.", 1);
     assert_eq!(refused(&source, &machine, &at_once), [("rapid-path", up_first as u32 + 1)]);
 }
-
-/// The first place is in a bore that was there before; the source leaves it upwards, to Z 65. Where X, Y and Z come from home in one block, they come
-/// to there.
-#[test]
-fn from_home_into_a_bore_the_tool_comes_from_as_high_as_the_source_goes() {
-    let machine = leaning_head();
-    let source = read(
-        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-20,0,0,1\n\
-         FEDRAT/MMPM,300\nGOTO/100,50,-30\nRAPID\nGOTO/100,50,-20\nRAPID\nGOTO/100,50,65\nSPINDL/OFF\nFINI\n",
-    );
-    let text = text(&written(&source, &machine));
-    let report = proof::prove(&source, &machine, "job.nc", text.as_bytes(), &Default::default());
-    assert!(report.proven, "{:#?}\n{text}", report.mismatches);
-    let own = "X100. Y50. Z65. H1\nN130 Z-20.\n";
-    assert!(text.contains(own), "{text}");
-    let at_once = text.replacen(own, "X100. Y50. Z-20. H1\n", 1);
-    assert_eq!(refused(&source, &machine, &at_once).first(), Some(&("rapid-path", 14)));
-}
