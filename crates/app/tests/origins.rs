@@ -109,14 +109,17 @@ fn compare(machine: &Machine, posted: &Posted, walked: Walked) -> (usize, usize)
     }
     let mut compared = 0;
     for motion in &motions {
-        // Of a rapid of several blocks the last one makes the record; the others may be on the way to a tool change.
+        // Of a rapid of several blocks the last one makes the record; the others may be on the way to a tool change. An arm goes straight up on its way
+        // home, which is no record's.
         let pose = records.get(motion.record).and_then(|record| record.op.pose());
         let arrives = pose.is_some_and(|to| to.point().distance(motion.tool[1].tip) < 0.01);
-        if matches!(motion.kind, MotionKind::Rapid | MotionKind::Joints) && !arrives {
-            continue;
-        }
         let (_, origins) = files[&motion.file.as_deref()];
         let origin = origins.of(motion.line).unwrap();
+        let is_up = machine.arm.is_some() && origin.record.is_none();
+        let is_rapid = is_up || matches!(motion.kind, MotionKind::Rapid | MotionKind::Joints);
+        if is_rapid && !arrives {
+            continue;
+        }
         let wrote = origin.record.map(|record| records[record].line);
         assert_eq!(wrote, Some(motion.source_line), "{name}, line {}: {motion:?}", motion.line);
         if machine.wire.is_none() && !matches!(motion.kind, MotionKind::Rapid | MotionKind::Joints)

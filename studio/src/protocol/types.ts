@@ -1307,7 +1307,7 @@ export type Saved = {
  */
 files: Array<string>, 
 /**
- * Reports beside them that are of other programs now.
+ * Reports beside them that are of other programs now, and parts that nothing calls any more.
  */
 findings: Array<Finding>, };
 
