@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { familyOf, tokens } from "../src/text/dialects.ts";
-import { isBeside, isNearEnd, missing, windowAround } from "../src/text/window.ts";
+import { isNearEnd, missing, windowAround } from "../src/text/window.ts";
 
 test("a short text is kept whole, of a long one as much as is allowed, with the line in the middle", () => {
     expect(windowAround(500, 1000, 1000)).toEqual({ from: 1, to: 1001 });
@@ -51,10 +51,4 @@ test("the family is known by the dialect, else by the name of the file", () => {
     expect(familyOf(null, "part.mpf")).toBe("iso");
     expect(familyOf("fanuc", "part.src")).toBe("krl");
     expect(familyOf(null, "dome.cls")).toBe("apt");
-});
-
-test("lines are added where they are the next ones, and nowhere else", () => {
-    const here = { from: 100, to: 200 };
-    const others = [[200, 250], [50, 100], [201, 250], [50, 99], [150, 250], [100, 200]].map(([from, to]) => ({ from: from!, to: to! }));
-    expect(others.map((other) => isBeside(here, other))).toEqual([true, true, false, false, false, false]);
 });

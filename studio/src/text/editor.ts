@@ -7,7 +7,7 @@ import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
 import { Compartment, EditorState, StateEffect, StateField, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
-import { firstWindow, isBeside, isNearEnd, isWithin, KEPT, lastWindow, LONG, missing, type Window } from "./window.ts";
+import { firstWindow, isNearEnd, isWithin, KEPT, lastWindow, LONG, missing, type Window } from "./window.ts";
 
 /** Between two jumps to lines that are not here, ms. */
 const JUMPS = 250;
@@ -188,8 +188,7 @@ export class Editor {
         try {
             for (let part = missing(this.window, kept); part !== null && reading === this.reading; part = missing(this.window, kept)) {
                 const text = await origin.read(part.from, part.to);
-                // Also when the cursor has moved meanwhile: in a replay the same lines would be asked for again and again.
-                if (origin !== this.origin || !isBeside(this.window, part)) return;
+                if (reading !== this.reading) return;
                 this.add(text, part);
                 // The editor measures what was added once a frame.
                 await new Promise(requestAnimationFrame);

@@ -38,9 +38,6 @@ export function isNearEnd(window: Window, first: number, last: number, lines: nu
     return (window.from > 1 && first - window.from < margin) || (window.to <= lines && window.to - last < margin);
 }
 
-/** Whether the lines of one are the next ones behind or before those of the other. */
-export const isBeside = (here: Window, other: Window): boolean => other.to === here.from || other.from === here.to;
-
 /** The next lines to fetch, at most `part`, so that `here` grows to all of `kept`; null when it has. */
 export function missing(here: Window, kept: Window, part = PART): Window | null {
     if (here.from > kept.from) return { from: Math.max(kept.from, here.from - part), to: here.from };
