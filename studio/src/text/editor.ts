@@ -143,6 +143,8 @@ export class Editor {
         const { origin } = this;
         if (origin === null) return;
         const reading = ++this.reading;
+        // What was growing has ended by this: a new place must not end what is fetched for it in its stead.
+        this.isGrowing = false;
         clearTimeout(this.resting);
         const window = firstWindow(line, origin.lines, Math.ceil(this.view.scrollDOM.clientHeight / this.view.defaultLineHeight));
         this.coming = window;
