@@ -395,6 +395,11 @@ fn parts_in(report: &Path) -> Vec<String> {
     parts.filter_map(|part| part["file"].as_str().map(str::to_owned)).collect()
 }
 
+/// The ending of a file, in small letters; empty where it has none.
+pub fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
 /// Names files of the program that has been saved at `path` before, which the new one with these `parts` does not call any more; `None` where there are none.
 pub fn parts_left(path: &Path, parts: &[&str]) -> Option<Diagnostic> {
     let mut left = parts_in(&report_of(path));

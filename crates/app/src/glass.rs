@@ -126,7 +126,7 @@ pub fn is_body(source: &Source) -> bool {
         "stl", "obj", "ply", "3mf", "png", "jpg", "jpeg", "bmp", "pcx", "xyz", "cft", "asc", "plt",
         "hpgl", "hpg",
     ];
-    bodies.contains(&&*ending(source.path()))
+    bodies.contains(&&*files::ending(source.path()))
 }
 
 /// How the names of the programs of a machine end.
@@ -144,14 +144,9 @@ fn utf_8<'t>(text: &'t [u8], file: &str) -> Result<&'t str, Stop> {
     Ok(encoding::utf_8(text).map_err(|found| found.file(file))?)
 }
 
-/// The ending of a file, in small letters.
-fn ending(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
 /// The form of a file, by its ending.
 fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
-    let ending = ending(path);
+    let ending = files::ending(path);
     match ending.as_str() {
         "stl" => Ok(Form::Stl),
         "obj" => Ok(Form::Obj),
@@ -173,7 +168,7 @@ fn form(path: &Path, columns: Columns) -> Result<Form, Stop> {
 /// # Errors
 /// It has none of them.
 pub fn check(source: &Source) -> Result<(), Stop> {
-    match ending(source.path()).as_str() {
+    match files::ending(source.path()).as_str() {
         "png" | "jpg" | "jpeg" | "bmp" | "pcx" | "dxf" | "plt" | "hpgl" | "hpg" => Ok(()),
         _ => form(source.path(), Columns::default()).map(|_| ()),
     }
@@ -207,7 +202,7 @@ fn shape_of_job(source: &Source, settings: &Settings, beside: Beside) -> Result<
     let curves = |form| -> Result<Shape, Stop> {
         Ok(Shape::Curves(curve::read(&source.read()?, form, &source.name())?))
     };
-    match ending(source.path()).as_str() {
+    match files::ending(source.path()).as_str() {
         "png" | "jpg" | "jpeg" | "bmp" | "pcx" => {
             let picture = picture::read(&source.read()?, settings.picture, &source.name())?;
             Ok(Shape::Picture(picture))

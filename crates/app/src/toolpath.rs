@@ -395,8 +395,7 @@ fn set_up_frame(set_ups: &SetUps) -> String {
 
 /// Whether a file has the name of an NC program.
 fn is_nc(path: &Path) -> bool {
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    NC_ENDINGS.contains(&ending.as_str())
+    NC_ENDINGS.contains(&files::ending(path).as_str())
 }
 
 /// The refusal of an NC program without a named control.

@@ -119,6 +119,21 @@ const BELOW: f64 = 60.0;
 /// How far a table is drawn to each side at the most, mm.
 const FARTHEST: f64 = 150.0;
 
+impl Link {
+    /// The bed, which stands still and is carried by nothing.
+    pub fn bed() -> Link {
+        Link {
+            name: String::from("bed"),
+            on: None,
+            kind: LinkKind::Fixed,
+            direction: [0.0; 3],
+            point: [0.0; 3],
+            zero: 0.0,
+            terms: Vec::new(),
+        }
+    }
+}
+
 impl Linkage {
     /// That of a machine.
     pub fn of(machine: &Machine) -> Linkage {
@@ -200,16 +215,7 @@ impl Linkage {
         let at_bed = Place::new(0, &Frame::IDENTITY);
         let mut linkage =
             Linkage { axes, links: Vec::new(), bodies: Vec::new(), tool: at_bed, part: at_bed };
-        let bed = Link {
-            name: String::from("bed"),
-            on: None,
-            kind: LinkKind::Fixed,
-            direction: [0.0; 3],
-            point: [0.0; 3],
-            zero: 0.0,
-            terms: Vec::new(),
-        };
-        linkage.links.push(bed);
+        linkage.links.push(Link::bed());
         linkage
     }
 

@@ -9,7 +9,7 @@ use crate::machines::Any;
 use crate::place::{At, Stand};
 use crate::walk::{Drawn, Pulse, Walk};
 use ::post::Origins;
-use app::glass::{Focus, Format, Machine, Moves, Run, Settings, Steps, Table, job};
+use app::glass::{Focus, Format, Machine, Moves, Run, Steps, Table, job};
 use app::toolpath::Toolpath;
 use app::{Source, Stop, Verdict, Watch, glass};
 use geom::{Vec2, Vec3};
@@ -62,15 +62,6 @@ struct Carried {
 impl Carried {
     /// The bed alone, of a machine with these axes.
     fn bed(axes: &[Axis]) -> Carried {
-        let bed = Link {
-            name: String::from("bed"),
-            on: None,
-            kind: LinkKind::Fixed,
-            direction: [0.0; 3],
-            point: [0.0; 3],
-            zero: 0.0,
-            terms: Vec::new(),
-        };
         let axis = |axis: &Axis| linkage::Axis {
             name: axis.name.clone(),
             unit: axis.unit,
@@ -79,7 +70,7 @@ impl Carried {
         };
         let linkage = Linkage {
             axes: axes.iter().map(axis).collect(),
-            links: vec![bed],
+            links: vec![Link::bed()],
             bodies: Vec::new(),
             tool: seat(0, Vec3::ZERO),
             part: seat(0, Vec3::ZERO),
@@ -249,8 +240,8 @@ pub(crate) fn make(
         inputs.push(folder.target(machine_name)?);
     }
     follows.step("drawing");
-    let drawn = drawn(&made, settings, follows)?;
     let focus = made.focus(settings)?;
+    let drawn = drawn(&made, focus, follows)?;
     // As the command saves it: there findings of a program that it has made name no file.
     let report = (made.account.verdict == Verdict::Done).then(|| made.account.report());
     let glass::Made { made: job::Made { text, run, .. }, mut account, .. } = made;
@@ -305,9 +296,9 @@ fn listing(run: &Run) -> Lines {
 }
 
 /// The pulses as the virtual machine has fired them, in levels of detail.
-fn drawn(made: &glass::Made, settings: &Settings, watch: &dyn Watch) -> Result<Drawn, Stop> {
+fn drawn(made: &glass::Made, focus: Focus, watch: &dyn Watch) -> Result<Drawn, Stop> {
     let (run, machine) = (&made.made.run, &made.machine);
-    let focus = made.focus(settings)?;
+    let (in_first, are_several) = (focus.from_first(), focus.blocks > 1 && machine.polar.is_some());
     let steps = Steps::new(run, machine);
     let (mut ticks, mut before) = (0_u64, None);
     let mut fields = run.fields.iter().peekable();
@@ -318,9 +309,11 @@ fn drawn(made: &glass::Made, settings: &Settings, watch: &dyn Watch) -> Result<D
             center = Some(*middle);
             operation = Some(format!("field at X{:.3} Y{:.3}", middle[0], middle[1]));
         }
-        let (_, block) = focus.at(machine, pulse.at);
-        if focus.blocks > 1 && machine.polar.is_some() && before.replace(block) != Some(block) {
-            operation = Some(format!("block {}", block + 1));
+        if are_several {
+            let (_, block) = focus.at(machine, pulse.at);
+            if before.replace(block) != Some(block) {
+                operation = Some(format!("block {}", block + 1));
+            }
         }
         ticks = ticks.saturating_add(steps.get(number));
         let [a, b, z] = pulse.at;
@@ -330,7 +323,7 @@ fn drawn(made: &glass::Made, settings: &Settings, watch: &dyn Watch) -> Result<D
         };
         Pulse {
             line: pulse.line,
-            at: focus.from_first().at(machine, pulse.at).0,
+            at: in_first.at(machine, pulse.at).0,
             positions,
             end: ticks as f64 / machine.laser.rate,
             operation,

@@ -113,7 +113,7 @@ pub const SETTINGS: [&str; 2] = ["toolpost.toml", "millproject"];
 const MODEL: [&str; 2] = ["toml", "json"];
 
 fn ending(file: &input::Source) -> String {
-    file.path().extension().unwrap_or_default().to_string_lossy().to_lowercase()
+    files::ending(file.path())
 }
 
 /// The files that are read: those of layers, or one that is a board by itself.
