@@ -548,12 +548,23 @@ pub(crate) mod tests {
         machine: &Machine,
         moves: impl IntoIterator<Item = (MotionKind, Course, Vec3, f64, Vec3)>,
     ) -> Walk {
+        let moves = moves.into_iter().map(|(kind, course, linear, c, tip)| {
+            let behind = ToolPose { tip, axis: Vec3::Z };
+            (kind, course, AxisPositions::Mill { linear, rotary: [0.0, 0.0, c] }, behind)
+        });
+        walk_of(machine, moves)
+    }
+
+    /// A walk of moves of a second each: how each goes, and where axes and tool are behind it.
+    pub(crate) fn walk_of(
+        machine: &Machine,
+        moves: impl IntoIterator<Item = (MotionKind, Course, AxisPositions, ToolPose)>,
+    ) -> Walk {
         let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
         let to = Slot::clone(&handed);
         let mut follower = Follower::new("x.nc", &source, machine, (&(), &ended), to);
         let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
-        for (line, (kind, course, linear, c, tip)) in (1..).zip(moves) {
-            let behind = ToolPose { tip, axis: Vec3::Z };
+        for (line, (kind, course, axes, behind)) in (1..).zip(moves) {
             follower.moved(&Motion {
                 file: None,
                 line,
@@ -562,7 +573,7 @@ pub(crate) mod tests {
                 kind,
                 course,
                 tool: [before, behind],
-                axes: AxisPositions::Mill { linear, rotary: [0.0, 0.0, c] },
+                axes,
                 feed: None,
                 seconds: 1.0,
                 waited: 0.0,

@@ -175,10 +175,8 @@ pub fn cycle(kind: CycleKind) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::Ended;
-    use crate::walk::{Follower, Slot};
-    use program::Program;
-    use proof::{AxisPositions, Course, Motion, MotionKind, Observer, Report, ToolPose};
+    use crate::geometry::tests::walk_of;
+    use proof::{AxisPositions, Course, MotionKind, ToolPose};
 
     /// B of a head, 200 mm above the gauge point, and a tool of 100 mm: the tip is 300 mm from the axis. The tip stays where it is while B turns from 0
     /// to 60 degrees, so that at 30 the axis is 300 mm from it at 30 degrees: X 150, and Z 259.81 - 200 = 59.81 with the gauge point at Z 100 at B 0.
@@ -189,35 +187,16 @@ mod tests {
                     [words]\nX = { decimals = 3 }\nB = { decimals = 3 }\n\
                     [[rotary]]\nletter = \"B\"\non = \"head\"\naxis = [0, 1, 0]\npoint = [0, 0, 200]\nrapid = 1e4\nacceleration = 100\n";
         let machine = machine::load_text("head.toml", text).unwrap();
-        let (source, ended, handed) = (Program::new("x"), Ended::default(), Slot::default());
-        let to = Slot::clone(&handed);
-        let mut follower = Follower::new("x.nc", &source, &machine, (&(), &ended), to);
         let (s, c) = 60_f64.to_radians().sin_cos();
         let stands = [
             (Vec3::new(0.0, 0.0, 100.0), 0.0, Vec3::Z),
             (Vec3::new(300.0 * s, 0.0, 300.0 * c - 200.0), 60.0, Vec3::new(s, 0.0, c)),
         ];
-        let mut before = ToolPose { tip: Vec3::ZERO, axis: Vec3::Z };
-        for (line, (linear, b, axis)) in (1..).zip(stands) {
-            let behind = ToolPose { tip: Vec3::ZERO, axis };
-            follower.moved(&Motion {
-                file: None,
-                line,
-                record: 0,
-                source_line: line,
-                kind: MotionKind::Line,
-                course: Course::Tip,
-                tool: [before, behind],
-                axes: AxisPositions::Mill { linear, rotary: [0.0, b, 0.0] },
-                feed: None,
-                seconds: 1.0,
-                waited: 0.0,
-                deviation: None,
-            });
-            before = behind;
-        }
-        follower.ended(&Report::default());
-        let walk = handed.lock().unwrap().take().unwrap().walk;
+        let moves = stands.map(|(linear, b, axis)| {
+            let axes = AxisPositions::Mill { linear, rotary: [0.0, b, 0.0] };
+            (MotionKind::Line, Course::Tip, axes, ToolPose { tip: Vec3::ZERO, axis })
+        });
+        let walk = walk_of(&machine, moves);
         let found = stand(&walk, &machine, At { r#move: 1, part: 0.5, seconds: 1.5 });
         let (s, c) = 30_f64.to_radians().sin_cos();
         let wanted = [300.0 * s, 0.0, 300.0 * c - 200.0, 30.0];

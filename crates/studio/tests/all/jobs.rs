@@ -81,7 +81,7 @@ fn the_first_work_is_joined_by_who_asks_for_the_same_and_nobody_else() {
     let job = studio.socket().post("dome.cls", "fanuc-table-bc");
     let expected = other.socket().post("lean.cls", "fanuc-table-bc");
     assert_eq!(job["walk"]["moves"], expected["walk"]["moves"]);
-    // Why there is no job is told as to everybody, also where the file has gone meanwhile.
+    // Why there is no job is said as to everybody, also where the file has gone meanwhile.
     let studio = start();
     std::fs::remove_file(studio.own().join("dome.cls")).unwrap();
     let params = json!({ "source": { "file": "dome.cls" }, "machine": "fanuc-table-bc" });

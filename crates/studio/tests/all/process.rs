@@ -130,7 +130,7 @@ fn the_first_work_begins_with_the_server() {
             _ => break frame.head,
         }
     };
-    // What was told before somebody was there is told to him.
+    // What was reported before somebody was there is reported to him.
     steps.dedup();
     assert_eq!(steps, ["reading", "writing", "proving", "drawing"]);
     assert!(moves > 0 && job["id"] == id, "{moves}");

@@ -146,20 +146,27 @@ fn between_the_ends_of_a_motion_the_axes_lead_the_tip() {
     assert!(led > 20 && farthest > 0.002, "{led} motions, {farthest} mm");
 }
 
+/// The motions of the robots' sample on an arm, each between the positions of the axes before it, where they are known, and behind it.
+fn motions_of_arm(machine: &Machine) -> Vec<(Option<Vec<f64>>, Motion, Vec<f64>)> {
+    let text = std::fs::read(root().join("machines/samples/robot.cls")).unwrap();
+    let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
+    let mut before: Option<Vec<f64>> = None;
+    let between = |motion: Motion| {
+        let AxisPositions::Arm { joints, rail } = motion.axes else { panic!("{motion:?}") };
+        let to: Vec<f64> = joints.into_iter().chain(rail).collect();
+        (before.replace(to.clone()), motion, to)
+    };
+    posted(&source, machine).1.into_iter().map(between).collect()
+}
+
 /// The joints of an arm lead the tip from where the motion before ends: the chain of the drawing, from the end of each motion back to its begin.
 #[test]
 fn between_the_ends_of_a_motion_of_joints_they_lead_the_tip() {
     let (mut led, mut farthest) = (0, 0.0_f64);
     for name in names(ROBOTS) {
         let machine = machine::load(name).unwrap();
-        let text = std::fs::read(root().join("machines/samples/robot.cls")).unwrap();
-        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
         let chain = Chain::of(&machine);
-        let mut before: Option<Vec<f64>> = None;
-        for motion in posted(&source, &machine).1 {
-            let AxisPositions::Arm { joints, rail } = motion.axes else { panic!("{motion:?}") };
-            let to: Vec<f64> = joints.into_iter().chain(rail).collect();
-            let from = before.replace(to.clone());
+        for (from, motion, to) in motions_of_arm(&machine) {
             assert_eq!(motion.course == Course::Axes, motion.kind == MotionKind::Joints);
             let Some(from) = from.filter(|_| motion.course == Course::Axes) else { continue };
             let [start, end] = motion.tool;
@@ -182,14 +189,8 @@ fn on_lines_and_arcs_of_an_arm_its_joints_lead_the_tip_along_them() {
     let (mut kept, mut farthest) = (0, 0.0_f64);
     for name in names(ROBOTS) {
         let machine = machine::load(name).unwrap();
-        let text = std::fs::read(root().join("machines/samples/robot.cls")).unwrap();
-        let source = source::apt::read("s.cls", &text, &Default::default()).unwrap().program;
         let chain = Chain::of(&machine);
-        let mut before: Option<Vec<f64>> = None;
-        for motion in posted(&source, &machine).1 {
-            let AxisPositions::Arm { joints, rail } = motion.axes else { panic!("{motion:?}") };
-            let to: Vec<f64> = joints.into_iter().chain(rail).collect();
-            let from = before.replace(to.clone());
+        for (from, motion, to) in motions_of_arm(&machine) {
             let Some(from) = from.filter(|_| motion.course == Course::Tool) else { continue };
             let [start, end] = motion.tool;
             let behind = (end.tip, end.axis);

@@ -248,7 +248,7 @@ fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
     }
 }
 
-/// A source that stays within a hole: its zero is taken for the top of the part, and that is told.
+/// A source that stays within a hole: its zero is taken for the top of the part, and a warning says so.
 #[test]
 fn into_a_hole_that_the_source_never_leaves_the_tool_comes_from_above_its_zero() {
     let machine = machine::load("kuka-kr6-r900").unwrap();

@@ -52,6 +52,21 @@ fn refused(source: &Program, machine: &Machine, text: &str) -> Vec<(&'static str
     found(source, machine, text).iter().map(|found| (found.rule.name(), found.line)).collect()
 }
 
+/// Of blocks of `text`, each of which is changed to another one by itself, none is proven: the way is not that of a rapid.
+#[track_caller]
+fn none_is_proven<const N: usize>(
+    source: &Program,
+    machine: &Machine,
+    text: &str,
+    changes: [(&str, &str); N],
+) {
+    for (own, by_rapid) in changes {
+        assert!(text.contains(own), "{own}: {text}");
+        let found = refused(source, machine, &text.replacen(own, by_rapid, 1));
+        assert!(found.iter().any(|(rule, _)| *rule == "rapid-path"), "{by_rapid}: {found:?}");
+    }
+}
+
 /// The number behind `letter` in a block of a SINUMERIK.
 fn word(block: &str, letter: char) -> Option<f64> {
     let at = block.find(letter)? + 1;
@@ -423,23 +438,19 @@ fn a_hole_along_a_leaning_tool_is_left_and_entered_straight_where_each_axis_goes
          RAPID\n{back}RAPID\n{peck}{bottom}RAPID\n{peck}RAPID\n{top}SPINDL/OFF\nFINI\n"
     ));
     let text = text(&written(&source, &machine));
-    let rules = |text: &str| {
-        let report =
-            proof::prove(&source, &machine, "job.nc", text.as_bytes(), &Default::default());
-        report.mismatches.iter().map(|found| found.rule.to_string()).collect::<Vec<_>>()
-    };
-    assert_eq!(rules(&text), [""; 0], "{text}");
+    proven(&source, &machine, &text);
     // The rapids of the source in the hole are written by feed; by rapid none of them is proven.
-    for (own, by_rapid) in [
-        ("N160 X100. Z0.\nN170 ", "N160 G0 X100. Z0.\nN170 G1 "),
-        ("N170 X46. Z-54.\nN180 ", "N170 G0 X46. Z-54.\nN180 G1 "),
-        ("N190 X46. Z-54.\nN200 ", "N190 G0 X46. Z-54.\nN200 G1 "),
-        ("N200 X145. Z45.", "N200 G0 X145. Z45."),
-    ] {
-        assert!(text.contains(own), "{own}: {text}");
-        let found = rules(&text.replacen(own, by_rapid, 1));
-        assert!(found.contains(&"rapid-path".into()), "{by_rapid}: {found:?}");
-    }
+    none_is_proven(
+        &source,
+        &machine,
+        &text,
+        [
+            ("N160 X100. Z0.\nN170 ", "N160 G0 X100. Z0.\nN170 G1 "),
+            ("N170 X46. Z-54.\nN180 ", "N170 G0 X46. Z-54.\nN180 G1 "),
+            ("N190 X46. Z-54.\nN200 ", "N190 G0 X46. Z-54.\nN200 G1 "),
+            ("N200 X145. Z45.", "N200 G0 X145. Z45."),
+        ],
+    );
 }
 
 /// In a bore that was there before nothing is fed but at its bottom: no rapid in it begins or ends where a feed does, and off its straight
@@ -456,25 +467,21 @@ fn further_rapids_in_a_bore_along_a_leaning_tool_are_straight_too() {
          RAPID\n{over}FEDRAT/MMPM,300\n{bottom}{beside}{bottom}RAPID\n{over}RAPID\n{middle}RAPID\n{above}RAPID\n{top}SPINDL/OFF\nFINI\n"
     ));
     let text = text(&written(&source, &machine));
-    let rules = |text: &str| {
-        let report =
-            proof::prove(&source, &machine, "job.nc", text.as_bytes(), &Default::default());
-        report.mismatches.iter().map(|found| found.rule.to_string()).collect::<Vec<_>>()
-    };
-    assert_eq!(rules(&text), [""; 0], "{text}");
+    proven(&source, &machine, &text);
     // They are written by feed; by rapid none of them is proven.
-    for (own, by_rapid) in [
-        ("N150 X70. Z-30.\nN160 ", "N150 G0 X70. Z-30.\nN160 G1 "),
-        ("N160 X42. Z-58.\nN170 ", "N160 G0 X42. Z-58.\nN170 G1 "),
-        ("N200 X42. Z-58.\nN210 ", "N200 G0 X42. Z-58.\nN210 G1 "),
-        ("N210 X70. Z-30.\nN220 ", "N210 G0 X70. Z-30.\nN220 G1 "),
-        ("N220 X105. Z5.\nN230 ", "N220 G0 X105. Z5.\nN230 G1 "),
-        ("N230 X145. Z45.", "N230 G0 X145. Z45."),
-    ] {
-        assert!(text.contains(own), "{own}: {text}");
-        let found = rules(&text.replacen(own, by_rapid, 1));
-        assert!(found.contains(&"rapid-path".into()), "{by_rapid}: {found:?}");
-    }
+    none_is_proven(
+        &source,
+        &machine,
+        &text,
+        [
+            ("N150 X70. Z-30.\nN160 ", "N150 G0 X70. Z-30.\nN160 G1 "),
+            ("N160 X42. Z-58.\nN170 ", "N160 G0 X42. Z-58.\nN170 G1 "),
+            ("N200 X42. Z-58.\nN210 ", "N200 G0 X42. Z-58.\nN210 G1 "),
+            ("N210 X70. Z-30.\nN220 ", "N210 G0 X70. Z-30.\nN220 G1 "),
+            ("N220 X105. Z5.\nN230 ", "N220 G0 X105. Z5.\nN230 G1 "),
+            ("N230 X145. Z45.", "N230 G0 X145. Z45."),
+        ],
+    );
 }
 
 /// A pocket that was there before, wider at its top: at once X would be at the wall before Z is out.
