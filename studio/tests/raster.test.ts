@@ -1,6 +1,8 @@
 import { expect, test } from "vitest";
 import type { Projection } from "../src/view/camera.ts";
 import { Raster, rgb } from "../src/view/raster.ts";
+import { Painting } from "../src/view/renderer.ts";
+import { reaching } from "../src/view/scene.ts";
 import { Style, vertexOf, wordOf, type Paint, type Strip } from "../src/view/strip.ts";
 
 /** One pixel a millimetre, X right, Y down, Z away. */
@@ -158,4 +160,60 @@ test("a point is a square of its width at its vertex, and no line leads to it", 
     // The nearer one is seen; what is out of the picture is not.
     const hidden = [[1, 1, 5], [1, 1, 5, 5], [1, 1, 2, 5], [1, 1, 9, 5], [-50, 1, 0, 5]];
     expect(shown(drawn(2, 2, strip(hidden, { paint: paint({ styles }) })))).toEqual(["..", ".b"]);
+});
+
+test("where one pixel in so many is drawn, it is one of the line, and so is the end", () => {
+    const raster = new Raster(16, 2);
+    raster.clear(0);
+    const line = strip([[0, 0, 0], [15, 1, 0, 1]]);
+    raster.stride = 4;
+    raster.strip(line, flat);
+    expect(shown(raster)).toEqual(["a...a...a...a...", "...............a"]);
+    expect(raster.gone).toBe(15);
+    raster.clear(0);
+    raster.stride = 1;
+    raster.strip(line, flat);
+    expect(shown(raster)).toEqual(["aaaaaaaaaaaaaaa.", "...............a"]);
+});
+
+test("of short lines and points one in so many is drawn", () => {
+    const raster = new Raster(9, 1);
+    raster.clear(0);
+    raster.stride = 3;
+    const points = Array.from({ length: 8 }, (_, x) => [x, 0, 0, 1]);
+    raster.strip(strip(points), flat);
+    expect(shown(raster)).toEqual(["...a..a.."]);
+    raster.clear(0);
+    raster.strip(strip(points, { paint: paint({ styles: Uint8Array.of(0, Style.dot) }) }), flat);
+    expect(shown(raster)).toEqual(["...a..a.."]);
+    expect(raster.gone).toBe(7);
+});
+
+test("a picture that moves has no more pixels of lines to draw than a bounded number, and all of them when it rests", () => {
+    const ends = Array.from({ length: 40_001 }, (_, i) => [i % 2 === 0 ? 0 : 199, i % 100, 0]);
+    const many = strip(ends, { paint: paint({ mask: 0, palette: Uint32Array.of(1) }) });
+    const picture = { flats: [], surfaces: [], strips: [many], over: [], bodies: [] };
+    const painting = new Painting(200, 100);
+    const pixels = (isMoving: boolean): number => painting.draw(picture, { ...flat, at: [0, 0, Math.random()] }, 0, isMoving).reduce((sum, one) => sum + Number(one !== 0), 0);
+    const all = pixels(false);
+    const some = pixels(true);
+    // Of 8 million pixels a third.
+    expect(some).toBeGreaterThan(all / 4);
+    expect(some).toBeLessThan(all / 1.5);
+    expect(pixels(true)).toBe(some);
+    // At rest nothing of it is kept, also where nothing else has changed.
+    const at = { ...flat, at: [0, 0, 7] as [number, number, number] };
+    const hurried = painting.draw(picture, at, 0, true).slice();
+    const whole = painting.draw(picture, at, 0).slice();
+    expect(hurried).not.toEqual(whole);
+    expect(whole).toEqual(new Painting(200, 100).draw(picture, at, 0));
+});
+
+test("the lines that may come into a square are among all of them, and no others are far from it", () => {
+    const points = [[0, 0], [40, 0], [50, 50], [0, 60], [1e9, 61], [48, 52, 1e30], [49, 49], [0, 0]].map(([x, y, z]) => [x!, y!, z ?? 0]);
+    const square = { left: 45, top: 45, side: 10 };
+    expect(reaching(strip(points), flat, square)).toEqual([[2, 4], [5, 8]]);
+    // A line of 12 pixels comes in from beside.
+    const wide = (x: number): unknown => reaching(strip([[x, 0], [x, 90]], { paint: paint({ width: 12 }) }), flat, square);
+    expect([wide(37), wide(39), wide(61), wide(63)]).toEqual([[], [[1, 2]], [[1, 2]], []]);
 });

@@ -12,9 +12,16 @@ import { along, cross, dot, unit, type Vector } from "./vector.ts";
 /** Beyond this a pixel's number is no longer exact, and what is not finite is beyond it. */
 const FAR = 1e7;
 
+/** Pixels of a line that may be left out where others are drawn that it is among. */
+const SHORT = 12;
+
 export class Raster {
     readonly seen: Uint32Array<ArrayBuffer>;
     readonly depth: Float32Array;
+    /** Of short lines and of points one in so many is drawn, and of the pixels of a thin long line, besides its end. */
+    stride = 1;
+    /** Pixels that lines have gone through since the plane was cleared, drawn or not. */
+    gone = 0;
 
     constructor(
         readonly width: number,
@@ -28,6 +35,7 @@ export class Raster {
     clear(background: number): void {
         this.seen.fill(background);
         this.depth.fill(Number.POSITIVE_INFINITY);
+        this.gone = 0;
     }
 
     strip(strip: Strip, { right, down, away, at }: Projection): void {
@@ -44,6 +52,9 @@ export class Raster {
         const cy = at[1] + dx * ox + dy * oy + dz * oz - this.planes.top;
         const cz = at[2] + ax * ox + ay * oy + az * oz - lift;
 
+        const { stride } = this;
+        let turn = 0;
+        let gone = 0;
         let x0 = 0;
         let y0 = 0;
         let z0 = 0;
@@ -58,6 +69,14 @@ export class Raster {
                 const word = words[i + 3]!;
                 const style = styles[(word >>> 12) & 15];
                 if (style !== Style.hidden && (tool < 0 || ((word >>> 16) & 255) === tool)) {
+                    const length = Math.max(Math.abs(x1 - x0), Math.abs(y1 - y0));
+                    gone += length;
+                    if (stride > 1 && (length < SHORT || style === Style.dot) && ++turn % stride !== 0) {
+                        x0 = x1;
+                        y0 = y1;
+                        z0 = z1;
+                        continue;
+                    }
                     const dash = style === Style.dashed;
                     const index = dash && dashed >= 0 ? dashed : byMove === null ? (word >>> shift) & mask : byMove[word & 4095]!;
                     const seen = isMoves ? first + (word & 4095) + 1 : palette[index]!;
@@ -70,6 +89,7 @@ export class Raster {
             y0 = y1;
             z0 = z1;
         }
+        this.gone += gone;
     }
 
     /** A line of `width` pixels; dashes of five pixels in eight, counted from its beginning. */
@@ -83,16 +103,16 @@ export class Raster {
 
     /** Nearly all lines: a pixel wide and within the window. The longer way is stepped through pixel by pixel. */
     private thin(x0: number, y0: number, z0: number, x1: number, y1: number, z1: number, seen: number): void {
-        const { width, depth, seen: plane } = this;
+        const { width, depth, seen: plane, stride } = this;
         const dx = x1 - x0;
         const dy = y1 - y0;
         const steps = Math.ceil(Math.max(Math.abs(dx), Math.abs(dy)));
         if (steps > 1) {
-            const part = 1 / steps;
+            const part = stride / steps;
             const sx = dx * part;
             const sy = dy * part;
             const sz = (z1 - z0) * part;
-            for (let step = 0; step < steps; step++) {
+            for (let step = 0; step < steps; step += stride) {
                 const at = (y0 | 0) * width + (x0 | 0);
                 if (z0 <= depth[at]!) {
                     depth[at] = z0;

@@ -189,14 +189,15 @@ export class Scene {
 
     /** The first mismatch, the moves of the cursor's block, and the move that it is at. */
     private picked(over: Strip[], chunk: Chunk, best: Best, looks: Looks, { now, ofBlock, mismatch }: Marks): void {
-        if (mismatch !== null) this.marked(over, chunk, best, [mismatch, mismatch + 1], this.plain(WRONG, looks, 4, 2));
-        for (const range of ofBlock) this.marked(over, chunk, best, range, this.plain(MARKED, looks, 2, 2));
-        if (now !== null) this.marked(over, chunk, best, [now, now + 1], this.plain(MARKED, looks, 3, 3));
+        if (mismatch !== null) this.marked(over, chunk, best, [mismatch, mismatch + 1], () => this.plain(WRONG, looks, 4, 2));
+        for (const range of ofBlock) this.marked(over, chunk, best, range, () => this.plain(MARKED, looks, 2, 2));
+        if (now !== null) this.marked(over, chunk, best, [now, now + 1], () => this.plain(MARKED, looks, 3, 3));
     }
 
-    private marked(over: Strip[], chunk: Chunk, { vertices, isExact }: Best, [from, to]: Range, paint: Paint): void {
+    private marked(over: Strip[], chunk: Chunk, { vertices, isExact }: Best, [from, to]: Range, paintOf: () => Paint): void {
         const [low, high] = [Math.max(from - chunk.first, 0), Math.min(to - chunk.first, CHUNK_MOVES)];
         if (low >= high) return;
+        const paint = paintOf();
         const begin = vertexOf(vertices, low);
         // At a coarse level a move may have no vertex of its own: the one that it is in is marked.
         const least = isExact ? begin : Math.min(begin + 1, vertices.byteLength / 16);
@@ -289,7 +290,9 @@ export function nearest(strips: Strip[], projection: Projection, x: number, y: n
     const [left, top] = [Math.floor(x) - REACH, Math.floor(y) - REACH];
     const raster = new Raster(side, side, { sees: "moves", left, top });
     raster.clear(0);
-    for (const strip of strips) raster.strip(strip, projection);
+    for (const strip of strips) {
+        for (const [from, to] of reaching(strip, projection, { left, top, side })) raster.strip({ ...strip, from, to }, projection);
+    }
     let best: number | null = null;
     let least = (REACH + 0.5) ** 2;
     raster.seen.forEach((id, at) => {
@@ -302,3 +305,33 @@ export function nearest(strips: Strip[], projection: Projection, x: number, y: n
     return best;
 }
 
+
+/** Of a strip, the lines that may come into a square of pixels: of millions there are few, and only these are drawn. */
+export function reaching({ vertices, origin, from, to, paint }: Strip, { right, down, at }: Projection, { left, top, side }: { left: number; top: number; side: number }): Range[] {
+    const numbers = new Float32Array(vertices);
+    const [rx, ry, rz] = right;
+    const [dx, dy, dz] = down;
+    const reach = paint.width / 2 + 1;
+    const size = side + 2 * reach;
+    const cx = at[0] + rx * origin[0] + ry * origin[1] + rz * origin[2] - left + reach;
+    const cy = at[1] + dx * origin[0] + dy * origin[1] + dz * origin[2] - top + reach;
+    const found: Range[] = [];
+    let x0 = 0;
+    let y0 = 0;
+    for (let vertex = from - 1, i = vertex * 4; vertex < to; vertex++, i += 4) {
+        const x = numbers[i]!;
+        const y = numbers[i + 1]!;
+        const z = numbers[i + 2]!;
+        const x1 = rx * x + ry * y + rz * z + cx;
+        const y1 = dx * x + dy * y + dz * z + cy;
+        const isBeside = (x0 < 0 && x1 < 0) || (y0 < 0 && y1 < 0) || (x0 > size && x1 > size) || (y0 > size && y1 > size);
+        if (vertex >= from && !isBeside) {
+            const last = found.at(-1);
+            if (last?.[1] === vertex) last[1] = vertex + 1;
+            else found.push([vertex, vertex + 1]);
+        }
+        x0 = x1;
+        y0 = y1;
+    }
+    return found;
+}

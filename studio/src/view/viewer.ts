@@ -31,6 +31,9 @@ interface Drag {
 /** How long the pointer rests before what is under it is fetched, ms. */
 const REST = 40;
 
+/** How long after its last move a view is drawn with all its pixels, ms. */
+const STILL = 150;
+
 /** What a view tells. */
 export interface Tell {
     picked(move: number): void;
@@ -52,6 +55,8 @@ export class Viewer {
     private measured: Over["drag"] = null;
     private frame = 0;
     private resting: ReturnType<typeof setTimeout> | undefined;
+    /** While the view moves. */
+    private moving: ReturnType<typeof setTimeout> | undefined;
     /** All is shown, until somebody moves or zooms: then it stays so when the window changes. */
     private isFitted = true;
     private readonly sizes = new ResizeObserver(() => (this.isFitted ? this.fit() : this.redraw()));
@@ -113,6 +118,7 @@ export class Viewer {
     close(): void {
         this.isSought = false;
         clearTimeout(this.resting);
+        clearTimeout(this.moving);
         cancelAnimationFrame(this.frame);
         this.sizes.disconnect();
         this.host.replaceChildren();
@@ -151,7 +157,7 @@ export class Viewer {
         const { scene, looks, marks, tip, box, isBoxShown } = this.shown();
         scene?.chunks.begin();
         const picture = scene?.picture(projection, size, looks, marks) ?? { flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
-        this.renderer.draw(picture, projection, size, looks.theme);
+        this.renderer.draw(picture, projection, size, looks.theme, this.moving !== undefined);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
         if (picture.strips.length > 0) {
             this.tell.drawn();
@@ -164,6 +170,16 @@ export class Viewer {
         this.camera = camera;
         this.isFitted = false;
         this.redraw();
+    }
+
+    /** As `look`, and the next picture is likely to follow at once. */
+    private go(camera: Camera): void {
+        clearTimeout(this.moving);
+        this.moving = setTimeout(() => {
+            this.moving = undefined;
+            this.redraw();
+        }, STILL);
+        this.look(camera);
     }
 
     fit(box: Box | null = this.shown().box): void {
@@ -189,16 +205,16 @@ export class Viewer {
     }
 
     turn(dx: number, dy: number): void {
-        this.look(orbit(this.camera, dx, dy));
+        this.go(orbit(this.camera, dx, dy));
     }
 
     shift(dx: number, dy: number): void {
-        this.look(pan(this.camera, dx, dy));
+        this.go(pan(this.camera, dx, dy));
     }
 
     zoom(by: number): void {
         const { size } = this;
-        this.look(zoom(this.camera, by, size.width / 2, size.height / 2, size));
+        this.go(zoom(this.camera, by, size.width / 2, size.height / 2, size));
     }
 
     private at(event: MouseEvent): [number, number] {
@@ -207,6 +223,7 @@ export class Viewer {
     }
 
     private down(event: PointerEvent): void {
+        clearTimeout(this.resting);
         const from = this.at(event);
         const kind = this.ruler ? "ruler" : event.ctrlKey ? "zoom" : event.button !== 0 || event.shiftKey ? "pan" : "orbit";
         this.drag = { kind, from, last: from, moved: false, picked: this.pick(...from) };
@@ -253,7 +270,7 @@ export class Viewer {
     private wheel(event: WheelEvent): void {
         event.preventDefault();
         const [x, y] = this.at(event);
-        this.look(zoom(this.camera, Math.exp(-event.deltaY * 0.0015), x, y, this.size));
+        this.go(zoom(this.camera, Math.exp(-event.deltaY * 0.0015), x, y, this.size));
     }
 
     private async pick(x: number, y: number): Promise<number | null> {
