@@ -54,6 +54,8 @@ export class Viewer {
     private drag: Drag | null = null;
     private measured: Over["drag"] = null;
     private frame = 0;
+    /** The browser's first frame may be long in coming: a picture does not wait for it. */
+    private hadFrame = false;
     private resting: ReturnType<typeof setTimeout> | undefined;
     /** While the view moves. */
     private moving: ReturnType<typeof setTimeout> | undefined;
@@ -74,6 +76,7 @@ export class Viewer {
         this.isSought = how === "auto";
         host.append(this.renderer.canvas, this.over);
         this.sizes.observe(host);
+        requestAnimationFrame(() => (this.hadFrame = true));
         host.addEventListener("pointerdown", (event) => this.down(event));
         host.addEventListener("pointermove", (event) => this.move(event));
         host.addEventListener("pointerup", (event) => this.up(event));
@@ -120,6 +123,7 @@ export class Viewer {
         clearTimeout(this.resting);
         clearTimeout(this.moving);
         cancelAnimationFrame(this.frame);
+        this.frame = 0;
         this.sizes.disconnect();
         this.host.replaceChildren();
     }
@@ -145,11 +149,16 @@ export class Viewer {
 
     redraw(): void {
         if (this.frame === 0) {
-            this.frame = requestAnimationFrame(() => {
-                this.frame = 0;
-                this.draw();
-            });
+            this.frame = requestAnimationFrame(() => this.drawNow());
+            if (!this.hadFrame) setTimeout(() => this.drawNow());
         }
+    }
+
+    private drawNow(): void {
+        if (this.frame === 0) return;
+        cancelAnimationFrame(this.frame);
+        this.frame = 0;
+        this.draw();
     }
 
     private draw(): void {

@@ -21,13 +21,13 @@ export class Walking implements Vertices {
     /** Whether there is more than before. */
     add(walked: Walked, { index, vertices }: Arrays): boolean {
         if (walked.file !== this.file || walked.chunk !== this.chunks.length || index === undefined || vertices === undefined) return false;
-        const octets = Uint8Array.from(index);
+        const octets = new Uint8Array(index);
         const sizes = new DataView(octets.buffer);
         let at = 0;
         for (const [number, chunk] of readIndex(octets.buffer).entries()) {
             const bytes = sizes.getUint32(number * 64 + 48, true) * VERTEX_BYTES;
             this.chunks.push({ ...chunk, number: this.chunks.length });
-            this.vertices.push(Uint8Array.from(vertices.subarray(at, at + bytes)).buffer);
+            this.vertices.push(new Uint8Array(vertices.subarray(at, at + bytes)).buffer);
             at += bytes;
         }
         this.moves = walked.moves;
