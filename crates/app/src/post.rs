@@ -154,11 +154,9 @@ fn bytes(output: &Output) -> usize {
 
 /// What a report says of a program and the files that it calls.
 fn about(file: &str, output: &Output) -> Value {
-    let mut about = json!({ "file": file, "blocks": output.blocks, "bytes": bytes(output) });
-    if !output.parts.is_empty() {
-        let part = |part: &Part| json!({ "file": part.file, "bytes": part.text.len() });
-        about["parts"] = output.parts.iter().map(part).collect();
-    }
+    let bytes = output.text.len();
+    let mut about = json!({ "file": file, "blocks": output.blocks, "bytes": bytes });
+    report::set_parts(&mut about, output.parts.iter().map(|part| (&*part.file, &part.text[..])));
     about
 }
 

@@ -7,7 +7,7 @@ use control::Folders;
 use machine::Machine;
 use program::{Diagnostic, Digest, Rule};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// The version of the shape of a report. It grows where a key goes or means something else; new keys may come at any
@@ -57,10 +57,28 @@ pub fn called(folders: &Folders) -> Result<Vec<Vec<u8>>, Box<Diagnostic>> {
     folders.files_read().iter().map(|path| files::read(path)).collect()
 }
 
-/// The report of a program that was proven and not written, as after an edit by hand: what its account says, and what it was made
-/// of.
-pub fn of_proven(account: &Account, digests: &Digests) -> String {
+/// What a report says of a program that calls files: their names and sizes, bytes, and in place of its own size that of all together.
+pub(crate) fn set_parts<'a>(program: &mut Value, parts: impl Iterator<Item = (&'a str, &'a [u8])>) {
+    let part = |(file, text): (&str, &[u8])| json!({ "file": file, "bytes": text.len() });
+    let parts: Vec<Value> = parts.map(part).collect();
+    if parts.is_empty() {
+        return;
+    }
+    let own = program["bytes"].as_u64().unwrap_or_default();
+    let bytes = parts.iter().filter_map(|part| part["bytes"].as_u64()).sum::<u64>() + own;
+    program["bytes"] = json!(bytes);
+    program["parts"] = json!(parts);
+}
+
+/// The report of a program that was proven and not written, as after an edit by hand: what its account says, the files that it calls, and
+/// what it was made of.
+pub fn of_proven<'a>(
+    account: &Account,
+    parts: impl Iterator<Item = (&'a str, &'a [u8])>,
+    digests: &Digests,
+) -> String {
     let mut account = account.clone();
+    set_parts(&mut account.data["program"], parts);
     account.data["schema"] = json!(SCHEMA);
     account.data["toolpost"] = json!(env!("CARGO_PKG_VERSION"));
     account.data["sha256"] = json!(digests);

@@ -54,6 +54,20 @@ impl Origins {
         self
     }
 
+    /// Those of a text whose lines are lines of this one, from 1, or, where they are none, come from no template.
+    #[must_use]
+    pub fn carried(&self, lines: impl IntoIterator<Item = Option<u32>>) -> Origins {
+        let mut carried = Origins::default();
+        for line in lines {
+            let at = line.and_then(|line| line.checked_sub(1)).map(|line| line as usize);
+            let own = at.and_then(|at| Some((*self.blocks.get(at)?, *self.records.get(at)?)));
+            let (block, record) = own.unwrap_or((u8::MAX, NONE));
+            carried.blocks.push(block);
+            carried.records.push(record);
+        }
+        carried
+    }
+
     #[inline]
     pub(crate) fn push(&mut self, block: BlockName, record: u32) {
         self.blocks.push(block as u8);
@@ -98,4 +112,5 @@ pub(crate) fn number(record: Option<usize>) -> u32 {
     record.and_then(|record| u32::try_from(record).ok()).unwrap_or(NONE)
 }
 
-const _: () = assert!(BlockName::COUNT <= 1 << u8::BITS);
+// The last number is that of no block.
+const _: () = assert!(BlockName::COUNT < 1 << u8::BITS);

@@ -448,7 +448,7 @@ pub struct PostParams {
 }
 
 /// `prove { source, machine, options, program }`, or with the array `text` in place of `program`: proves a program, also one that was edited by
-/// hand. Answered by a [`Job`].
+/// hand. With `revision` it is an edit of that job's program: its other files are those of the job, and none is looked for in a folder. Answered by a [`Job`].
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(deny_unknown_fields)]
@@ -466,6 +466,14 @@ pub struct ProveParams {
     /// The program, where it is no edited text.
     #[serde(default)]
     pub program: Option<FileOrUpload>,
+    /// The job whose program was edited, where that is still open.
+    #[serde(default)]
+    pub revision: Option<u64>,
+    /// The files of its program that were edited, null for the program itself: they stand one behind the other in `text`, each with so many
+    /// bytes. Left out: `text` is the program itself.
+    #[serde(default)]
+    #[cfg_attr(test, ts(optional, as = "Option<_>"))]
+    pub files: Vec<(Option<String>, u64)>,
 }
 
 /// A program with its verdict and its moves.

@@ -4,15 +4,15 @@ use crate::ask::{
     BoardAbout, BoardArea, BoardAreaKind, BoardPicture, BoardPlace, BoardProgram, LeftOut, Saved,
     Turning,
 };
+use crate::edit::Existing;
 use crate::folder::Folder;
-use crate::job::{Follows, Job, Made, Options, Sources, report_of, rows};
+use crate::job::{Follows, Job, Made, Options, Sources, called, called_from, report_of, rows};
 use crate::lines::Lines;
 use crate::machines::Any;
 use crate::message::{Array, Values};
 use ::post::Origins;
 use app::pcb::{AreaKind, Axis, BoardAreas, Layer};
 use app::{Account, Source, Stop, Verdict, Watch, files, pcb, post};
-use control::Folders;
 use machine::Machine;
 use program::{Diagnostic, Rule, encoding};
 use std::path::{Path, PathBuf};
@@ -165,22 +165,24 @@ pub(crate) fn prove(
     options: &Options,
     (machine_name, machine): (&str, &Machine),
     inputs: Vec<PathBuf>,
-    (file, text, folders): (String, Vec<u8>, Folders),
+    (file, given): (String, Existing),
     follows: &Follows,
 ) -> Result<Job, Stop> {
     let settings = options.board.as_deref().cloned().unwrap_or_default();
     let (job, board) = begun(source, options, machine, &settings)?;
     let name = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let program = (encoding::without_mark(&text), &folders);
+    let folders = called_from(machine, &given);
+    let program = (encoding::without_mark(&given.text), &folders);
     let compared = job.prove(&board, (&name, &file), program, follows)?;
     let pcb::Compared { mut account, mut toolpath, machine, widths, board, files, layers } =
         compared;
     account.rows.extend(settings.row());
-    let report = report_of(&account, &text, &folders, &toolpath, &machine)?;
+    let (text, parts) = called(&account, given, &folders);
+    let report = report_of(&account, &text, &parts, &toolpath, &machine);
     let shown = shown(&board, &files, &layers);
     toolpath.file = shown.0;
     follows.step("drawing");
-    let (origins, parts, board) = (Origins::default(), Vec::new(), None);
+    let (origins, board) = (Origins::default(), None);
     let made = Made { toolpath, account, text, origins, parts, report, widths, board };
     let machine = (machine_name, Any::Moves(machine.into()));
     let job = Job::of(made, Lines::of(shown.1), (file, machine), inputs, follows)?;

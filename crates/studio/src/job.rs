@@ -6,6 +6,7 @@ use crate::ask::{
 };
 use crate::board;
 use crate::drawing::Piece;
+use crate::edit::{Existing, Files, Text};
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
 use crate::glass::{self, Glass};
@@ -181,9 +182,7 @@ pub struct Asked<'a> {
     /// Name of the program's file.
     pub file: Option<String>,
     /// The program, where it is there already.
-    pub program: Option<Vec<u8>>,
-    /// Where the programs are that it calls: a robot has them in the folder of the program.
-    pub folders: Vec<PathBuf>,
+    pub program: Option<Existing>,
     /// The files that it is made of, which nothing is saved over.
     pub inputs: Vec<PathBuf>,
 }
@@ -228,9 +227,11 @@ pub struct Job {
     /// The lines of the toolpath's records; 0 for none.
     record_lines: Vec<u32>,
     file: String,
-    program: Lines,
-    parts: BTreeMap<String, (Lines, Origins)>,
-    origins: Origins,
+    files: Files,
+    /// The program as it was posted, where this one is an edit of it.
+    posted: Option<Files>,
+    /// Files of that which it does not call any more: they are shown, and not saved.
+    uncalled: BTreeSet<String>,
     /// The files that it is made of.
     inputs: Vec<PathBuf>,
     walk: Walk,
@@ -272,7 +273,8 @@ impl Job {
         inputs.extend(read);
         let mut machine = match machine {
             Any::Fires(machine) => {
-                let (machine, program) = ((asked.machine, machine), (asked.file, asked.program));
+                let text = asked.program.map(|program| program.text);
+                let (machine, program) = ((asked.machine, machine), (asked.file, text));
                 let files = (inputs, folder);
                 return Ok(vec![glass::make(
                     asked.source,
@@ -292,37 +294,37 @@ impl Job {
             Sources::One(source) if command != Command::Pcb => source,
             board => {
                 let machine = (asked.machine, &machine);
-                let Some(text) = asked.program else {
+                let Some(given) = asked.program else {
                     return board::make(board, &options, machine, inputs, &follows);
                 };
                 let file = asked.file.ok_or_else(|| {
                     let message = "the name of the file says which program of the board it is";
                     Diagnostic::error(Rule::StudioAsk, message)
                 })?;
-                let program = (file, text, called_from(machine.1, asked.folders));
+                let of = given.of.clone();
+                let program = (file, given);
                 let job = board::prove(board, &options, machine, inputs, program, &follows)?;
-                return Ok(vec![job]);
+                return Ok(vec![job.edit_of(of.as_deref())]);
             }
         };
         let file = asked.file.unwrap_or_else(|| {
             let name = source.path().with_extension(&machine.extension);
             files::name(&name)
         });
+        let of = asked.program.as_ref().and_then(|given| given.of.clone());
         let made = match (&options.wire, asked.program) {
             (Some(settings), None) => cut(&source, &options, &machine, settings, &file, &follows)?,
-            (Some(settings), Some(text)) => {
-                recut(&source, &options, &machine, settings, (&file, text), &follows)?
+            (Some(settings), Some(given)) => {
+                recut(&source, &options, &machine, settings, (&file, given.text), &follows)?
             }
             (None, None) => posted(&source, &options, &machine, &file, &follows)?,
-            (None, Some(text)) => {
-                let program = (&*file, text, called_from(&machine, asked.folders));
-                compared(&source, &options, &machine, program, &follows)?
-            }
+            (None, Some(given)) => compared(&source, &options, &machine, (&file, given), &follows)?,
         };
         follows.step("drawing");
         let machine = (asked.machine, Any::Moves(machine.into()));
         let text = source_lines(&made.toolpath, &source);
-        Ok(vec![Job::of(made, text, (file, machine), inputs, &follows)?])
+        let job = Job::of(made, text, (file, machine), inputs, &follows)?;
+        Ok(vec![job.edit_of(of.as_deref())])
     }
 
     /// The job of a program that is called `file`, on a machine that was asked for by a name.
@@ -361,7 +363,8 @@ impl Job {
             }
             Any::Fires(_) => BTreeMap::new(),
         };
-        let part = |Part { file, text, origins }| (file, (Lines::of(text), origins));
+        let part = |Part { file, text, origins }| (file, Text::of(text, origins));
+        let parts = parts.into_iter().map(part).collect();
         Job {
             account,
             report,
@@ -372,9 +375,9 @@ impl Job {
             source_file: toolpath.file,
             machine,
             file,
-            program: Lines::of(text),
-            parts: parts.into_iter().map(part).collect(),
-            origins,
+            files: Files { program: Text::of(text, origins), parts },
+            posted: None,
+            uncalled: BTreeSet::new(),
             inputs,
             walk,
             geometry,
@@ -389,23 +392,46 @@ impl Job {
         Job { keeps_name: true, ..self }
     }
 
+    /// The same as an edit of the program of another job, where it is one: files that it does not call any more are shown too, and lines that are as
+    /// they were posted come from where they came from.
+    fn edit_of(mut self, of: Option<&Job>) -> Job {
+        let Some(of) = of else { return self };
+        let posted = of.posted.as_ref().unwrap_or(&of.files);
+        // The source, or the machine, may have been changed since.
+        let origins =
+            (&self.record_lines, &self.machine_name) == (&of.record_lines, &of.machine_name);
+        self.files = self.files.edited(&of.files, posted, origins);
+        for (file, text) in &of.files.parts {
+            if !self.files.parts.contains_key(file) {
+                self.files.parts.insert(file.clone(), Arc::clone(text));
+                self.uncalled.insert(file.clone());
+            }
+        }
+        self.posted = Some(posted.clone());
+        self
+    }
+
+    /// The files of the program.
+    pub(crate) fn files(&self) -> &Files {
+        &self.files
+    }
+
+    /// The name of the program's file.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
     /// How much memory it takes, bytes.
     pub fn bytes(&self) -> usize {
         let records = size_of_val(&self.record_lines[..]);
-        let parts: usize = self.parts.values().map(|(lines, _)| lines.bytes()).sum();
-        let texts = self.source.bytes() + self.program.bytes() + parts;
+        let posted = self.posted.as_ref().map_or(0, Files::bytes);
+        let texts = self.source.bytes() + self.files.bytes() + posted;
         let board = self.board.as_ref().map_or(0, board::Place::bytes);
         let listing = match &self.machine {
             Any::Fires(glass) => glass.bytes(),
             Any::Moves(_) => 0,
         };
-        texts
-            + records
-            + 5 * self.origins.lines()
-            + self.walk.bytes()
-            + self.geometry.bytes()
-            + board
-            + listing
+        texts + records + self.walk.bytes() + self.geometry.bytes() + board + listing
     }
 
     /// The files that it is made of.
@@ -453,7 +479,7 @@ impl Job {
             rows: rows(&self.account),
             findings: findings.into_iter().map(|found| self.finding(found)).collect(),
             program: Some(text(&self.file, self.shown_program())),
-            parts: self.parts.iter().map(|(file, (lines, _))| text(file, lines)).collect(),
+            parts: self.files.parts.iter().map(|(file, part)| text(file, &part.lines)).collect(),
             source: text(&self.source_file, &self.source),
             machine: JobMachine {
                 name: self.machine_name.clone(),
@@ -514,7 +540,7 @@ impl Job {
     fn finding(&self, found: Diagnostic) -> Finding {
         let of = match &*found.file {
             "" => None,
-            file if file == self.file || self.parts.contains_key(file) => Some(Of::Program),
+            file if file == self.file || self.files.parts.contains_key(file) => Some(Of::Program),
             file if file == self.source_file => Some(Of::Source),
             file if self.machine_files.contains_key(file) => Some(Of::Machine),
             _ => None,
@@ -525,8 +551,8 @@ impl Job {
     /// The program as it is shown: a binary one as its control reads it.
     fn shown_program(&self) -> &Lines {
         match &self.machine {
-            Any::Fires(glass) => glass.listing.as_ref().unwrap_or(&self.program),
-            Any::Moves(_) => &self.program,
+            Any::Fires(glass) => glass.listing.as_ref().unwrap_or(&self.files.program.lines),
+            Any::Moves(_) => &self.files.program.lines,
         }
     }
 
@@ -534,7 +560,7 @@ impl Job {
         let found = match (of, file) {
             (Of::Program, None) => Some(self.shown_program()),
             (Of::Program, Some(file)) if file == self.file => Some(self.shown_program()),
-            (Of::Program, Some(file)) => self.parts.get(file).map(|(lines, _)| lines),
+            (Of::Program, Some(file)) => self.files.parts.get(file).map(|part| &part.lines),
             (Of::Source, None) => Some(&self.source),
             (Of::Source, Some(file)) => (file == self.source_file).then_some(&self.source),
             (Of::Machine, None) => match &self.machine {
@@ -601,9 +627,9 @@ impl Job {
         let known = |value: f64| value.is_finite().then_some(value);
         let state = walk.state(number);
         let (file, line) = (walk.file(number), walk.line(number));
-        let (lines, origins) = match file.and_then(|file| self.parts.get(file)) {
-            Some((lines, origins)) => (Some(lines), origins),
-            None => (file.is_none().then(|| self.shown_program()), &self.origins),
+        let (lines, origins) = match file.and_then(|file| self.files.parts.get(file)) {
+            Some(part) => (Some(&part.lines), &part.origins),
+            None => (file.is_none().then(|| self.shown_program()), &self.files.program.origins),
         };
         let shown = |lines: &Lines, line: u32| readable(lines.line(line)).0;
         let template = origins.of(line).map(|origin| {
@@ -665,10 +691,7 @@ impl Job {
             lines.entry(walk.file(at)).or_default().insert(walk.line(at));
         }
         for (file, lines) in &mut lines {
-            let origins = match file {
-                Some(file) => self.parts.get(*file).map(|(_, origins)| origins),
-                None => Some(&self.origins),
-            };
+            let origins = self.files.get(*file).map(|text| &text.origins);
             let record = |line: u32| origins.and_then(|origins| origins.of(line)?.record);
             // A record that is of no line of a file, as those of a board, is asked for by a move, and is of itself alone.
             let own = lines.first().and_then(|line| record(*line));
@@ -754,7 +777,10 @@ impl Job {
         let parent = Path::new(path).parent().unwrap_or(Path::new(""));
         let within = |name: &str| parent.join(name).to_string_lossy().into_owned();
         let mut saved = vec![path.to_owned()];
-        for part in self.parts.keys() {
+        let parts = self.files.parts.iter().filter(|(file, _)| !self.uncalled.contains(*file));
+        let parts: Vec<(&str, &[u8])> =
+            parts.map(|(file, part)| (&**file, part.lines.text())).collect();
+        for (part, _) in &parts {
             folder.target(&within(part))?;
             saved.push(within(part));
         }
@@ -763,10 +789,8 @@ impl Job {
             folder.target(&within(&name))?;
             saved.push(within(&name));
         }
-        let parts = self.parts.iter().map(|(file, (lines, _))| (&**file, lines.text()));
-        let parts: Vec<(&str, &[u8])> = parts.collect();
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
-        let text = self.program.text();
+        let text = self.files.program.lines.text();
         let own: Vec<&str> = parts.iter().map(|(file, _)| *file).collect();
         let left = files::parts_left(&target, &own).map(|found| found.file(path).into());
         files::save_program(&target, text, &parts, self.report.as_deref(), &inputs)?;
@@ -832,43 +856,61 @@ fn compared(
     source: &Source,
     options: &Options,
     machine: &Machine,
-    (file, text, folders): (&str, Vec<u8>, Folders),
+    (file, given): (&str, Existing),
     watch: &dyn Watch,
 ) -> Result<Made, Stop> {
-    if encoding::is_utf_16(&text) {
+    if encoding::is_utf_16(&given.text) {
         return Err(encoding::utf_16().file(file).into());
     }
     let toolpath = toolpath_of(source, options, machine, watch)?;
-    let program = (file, encoding::without_mark(&text), &folders);
+    let folders = called_from(machine, &given);
+    let program = (file, encoding::without_mark(&given.text), &folders);
     let account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
-    let report = report_of(&account, &text, &folders, &toolpath, machine)?;
-    let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
+    let (text, parts) = called(&account, given, &folders);
+    let report = report_of(&account, &text, &parts, &toolpath, machine);
+    let (origins, widths) = (Origins::default(), Vec::new());
     Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
 }
 
-/// Where programs are looked for that a program calls: a robot has them beside it.
-fn called_from(machine: &Machine, folders: Vec<PathBuf>) -> Folders {
-    Folders::from(if machine.arm.is_some() { folders } else { Vec::new() })
+/// Where programs are looked for that a program calls: those of a robot are its own, or lie beside it.
+pub(crate) fn called_from(machine: &Machine, given: &Existing) -> Folders {
+    if machine.arm.is_none() {
+        return Folders::default();
+    }
+    Folders::from(given.folders.clone()).with_texts(given.called.clone()).keeping()
 }
 
-/// The report that is saved with a program that was proven and not written.
-///
-/// # Errors
-/// A file that it calls can no longer be read.
+/// A program, and the files that it has called; where it is not proven also those that it was given: nobody knows what it would have called.
+pub(crate) fn called(
+    account: &Account,
+    given: Existing,
+    folders: &Folders,
+) -> (Vec<u8>, Vec<Part>) {
+    let mut called = folders.take_kept();
+    if account.verdict != Verdict::Done {
+        for (file, text) in given.called {
+            called.entry(file).or_insert(text);
+        }
+    }
+    let part = |(file, text)| Part { file, text, origins: Origins::default() };
+    (given.text, called.into_iter().map(part).collect())
+}
+
+/// The report that is saved with a program that was proven and not written, and the files that it calls, in the order of their names.
 pub(crate) fn report_of(
     account: &Account,
     text: &[u8],
-    folders: &Folders,
+    parts: &[Part],
     toolpath: &Toolpath,
     machine: &Machine,
-) -> Result<Option<String>, Stop> {
+) -> Option<String> {
     if account.verdict != Verdict::Done {
-        return Ok(None);
+        return None;
     }
-    let called = report::called(folders)?;
-    let called: Vec<&[u8]> = called.iter().map(Vec::as_slice).collect();
-    let digests = Digests::of(text, &called, toolpath, machine);
-    Ok(Some(report::of_proven(account, &digests)))
+    let texts: Vec<&[u8]> = parts.iter().map(|part| &part.text[..]).collect();
+    let digests = Digests::of(text, &texts, toolpath, machine);
+    let parts = parts.iter().map(|part| (&*part.file, &part.text[..]));
+    Some(report::of_proven(account, parts, &digests))
 }
 
 /// Proves a program of a wire that was edited.
@@ -888,7 +930,7 @@ fn recut(
     let (strict, owned) = (*strict, machine.clone());
     let (toolpath, account) =
         wire::prove(source, strict, origin, owned, settings, read, tolerances, watch)?;
-    let report = report_of(&account, &text, &Folders::default(), &toolpath, machine)?;
+    let report = report_of(&account, &text, &[], &toolpath, machine);
     let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
     Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
 }

@@ -27,6 +27,7 @@
 pub mod ask;
 pub mod board;
 pub mod drawing;
+mod edit;
 pub mod folder;
 pub mod geometry;
 pub mod glass;

@@ -434,7 +434,7 @@ file: string | null, };
 
 /**
  * `prove { source, machine, options, program }`, or with the array `text` in place of `program`: proves a program, also one that was edited by
- * hand. Answered by a [`Job`].
+ * hand. With `revision` it is an edit of that job's program: its other files are those of the job, and none is looked for in a folder. Answered by a [`Job`].
  */
 export type ProveParams = { 
 /**
@@ -456,7 +456,16 @@ file: string | null,
 /**
  * The program, where it is no edited text.
  */
-program: FileOrUpload | null, };
+program: FileOrUpload | null, 
+/**
+ * The job whose program was edited, where that is still open.
+ */
+revision: number | null, 
+/**
+ * The files of its program that were edited, null for the program itself: they stand one behind the other in `text`, each with so many
+ * bytes. Left out: `text` is the program itself.
+ */
+files?: Array<[string | null, number]>, };
 
 /**
  * A program with its verdict and its moves.

@@ -10,14 +10,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Largest called program, bytes.
 const LARGEST: u64 = 64 << 20;
 
+/// Programs by the names of their files.
+type Texts = BTreeMap<String, Vec<u8>>;
+
 /// Folders in which called programs are looked for, in this order. Nothing outside them is opened.
 #[derive(Clone, Debug, Default)]
 pub struct Folders {
     /// Programs that are in no folder yet, by the names of their files: they are found first.
-    texts: Arc<BTreeMap<String, Vec<u8>>>,
+    texts: Arc<Texts>,
     paths: Vec<PathBuf>,
     /// The files that have been read; clones have it in common.
     read: Arc<Mutex<BTreeSet<PathBuf>>>,
+    /// Where they are kept, the texts of all programs that were called; clones have them in common.
+    kept: Option<Arc<Mutex<Texts>>>,
 }
 
 impl PartialEq for Folders {
@@ -32,8 +37,8 @@ impl From<Vec<PathBuf>> for Folders {
     }
 }
 
-impl From<BTreeMap<String, Vec<u8>>> for Folders {
-    fn from(texts: BTreeMap<String, Vec<u8>>) -> Folders {
+impl From<Texts> for Folders {
+    fn from(texts: Texts) -> Folders {
         Folders::default().with_texts(texts)
     }
 }
@@ -41,9 +46,31 @@ impl From<BTreeMap<String, Vec<u8>>> for Folders {
 impl Folders {
     /// The same, with programs that are in no folder yet, by the names of their files: they are found first.
     #[must_use]
-    pub fn with_texts(mut self, texts: BTreeMap<String, Vec<u8>>) -> Folders {
+    pub fn with_texts(mut self, texts: Texts) -> Folders {
         self.texts = Arc::new(texts);
         self
+    }
+
+    /// The same, which keeps the text of each program that is called.
+    #[must_use]
+    pub fn keeping(mut self) -> Folders {
+        self.kept = Some(Arc::default());
+        self
+    }
+
+    /// The texts that were kept, by the names of their files: what the controls that were set up with clones of it have read.
+    pub fn take_kept(&self) -> BTreeMap<String, Vec<u8>> {
+        let kept =
+            self.kept.as_ref().map(|kept| kept.lock().unwrap_or_else(PoisonError::into_inner));
+        kept.map(|mut kept| std::mem::take(&mut *kept)).unwrap_or_default()
+    }
+
+    /// Keeps the text of a program that is called, where that is asked for.
+    fn keep(&self, name: &str, text: &[u8]) {
+        if let Some(kept) = &self.kept {
+            let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.entry(name.to_owned()).or_insert_with(|| text.to_vec());
+        }
     }
 
     /// The files that have been read from them, by any of the controls that were set up with clones of it.
@@ -79,9 +106,11 @@ impl Folders {
     /// What to say where there is none, or it cannot be read.
     pub fn open(&self, name: &str) -> Result<Vec<u8>, String> {
         if let Some(text) = self.texts.get(name) {
+            self.keep(name, text);
             return Ok(text.clone());
         }
         let (path, text) = open(&self.paths, name)?;
+        self.keep(name, &text);
         self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
         Ok(text)
     }

@@ -1,6 +1,6 @@
 //! What the asks are answered.
 
-use super::run::{self, Order};
+use super::run::{self, Order, Program};
 use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
@@ -92,17 +92,26 @@ pub fn answer(
         }
         "post" => {
             let PostParams { source, machine, options, file } = read(params)?;
-            let order = Order { source, machine, options, file, program: None, text: None };
+            let order = Order { source, machine, options, file, program: Program::Posted };
             made(studio, order, work)
         }
         "prove" => {
-            let ProveParams { source, machine, options, file, program } = read(params)?;
-            let text = match (&program, frame.take_text("text")) {
-                (None, Some(text)) => text,
-                (Some(program), None) => studio.source(program)?.read()?,
-                _ => return Err(wrong("a program is proven by `program`, or by the array `text`")),
+            let ProveParams { source, machine, options, file, program, revision, files } =
+                read(params)?;
+            let program = match (program, frame.take_text("text"), revision) {
+                (None, Some(text), Some(revision)) => Program::Edited { text, revision, files },
+                (None, Some(text), None) if files.is_empty() => Program::Text(text),
+                (Some(program), None, None) if files.is_empty() => {
+                    let text = studio.source(&program)?.read()?;
+                    Program::There(program, text)
+                }
+                _ => {
+                    return Err(wrong(
+                        "a program is proven by `program`, or by the array `text`, also as an edit of a `revision` and its `files`",
+                    ));
+                }
             };
-            let order = Order { source, machine, options, file, program, text: Some(text) };
+            let order = Order { source, machine, options, file, program };
             made(studio, order, work)
         }
         "job" => {

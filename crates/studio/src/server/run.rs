@@ -3,6 +3,7 @@
 use super::Studio;
 use crate::ask::{Command, FileOrUpload, Given};
 use crate::drawing::Piece;
+use crate::edit::Existing;
 use crate::job::{Asked, Ended, Job, Waits};
 use app::Stop;
 use std::panic::resume_unwind;
@@ -29,10 +30,28 @@ pub struct Order {
     pub options: Vec<(String, String)>,
     /// Name of the program's file.
     pub file: Option<String>,
-    /// The program that is proven, where it is no edited text.
-    pub program: Option<FileOrUpload>,
-    /// What is proven; otherwise it is posted.
-    pub text: Option<Vec<u8>>,
+    /// What is proven.
+    pub program: Program,
+}
+
+/// What is proven.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// What is posted.
+    Posted,
+    /// A program that is there, and its text.
+    There(FileOrUpload, Vec<u8>),
+    /// A text.
+    Text(Vec<u8>),
+    /// An edit of files of the program of a job.
+    Edited {
+        /// Their texts, one behind the other.
+        text: Vec<u8>,
+        /// The job.
+        revision: u64,
+        /// Their names, none for the program itself, and how many bytes of the text each has; none: the program itself is all of it.
+        files: Vec<(Option<String>, u64)>,
+    },
 }
 
 /// What a run tells.
@@ -170,8 +189,8 @@ impl First {
         let (Some(source), Some(machine)) = (studio.source.clone(), studio.machine.clone()) else {
             return;
         };
-        let (options, file, program, text) = (Vec::new(), None, None, None);
-        let order = Order { source, machine, options, file, program, text };
+        let (options, file, program) = (Vec::new(), None, Program::Posted);
+        let order = Order { source, machine, options, file, program };
         let since = SystemTime::now();
         let run = Run::begin(studio, order.clone(), &Ended::default());
         *studio.first() = Some(First { order, run, since });
@@ -257,31 +276,40 @@ pub fn made(
 
 /// Does the work.
 fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Result<Vec<Job>, Stop> {
-    let Order { source, machine, options, file, program, text } = order;
-    let within = |file: &FileOrUpload| match file {
-        FileOrUpload::File(path) => studio.folder.target(path).ok(),
-        FileOrUpload::Upload(_) => None,
-    };
+    let Order { source, machine, options, file, program } = order;
     let more = match &source {
         board if studio.command(board, None)? == Command::Pcb => studio.more(board, &options)?,
         _ => None,
     };
     let (source, mut inputs) = studio.sources(&source)?;
-    inputs.extend(program.as_ref().and_then(within));
-    let called = program.as_ref().and_then(within);
-    let called = called.and_then(|path| Some(path.parent()?.to_owned()));
-    // A program of the folder keeps its name.
-    let named = match &program {
-        Some(FileOrUpload::File(path)) => path.rsplit('/').next().map(str::to_owned),
-        Some(FileOrUpload::Upload(_)) | None => None,
+    let (named, program) = match program {
+        Program::Posted => (None, None),
+        Program::Text(text) => (None, Some(Existing::new(text, Vec::new()))),
+        Program::There(FileOrUpload::Upload(_), text) => {
+            (None, Some(Existing::new(text, Vec::new())))
+        }
+        // A program of the folder keeps its name, and calls what lies beside it.
+        Program::There(FileOrUpload::File(path), text) => {
+            let within = studio.folder.target(&path).ok();
+            let beside = within.as_deref().and_then(Path::parent).map(Path::to_owned);
+            inputs.extend(within);
+            let name = path.rsplit('/').next().map(str::to_owned);
+            (name, Some(Existing::new(text, beside.into_iter().collect())))
+        }
+        Program::Edited { text, revision, mut files } => {
+            let of = studio.jobs.find(revision)?;
+            if files.is_empty() {
+                files.push((None, text.len() as u64));
+            }
+            (Some(of.file().to_owned()), Some(Existing::edited(of, &files, &text)?))
+        }
     };
     let asked = Asked {
         source,
         machine: &machine,
         options: &|command| studio.options(command, &options, more.as_ref()),
         file: file.or(named),
-        program: text,
-        folders: called.into_iter().collect(),
+        program,
         inputs,
     };
     Job::make(asked, &studio.folder, waits, ended)

@@ -6,4 +6,5 @@ mod client;
 mod closed;
 mod glass;
 mod jobs;
+mod parts;
 mod process;
