@@ -34,11 +34,14 @@ export function commandOf(commands: Command[], key: string, inView: boolean): Co
     return commands.find(({ keys, view }) => keys?.includes(key) === true && (inView || view !== true));
 }
 
-/** Every word of the search is somewhere in the title. */
-export function matching<T>(all: T[], search: string, text: (one: T) => string): T[] {
-    const words = search.toLowerCase().split(/\s+/).filter(Boolean);
-    return all.filter((one) => {
-        const within = text(one).toLowerCase();
-        return words.every((word) => within.includes(word));
-    });
+/** Those of which every word of the search is somewhere in the text. That which begins with the search comes first, most of all where its first word ends with it. */
+export function matching<T>(all: T[], search: string, textOf: (one: T) => string): T[] {
+    const whole = search.toLowerCase().trim();
+    const words = whole.split(/\s+/).filter(Boolean);
+    const rank = (text: string): number => (`${text} `.startsWith(`${whole} `) ? 0 : text.startsWith(whole) ? 1 : 2);
+    return all
+        .map((one) => ({ one, text: textOf(one).toLowerCase() }))
+        .filter(({ text }) => words.every((word) => text.includes(word)))
+        .toSorted((a, b) => (whole === "" ? 0 : rank(a.text) - rank(b.text)))
+        .map(({ one }) => one);
 }

@@ -31,5 +31,7 @@ test("a finding's way out leads to the options that it names", () => {
 
 test("a search finds what has all its words, in any order", () => {
     expect(matching(["DMU 50, HEIDENHAIN", "Fanuc table B C"], "heiden dmu", (text) => text)).toEqual(["DMU 50, HEIDENHAIN"]);
-    expect(matching(["a"], "", (text) => text)).toEqual(["a"]);
+    expect(matching(["b", "a"], "", (text) => text)).toEqual(["b", "a"]);
+    // What somebody types whole is what Enter takes.
+    expect(matching(["mill-xyz-head", "old mill-xyz", "mill-xyz big", "mill-xyz"], "mill-xyz", (text) => text)).toEqual(["mill-xyz big", "mill-xyz", "mill-xyz-head", "old mill-xyz"]);
 });

@@ -1,6 +1,6 @@
 import { counted } from "../numbers.ts";
 import type { Finding, Severity } from "../protocol/asks.ts";
-import type { Screen } from "../screen/screen.ts";
+import { placesOf, type Screen } from "../screen/screen.ts";
 
 /** A shape beside the colour. */
 const marks: Record<Severity, string> = { error: "✗", warning: "▲" };
@@ -14,7 +14,7 @@ export function Findings({ screen }: { screen: Screen }) {
     return (
         <ol class="findings">
             {findings.value.slice(0, SHOWN).map((finding, number) => (
-                <Row key={number} screen={screen} finding={finding} lit={number === screen.finding.value} lead={() => screen.toFinding(number)} />
+                <Row key={number} screen={screen} finding={finding} number={number} />
             ))}
             {findings.value.length > SHOWN && <li class="soft">and {counted(findings.value.length - SHOWN)} more</li>}
         </ol>
@@ -27,17 +27,37 @@ export function optionsIn(help: string, form: { name: string }[]): string[] {
     return form.map(({ name }) => name).filter((name) => named.has(name));
 }
 
-function Row({ screen, finding, lit, lead }: { screen: Screen; finding: Finding; lit: boolean; lead(): void }) {
+/** The places of a finding that stands for several, one after the other. */
+function Places({ screen, finding, number }: { screen: Screen; finding: Finding; number: number }) {
+    const places = placesOf(finding);
+    if (places.length < 2) return null;
+    const isLit = number === screen.finding.value;
+    const at = isLit ? screen.findingPlace.value : -1;
+    return (
+        <div class="steps">
+            <button type="button" class="small" title="Previous place (Shift F8)" aria-label="Previous place of this finding" onClick={() => screen.toFinding(number, at - 1)}>
+                ‹
+            </button>
+            <span aria-live={isLit ? "polite" : "off"}>{isLit ? `line ${counted(places[at]!)}: ${counted(at + 1)} of ${counted(places.length)} places` : `${counted(places.length)} places`}</span>
+            <button type="button" class="small" title="Next place (F8)" aria-label="Next place of this finding" onClick={() => screen.toFinding(number, at + 1)}>
+                ›
+            </button>
+        </div>
+    );
+}
+
+function Row({ screen, finding, number }: { screen: Screen; finding: Finding; number: number }) {
     const place = [finding.file, finding.line, finding.column].filter(Boolean).join(":");
     return (
-        <li aria-current={lit}>
-            <button type="button" onClick={lead}>
+        <li aria-current={number === screen.finding.value}>
+            <button type="button" onClick={() => screen.toFinding(number)}>
                 <strong class={finding.severity}>
                     {marks[finding.severity]} {finding.severity}
                 </strong>{" "}
                 {finding.message} {finding.count > 1 && <b>({counted(finding.count)} times)</b>} <span class="soft">[{finding.rule}]</span>
                 {place !== "" && <span class="code soft"> {place}</span>}
             </button>
+            <Places screen={screen} finding={finding} number={number} />
             {finding.excerpt && <div class="code">{finding.excerpt}</div>}
             {finding.help && (
                 <div class="soft">

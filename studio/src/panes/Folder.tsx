@@ -38,7 +38,7 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
                       },
                   },
               ];
-    const choices = entries.value.map(({ name, path: to, kind, bytes }) => ({
+    const choices = entries.value.filter(({ name }) => !isReport(name)).map(({ name, path: to, kind, bytes }) => ({
         name: to,
         title: kind === "folder" ? `${name}/` : name,
         more: bytes === null ? "" : size(bytes),
@@ -70,6 +70,9 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
         </>
     );
 }
+
+/** What was found out about a program is neither a source nor a program. */
+const isReport = (name: string): boolean => name.endsWith(".report.json");
 
 export function size(bytes: number): string {
     if (bytes < 1000) return `${bytes} B`;

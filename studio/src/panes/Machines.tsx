@@ -1,10 +1,14 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import type { Command } from "../protocol/asks.ts";
+import type { Command, MachineEntry } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { Choose } from "./Choose.tsx";
 
-/** The machines: for a body those that engrave inside glass, since no other can take it. */
+/** Whether a machine of this kind is one for the source. */
+export const fits = (kind: string, command: Command | null): boolean =>
+    command === null || (command === "glass" || command === "wire" ? kind === command : kind !== "glass" && kind !== "wire");
+
+/** The machines, of which those come first that can take the source. */
 export function Machines({ screen, close }: { screen: Screen; close(): void }) {
     const { studio } = screen;
     const command = useSignal<Command | null>(null);
@@ -13,7 +17,8 @@ export function Machines({ screen, close }: { screen: Screen; close(): void }) {
         // What cannot be read says so when it is posted.
         if (source !== undefined) void studio.seam.ask("command", { source, machine: null }).then(({ done }) => (command.value = done), () => {});
     }, []);
-    const machines = studio.machines.value.filter(({ kind }) => command.value !== "glass" || kind === "glass");
+    const rank = ({ kind }: MachineEntry): number => (fits(kind, command.value) ? 0 : 1);
+    const machines = studio.machines.value.toSorted((a, b) => rank(a) - rank(b));
     return (
         <Choose
             label="Search the machines"
@@ -21,7 +26,7 @@ export function Machines({ screen, close }: { screen: Screen; close(): void }) {
             choices={machines.map((machine) => ({
                 name: machine.name,
                 title: `${machine.name}: ${machine.title}`,
-                more: `${machine.control}, ${machine.axes.join(" ")}`,
+                more: fits(machine.kind, command.value) ? `${machine.control}, ${machine.axes.join(" ")}` : "not for this source",
                 run: () => void studio.choose(machine.name),
             }))}
         />

@@ -81,7 +81,7 @@ function Row({ field, values, set }: Props) {
             </label>
             <Input id={id} field={field} values={values} set={set} />
             <div class="soft" id={`${id}-help`}>
-                {field.help}
+                {field.help.replace(/[^.]$/, "$&.")}
                 {field.repeats && " One a line."}
             </div>
         </div>

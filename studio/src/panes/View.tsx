@@ -3,6 +3,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { counted, rounded } from "../numbers.ts";
 import { axisOf, vector, type Screen } from "../screen/screen.ts";
 import type { Job } from "../protocol/asks.ts";
+import type { Studio } from "../studio.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
 import { Viewer } from "../view/viewer.ts";
@@ -144,10 +145,16 @@ function Proving({ screen }: { screen: Screen }) {
     );
 }
 
+function whyEmpty({ work, findings }: Studio): string {
+    if (work.value === null) return "Drop a toolpath here (CL data, or an NC program), the files of a circuit board, or bodies to engrave inside glass.";
+    if (work.value.machine === null) return "There is no program yet: choose the machine that it is for.";
+    return findings.value.length === 0 ? "There is no program." : "There is no program: see the findings below.";
+}
+
 function Empty({ screen }: { screen: Screen }) {
     return (
         <div class="empty">
-            <p>{screen.studio.work.value === null ? "Drop a toolpath here (CL data, or an NC program), the files of a circuit board, or bodies to engrave inside glass." : "There is no program: see the findings below."}</p>
+            <p>{whyEmpty(screen.studio)}</p>
             <p>
                 <button type="button" onClick={() => (screen.dialog.value = "source")}>
                     Open a file…

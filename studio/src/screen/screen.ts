@@ -3,7 +3,7 @@
 import { computed, effect, signal, untracked, type Signal } from "@preact/signals";
 import { Together } from "../newest.ts";
 import { Player } from "../player.ts";
-import type { Job, Place, ToolUse } from "../protocol/asks.ts";
+import type { Finding, Job, Place, ToolUse } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Blocks } from "../view/blocks.ts";
@@ -22,6 +22,9 @@ import type { Drawing, Viewer } from "../view/viewer.ts";
 
 export type Dialog = "commands" | "keys" | "machine" | "source" | "program" | "options" | "save" | "go" | "find";
 export type Tab = "findings" | "verdict" | "plots";
+
+/** The lines of all that a finding stands for. */
+export const placesOf = ({ line, places }: Pick<Finding, "line" | "places">): number[] => (line === 0 ? [] : [line, ...places.filter((other) => other !== line)]);
 
 /** A point of which nobody knows a coordinate is none. */
 export function vector(coordinates: (number | null)[]): Vector | null {
@@ -49,8 +52,9 @@ export class Screen {
     readonly searched: Signal<"program" | "source"> = signal("program");
     readonly reading = new Together();
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
-    /** Number of the finding that was led to last. */
+    /** Number of the finding that was led to last, and of its place among those of that finding. */
     readonly finding: Signal<number> = signal(-1);
+    readonly findingPlace: Signal<number> = signal(0);
     readonly player: Player;
 
     readonly mode: Signal<Mode> = signal("kind");
@@ -218,6 +222,8 @@ export class Screen {
         const { job } = this.studio;
         const at = vector(tip);
         if (at === null || job.value === null) return null;
+        // Of a laser the focus is marked: it has no body.
+        if (job.value.machine.kind === "glass") return null;
         const wire = this.wireOf(job.value);
         return wire === null ? toolBody(this.toolOf(tool), at, axisOf(axis), size) : wireBody(at, axisOf(axis), wire, 1.5 * pixel);
     }
@@ -255,17 +261,30 @@ export class Screen {
         return { low: of(Math.min, low, round.low), high: of(Math.max, [high[0], high[1], high[2] + wire], round.high) };
     }
 
-    /** Leads to the finding's place, in every pane. */
-    toFinding(number: number): void {
+    /** Leads to a place of a finding, in every pane. */
+    toFinding(number: number, which = 0): void {
         const { findings, job, cursor } = this.studio;
-        const count = findings.value.length;
-        if (count === 0) return;
-        this.finding.value = (number + count) % count;
+        const found = findings.value[number];
+        if (found === undefined) return;
+        const places = placesOf(found);
+        const at = (which + places.length) % Math.max(1, places.length);
+        this.finding.value = number;
+        this.findingPlace.value = at;
         this.tab.value = "findings";
-        const { of, line, file } = findings.value[this.finding.value]!;
-        if (line === 0 || job.value === null) return;
-        if (of === "source") void cursor.to({ by: "source", value: line });
-        else if (of === "program") void cursor.to({ by: "block", value: line, file: file === job.value.program?.file ? null : file });
+        const line = places[at];
+        if (line === undefined || job.value === null) return;
+        if (found.of === "source") void cursor.to({ by: "source", value: line });
+        else if (found.of === "program") void cursor.to({ by: "block", value: line, file: found.file === job.value.program?.file ? null : found.file });
+    }
+
+    /** All places of all findings in turn. */
+    nextFinding(step: 1 | -1): void {
+        const findings = this.studio.findings.value;
+        const [at, which] = [this.finding.value, this.findingPlace.value + step];
+        const here = findings[at];
+        if (here !== undefined && which >= 0 && which < placesOf(here).length) return this.toFinding(at, which);
+        const next = (Math.max(at, step === 1 ? -1 : 0) + step + findings.length) % Math.max(1, findings.length);
+        this.toFinding(next, step === 1 ? 0 : -1);
     }
 
     /** The dialog; where nothing can be saved, why. */
