@@ -9,12 +9,11 @@ import { TextPane } from "./panes/TextPane.tsx";
 import { Timeline } from "./panes/Timeline.tsx";
 import { View } from "./panes/View.tsx";
 import { commandsOf } from "./screen/commands.ts";
-import { Screen } from "./screen/screen.ts";
-import type { Studio } from "./studio.ts";
+import type { Screen } from "./screen/screen.ts";
 
 /** The whole window: its panes, and the keys. */
-export function Page({ studio }: { studio: Studio }) {
-    const screen = useMemo(() => new Screen(studio), [studio]);
+export function Page({ screen }: { screen: Screen }) {
+    const { studio } = screen;
     const sizes = useSignal({ program: Math.min(300, innerWidth * 0.24), source: Math.min(300, innerWidth * 0.22), low: Math.min(200, innerHeight * 0.28) });
     const commands = useMemo(() => commandsOf(screen), [screen]);
 

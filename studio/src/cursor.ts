@@ -21,6 +21,8 @@ export class Cursor {
     private steps: Promise<void> = Promise.resolve();
     /** Of which job the place is. */
     private revision = 0;
+    /** Where to begin, when there is a job. */
+    first: Where | null = null;
 
     constructor(
         private readonly seam: Seam,
@@ -77,8 +79,12 @@ export class Cursor {
     private again(job: Job | null): void {
         const place = this.place.value;
         const walk = job?.walk ?? null;
+        const { first } = this;
         if (walk === null || walk.moves === 0) {
             this.place.value = null;
+        } else if (first !== null) {
+            this.first = null;
+            void this.to(first);
         } else if (place?.source) {
             void this.to({ by: "source", value: place.source.line });
         } else {

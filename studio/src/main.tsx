@@ -2,15 +2,21 @@ import { effect, signal } from "@preact/signals";
 import { render } from "preact";
 import { Page } from "./Page.tsx";
 import { Socket, Stopped, type State } from "./protocol/seam.ts";
-import { rememberedWork, rememberWork } from "./protocol/session.ts";
-import { keepToken, token } from "./protocol/token.ts";
+import { leave, rememberedWork, rememberWork, takeLeft } from "./protocol/session.ts";
+import { givenToken, keepToken, token } from "./protocol/token.ts";
+import { Screen } from "./screen/screen.ts";
 import { Studio } from "./studio.ts";
 
 const { token: given, isNew } = token();
 const link = signal<State>("connecting");
-const studio = new Studio(new Socket(given, (state) => (link.value = state)), link);
+const socket = new Socket(given, (state) => (link.value = state));
+const studio = new Studio(socket, link);
+const screen = new Screen(studio);
 // A link that is opened anew shows what its command names.
-if (!isNew) studio.work.value = rememberedWork();
+if (!isNew) {
+    studio.work.value = rememberedWork();
+    screen.resume(takeLeft());
+}
 effect(() => {
     if (link.value === "open") void studio.begin();
 });
@@ -19,10 +25,22 @@ setTimeout(() => {
     if (isNew) keepToken(given);
     effect(() => rememberWork(studio.work.value));
 }, 100);
+// A link that is pasted into this tab is of a server that has taken the place of the one before: the page goes on with it.
+addEventListener("hashchange", () => {
+    const other = givenToken();
+    if (other === null) return;
+    keepToken(other);
+    socket.renew(other);
+});
+addEventListener("pagehide", () => leave(screen.left));
+addEventListener("beforeunload", (event) => {
+    // A reload finds it again, but neither another page nor another server does.
+    if (studio.unkept !== null) event.preventDefault();
+});
 // What the server refuses to a pane that has not asked why is shown with the findings.
 addEventListener("unhandledrejection", (event) => {
     if (!(event.reason instanceof Stopped)) return;
     event.preventDefault();
     if (event.reason.verdict !== "cancelled") studio.stopped.value = event.reason.findings;
 });
-render(<Page studio={studio} />, document.querySelector("#page")!);
+render(<Page screen={screen} />, document.querySelector("#page")!);

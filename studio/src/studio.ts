@@ -2,9 +2,11 @@
 
 import { batch, computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
+import { Newest } from "./newest.ts";
 import type { Arrays } from "./protocol/frames.ts";
 import { said, Stopped, type Asking, type Progress, type Seam, type State } from "./protocol/seam.ts";
 import type { BoardAbout, Command, Draft, Field, Finding, Given, Job, MachineEntry, Opened, Verdict, Walked, Work } from "./protocol/asks.ts";
+import type { Unkept } from "./protocol/session.ts";
 import { Walking } from "./view/walking.ts";
 
 export class Studio {
@@ -37,6 +39,13 @@ export class Studio {
     private shown = "";
     /** Name of the draft that this page keeps its edit under. */
     private kept: string | null = null;
+    /** The edit that the server has said to have kept. */
+    private readonly known: Signal<Studio["edited"]["value"]> = signal(null);
+    private readonly keeping = new Newest<Work>((work) => this.keepEdit(work));
+    /** An edit that was on the page when it was left, until a server has it. */
+    left: Unkept | null = null;
+    /** The edit as it stands is in no draft of a server that is there. */
+    readonly isAlone = computed(() => this.edited.value !== null && (this.link.value !== "open" || this.known.value !== this.edited.value));
     readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
     readonly cursor: Cursor;
     /** A machine has to be chosen before anything can be posted. */
@@ -55,6 +64,7 @@ export class Studio {
     /** After the first connection and after each that was lost: revisions may be others now, so the work is posted again. */
     async begin(): Promise<void> {
         const { done: opened } = await this.seam.ask("open", {});
+        this.known.value = null;
         // What is worked on is asked for first, the lists behind it, without waiting for one another.
         const work = batch(() => {
             this.machine.value ??= this.work.value?.machine ?? opened.machine;
@@ -64,6 +74,7 @@ export class Studio {
             if (this.work.value !== null) return this.post(this.work.value);
             return opened.source === null ? null : this.open(opened.source);
         });
+        if (this.left !== null) await this.offer(this.left);
         this.machines.value = (await this.seam.ask("machines", {})).done;
         await this.askForm();
         await work;
@@ -159,6 +170,8 @@ export class Studio {
         this.edited.value = text;
         this.isCurrent.value = false;
         this.stop.value = null;
+        // No key waits for the proof: what a draft holds is not lost.
+        if (this.work.value !== null) void this.keeping.ask(this.work.value);
         clearTimeout(this.typing);
         this.typing = setTimeout(() => void this.prove(text), 400);
     }
@@ -183,8 +196,8 @@ export class Studio {
         const { source, machine, options, file } = work;
         this.edited.value = text;
         this.isCurrent.value = false;
-        const octets = new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
-        void this.keep(work, octets);
+        const octets = octetsOf(text);
+        if (this.known.value !== text) void this.keeping.ask(work);
         const job = await this.told(async (asking) =>
             (await this.seam.ask("prove", { source, machine, options, file: file ?? null }, { arrays: { text: octets }, ...asking })).done);
         if (job === undefined) return;
@@ -193,19 +206,43 @@ export class Studio {
         this.isCurrent.value = this.edited.value === text;
     }
 
-    /** Keeps the edit as a draft; beside that of another page, where one edits the same program. */
-    private async keep(work: Work, text: Uint8Array): Promise<void> {
+    /** Keeps the edit as it stands; of a long one, which takes its time, not at each key. */
+    private async keepEdit(work: Work): Promise<void> {
+        const edited = this.edited.value;
+        if (edited === null) return;
+        const begun = performance.now();
+        if (await this.keep(work, octetsOf(edited))) this.known.value = edited;
+        await new Promise((resolve) => setTimeout(resolve, Math.min(1000, 3 * (performance.now() - begun))));
+    }
+
+    /** Keeps an edit as a draft; beside that of another page, where one edits the same program. Whether it is kept. */
+    private async keep(work: Work, text: Uint8Array): Promise<boolean> {
         const name = draftName(work);
         for (const own of new Set([this.kept ?? name, name, ...[2, 3, 4, 5].map((number) => `${name}-${number}`)])) {
             this.kept = own;
             try {
                 await this.seam.ask("draft", { name: own, of: work }, { arrays: { text } });
-                return;
+                return true;
             } catch (error) {
-                if (!(error instanceof Stopped) || error.findings[0]?.rule !== OTHER_PAGE) return;
+                if (!(error instanceof Stopped) || error.findings[0]?.rule !== OTHER_PAGE) return false;
                 this.said.value = "another tab edits this program too: both edits are kept";
             }
         }
+        return false;
+    }
+
+    /** The edit, where no server has said to have kept it. */
+    get unkept(): Unkept | null {
+        const { edited, work, isAlone } = this;
+        if (edited.value === null || work.value === null || !isAlone.value) return this.left;
+        return { of: work.value, text: edited.value };
+    }
+
+    /** Gives the server an edit that it has not got, and offers it. */
+    private async offer({ of, text }: Unkept): Promise<void> {
+        if (!(await this.keep(of, octetsOf(text)))) return;
+        this.left = this.kept = null;
+        this.drafts.value = (await this.seam.ask("drafts", {})).done;
     }
 
     private async dropOwn(): Promise<void> {
@@ -312,6 +349,8 @@ function ofProgram(work: Work | null, job: Job | null): Work | null {
     const file = job?.board ? job.program?.file : undefined;
     return work === null || file === undefined ? work : { ...work, file };
 }
+
+const octetsOf = (text: string): Uint8Array => new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
 
 export function draftName({ source, machine, file }: Work): string {
     const name = [...Object.values(source).flat(), ...(file === undefined ? [] : [file])].join("-");

@@ -1,6 +1,7 @@
 import { counted } from "../numbers.ts";
 import type { Screen } from "../screen/screen.ts";
 import type { Job, Verdict, Work } from "../protocol/asks.ts";
+import type { Studio } from "../studio.ts";
 
 const verdicts: Record<Verdict, string> = {
     done: "✓ PROVEN",
@@ -32,6 +33,7 @@ export function Bar({ screen }: { screen: Screen }) {
                 {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} isCurrent={studio.isCurrent.value} />}
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
+            {link.value !== "open" && studio.isAlone.value && <Alone studio={studio} />}
             <span class="soft">{studio.said.value}</span>
             {studio.drafts.value.slice(0, 1).map((draft) => (
                 <span key={draft.name}>
@@ -57,9 +59,28 @@ export function Bar({ screen }: { screen: Screen }) {
 const links = {
     connecting: "connecting…",
     lost: "connection lost; connecting again…",
-    refused: "the link is not of this server: use the link that `toolpost studio` printed last",
+    refused: "the link is not of this server: paste the link that `toolpost studio` printed last into this tab",
     open: "",
 };
+
+/** While there is no server the edit is in this page alone. */
+function Alone({ studio }: { studio: Studio }) {
+    const download = (): void => {
+        const link = document.createElement("a");
+        link.href = URL.createObjectURL(new Blob([studio.unkept?.text ?? ""]));
+        link.download = studio.job.value?.program?.file ?? "program.txt";
+        link.click();
+        setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    };
+    return (
+        <span>
+            ▲ your edit is in this page alone{" "}
+            <button type="button" onClick={download}>
+                Download it
+            </button>
+        </span>
+    );
+}
 
 function Running({ screen }: { screen: Screen }) {
     const { running } = screen.studio;

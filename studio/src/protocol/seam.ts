@@ -62,37 +62,56 @@ export class Socket implements Seam {
     private readonly pending = new Map<number, Pending>();
     private next = 1;
     private socket: WebSocket | null = null;
+    /** The socket that is open, or on its way to be. */
+    private opening: WebSocket | null = null;
+    private again: ReturnType<typeof setTimeout> | undefined;
     private waits = 250;
 
     constructor(
-        private readonly token: string,
+        private token: string,
         private readonly tell: (state: State) => void,
         private readonly address = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`,
     ) {
         this.connect();
     }
 
+    /** The token of a server that has taken the place of the one before: connects anew. */
+    renew(token: string): void {
+        this.token = token;
+        this.waits = 250;
+        clearTimeout(this.again);
+        this.opening?.close();
+        this.drop();
+        this.connect();
+    }
+
     private connect(): void {
         this.tell("connecting");
         const socket = new WebSocket(this.address);
+        this.opening = socket;
         socket.binaryType = "arraybuffer";
         socket.addEventListener("open", () => {
+            if (this.opening !== socket) return;
             socket.send(write({ head: { token: this.token }, arrays: {} }));
             this.waits = 250;
             this.socket = socket;
             this.tell("open");
         });
         socket.addEventListener("message", (event) => this.take(read(event.data as ArrayBuffer)));
-        socket.addEventListener("close", (event) => this.closed(event.code));
+        socket.addEventListener("close", (event) => this.opening === socket && this.closed(event.code));
     }
 
-    private closed(code: number): void {
+    private drop(): void {
         this.socket = null;
         for (const pending of this.pending.values()) pending.reject(lost());
         this.pending.clear();
+    }
+
+    private closed(code: number): void {
+        this.drop();
         if (code === WRONG_TOKEN) return this.tell("refused");
         this.tell("lost");
-        setTimeout(() => this.connect(), this.waits);
+        this.again = setTimeout(() => this.connect(), this.waits);
         this.waits = Math.min(this.waits * 2, 4000);
     }
 

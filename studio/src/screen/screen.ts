@@ -4,6 +4,7 @@ import { computed, effect, signal, untracked, type Signal } from "@preact/signal
 import { Together } from "../newest.ts";
 import { Player } from "../player.ts";
 import type { Finding, Job, Place, ToolUse } from "../protocol/asks.ts";
+import type { Left } from "../protocol/session.ts";
 import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Blocks } from "../view/blocks.ts";
@@ -122,6 +123,21 @@ export class Screen {
             const late = setTimeout(end, LATE);
             const stop = isSettled.subscribe((is) => is && requestAnimationFrame(end));
         });
+    }
+
+    /** How the page stands, to be resumed when it is loaded again. */
+    get left(): Left {
+        const { cursor, unkept } = this.studio;
+        const place = cursor.place.value;
+        return { place: place === null ? null : { by: "move", value: place.move }, pace: this.player.pace.value, edit: unkept };
+    }
+
+    /** Goes on as the page was left. */
+    resume(left: Left | null): void {
+        if (left === null) return;
+        this.studio.cursor.first = left.place;
+        this.player.pace.value = left.pace;
+        this.studio.left = left.edit;
     }
 
     /** The scene of a job that is new. */

@@ -167,13 +167,74 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         expect(await page.getByRole("button", { name: "Continue" }).count()).toBe(0);
     });
 
+    const edit = async (page: Page, text: string): Promise<void> => {
+        await page.locator(".program .cm-line").first().click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(text);
+        await page.getByText("▲ edited").waitFor();
+    };
+
+    test("a reload right behind a key loses none, and place and speed are those of before", async () => {
+        const page = await begin();
+        await goTo(page, "m8");
+        await page.getByLabel("Speed of the replay").selectOption({ label: "× 50" });
+        const at = await lit(page, "source");
+        await page.locator(".program .cm-line").nth(1).click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" (last key)");
+        await goTo(page, "m8");
+        page.on("dialog", (dialog) => void dialog.accept());
+        await page.locator(".program .cm-line").nth(1).click();
+        await page.keyboard.press("End");
+        await page.keyboard.type("(!)");
+        await page.reload();
+        await page.getByText("an edit of plate.cls is kept").waitFor();
+        await proven(page);
+        expect(await page.getByLabel("Speed of the replay").inputValue()).toBe("f50");
+        await page.getByRole("button", { name: "Continue" }).click();
+        await page.locator(".program .cm-line", { hasText: "(last key)(!)" }).waitFor();
+        expect(await page.getByRole("button", { name: "Continue" }).count()).toBe(0);
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+        await goTo(page, "m8");
+        await expect.poll(() => lit(page, "source")).toBe(at);
+        await page.reload();
+        await proven(page);
+        await expect.poll(() => lit(page, "source")).toBe(at);
+    });
+
+    test("a server that is killed takes no edit with it: the page asks before it goes, and goes on by the new link", async () => {
+        const first = await Server.start([example("plate.cls")], ["-m", "generic-3axis-fanuc"]);
+        const { page } = await visit(browser, first.link);
+        await proven(page);
+        await page.locator(".program .cm-line.at").waitFor();
+        await edit(page, " (before)");
+        await first.end("SIGKILL");
+        await page.getByText("connection lost").waitFor();
+        await page.keyboard.type("(behind)");
+        await page.getByText("your edit is in this page alone").waitFor();
+        const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Download it" }).click()]);
+        expect(readFileSync(await download.path(), "utf8")).toContain("(before)(behind)");
+        const asked: string[] = [];
+        page.once("dialog", (dialog) => {
+            asked.push(dialog.type());
+            void dialog.dismiss();
+        });
+        await page.reload({ timeout: 1000 }).catch(() => {});
+        expect(asked).toEqual(["beforeunload"]);
+        const port = new URL(first.link).port;
+        const second = await Server.start([example("plate.cls")], ["-m", "generic-3axis-fanuc", "--port", port], first.folder);
+        await page.getByText("the link is not of this server").waitFor();
+        await page.evaluate((link) => location.assign(link), second.link);
+        await page.getByText("the link is not of this server").waitFor({ state: "detached" });
+        await page.getByText(/PROVEN/).waitFor();
+        await page.locator(".program .cm-line", { hasText: "(before)(behind)" }).waitFor();
+        await expect.poll(() => drafts(second).filter((name) => name.endsWith(".text")).map((name) => readFileSync(join(second.folder, ".toolpost/drafts", name), "utf8").includes("(before)(behind)"))).toEqual([true]);
+        expect(page.url()).not.toContain(new URL(second.link).hash.slice(1));
+        await page.close();
+    });
+
     test("two tabs on one source: the second says that another edits it, and both edits are kept", async () => {
-        const edit = async (page: Page, text: string): Promise<void> => {
-            await page.locator(".program .cm-line").first().click();
-            await page.keyboard.press("End");
-            await page.keyboard.type(text);
-            await page.getByText("▲ edited").waitFor();
-        };
         const first = await begin();
         await edit(first, " (first)");
         const drafts = join(server.folder, ".toolpost/drafts");
