@@ -29,14 +29,13 @@ export function Page({ screen }: { screen: Screen }) {
         return () => document.removeEventListener("keydown", press);
     }, [commands]);
 
-    /** A file dropped on the program is a program for the source that is open; any other is a source, and several are those of a board. */
+    /** What is dropped on the program is one for the source that is open; any other file is a source, and several are those of a board. */
     const drop = async (event: DragEvent): Promise<void> => {
         event.preventDefault();
         const files = [...(event.dataTransfer?.files ?? [])];
-        const [file] = files;
-        if (file === undefined) return;
+        if (files.length === 0) return;
         const onProgram = event.target instanceof Element && event.target.closest(".program") !== null;
-        if (onProgram && studio.work.value !== null) await studio.prove(await file.text());
+        if (onProgram && studio.work.value !== null) await studio.proveOther(files);
         else await studio.drop(files);
     };
 

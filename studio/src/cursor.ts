@@ -17,7 +17,9 @@ export class Cursor {
     readonly ofBlock = computed((): Range[] => this.place.value?.block_moves ?? []);
     /** What the place was asked by. */
     readonly by: Signal<Where["by"]> = signal("move");
-    private readonly asked: Newest<Where>;
+    /** The place is that of before, in a job that is new. */
+    isAgain = false;
+    private readonly asked: Newest<{ where: Where; isAgain: boolean }>;
     private steps: Promise<void> = Promise.resolve();
     /** Of which job the place is. */
     private revision = 0;
@@ -28,21 +30,21 @@ export class Cursor {
         private readonly seam: Seam,
         private readonly job: Signal<Job | null>,
     ) {
-        this.asked = new Newest((by) => this.find(by));
+        this.asked = new Newest(({ where, isAgain }) => this.find(where, isAgain));
         effect(() => {
             const now = this.job.value;
             untracked(() => this.again(now));
         });
     }
 
-    to(by: Where): Promise<void> {
-        this.by.value = by.by;
-        return this.asked.ask(by);
+    to(where: Where, isAgain = false): Promise<void> {
+        this.by.value = where.by;
+        return this.asked.ask({ where, isAgain });
     }
 
-    toMove(move: number): Promise<void> {
+    toMove(move: number, isAgain = false): Promise<void> {
         const moves = this.job.value?.walk.moves ?? 0;
-        return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) });
+        return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) }, isAgain);
     }
 
     /** A step from the place that was asked for last, as soon as that is known: of two that come fast none is lost. */
@@ -61,17 +63,18 @@ export class Cursor {
         return this.step(({ block_moves, move }) => neighbour(block_moves, move, by));
     }
 
-    private async find(by: Where): Promise<void> {
+    private async find(by: Where, isAgain: boolean): Promise<void> {
         const job = this.job.value;
         if (job === null || job.walk.moves === 0) return;
         const { done } = await this.seam.ask("place", { ...by, revision: job.revision });
         if (this.job.value?.revision !== job.revision) return;
         if (done === null) {
             // Of another job, and this one does not come so far: its end, which is the first mismatch of a failed proof.
-            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? job.walk.moves - 1);
+            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? job.walk.moves - 1, isAgain);
             return;
         }
         this.revision = job.revision;
+        this.isAgain = isAgain;
         this.place.value = done;
     }
 
@@ -86,9 +89,9 @@ export class Cursor {
             this.first = null;
             void this.to(first);
         } else if (place?.source) {
-            void this.to({ by: "source", value: place.source.line });
+            void this.to({ by: "source", value: place.source.line }, true);
         } else {
-            void this.toMove(place?.move ?? walk.mismatch ?? 0);
+            void this.toMove(place?.move ?? walk.mismatch ?? 0, place !== null);
         }
     }
 }

@@ -5,7 +5,8 @@ import { Cursor } from "./cursor.ts";
 import { Newest } from "./newest.ts";
 import type { Arrays } from "./protocol/frames.ts";
 import { said, Stopped, type Asking, type Progress, type Seam, type State } from "./protocol/seam.ts";
-import type { BoardAbout, Command, Draft, Field, Finding, Given, Job, MachineEntry, Opened, Verdict, Walked, Work } from "./protocol/asks.ts";
+import { readText } from "./protocol/text.ts";
+import type { BoardAbout, Command, Draft, Edit, Field, Finding, Given, Job, MachineEntry, Opened, Verdict, Walked, Work } from "./protocol/asks.ts";
 import type { Unkept } from "./protocol/session.ts";
 import { Walking } from "./view/walking.ts";
 
@@ -30,7 +31,13 @@ export class Studio {
     readonly stopped: Signal<Finding[]> = signal([]);
     readonly said: Signal<string> = signal("");
     /** The program as edited by hand; null while it is as posted. */
-    readonly edited: Signal<string | null> = signal(null);
+    readonly edited: Signal<Edit | null> = signal(null);
+    /** The files of the program as they were posted, as far as they were read. */
+    readonly posted = new Map<string | null, string>();
+    /** Grows with each program that is no edit of the one before. */
+    program = 0;
+    /** The job whose files those are that were not edited; null where no server has it. */
+    private base: number | null = null;
     /** The job is of the program as it stands now. */
     readonly isCurrent: Signal<boolean> = signal(false);
     readonly canSave = computed(() => this.isCurrent.value && (this.job.value?.verdict === "done" || this.job.value?.verdict === "partly"));
@@ -138,11 +145,19 @@ export class Studio {
         const job = await posting;
         batch(() => {
             this.board.value = job?.board ?? null;
+            if (this.edited.value === null) this.isNew(job ?? null);
             this.show(job ?? null);
             this.isCurrent.value = job !== undefined && this.edited.value === null;
         });
         const same = job?.board?.programs.find(({ file, revision }) => file === work.file && revision !== job.revision);
         if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
+    }
+
+    /** The job of a program that is no edit of the one before. */
+    private isNew(job: Job | null): void {
+        this.base = job?.revision ?? null;
+        this.posted.clear();
+        this.program++;
     }
 
     /** A job, in the place of what was walked of it. */
@@ -158,22 +173,26 @@ export class Studio {
         const job = await this.told(async () => (await this.seam.ask("job", { revision })).done);
         if (job === undefined) return;
         clearTimeout(this.typing);
-        this.edited.value = null;
-        this.work.value = ofProgram(this.work.value, job);
-        this.job.value = job;
-        this.isCurrent.value = true;
+        batch(() => {
+            this.edited.value = null;
+            this.work.value = ofProgram(this.work.value, job);
+            this.isNew(job);
+            this.job.value = job;
+            this.isCurrent.value = true;
+        });
     }
 
-    /** The program is being edited: it is proven when the typing rests. */
-    typed(text: string): void {
+    /** A file of the program is being edited: all are proven when the typing rests. */
+    typed(text: string, file: string | null = null): void {
         this.work.value = ofProgram(this.work.value, this.job.value);
-        this.edited.value = text;
+        const edit = new Map(this.edited.value ?? []).set(file, text);
+        this.edited.value = edit;
         this.isCurrent.value = false;
         this.stop.value = null;
         // No key waits for the proof: what a draft holds is not lost.
         if (this.work.value !== null) void this.keeping.ask(this.work.value);
         clearTimeout(this.typing);
-        this.typing = setTimeout(() => void this.prove(text), 400);
+        this.typing = setTimeout(() => void this.prove(edit), 400);
     }
 
     /** Proves a program of the folder against the toolpath that is open. */
@@ -184,26 +203,83 @@ export class Studio {
         const program = { file };
         const job = await this.told(async (asking) => (await this.seam.ask("prove", { source, machine, options, program }, asking)).done);
         if (job === undefined) return;
-        this.edited.value = null;
-        this.show(job);
-        this.isCurrent.value = true;
+        batch(() => {
+            this.edited.value = null;
+            this.isNew(job);
+            this.show(job);
+            this.isCurrent.value = true;
+        });
     }
 
-    /** Proves the program as edited by hand, and keeps it as a draft. */
-    async prove(text: string): Promise<void> {
+    /** Proves a program that is in no folder here: of one of several files each stands for the one of its name. */
+    async proveOther(files: File[]): Promise<void> {
+        const parts = new Set(this.job.value?.parts.map(({ file }) => file));
+        const own = ({ name }: File): string | null => (parts.has(name) ? name : null);
+        const edit = new Map(await Promise.all(files.map(async (file) => [own(file), await file.text()] as const)));
+        if (edit.size === files.length) return this.prove(edit);
+        const names = [...parts].join(", ") || "none";
+        this.stopped.value = [said("program-files", "these are several programs", `give one, with files that it calls (${names})`)];
+    }
+
+    /** Proves the program as edited by hand, all its files together, and keeps the edit as a draft. */
+    async prove(edit: Edit): Promise<void> {
         const work = this.work.value;
         if (work === null || work.machine === null) return;
-        const { source, machine, options, file } = work;
-        this.edited.value = text;
+        this.edited.value = edit;
         this.isCurrent.value = false;
-        const octets = octetsOf(text);
-        if (this.known.value !== text) void this.keeping.ask(work);
-        const job = await this.told(async (asking) =>
-            (await this.seam.ask("prove", { source, machine, options, file: file ?? null }, { arrays: { text: octets }, ...asking })).done);
+        if (this.known.value !== edit) void this.keeping.ask(work);
+        const job = await this.told((asking) => this.judge(work, new Texts(edit), asking));
         if (job === undefined) return;
-        this.show(job);
-        // Somebody may have typed on meanwhile.
-        this.isCurrent.value = this.edited.value === text;
+        batch(() => {
+            this.base = job.revision;
+            this.show(job);
+            // Somebody may have typed on meanwhile.
+            this.isCurrent.value = this.edited.value === edit;
+        });
+    }
+
+    /** The job of an edit of the program. */
+    private async judge(work: Work, { edit, files, octets }: Texts, asking: Asking): Promise<Job> {
+        const { source, options, file = null } = work;
+        const machine = work.machine!;
+        const ask = async (): Promise<Job> => {
+            const of = this.base === null ? {} : { revision: this.base, files };
+            return (await this.seam.ask("prove", { source, machine, options, file, ...of }, { arrays: { text: octets }, ...asking })).done;
+        };
+        if (this.base !== null) {
+            try {
+                return await ask();
+            } catch (error) {
+                if (!isOf(error, NOT_OPEN)) throw error;
+            }
+        }
+        // This server has not, or not any more, what was edited.
+        this.base = null;
+        const posted = await this.seam.ask("post", { source, machine, options }, asking).then(({ done }) => done, (error: unknown) => {
+            // What cannot be posted can have been written by hand.
+            if (edit.size === 1 && edit.has(null) && error instanceof Stopped && error.verdict !== "cancelled") return null;
+            throw error;
+        });
+        if (posted !== null) await this.begun(posted, work, edit, asking);
+        return ask();
+    }
+
+    /** What was posted is that of which there is an edit. */
+    private async begun(first: Job, { source, file }: Work, edit: Edit, { signal }: Asking): Promise<void> {
+        const own = first.board?.programs.find((program) => program.file === file);
+        const job = own === undefined || own.revision === first.revision ? first : (await this.seam.ask("job", { revision: own.revision })).done;
+        const texts = await Promise.all([...edit.keys()].map(async (name) => {
+            const lines = (name === null ? job.program : job.parts.find((part) => part.file === name))?.lines ?? 0;
+            return [name, await readText(this.seam, { revision: job.revision, of: "program", file: name, from: 1, to: lines + 1 })] as const;
+        }));
+        if (signal?.aborted) return;
+        this.shown = JSON.stringify(source);
+        batch(() => {
+            this.isNew(job);
+            for (const [name, text] of texts) this.posted.set(name, text);
+            this.board.value = first.board;
+            this.show(job);
+        });
     }
 
     /** Keeps the edit as it stands; of a long one, which takes its time, not at each key. */
@@ -211,20 +287,22 @@ export class Studio {
         const edited = this.edited.value;
         if (edited === null) return;
         const begun = performance.now();
-        if (await this.keep(work, octetsOf(edited))) this.known.value = edited;
+        if (await this.keep(work, edited)) this.known.value = edited;
         await new Promise((resolve) => setTimeout(resolve, Math.min(1000, 3 * (performance.now() - begun))));
     }
 
     /** Keeps an edit as a draft; beside that of another page, where one edits the same program. Whether it is kept. */
-    private async keep(work: Work, text: Uint8Array): Promise<boolean> {
+    private async keep(work: Work, edit: Edit): Promise<boolean> {
+        const { files, octets } = new Texts(edit);
+        const of: Drafted = files.length === 1 && files[0]![0] === null ? work : { ...work, files };
         const name = draftName(work);
         for (const own of new Set([this.kept ?? name, name, ...[2, 3, 4, 5].map((number) => `${name}-${number}`)])) {
             this.kept = own;
             try {
-                await this.seam.ask("draft", { name: own, of: work }, { arrays: { text } });
+                await this.seam.ask("draft", { name: own, of }, { arrays: { text: octets } });
                 return true;
             } catch (error) {
-                if (!(error instanceof Stopped) || error.findings[0]?.rule !== OTHER_PAGE) return false;
+                if (!isOf(error, OTHER_PAGE)) return false;
                 this.said.value = "another tab edits this program too: both edits are kept";
             }
         }
@@ -235,12 +313,12 @@ export class Studio {
     get unkept(): Unkept | null {
         const { edited, work, isAlone } = this;
         if (edited.value === null || work.value === null || !isAlone.value) return this.left;
-        return { of: work.value, text: edited.value };
+        return { of: work.value, edit: [...edited.value] };
     }
 
     /** Gives the server an edit that it has not got, and offers it. */
-    private async offer({ of, text }: Unkept): Promise<void> {
-        if (!(await this.keep(of, octetsOf(text)))) return;
+    private async offer({ of, edit }: Unkept): Promise<void> {
+        if (!(await this.keep(of, new Map(edit)))) return;
         this.left = this.kept = null;
         this.drafts.value = (await this.seam.ask("drafts", {})).done;
     }
@@ -262,12 +340,15 @@ export class Studio {
     /** Goes on with an edit that was kept. */
     async resume(draft: Draft): Promise<void> {
         const { arrays } = await this.seam.ask("draft_text", { name: draft.name });
-        const text = new TextDecoder().decode(arrays.text as Uint8Array | undefined);
-        this.work.value = draft.of as Work;
+        const { files, ...work } = draft.of as Drafted;
+        clearTimeout(this.typing);
+        this.work.value = work;
         this.kept = draft.name;
-        this.machine.value = this.work.value.machine;
+        this.machine.value = work.machine;
         this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
-        await this.prove(text);
+        // It is an edit of what is posted today.
+        this.base = null;
+        await this.prove(editOf(arrays.text as Uint8Array | undefined, files));
     }
 
     async dropDraft(name: string): Promise<void> {
@@ -344,13 +425,44 @@ export class Studio {
 /** The server's rule where another page keeps a draft of that name. */
 const OTHER_PAGE = "studio-draft";
 
+/** The server's rule where a job is not open any more. */
+const NOT_OPEN = "studio-limit";
+
+const isOf = (error: unknown, rule: string): boolean => error instanceof Stopped && error.findings[0]?.rule === rule;
+
+/** What a draft is of; where more than the program itself was edited, which files, and how many bytes each has. */
+type Drafted = Work & { files?: [string | null, number][] };
+
+/** The texts of an edit one behind the other, as they are sent and kept. */
+class Texts {
+    readonly octets: Uint8Array<ArrayBuffer>;
+    readonly files: [string | null, number][];
+
+    constructor(readonly edit: Edit) {
+        const encoder = new TextEncoder();
+        const texts = [...edit].map(([file, text]) => [file, encoder.encode(text.endsWith("\n") ? text : `${text}\n`)] as const);
+        this.files = texts.map(([file, octets]) => [file, octets.length]);
+        this.octets = new Uint8Array(texts.reduce((sum, [, { length }]) => sum + length, 0));
+        let at = 0;
+        for (const [, octets] of texts) {
+            this.octets.set(octets, at);
+            at += octets.length;
+        }
+    }
+}
+
+/** The edit that was kept so; without a word on files it is of the program itself. */
+function editOf(octets: Uint8Array = new Uint8Array(), files: Drafted["files"] = [[null, octets.length]]): Edit {
+    const decoder = new TextDecoder();
+    let at = 0;
+    return new Map(files.map(([file, length]) => [file, decoder.decode(octets.subarray(at, (at += length)))]));
+}
+
 /** Of a program of a board the work says which it is. */
 function ofProgram(work: Work | null, job: Job | null): Work | null {
     const file = job?.board ? job.program?.file : undefined;
     return work === null || file === undefined ? work : { ...work, file };
 }
-
-const octetsOf = (text: string): Uint8Array => new TextEncoder().encode(text.endsWith("\n") ? text : `${text}\n`);
 
 export function draftName({ source, machine, file }: Work): string {
     const name = [...Object.values(source).flat(), ...(file === undefined ? [] : [file])].join("-");

@@ -13,7 +13,7 @@ const piece = (chunk: number): Parameters<NonNullable<Asking["walked"]>> => [
 ];
 
 /** A server that has answered `post`, and answers `prove` when it is told to. */
-function open(taken: string[] = []) {
+function open(taken: string[] = [], posts = true) {
     const asked: string[] = [];
     const proofs: ((job: object) => void)[] = [];
     let walked: Asking["walked"];
@@ -24,6 +24,7 @@ function open(taken: string[] = []) {
             asked.push(named === undefined ? ask : `${ask} ${named}`);
             if (ask === "draft" && taken.includes(params.name)) return Promise.reject(new Stopped("invalid", [said("studio-draft", "another page has it", "")]));
             walked = asking?.walked ?? walked;
+            if (ask === "post" && !posts) return Promise.reject(new Stopped("failed", [said("posture", "it cannot be posted", "")]));
             if (ask === "post") return Promise.resolve({ done: job(1), arrays: {} });
             if (ask === "prove") return new Promise((resolve) => proofs.push((done) => resolve({ done, arrays: {} })));
             return Promise.resolve({ done: { files: ["a.nc"] }, arrays: {} });
@@ -33,13 +34,16 @@ function open(taken: string[] = []) {
     return { studio, asked, proved: (revision: number) => proofs.shift()!(job(revision)), walk: (chunk: number) => walked!(...piece(chunk)) };
 }
 
+/** An edit of the program itself. */
+const main = (text: string) => new Map([[null, text]]);
+
 const work = { source: { file: "a.cls" }, machine: "mill", options: [] };
 
 test("an edit whose proof runs is neither saved nor called proven, and its proof goes on", async () => {
     const { studio, asked, proved } = open();
     await studio.post(work as never);
     expect(studio.canSave.value).toBe(true);
-    const proof = studio.prove("G0 X1\n");
+    const proof = studio.prove(main("G0 X1\n"));
     expect(await studio.save("a.nc", true)).toBe(false);
     expect(asked.filter((ask) => ask.startsWith("save"))).toEqual([]);
     expect(studio.stopped.value[0]!.rule).toBe("not-proven");
@@ -54,7 +58,7 @@ test("a proof that ends when somebody has typed on is not that of the text on th
     const { studio, proved } = open();
     await studio.post(work as never);
     studio.typed("G0 X1\n");
-    const proof = studio.prove("G0 X1\n");
+    const proof = studio.prove(main("G0 X1\n"));
     studio.typed("G0 X2\n");
     proved(2);
     await proof;
@@ -66,7 +70,7 @@ test("a proof that ends when somebody has typed on is not that of the text on th
 test("an edit of a program that another page edits has a draft of its own, and that is the one that is dropped", async () => {
     const { studio, asked, proved } = open(["a.cls.mill", "a.cls.mill-2"]);
     await studio.post(work as never);
-    const proof = studio.prove("G0 X1\n");
+    const proof = studio.prove(main("G0 X1\n"));
     await settled();
     expect(studio.said.value).toContain("another tab");
     expect(asked.filter((ask) => ask.startsWith("draft"))).toEqual(["draft a.cls.mill", "draft a.cls.mill-2", "draft a.cls.mill-3"]);
@@ -79,9 +83,47 @@ test("an edit of a program that another page edits has a draft of its own, and t
 test("an edit that is discarded before the server has its draft leaves none", async () => {
     const { studio, asked } = open();
     await studio.post(work as never);
-    void studio.prove("G0 X1\n");
+    void studio.prove(main("G0 X1\n"));
     await studio.discard();
     expect(asked.filter((ask) => ask.includes("draft"))).toEqual(["draft a.cls.mill", "drop_draft a.cls.mill"]);
+});
+
+test("an edit of several files is one of what is posted, also after the server has another; its draft says where each begins", async () => {
+    const asked: [string, Record<string, unknown>, string][] = [];
+    let first = 1;
+    const seam = {
+        ask: async (ask: string, params: Record<string, unknown>, asking?: Asking) => {
+            const octets = asking?.arrays?.text as Uint8Array | undefined;
+            if (["post", "prove", "draft"].includes(ask)) asked.push([ask, params, new TextDecoder().decode(octets)]);
+            if (ask === "text") return { done: { to: 3 }, arrays: { text: new TextEncoder().encode("posted\n") } };
+            if (ask === "open") return { done: { machine: null, drafts: [] }, arrays: {} };
+            if (ask === "machines") return { done: [], arrays: {} };
+            if (ask === "draft_text") return { done: {}, arrays: { text: new TextEncoder().encode("ä main\npart\n") } };
+            if (ask === "prove" && Number(params.revision) < first) throw new Stopped("invalid", [said("studio-limit", "not open any more", "")]);
+            const revision = ask === "post" ? first : first + 1;
+            return { done: { revision, verdict: "done", findings: [], program: { file: "a.src", lines: 2 }, parts: [{ file: "a_1.src", lines: 2 }], walk: { moves: 0, mismatch: null } }, arrays: {} };
+        },
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    await studio.post(work as never);
+    const edit = new Map([["a_1.src", "x"], [null, "ö"]]);
+    await studio.prove(edit);
+    const files = [["a_1.src", 2], [null, 3]];
+    const last = (ask: string) => asked.findLast(([name]) => name === ask)!;
+    expect([last("prove")[1].revision, last("prove")[1].files, last("prove")[2]]).toEqual([1, files, "x\nö\n"]);
+    expect([last("draft")[1].of, last("draft")[2]]).toEqual([{ ...work, files }, "x\nö\n"]);
+    // Another server.
+    first = 10;
+    await studio.begin();
+    expect(asked.slice(-3).map(([ask, params]) => [ask, params.revision])).toEqual([["prove", 2], ["post", undefined], ["prove", 10]]);
+    expect([studio.isCurrent.value, studio.edited.value, studio.posted.get("a_1.src")]).toEqual([true, edit, "posted"]);
+    // A draft: the bytes of each file, not its characters.
+    await studio.resume({ name: "d", of: { ...work, files: [[null, 8], ["a_1.src", 5]] }, bytes: 13 });
+    expect([...studio.edited.value!]).toEqual([[null, "ä main\n"], ["a_1.src", "part\n"]]);
+    expect(last("prove")[1]).toMatchObject({ revision: 10, files: [[null, 8], ["a_1.src", 5]] });
+    // Of the program itself, as drafts are without a word on files.
+    await studio.resume({ name: "e", of: work, bytes: 13 });
+    expect([...studio.edited.value!]).toEqual([[null, "ä main\npart\n"]]);
 });
 
 test("what cannot be saved says why", async () => {
@@ -89,14 +131,15 @@ test("what cannot be saved says why", async () => {
     expect(studio.refusal()?.message).toBe("there is no program to save");
     await studio.post(work as never);
     expect(studio.refusal()).toBe(null);
-    void studio.prove("G0 X1\n");
+    void studio.prove(main("G0 X1\n"));
     expect(studio.refusal()?.help).toBe("wait until its proof has passed");
 });
 
 test("what the proof has walked is there until it ends, and nothing of it is proven or saved", async () => {
-    const { studio, proved, walk } = open();
+    const { studio, proved, walk } = open([], false);
     studio.work.value = work as never;
-    const proof = studio.prove("G0 X1\n");
+    const proof = studio.prove(main("G0 X1\n"));
+    await settled();
     walk(0);
     walk(1);
     expect(studio.walking.value?.moves).toBe(8192);
@@ -109,7 +152,7 @@ test("what the proof has walked is there until it ends, and nothing of it is pro
 test("while an edit is proven, the picture of the program before stays", async () => {
     const { studio, walk } = open();
     await studio.post(work as never);
-    void studio.prove("G0 X1\n");
+    void studio.prove(main("G0 X1\n"));
     walk(0);
     expect(studio.walking.value).toBe(null);
 });

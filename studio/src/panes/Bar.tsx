@@ -66,11 +66,13 @@ const links = {
 /** While there is no server the edit is in this page alone. */
 function Alone({ studio }: { studio: Studio }) {
     const download = (): void => {
-        const link = document.createElement("a");
-        link.href = URL.createObjectURL(new Blob([studio.unkept?.text ?? ""]));
-        link.download = studio.job.value?.program?.file ?? "program.txt";
-        link.click();
-        setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+        for (const [file, text] of studio.unkept?.edit ?? []) {
+            const link = document.createElement("a");
+            link.href = URL.createObjectURL(new Blob([text]));
+            link.download = file ?? studio.job.value?.program?.file ?? "program.txt";
+            link.click();
+            setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+        }
     };
     return (
         <span>

@@ -58,7 +58,7 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
                     screen={screen}
                     close={close}
                     take={(file) => void studio.proveFile(file)}
-                    takeOther={([file]) => void file?.text().then((text) => studio.prove(text))}
+                    takeOther={(files) => void studio.proveOther(files)}
                 />
             )}
             {open === "options" && <Options screen={screen} close={close} />}

@@ -6,20 +6,28 @@ export function Find({ screen, close }: { screen: Screen; close(): void }) {
     const { studio, searched } = screen;
     const text = useSignal("");
     const from = useSignal(1);
+    /** Of a program in several files, the one that is searched next. */
+    const file = useSignal(screen.searched.value === "program" ? screen.file.value : null);
     const said = useSignal("");
     const next = async (): Promise<void> => {
         const job = studio.job.value;
         if (job === null || text.value === "") return;
         const of = searched.value;
-        const { done } = await studio.seam.ask("search", { revision: job.revision, of, text: text.value, from: from.value });
-        if (done.line === null) {
-            said.value = from.value > 1 ? "No more; Enter begins at the top." : "Nothing is found.";
+        const files = [null, ...(of === "program" ? job.parts.map((part) => part.file) : [])];
+        // Behind the last line of a file the next one follows.
+        for (let more = files.length; more >= 0; more--) {
+            const { done } = await studio.seam.ask("search", { revision: job.revision, of, file: file.value, text: text.value, from: from.value });
+            if (done.line !== null && (done.line >= from.value || files.length === 1)) {
+                said.value = file.value === null ? `line ${done.line}` : `${file.value}, line ${done.line}`;
+                from.value = done.line + 1;
+                return studio.cursor.to({ by: of === "program" ? "block" : "source", value: done.line, file: file.value });
+            }
+            if (files.length === 1) break;
+            file.value = files[(files.indexOf(file.value) + 1) % files.length]!;
             from.value = 1;
-            return;
         }
-        said.value = `line ${done.line}`;
-        from.value = done.line + 1;
-        await studio.cursor.to({ by: of === "program" ? "block" : "source", value: done.line });
+        said.value = from.value > 1 ? "No more; Enter begins at the top." : "Nothing is found.";
+        from.value = 1;
     };
     return (
         <form
@@ -45,7 +53,9 @@ export function Find({ screen, close }: { screen: Screen; close(): void }) {
                 onClick={() => {
                     const line = from.value - 1;
                     close();
-                    if (line > 0) void screen.editors[searched.value]?.go(line);
+                    if (line === 0) return;
+                    if (searched.value === "program") screen.file.value = file.value;
+                    void screen.editors[searched.value]?.go(line);
                 }}
             >
                 Go there

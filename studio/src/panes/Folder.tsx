@@ -57,7 +57,7 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
                     {takeFolder === undefined ? "A file from elsewhere" : "A file from elsewhere, or those of a board or a block of glass"}{" "}
                     <input
                         type="file"
-                        multiple={takeFolder !== undefined}
+                        multiple
                         onChange={(event) => {
                             const files = [...(event.currentTarget.files ?? [])];
                             close();

@@ -4,6 +4,7 @@ import type { Screen } from "../screen/screen.ts";
 export function Save({ screen, close }: { screen: Screen; close(): void }) {
     const { studio } = screen;
     const board = studio.job.value?.board ?? null;
+    const parts = studio.job.value?.parts.map(({ file }) => file) ?? [];
     const path = useSignal(board === null ? (studio.job.value?.program?.file.replace(/^.*\//, "") ?? "") : `${board.name}-programs`);
     const replace = useSignal(false);
     const why = useSignal<string | null>(null);
@@ -16,7 +17,7 @@ export function Save({ screen, close }: { screen: Screen; close(): void }) {
         <form onSubmit={(event) => void save(event)}>
             <p>
                 <label for="save-path">
-                    {board === null ? "File" : `Folder for ${board.programs.map(({ file }) => file).join(", ")} and the report`}, in {studio.opened.value?.folder}
+                    {board === null ? ["File", ...(parts.length === 0 ? [] : [`with ${parts.join(", ")} beside it`])].join(" ") : `Folder for ${board.programs.map(({ file }) => file).join(", ")} and the report`}, in {studio.opened.value?.folder}
                 </label>
                 <input id="save-path" type="text" value={path.value} onInput={(event) => (path.value = event.currentTarget.value)} />
             </p>

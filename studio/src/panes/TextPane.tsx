@@ -2,14 +2,12 @@ import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Programs } from "./Programs.tsx";
 import type { Screen } from "../screen/screen.ts";
-import type { Of, Shown } from "./editing.ts";
+import type { Of } from "./editing.ts";
 
 /** Program or source. The cursor's line is lit; a line that one clicks becomes the cursor. */
 export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
     const { studio } = screen;
     const host = useRef<HTMLDivElement>(null);
-    /** Of a program in several files, the called one that is shown; null: the program itself. */
-    const file: Shown["file"] = useSignal(null);
     const compared = useSignal(false);
     const text = studio.job.value?.[of] ?? null;
     const parts = of === "program" ? (studio.job.value?.parts ?? []) : [];
@@ -19,7 +17,7 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
         let end: (() => void) | null = () => {};
         // The editor is most of the page, and the picture does not wait for it.
         void screen.settled().then(() => import("./editing.ts")).then(({ keepUp }) => {
-            if (end !== null) end = keepUp(screen, of, host.current!, { file, compared });
+            if (end !== null) end = keepUp(screen, of, host.current!, compared);
         });
         return () => {
             end?.();
@@ -35,19 +33,13 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
                     {title} <span class="soft">{text?.file}</span>
                 </h2>
                 {parts.length > 0 && (
-                    <select aria-label="File of the program" value={file.value ?? ""} onChange={(event) => (file.value = event.currentTarget.value || null)}>
-                        <option value="">{text?.file}</option>
-                        {parts.map((part) => (
-                            <option key={part.file} value={part.file}>
-                                {part.file}
+                    <select aria-label="File of the program" value={screen.file.value ?? ""} onChange={(event) => (screen.file.value = event.currentTarget.value || null)}>
+                        {[null, ...parts.map((part) => part.file)].map((file) => (
+                            <option key={file} value={file ?? ""}>
+                                {stateOf(screen, file)} {file ?? text?.file}
                             </option>
                         ))}
                     </select>
-                )}
-                {parts.length > 0 && (
-                    <span class="soft" title="A program of several files is not edited here: save it, edit its files, and prove them with `toolpost prove`">
-                        read only: several files
-                    </span>
                 )}
                 {of === "program" && <Programs screen={screen} />}
                 {of === "program" && <Turns screen={screen} />}
@@ -67,6 +59,13 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
             {of === "program" && <Template screen={screen} />}
         </section>
     );
+}
+
+/** Whether a file has errors, or was edited. */
+function stateOf({ studio }: Screen, file: string | null): string {
+    const name = file ?? studio.job.value?.program?.file;
+    const isWrong = studio.findings.value.some((finding) => finding.severity === "error" && finding.of === "program" && finding.file === name);
+    return `${isWrong ? "✗" : ""}${studio.edited.value?.has(file) ? "▲" : ""}`;
 }
 
 /** A block that moves often: which of its moves the cursor is at. */

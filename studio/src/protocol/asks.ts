@@ -44,6 +44,9 @@ export interface Work {
     file?: string;
 }
 
+/** The texts of the files that were edited, by their names; null: the program itself. */
+export type Edit = ReadonlyMap<string | null, string>;
+
 /** What may be null may be left out. */
 export type Asked<T> = { [K in keyof T as null extends T[K] ? never : K]: T[K] } & { [K in keyof T as null extends T[K] ? K : never]?: T[K] };
 

@@ -20,7 +20,8 @@ const LEFT = "toolpost-left";
 /** An edit by hand, as it is kept in a draft. */
 export interface Unkept {
     of: Work;
-    text: string;
+    /** The files that were edited, each with its text: [`Edit`] as JSON has it. */
+    edit: [string | null, string][];
 }
 
 /** How a tab was left. */

@@ -53,6 +53,8 @@ export class Screen {
     readonly searched: Signal<"program" | "source"> = signal("program");
     readonly reading = new Together();
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
+    /** Of a program in several files, the called one that is shown; null: the program itself. */
+    readonly file: Signal<string | null> = signal(null);
     /** Number of the finding that was led to last, and of its place among those of that finding. */
     readonly finding: Signal<number> = signal(-1);
     readonly findingPlace: Signal<number> = signal(0);
@@ -326,7 +328,9 @@ export class Screen {
     toText(of: "program" | "source"): void {
         const place = this.studio.cursor.place.value;
         const line = of === "program" ? place?.block : place?.source;
-        if (line) void this.editors[of]?.go(line.line);
+        if (!line) return;
+        if (of === "program") this.file.value = line.file;
+        void this.editors[of]?.go(line.line);
     }
 
     /** The programs of a board in turn. */

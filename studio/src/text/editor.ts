@@ -3,7 +3,7 @@
  * Of a long text it keeps a window of lines, numbered as in the file.
  */
 
-import { defaultKeymap, history, historyKeymap } from "@codemirror/commands";
+import { defaultKeymap, history, historyKeymap, undoDepth } from "@codemirror/commands";
 import { Compartment, EditorState, StateEffect, StateField, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
@@ -18,6 +18,10 @@ const REST_TO_ALL = 100;
 
 /** A text that is somewhere else. */
 export interface Origin {
+    /** Of a program in several files, the called one; null: the text itself. */
+    file: string | null;
+    /** Of which program it is: edits of one have the same. */
+    program: number;
     lines: number;
     family: Family;
     isEditable: boolean;
@@ -25,10 +29,10 @@ export interface Origin {
 }
 
 export interface Listener {
-    picked(line: number): void;
-    edited(text: string): void;
+    picked(line: number, file: string | null): void;
+    edited(text: string, file: string | null): void;
     /** All lines are here. */
-    whole(text: string): void;
+    whole(text: string, file: string | null): void;
 }
 
 /** Lines, from 1: that of the cursor, all that belong to it, those with findings. */
@@ -74,6 +78,9 @@ const look = EditorView.theme({
     ".wrong": { textDecoration: "underline wavy var(--bad)" },
 });
 
+/** Whether both are of one file of the same program. */
+const isOne = (one: Origin, other: Origin | null): boolean => other !== null && one.file === other.file && one.program === other.program;
+
 export class Editor {
     private readonly view: EditorView;
     private readonly extensions: Extension;
@@ -83,6 +90,10 @@ export class Editor {
     private origin: Origin | null = null;
     /** Of which text the lines in the editor are. */
     private shown: Origin | null = null;
+    /** Files that were edited and are not shown now, with what can be undone of each. */
+    private readonly left = new Map<string | null, EditorState>();
+    /** Until the first lines of the text that is to be shown are here. */
+    private showing: Promise<void> = Promise.resolve();
     private marked: Marked = { at: null, also: [], wrong: [] };
     private reading = 0;
     /** The lines that are on their way for a jump. */
@@ -126,16 +137,27 @@ export class Editor {
         return this.origin !== null && this.window.from === 1 && this.window.to > this.origin.lines;
     }
 
-    async show(origin: Origin | null): Promise<void> {
+    /** A text; where `isSame`, the lines that are here are kept, if they are of that file of the same program. */
+    async show(origin: Origin | null, isSame = false): Promise<void> {
+        const { shown } = this;
+        if (isSame && origin !== null && this.origin === shown && isOne(origin, shown)) {
+            this.origin = this.shown = origin;
+            return;
+        }
         this.origin = origin;
         if (origin === null) return this.set("", { from: 1, to: 1 });
-        await this.fetch(this.marked.at ?? 1);
+        this.showing = this.fetch(this.marked.at ?? 1);
+        await this.showing;
     }
 
     /** The text as somebody has edited it. */
     replace(text: string, origin: Origin): void {
+        // What was on its way is not of this file.
+        this.reading++;
+        this.coming = null;
         this.origin = origin;
-        if (this.text !== text) this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
+        if (isOne(origin, this.shown) && this.text === text) this.shown = origin;
+        else this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
     }
 
     /** All lines of a text, or of a long one those round `line`; the others come when the cursor rests. */
@@ -212,7 +234,7 @@ export class Editor {
     /** All lines are here: they may be edited. */
     private finish(): void {
         this.view.dispatch({ effects: this.locked.reconfigure(this.lock) });
-        this.listener.whole(this.text);
+        this.listener.whole(this.text, this.shown?.file ?? null);
     }
 
     private get lock(): Extension {
@@ -247,19 +269,19 @@ export class Editor {
     }
 
     private set(text: string, window: Window): void {
+        const { origin, shown } = this;
+        if (shown !== null && shown.file !== origin?.file && undoDepth(this.view.state) > 0) this.left.set(shown.file, this.view.state);
+        if (shown?.program !== origin?.program) this.left.clear();
+        const left = this.left.get(origin?.file ?? null);
+        const extensions = [this.extensions, coloured(origin?.family ?? "iso"), this.locked.of([]), this.more.of([])];
         this.window = window;
-        const { origin } = this;
         this.shown = origin;
         this.isSetting = true;
-        this.view.setState(
-            EditorState.create({
-                doc: text,
-                extensions: [this.extensions, coloured(origin?.family ?? "iso"), this.locked.of(this.lock), this.more.of([])],
-            }),
-        );
+        this.view.setState(left?.doc.toString() === text ? left : EditorState.create({ doc: text, extensions }));
+        this.view.dispatch({ effects: [this.locked.reconfigure(this.lock), this.more.reconfigure([])] });
         this.isSetting = false;
         this.draw(true);
-        if (this.isWhole) this.listener.whole(text);
+        if (this.isWhole) this.listener.whole(text, origin?.file ?? null);
     }
 
     /** Lines as they are numbered in the file; that of the cursor comes into sight. */
@@ -308,14 +330,17 @@ export class Editor {
 
     private updated(update: ViewUpdate): void {
         if (this.isSetting) return;
+        const file = this.shown?.file ?? null;
         if (update.docChanged) {
-            this.listener.edited(this.text);
+            // What is on its way of the same file is older.
+            if (this.origin?.file === file) this.reading++;
+            this.listener.edited(this.text, file);
             return;
         }
         const { state } = update.view;
         if (update.selectionSet && update.transactions.some((change) => change.isUserEvent("select"))) {
             const line = state.doc.lineAt(state.selection.main.head).number + this.window.from - 1;
-            if (line !== this.marked.at) this.listener.picked(line);
+            if (line !== this.marked.at) this.listener.picked(line, file);
         }
         if (update.viewportChanged && this.origin !== null && !this.isWhole) {
             const { from, to } = this.inSight;
@@ -326,6 +351,7 @@ export class Editor {
 
     /** Puts the selection on a line of the file, as if it were clicked. */
     async go(line: number): Promise<void> {
+        await this.showing.catch(() => {});
         if (!isWithin(this.window, line)) await this.fetch(line);
         const { doc } = this.view.state;
         const at = Math.max(1, Math.min(doc.lines, line - this.window.from + 1));

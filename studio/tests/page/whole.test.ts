@@ -162,6 +162,9 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.reload();
         await page.getByRole("button", { name: "Continue" }).click();
         await page.locator(".program .cm-line", { hasText: "(mine)" }).waitFor();
+        // It is an edit of what is posted: what differs from that is known.
+        await page.getByRole("button", { name: "Differences" }).click();
+        await expect.poll(() => page.locator(".program .cm-changedLine").count()).toBe(1);
         await page.getByRole("button", { name: "Discard" }).click();
         await proven(page);
         expect(await page.getByRole("button", { name: "Continue" }).count()).toBe(0);
