@@ -36,7 +36,7 @@ export function Plots({ screen }: { screen: Screen }) {
                     All
                 </button>{" "}
                 <span class="soft">
-                    {clock(span.value[0])} to {clock(span.value[1])}; dashed lines are limits
+                    {clock(span.value[0])} to {clock(span.value[1])}; dashed lines are limits, where they are near
                 </span>
             </p>
             <Jumps screen={screen} job={job} />
@@ -113,10 +113,14 @@ function Plot({ screen, axis, number, span }: { screen: Screen; axis: Axis; numb
     }, []);
 
     const known = band.value === null ? [] : extent(band.value);
+    const unit = axis.unit === "degrees" ? "°" : axis.unit;
     return (
         <figure class="plot">
             <figcaption>
-                {axis.name} <span class="soft">{known.length === 2 ? `${rounded(known[0]!)} … ${rounded(known[1]!)} ${axis.unit}` : "–"}</span>
+                <div>
+                    {axis.name} <span class="soft">{known.length === 2 ? `${rounded(known[0]!)} … ${rounded(known[1]!)} ${unit}` : "–"}</span>
+                </div>
+                <Limits axis={axis} known={known} unit={unit} />
             </figcaption>
             <canvas
                 ref={canvas}
@@ -129,6 +133,20 @@ function Plot({ screen, axis, number, span }: { screen: Screen; axis: Axis; numb
                 }}
             />
         </figure>
+    );
+}
+
+/** The travel, and the least that is left of it in what is shown: limits far away are in no curve. */
+function Limits({ axis: { low, high }, known: [least, most], unit }: { axis: Axis; known: number[]; unit: string }) {
+    if (low === null && high === null) return null;
+    const left = Math.min(least === undefined || low === null ? Infinity : least - low, most === undefined || high === null ? Infinity : high - most);
+    const end = (limit: number | null): string => (limit === null ? "∞" : rounded(limit));
+    return (
+        <small class="soft">
+            travel {end(low)} … {end(high)} {unit}
+            {left < 0 && <strong class="error"> ✗ {rounded(-left)} beyond</strong>}
+            {left >= 0 && left < Infinity && `, ${rounded(left)} left`}
+        </small>
     );
 }
 

@@ -1,6 +1,7 @@
 import type { RefObject } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { counted } from "../numbers.ts";
+import { counted, rounded } from "../numbers.ts";
+import type { Axis } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 
 /** What nobody knows is a dash. */
@@ -44,10 +45,11 @@ export function Readout({ screen }: { screen: Screen }) {
     return (
         <dl ref={list} class="readout" aria-label="At the cursor">
             {parts.map(([name, value, unit], row) => (
-                <div key={name} title={why(value, row <= axes.length)}>
+                <div key={name} title={why(value, row <= axes.length) ?? travelOf(axes[row], place?.axes[row])}>
                     <dt>{name}</dt>
                     <dd>
                         {value} <small>{unit === "degrees" ? "°" : unit}</small>
+                        <Travel axis={axes[row]} at={place?.axes[row]} />
                     </dd>
                 </div>
             ))}
@@ -64,6 +66,30 @@ export function Readout({ screen }: { screen: Screen }) {
                 </div>
             )}
         </dl>
+    );
+}
+
+const shown = (axis: Axis | undefined): axis is Axis & { low: number; high: number } => typeof axis?.low === "number" && typeof axis.high === "number";
+
+/** The travel of an axis, and how much of it is left. */
+function travelOf(axis: Axis | undefined, at: number | null | undefined): string | undefined {
+    if (axis === undefined) return undefined;
+    if (!shown(axis)) return `The travel of ${axis.name} is not known, or does not count from the zero of this program`;
+    const { name, low, high } = axis;
+    const unit = axis.unit === "degrees" ? "°" : " mm";
+    const left = typeof at === "number" ? Math.min(at - low, high - at) : null;
+    const rest = left === null ? "" : left < 0 ? `, ${rounded(-left)}${unit} beyond it` : `, ${rounded(left)}${unit} left to the nearer end`;
+    return `Travel of ${name}: ${rounded(low)} to ${rounded(high)}${unit}${rest}`;
+}
+
+/** Where in its travel an axis stands. */
+function Travel({ axis, at }: { axis: Axis | undefined; at: number | null | undefined }) {
+    if (!shown(axis) || typeof at !== "number") return null;
+    const part = (at - axis.low) / (axis.high - axis.low);
+    return (
+        <span class={part < 0 || part > 1 ? "travel beyond" : "travel"} role="img" aria-label={travelOf(axis, at)}>
+            <i style={{ left: `${Math.max(0, Math.min(1, part)) * 100}%` }} />
+        </span>
     );
 }
 

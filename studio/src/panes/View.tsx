@@ -1,12 +1,12 @@
 import { effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { counted, rounded } from "../numbers.ts";
+import { counted } from "../numbers.ts";
 import { axisOf, vector, type Screen } from "../screen/screen.ts";
-import type { Job } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
 import { VIEWS } from "../view/camera.ts";
 import { MODES } from "../view/colours.ts";
 import { Viewer } from "../view/viewer.ts";
+import { Legend } from "./Legend.tsx";
 import { Readout, UNKNOWN } from "./Readout.tsx";
 
 /** The picture of the walk: one view, or four. */
@@ -21,7 +21,7 @@ export function View({ screen }: { screen: Screen }) {
                         {number + 1}
                     </button>
                 ))}
-                <button type="button" title="Fit (F)" onClick={() => screen.viewer?.fit()}>
+                <button type="button" title="Fit what is cut; again: all (F)" onClick={() => screen.viewer?.fit()}>
                     Fit
                 </button>
                 <Toggle on={four} title="Four views (Q)" text="Four" />
@@ -40,12 +40,12 @@ export function View({ screen }: { screen: Screen }) {
                         ))}
                     </select>
                 </label>
-                {mode.value === "deviation" && <span class="soft">{deviations(screen.studio.job.value)}</span>}
             </header>
             <div class={four.value ? "body views four" : "body views"}>
                 {(four.value ? [5, 0, 1, 2] : [5]).map((view, number) => (
                     <One key={view} screen={screen} view={view} first={number === 0} />
                 ))}
+                <Legend screen={screen} />
                 <MachineAbsent screen={screen} />
                 <Proving screen={screen} />
                 {screen.studio.job.value === null && screen.studio.running.value === null && <Empty screen={screen} />}
@@ -64,12 +64,6 @@ function MachineAbsent({ screen }: { screen: Screen }) {
             machine not drawn here: where {unknown.join(", ")} {unknown.length === 1 ? "stands" : "stand"} is not known
         </p>
     );
-}
-
-/** What the ramp of colours means. */
-function deviations(job: Job | null): string {
-    const most = job?.walk.deviation ?? null;
-    return most === null ? "nothing is compared" : `0 to ${rounded(most)} mm; grey: not compared`;
 }
 
 function Toggle({ on, title, text }: { on: { value: boolean }; title: string; text: string }) {
@@ -93,6 +87,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
                 const tip = place === null || at === null ? null : { at, axis: axisOf(place.axis) };
                 return { scene: screen.scene.value, looks: screen.looks.value, marks: screen.marks(), tip, box: screen.all, isBoxShown: screen.box.value };
             },
+            (what) => screen.boxOf(what),
             {
                 picked: (move) => void studio.cursor.toMove(move),
                 pointed: (at) => (screen.pointer.value = at),
@@ -102,7 +97,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
         );
         screen.viewers.push(viewer);
         if (first) screen.viewer = viewer;
-        viewer.fit();
+        viewer.refit(true);
         const stop = effect(() => {
             viewer.ruler = screen.ruler.value;
             void screen.news.value;

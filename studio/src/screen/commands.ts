@@ -62,7 +62,7 @@ function looking(screen: Screen): Command[] {
     return [
         ...VIEWS.map(({ name }, number) => ({ name: `view-${number + 1}`, title: `${name} view`, keys: [String(number + 1)], view: true, run: () => screen.viewer?.view(number) })),
         { name: "view-tool", title: "Look along the tool", keys: ["0"], view: true, run: axis },
-        { name: "fit", title: "Fit", keys: ["f"], view: true, run: () => screen.viewer?.fit() },
+        { name: "fit", title: "Fit what is cut; again: all", keys: ["f"], view: true, run: () => screen.viewer?.fit() },
         { name: "zoom-place", title: "Zoom to the cursor", keys: ["z"], view: true, run: () => screen.zoomToCursor() },
         { name: "zoom-in", title: "Zoom in", keys: ["PageUp"], view: true, run: () => screen.viewer?.zoom(1.25) },
         { name: "zoom-out", title: "Zoom out", keys: ["PageDown"], view: true, run: () => screen.viewer?.zoom(0.8) },

@@ -9,9 +9,10 @@ import type { Studio } from "../studio.ts";
 import type { Editor } from "../text/editor.ts";
 import { Blocks } from "../view/blocks.ts";
 import { Board } from "../view/board.ts";
-import { axes } from "../view/camera.ts";
+import { axes, type Box } from "../view/camera.ts";
 import { Chunks } from "../view/chunks.ts";
 import { theme, type Mode } from "../view/colours.ts";
+import { cutsOf, grow, type Cuts } from "../view/cuts.ts";
 import { bodiesOf } from "../view/linkage.ts";
 import { Rows } from "../view/rows.ts";
 import { Scene, type Looks, type Marks } from "../view/scene.ts";
@@ -19,7 +20,7 @@ import { lengthOf, toolBody, wireBody } from "../view/solids.ts";
 import type { Triangles } from "../view/strip.ts";
 import { along, type Vector } from "../view/vector.ts";
 import type { Walking } from "../view/walking.ts";
-import type { Drawing, Viewer } from "../view/viewer.ts";
+import type { Drawing, Viewer, Whole } from "../view/viewer.ts";
 
 export type Dialog = "commands" | "keys" | "machine" | "source" | "program" | "options" | "save" | "go" | "find";
 export type Tab = "findings" | "verdict" | "plots";
@@ -85,6 +86,7 @@ export class Screen {
     readonly board: Signal<Board | null> = signal(null);
     /** Grows with each chunk that comes. */
     readonly news: Signal<number> = signal(0);
+    private cuts: Cuts = { box: null, isWhole: true, kinds: new Set() };
     /** The source that the views were fitted to. */
     private fitted: string | null = null;
     /** What was shown while the proof ran: it stays until the job's own lines have come. */
@@ -101,6 +103,10 @@ export class Screen {
         const dark = matchMedia("(prefers-color-scheme: dark)");
         this.dark.value = dark.matches;
         dark.addEventListener("change", () => (this.dark.value = dark.matches));
+        effect(() => {
+            const isShown = this.machine.value;
+            untracked(() => this.viewers.forEach((viewer) => viewer.fitMachine(isShown)));
+        });
         effect(() => {
             if (studio.stop.value === "invalid") this.tab.value = "findings";
         });
@@ -153,8 +159,9 @@ export class Screen {
             return;
         }
         const { walk, revision } = job;
-        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.news.value++, walked);
+        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.come(), walked);
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job), this.blocksOf(job));
+        this.lookForCuts();
         void chunks.load().catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
         else if (board !== null) this.show(board);
@@ -162,6 +169,19 @@ export class Screen {
         this.fitted = job.source.file;
         if (isOther) this.begun(job);
         for (const viewer of this.viewers) viewer.refit(isOther);
+    }
+
+    /** Something of the picture has come. */
+    private come(): void {
+        this.news.value++;
+        if (this.cuts.isWhole) return;
+        this.lookForCuts();
+        for (const viewer of this.viewers) viewer.refit(false);
+    }
+
+    private lookForCuts(): void {
+        const scene = this.scene.peek();
+        this.cuts = scene === null ? { box: null, isWhole: true, kinds: new Set() } : cutsOf(scene.walk, scene.chunks);
     }
 
     /** Of a wire, the height of the part as it was given, else of the plane of the upper guide; null of another machine. */
@@ -203,6 +223,7 @@ export class Screen {
         this.walking = walking;
         const rows = new Rows(this.studio.seam, 0, 4, () => {});
         this.scene.value = new Scene(walking.walk, walking, rows);
+        this.lookForCuts();
         this.news.value++;
         for (const viewer of this.viewers) viewer.refit(false);
     }
@@ -269,14 +290,37 @@ export class Screen {
         return (place === null ? null : this.studio.job.value?.walk.tools[place]) ?? null;
     }
 
-    get all(): { low: Vector; high: Vector } | null {
+    /** All that is drawn. */
+    get all(): Box | null {
         if (this.studio.job.value === null) return this.studio.walking.value?.walking.box ?? null;
         const [low, high] = this.studio.job.value.walk.box ?? [];
-        if (low === undefined || high === undefined) return null;
-        const round = this.board.value?.box ?? this.blocksOf(this.studio.job.value)?.box ?? { low, high };
-        const of = (way: (...parts: number[]) => number, a: Vector, b: Vector): Vector => [way(a[0], b[0]), way(a[1], b[1]), way(a[2], b[2])];
-        const wire = this.wireOf(this.studio.job.value) ?? 0;
-        return { low: of(Math.min, low, round.low), high: of(Math.max, [high[0], high[1], high[2] + wire], round.high) };
+        return low === undefined || high === undefined ? null : this.round({ low, high });
+    }
+
+    /** The box with what belongs to it: board, blocks of glass, the height of a wire. */
+    private round({ low, high }: Box): Box {
+        const job = this.studio.job.value;
+        const wire = job === null ? 0 : (this.wireOf(job) ?? 0);
+        const box: Box = { low: [...low], high: [high[0], high[1], high[2] + wire] };
+        const other = this.board.value?.box ?? (job === null ? null : this.blocksOf(job)?.box) ?? null;
+        if (other !== null) for (const corner of [other.low, other.high]) grow(box, corner);
+        return box;
+    }
+
+    /** Numbers of the kinds of moves that have come. */
+    get kinds(): Set<number> {
+        return this.cuts.kinds;
+    }
+
+    boxOf(what: Whole): Box | null {
+        if (what === "all" || this.cuts.box === null) return this.all;
+        const box = this.round(this.cuts.box);
+        const place = this.studio.cursor.place.value;
+        if (what === "cuts" || place === null) return box;
+        for (const { corners } of this.bodiesAt(place)) {
+            for (let i = 0; i + 2 < corners.length; i += 3) grow(box, [corners[i]!, corners[i + 1]!, corners[i + 2]!]);
+        }
+        return box;
     }
 
     /** Leads to a place of a finding, in every pane. */

@@ -73,6 +73,8 @@ export interface Vertices {
     begin(): void;
     /** Of a chunk, at the level or the nearest that is there. */
     best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null;
+    /** Of a chunk, at whatever level has come; nothing is asked for. */
+    known(chunk: number): ArrayBuffer | null;
     /** At exactly this level; null where that cannot be had. */
     exact(level: number, chunk: number): Promise<ArrayBuffer | null>;
 }
@@ -135,6 +137,10 @@ export class Chunks implements Vertices {
         if (vertices !== null) return { vertices, isExact: level <= 0 };
         this.want(this.key(level, chunk));
         return this.nearest(level, chunk) ?? this.before?.best(level, chunk) ?? null;
+    }
+
+    known(chunk: number): ArrayBuffer | null {
+        return this.nearest(FINE, chunk)?.vertices ?? this.before?.known(chunk) ?? null;
     }
 
     private nearest(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {

@@ -6,7 +6,11 @@ import { UNKNOWN, step, type Mode } from "./colours.ts";
 import type { Rows } from "./rows.ts";
 import { CHUNK_MOVES } from "./strip.ts";
 
-export type Painter = (chunk: Chunk) => Uint8Array | null;
+export interface Painter {
+    (chunk: Chunk): Uint8Array | null;
+    /** The values at the ends of the ramp, as far as they are known. */
+    ends?(): [least: number, most: number];
+}
 
 export function painterOf(mode: Mode, walk: WalkAbout, rows: Rows): Painter | null {
     if (mode === "operation") return byOperation(walk);
@@ -74,7 +78,7 @@ export function byFeed(rows: Pick<Rows, "of" | "width">): Painter {
         if (before[0] !== least || before[1] !== most) made.clear();
     };
 
-    return ({ number }) => {
+    const paint: Painter = ({ number }) => {
         const known = made.get(number);
         if (known !== undefined) return known;
         const places = new Uint8Array(CHUNK_MOVES).fill(UNKNOWN);
@@ -88,4 +92,6 @@ export function byFeed(rows: Pick<Rows, "of" | "width">): Painter {
         made.set(number, places);
         return places;
     };
+    paint.ends = () => [least, most];
+    return paint;
 }

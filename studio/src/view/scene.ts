@@ -123,6 +123,12 @@ export class Scene {
         return { flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
     }
 
+    /** The least and the greatest feed that is known, mm/min. */
+    get feeds(): [least: number, most: number] | null {
+        const ends = this.painter.paint?.ends?.() ?? null;
+        return ends !== null && ends[0] <= ends[1] ? ends : null;
+    }
+
     /** Points of a laser, which no lines join. */
     private get isPoints(): boolean {
         return this.blocks !== null;

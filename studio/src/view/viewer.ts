@@ -16,6 +16,9 @@ export interface Shown {
     isBoxShown: boolean;
 }
 
+/** What a view can be fitted to: what is cut, all that is there, or the machine round it. */
+export type Whole = "cuts" | "all" | "machine";
+
 /** `auto`: by the graphics processor where there is one that is not played by the processor. */
 export type Drawing = "auto" | "plain" | "webgl";
 
@@ -59,14 +62,17 @@ export class Viewer {
     private resting: ReturnType<typeof setTimeout> | undefined;
     /** While the view moves. */
     private moving: ReturnType<typeof setTimeout> | undefined;
-    /** All is shown, until somebody moves or zooms: then it stays so when the window changes. */
-    private isFitted = true;
-    private readonly sizes = new ResizeObserver(() => (this.isFitted ? this.fit() : this.redraw()));
+    /** What is shown as a whole, also when the window changes; null when somebody has moved or zoomed. */
+    private fitted: Whole | null = "cuts";
+    /** How it was before the machine was shown as a whole. */
+    private before: { camera: Camera; fitted: Whole | null } | null = null;
+    private readonly sizes = new ResizeObserver(() => this.refit(false));
 
     constructor(
         readonly host: HTMLElement,
         view: number,
         private readonly shown: () => Shown,
+        private readonly boxOf: (what: Whole) => Box | null,
         private readonly tell: Tell,
         how: Drawing,
     ) {
@@ -82,7 +88,7 @@ export class Viewer {
         host.addEventListener("pointerup", (event) => this.up(event));
         host.addEventListener("pointerleave", () => tell.pointed(null));
         host.addEventListener("contextmenu", (event) => event.preventDefault());
-        host.addEventListener("dblclick", () => this.fit());
+        host.addEventListener("dblclick", () => this.fitTo("cuts"));
         host.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     }
 
@@ -177,7 +183,7 @@ export class Viewer {
 
     look(camera: Camera): void {
         this.camera = camera;
-        this.isFitted = false;
+        this.fitted = null;
         this.redraw();
     }
 
@@ -191,22 +197,43 @@ export class Viewer {
         this.look(camera);
     }
 
-    fit(box: Box | null = this.shown().box): void {
+    /** What is cut; a second time, all that is there. */
+    fit(): void {
+        this.fitTo(this.fitted === "cuts" ? "all" : "cuts");
+    }
+
+    private fitTo(what: Whole): void {
+        const box = this.boxOf(what);
         if (box === null) return;
         this.look(fit(this.camera, box, this.size));
-        this.isFitted = true;
+        this.fitted = what;
+    }
+
+    /** The machine as a whole when it comes, and as it was before when it goes, unless somebody has moved the view. */
+    fitMachine(isShown: boolean): void {
+        const { camera, fitted, before } = this;
+        if (isShown) {
+            this.before = { camera, fitted };
+            return this.fitTo("machine");
+        }
+        this.before = null;
+        if (before === null || fitted !== "machine") return;
+        this.look(before.camera);
+        this.fitted = before.fitted;
     }
 
     /** After another posting: what somebody has zoomed to stays, unless all is another part. */
     refit(isOther: boolean): void {
-        if (isOther || this.isFitted) this.fit();
+        const { fitted } = this;
+        if (isOther) this.fitTo(fitted ?? "cuts");
+        else if (fitted !== null) this.fitTo(fitted);
         else this.redraw();
     }
 
     /** A standard view, numbered as in `VIEWS`. */
     view(number: number): void {
         this.camera = { ...this.camera, ...VIEWS[number]! };
-        this.fit();
+        this.fitTo(this.fitted ?? "cuts");
     }
 
     along(axis: Vector): void {

@@ -41,6 +41,10 @@ export class Walking implements Vertices {
         return vertices === undefined ? null : { vertices, isExact: false };
     }
 
+    known(chunk: number): ArrayBuffer | null {
+        return this.vertices[chunk] ?? null;
+    }
+
     exact(): Promise<null> {
         return Promise.resolve(null);
     }
