@@ -10,6 +10,7 @@ import { Timeline } from "./panes/Timeline.tsx";
 import { View } from "./panes/View.tsx";
 import { commandsOf } from "./screen/commands.ts";
 import type { Screen } from "./screen/screen.ts";
+import { isToolpath } from "./text/names.ts";
 
 /** The whole window: its panes, and the keys. */
 export function Page({ screen }: { screen: Screen }) {
@@ -29,14 +30,18 @@ export function Page({ screen }: { screen: Screen }) {
         return () => document.removeEventListener("keydown", press);
     }, [commands]);
 
-    /** What is dropped on the program is one for the source that is open; any other file is a source, and several are those of a board. */
+    /** What is dropped on the program is one for the source that is open, as is what is dropped beside a toolpath; any other file is a source, and several are those of a board. */
     const drop = async (event: DragEvent): Promise<void> => {
         event.preventDefault();
         const files = [...(event.dataTransfer?.files ?? [])];
         if (files.length === 0) return;
         const onProgram = event.target instanceof Element && event.target.closest(".program") !== null;
-        if (onProgram && studio.work.value !== null) await studio.proveOther(files);
-        else await studio.drop(files);
+        if (onProgram && studio.work.value !== null) return studio.proveOther(files);
+        const toolpaths = files.filter(({ name }) => isToolpath(name));
+        const [toolpath] = toolpaths;
+        const program = files.find((file) => file !== toolpath);
+        if (files.length === 2 && toolpaths.length === 1) return studio.dropBoth(toolpath!, program!);
+        await studio.drop(files);
     };
 
     const { program, source, low } = sizes.value;

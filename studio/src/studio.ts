@@ -32,6 +32,8 @@ export class Studio {
     readonly said: Signal<string> = signal("");
     /** The program as edited by hand; null while it is as posted. */
     readonly edited: Signal<Edit | null> = signal(null);
+    /** Name of the program that was dropped in the place of the posted one. */
+    readonly given: Signal<string | null> = signal(null);
     /** The files of the program as they were posted, as far as they were read. */
     readonly posted = new Map<string | null, string>();
     /** Grows with each program that is no edit of the one before. */
@@ -102,7 +104,26 @@ export class Studio {
     }
 
     open(source: Given): Promise<void> {
-        return this.post({ source, machine: this.machine.value, options: [] });
+        return this.begunWith({ source, machine: this.machine.value, options: [] });
+    }
+
+    /** Another source: a machine of another kind, which cannot take it, is not kept. */
+    private async begunWith(work: Work): Promise<void> {
+        const kind = this.machines.value.find(({ name }) => name === work.machine)?.kind;
+        const posting = this.post(work);
+        if (kind === undefined) return posting;
+        // What cannot be read says so when it is posted.
+        const command = await this.seam.ask("command", { source: work.source, machine: null }).then(({ done }) => done, () => null);
+        if (fits(kind, command) || this.work.value !== work) return posting;
+        this.cancel();
+        this.machine.value = null;
+        await this.post({ ...work, machine: null });
+    }
+
+    /** A toolpath, and a program that is proven against it. */
+    async dropBoth(toolpath: File, program: File): Promise<void> {
+        await this.drop([toolpath]);
+        if (this.job.value !== null) await this.proveOther([program]);
     }
 
     /** A file is a toolpath or a board; several are the files of a board. */
@@ -114,7 +135,7 @@ export class Studio {
         });
         if (uploads === undefined) return;
         const source = uploads.length === 1 ? { upload: uploads[0]! } : { uploads };
-        await this.post({ source, name: files.map(({ name }) => name).join(", "), machine: this.machine.value, options: [] });
+        await this.begunWith({ source, name: files.map(({ name }) => name).join(", "), machine: this.machine.value, options: [] });
     }
 
     async choose(machine: string): Promise<void> {
@@ -155,6 +176,7 @@ export class Studio {
 
     /** The job of a program that is no edit of the one before. */
     private isNew(job: Job | null): void {
+        this.given.value = null;
         this.base = job?.revision ?? null;
         this.posted.clear();
         this.program++;
@@ -216,7 +238,10 @@ export class Studio {
         const parts = new Set(this.job.value?.parts.map(({ file }) => file));
         const own = ({ name }: File): string | null => (parts.has(name) ? name : null);
         const edit = new Map(await Promise.all(files.map(async (file) => [own(file), await file.text()] as const)));
-        if (edit.size === files.length) return this.prove(edit);
+        if (edit.size === files.length) {
+            this.given.value = files.find((file) => own(file) === null)?.name ?? null;
+            return this.prove(edit);
+        }
         const names = [...parts].join(", ") || "none";
         this.stopped.value = [said("program-files", "these are several programs", `give one, with files that it calls (${names})`)];
     }
@@ -421,6 +446,10 @@ export class Studio {
         }
     }
 }
+
+/** Whether a machine of this kind is one for the source. */
+export const fits = (kind: string, command: Command | null): boolean =>
+    command === null || (command === "glass" || command === "wire" ? kind === command : kind !== "glass" && kind !== "wire");
 
 /** The server's rule where another page keeps a draft of that name. */
 const OTHER_PAGE = "studio-draft";

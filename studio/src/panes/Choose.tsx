@@ -10,14 +10,22 @@ export interface Choice {
     run(): void;
 }
 
+interface Props {
+    label: string;
+    choices: Choice[];
+    close(): void;
+    /** What is no entry of the list, but can be typed. */
+    typed?: (text: string) => Choice[];
+}
+
 /** A list that one searches as one types: arrows and Enter choose. */
-export function Choose({ label, choices, close }: { label: string; choices: Choice[]; close(): void }) {
+export function Choose({ label, choices, close, typed }: Props) {
     const field = useRef<HTMLInputElement>(null);
     // Also where the list is another one in a dialog that is open.
     useLayoutEffect(() => field.current?.focus(), []);
     const search = useSignal("");
     const at = useSignal(0);
-    const found = matching(choices, search.value, ({ name, title, more }) => `${name} ${title} ${more ?? ""}`).slice(0, 300);
+    const found = [...matching(choices, search.value, ({ name, title, more }) => `${name} ${title} ${more ?? ""}`).slice(0, 300), ...(typed?.(search.value.trim()) ?? [])];
     const chosen = Math.min(at.value, found.length - 1);
     const run = (choice: Choice | undefined): void => {
         if (choice === undefined) return;

@@ -2,6 +2,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Entry } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
+import { isReport } from "../text/names.ts";
 import { Choose, type Choice } from "./Choose.tsx";
 
 interface Props {
@@ -70,9 +71,6 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
         </>
     );
 }
-
-/** What was found out about a program is neither a source nor a program. */
-const isReport = (name: string): boolean => name.endsWith(".report.json");
 
 export function size(bytes: number): string {
     if (bytes < 1000) return `${bytes} B`;

@@ -18,7 +18,7 @@ interface Entry {
 export function Legend({ screen }: { screen: Screen }) {
     const job = screen.studio.job.value;
     const { mode, theme } = screen.looks.value;
-    // Feeds are known as they come.
+    // Kinds are known as they come.
     void screen.news.value;
     if (job === null || screen.scene.value === null) return null;
     const ramp = rampOf(screen, job);
@@ -57,7 +57,7 @@ function rampOf(screen: Screen, { walk }: Job): [string, string] | null {
     if (mode === "order") return ["first", "last"];
     if (mode === "deviation") return walk.deviation === null ? null : ["0", `${rounded(walk.deviation)} mm`];
     if (mode !== "feed") return null;
-    const [least, most] = screen.scene.value?.feeds ?? [0, 0];
+    const [least, most] = screen.feeds.value ?? [0, 0];
     return least > 0 ? [rounded(least), `${rounded(most)} mm/min`] : ["least", "greatest feed"];
 }
 

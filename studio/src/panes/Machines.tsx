@@ -2,11 +2,8 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Command, MachineEntry } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
+import { fits } from "../studio.ts";
 import { Choose } from "./Choose.tsx";
-
-/** Whether a machine of this kind is one for the source. */
-export const fits = (kind: string, command: Command | null): boolean =>
-    command === null || (command === "glass" || command === "wire" ? kind === command : kind !== "glass" && kind !== "wire");
 
 /** The machines, of which those come first that can take the source. */
 export function Machines({ screen, close }: { screen: Screen; close(): void }) {
@@ -14,6 +11,8 @@ export function Machines({ screen, close }: { screen: Screen; close(): void }) {
     const command = useSignal<Command | null>(null);
     const source = studio.work.value?.source;
     useEffect(() => {
+        // A machine file may have come into the folder.
+        void studio.seam.ask("machines", {}).then(({ done }) => (studio.machines.value = done));
         // What cannot be read says so when it is posted.
         if (source !== undefined) void studio.seam.ask("command", { source, machine: null }).then(({ done }) => (command.value = done), () => {});
     }, []);
@@ -21,8 +20,9 @@ export function Machines({ screen, close }: { screen: Screen; close(): void }) {
     const machines = studio.machines.value.toSorted((a, b) => rank(a) - rank(b));
     return (
         <Choose
-            label="Search the machines"
+            label="Search the machines, or type the path of a machine file"
             close={close}
+            typed={(path) => (path.endsWith(".toml") && !machines.some(({ name }) => name === path) ? [{ name: path, title: path, more: "a machine file of this folder", run: () => void studio.choose(path) }] : [])}
             choices={machines.map((machine) => ({
                 name: machine.name,
                 title: `${machine.name}: ${machine.title}`,

@@ -30,7 +30,7 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
         <section class={`pane ${of}`} aria-label={title}>
             <header>
                 <h2>
-                    {title} <span class="soft">{text?.file}</span>
+                    {title} <span class="soft">{(of === "program" ? studio.given.value : null) ?? text?.file}</span>
                 </h2>
                 {parts.length > 0 && (
                     <select aria-label="File of the program" value={screen.file.value ?? ""} onChange={(event) => (screen.file.value = event.currentTarget.value || null)}>

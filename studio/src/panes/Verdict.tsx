@@ -15,7 +15,6 @@ export function Verdict({ screen }: { screen: Screen }) {
     return (
         <div class="hint">
             {job.mismatch !== null && <SideBySide screen={screen} job={job} mismatch={job.mismatch} />}
-            {job.board !== null && <Places screen={screen} />}
             <table>
                 <tbody>
                     {[...(job.board?.rows ?? []), ...job.rows].map(([head, text], row) => (
@@ -26,6 +25,7 @@ export function Verdict({ screen }: { screen: Screen }) {
                     ))}
                 </tbody>
             </table>
+            {job.board !== null && <Places screen={screen} />}
         </div>
     );
 }

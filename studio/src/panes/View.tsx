@@ -1,5 +1,7 @@
-import { effect } from "@preact/signals";
+import { effect, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
+import type { Entry } from "../protocol/asks.ts";
+import { isReport } from "../text/names.ts";
 import { counted } from "../numbers.ts";
 import { axisOf, vector, type Screen } from "../screen/screen.ts";
 import type { Studio } from "../studio.ts";
@@ -91,7 +93,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             {
                 picked: (move) => void studio.cursor.toMove(move),
                 pointed: (at) => (screen.pointer.value = at),
-                drawn: () => (screen.isDrawn.value = true),
+                drawn: () => screen.drawn(),
             },
             screen.drawing.peek(),
         );
@@ -146,6 +148,30 @@ function whyEmpty({ work, findings }: Studio): string {
     return findings.value.length === 0 ? "There is no program." : "There is no program: see the findings below.";
 }
 
+/** More are found in the dialog. */
+const NEAR = 8;
+
+/** Files of the folder, to begin with. */
+function Near({ screen }: { screen: Screen }) {
+    const { studio } = screen;
+    const entries = useSignal<Entry[]>([]);
+    const isOpen = studio.opened.value !== null;
+    useEffect(() => {
+        if (isOpen) void studio.seam.ask("folder", { path: "" }).then(({ done }) => (entries.value = done.entries.filter(({ kind, name }) => kind === "file" && !isReport(name))));
+    }, [isOpen]);
+    if (entries.value.length === 0) return null;
+    return (
+        <p class="near">
+            In this folder:{" "}
+            {entries.value.slice(0, NEAR).map(({ name, path }) => (
+                <button key={path} type="button" onClick={() => void studio.open({ file: path })}>
+                    {name}
+                </button>
+            ))}
+        </p>
+    );
+}
+
 function Empty({ screen }: { screen: Screen }) {
     return (
         <div class="empty">
@@ -158,7 +184,8 @@ function Empty({ screen }: { screen: Screen }) {
                     Choose a machine…
                 </button>
             </p>
-            <p class="soft">A program dropped on the left pane is proven against the toolpath that is open.</p>
+            {screen.studio.work.value === null && <Near screen={screen} />}
+            <p class="soft">A program dropped on the left pane, or beside its toolpath, is proven against it.</p>
         </div>
     );
 }

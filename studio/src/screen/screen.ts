@@ -94,6 +94,8 @@ export class Screen {
     readonly viewers: Viewer[] = [];
     /** There has been a picture. */
     readonly isDrawn: Signal<boolean> = signal(false);
+    /** The ends of the ramp of feeds, mm/min. */
+    readonly feeds: Signal<[least: number, most: number] | null> = signal(null);
     /** The view that had the focus last. */
     viewer: Viewer | null = null;
 
@@ -239,6 +241,13 @@ export class Screen {
         return board.netAt(x, y);
     }
 
+    /** A view has drawn lines. */
+    drawn(): void {
+        this.isDrawn.value = true;
+        const feeds = this.scene.value?.feeds ?? null;
+        if (String(feeds) !== String(this.feeds.value)) this.feeds.value = feeds;
+    }
+
     marks(): Marks {
         const { cursor, job } = this.studio;
         const place = cursor.place.value;
@@ -334,7 +343,13 @@ export class Screen {
         this.findingPlace.value = at;
         this.tab.value = "findings";
         const line = places[at];
-        if (line === undefined || job.value === null) return;
+        if (job.value === null) return;
+        // Of a board it may be of another program than the one that is shown.
+        const other = this.studio.board.value?.programs.find(({ file }) => file === found.file);
+        if (other !== undefined && other.revision !== job.value.revision && this.studio.edited.value === null) {
+            return void this.studio.chooseProgram(other.revision).then(() => (line === undefined ? undefined : cursor.to({ by: "block", value: line })));
+        }
+        if (line === undefined) return;
         if (found.of === "source") void cursor.to({ by: "source", value: line });
         else if (found.of === "program") void cursor.to({ by: "block", value: line, file: found.file === job.value.program?.file ? null : found.file });
     }

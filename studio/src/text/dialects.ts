@@ -3,6 +3,7 @@
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import type { Extension } from "@codemirror/state";
 import { tags } from "@lezer/highlight";
+import { isToolpath } from "./names.ts";
 
 export type Tag = "comment" | "string" | "keyword" | "meta" | "number" | "typeName" | "variableName";
 export type Family = "iso" | "heidenhain" | "krl" | "rapid" | "script" | "apt" | "toml";
@@ -109,7 +110,7 @@ export function familyOf(dialect: string | null | undefined, file: string): Fami
     if (name.includes("krl") || name.includes("kuka") || ["src", "dat"].includes(extension)) return "krl";
     if (name.includes("rapid") || ["mod", "prg", "modx"].includes(extension)) return "rapid";
     if (name.includes("script") || ["script", "urp", "ls", "jbi", "jss"].includes(extension)) return "script";
-    if (["cls", "apt", "aptsource", "cl", "ncl"].includes(extension)) return "apt";
+    if (isToolpath(file)) return "apt";
     return "iso";
 }
 

@@ -99,6 +99,8 @@ export class Editor {
     /** The lines that are on their way for a jump. */
     private coming: Window | null = null;
     private isGrowing = false;
+    /** The part that was asked for last while more lines grew. */
+    private asked: { origin: Origin; from: number; to: number; text: Promise<string> } | null = null;
     private isSetting = false;
     private jumping: ReturnType<typeof setTimeout> | undefined;
     private resting: ReturnType<typeof setTimeout> | undefined;
@@ -211,7 +213,7 @@ export class Editor {
         this.drop(kept);
         try {
             for (let part = missing(this.window, kept); part !== null && reading === this.reading; part = missing(this.window, kept)) {
-                const text = await origin.read(part.from, part.to);
+                const text = await this.read(origin, part);
                 if (reading !== this.reading) return;
                 this.add(text, part);
                 // The editor measures what was added once a frame.
@@ -220,6 +222,19 @@ export class Editor {
             if (reading === this.reading && this.isWhole) this.finish();
         } finally {
             if (reading === this.reading) this.isGrowing = false;
+        }
+    }
+
+    /** The lines of a part. What a new place ends is not asked for again when the cursor rests: the answer is on its way. */
+    private async read(origin: Origin, { from, to }: Window): Promise<string> {
+        const { asked } = this;
+        if (asked?.origin !== origin || asked.from !== from || asked.to !== to) this.asked = { origin, from, to, text: origin.read(from, to) };
+        const mine = this.asked;
+        try {
+            return await mine!.text;
+        } catch (error) {
+            if (this.asked === mine) this.asked = null;
+            throw error;
         }
     }
 

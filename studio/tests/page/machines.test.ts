@@ -12,6 +12,63 @@ const LENGTH = 50;
 describe.skipIf(absent() !== null)("the same part on machines of other kinds", () => {
     const browser = browserOfTests();
 
+    test("a robot's view is fitted to what is cut, by F to all with home, and to the arm while that is shown", async () => {
+        const server = await Server.start([example("bracket.json")], ["-m", "universal-ur10e"]);
+        const { page, complaints } = await visit(browser(), server.link);
+        await proven(page);
+        await page.locator(".canvas").focus();
+        const canvas = page.locator(".canvas canvas").first();
+        const shot = async (key: string): Promise<string> => {
+            await page.keyboard.press(key);
+            await page.waitForTimeout(400);
+            return (await canvas.screenshot()).toString("base64");
+        };
+        const cuts = await shot("Shift");
+        const all = await shot("f");
+        const again = await shot("f");
+        expect(all).not.toBe(cuts);
+        expect(again).toBe(cuts);
+        // The arm is in sight as a whole: none of it at the edge.
+        await page.keyboard.press("m");
+        await page.waitForTimeout(400);
+        const edge = await canvas.evaluate((element) => {
+            const { width, height } = element as HTMLCanvasElement;
+            const pixels = new Uint32Array((element as HTMLCanvasElement).getContext("2d")!.getImageData(0, 0, width, height).data.buffer);
+            const seen = (x: number, y: number): boolean => pixels[y * width + x] !== pixels[0];
+            return Array.from({ length: height }, (_, y) => y).some((y) => seen(0, y) || seen(width - 1, y)) || Array.from({ length: width }, (_, x) => x).some((x) => seen(x, height - 1));
+        });
+        expect(edge).toBe(false);
+        expect(await shot("m")).toBe(cuts);
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("all places of a finding are reached, by its buttons and by F8", async () => {
+        const server = await Server.start([example("dome.cls")], ["-m", "sinumerik-840d-traori"]);
+        const { page, complaints } = await visit(browser(), server.link);
+        await proven(page);
+        const finding = page.locator(".findings li", { hasText: "[rewind]" });
+        await finding.getByText(/^\d+ places$/).waitFor();
+        const count = Number(/\d+/.exec(await finding.getByText(/^\d+ places$/).innerText())![0]);
+        expect(count).toBeGreaterThan(2);
+        const seen: string[] = [];
+        for (let place = 1; place <= 3; place++) {
+            await finding.getByLabel("Next place of this finding").click();
+            await finding.getByText(`: ${place} of ${count} places`).waitFor();
+            const line = /line ([\d,]+)/.exec(await finding.locator(".steps").innerText())![1]!.replace(",", "");
+            await page.locator(".cm-gutterElement.cm-activeLineGutter, .cm-gutterElement", { hasText: new RegExp(`^${line}$`) }).first().waitFor();
+            seen.push(await lit(page, "program"));
+        }
+        await page.keyboard.press("F8");
+        await finding.getByText(`: 4 of ${count} places`).waitFor();
+        await page.keyboard.press("Shift+F8");
+        await finding.getByText(`: 3 of ${count} places`).waitFor();
+        expect(new Set(seen).size).toBe(3);
+        await accessible(page, "places of a finding");
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
     test.each([
         ["five axes", "fanuc-table-bc", ["X", "Y", "Z", "B", "C"]],
         ["a robot", "universal-ur10e", ["J1", "J2", "J3", "J4", "J5", "J6"]],

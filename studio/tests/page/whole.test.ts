@@ -349,6 +349,56 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await proven(page);
     });
 
+    test("a toolpath and its program, dropped together, are proven against each other; the program keeps its name", async () => {
+        const page = await begin();
+        const [toolpath, posted] = [readFileSync(example("plate.cls"), "utf8"), readFileSync(join(server.folder, "beside.nc"), "utf8")];
+        for (const [text, verdict] of [[posted, "✓ PROVEN"], [posted.replace("X145.", "X146."), "✗ NOT PROVEN"]] as const) {
+            const dropped = await page.evaluateHandle(([program, source]) => {
+                const data = new DataTransfer();
+                data.items.add(new File([program!], "mine.nc"));
+                data.items.add(new File([source!], "theirs.cls"));
+                return data;
+            }, [text, toolpath]);
+            await page.dispatchEvent(".canvas", "drop", { dataTransfer: dropped });
+            await page.locator(".program h2", { hasText: "mine.nc" }).waitFor();
+            await page.getByText(verdict).waitFor();
+            expect(await page.getByTitle("Open a source (Ctrl O)").innerText()).toBe("theirs.cls");
+            await page.getByRole("button", { name: "Discard" }).click();
+            await proven(page);
+        }
+    });
+
+    test("what is typed whole is what Enter takes; a machine that cannot take a source is not kept for it", async () => {
+        const page = await begin();
+        const machine = page.getByTitle("Choose the machine (Ctrl M)");
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("linuxcnc-xyzbc");
+        await page.keyboard.press("Enter");
+        await expect.poll(() => machine.innerText()).toBe("linuxcnc-xyzbc");
+        const body = await page.evaluateHandle(() => {
+            const data = new DataTransfer();
+            const facet = (a: string, b: string, c: string): string => `facet normal 0 0 0\nouter loop\nvertex ${a}\nvertex ${b}\nvertex ${c}\nendloop\nendfacet\n`;
+            data.items.add(new File([`solid one\n${facet("0 0 0", "9 0 0", "0 9 0")}${facet("0 0 0", "9 0 0", "0 0 9")}endsolid one\n`], "one.stl"));
+            return data;
+        });
+        await page.dispatchEvent(".canvas", "drop", { dataTransfer: body });
+        await page.getByRole("dialog", { name: "Machine" }).waitFor();
+        await expect.poll(() => machine.innerText()).toBe("Choose a machine…");
+        expect(await page.getByRole("dialog").getByRole("option").first().innerText()).toContain("glass");
+        await page.keyboard.press("Escape");
+        await page.getByText("choose the machine that it is for").waitFor();
+    });
+
+    test("the view says what its colours mean", async () => {
+        const page = await begin();
+        const legend = page.locator(".legend");
+        await legend.getByText("feed, arc").waitFor();
+        await page.getByTitle("Colours by (C)").selectOption("feed");
+        await legend.getByText(/^\d[\d,]* *[\d,]+ mm\/min$/).waitFor();
+        await page.getByTitle("Colours by (C)").selectOption("tool");
+        await legend.getByText("T1").first().waitFor();
+    });
+
     test("near an arc its lines are finer than the exact level, and stay so without an end of requests", async () => {
         const page = await begin();
         // `CIRCLE/72,40,-6,0,0,1,3` is gone round to here.
