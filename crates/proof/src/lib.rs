@@ -97,6 +97,7 @@ pub use report::{
     ArmChecked, Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary,
     TravelChecked, Worst,
 };
+pub use state::same_tool;
 pub use tolerance::{Applied, Tolerances};
 
 use compensation::resolved;

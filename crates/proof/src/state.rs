@@ -504,7 +504,7 @@ pub(crate) fn same_compensation(
 }
 
 /// Whether two tools are one: by number, or by name where a side knows only a name. `T0` is no tool.
-pub(crate) fn same_tool(source: &Tool, block: &Tool) -> bool {
+pub fn same_tool(source: &Tool, block: &Tool) -> bool {
     match (source.number, block.number) {
         (_, 0) if block.name.is_empty() => false,
         (0, _) if source.name.is_empty() || block.name.is_empty() => true,

@@ -815,6 +815,24 @@ impl ToolUse {
             time_s,
         }
     }
+
+    /// Adds what the source knows of the same tool, which the control calls by its number or, where it does so, by its name.
+    pub fn know(&mut self, tool: &program::Tool) {
+        let (number, name) = (self.number, self.name.clone());
+        if !proof::same_tool(tool, &program::Tool { number, name, ..program::Tool::default() }) {
+            return;
+        }
+        if self.number == 0 {
+            self.number = tool.number;
+        }
+        if self.name.is_empty() {
+            self.name.clone_from(&tool.name);
+        }
+        self.diameter = self.diameter.or(tool.diameter);
+        self.corner = self.corner.or(tool.corner_radius);
+        self.length = self.length.or(tool.length);
+        self.tapered |= tool.tapered;
+    }
 }
 
 /// An operation, from its first move on.

@@ -583,11 +583,16 @@ pub struct Follower<'a> {
     source: &'a Program,
     /// Which of A, B and C the machine has.
     rotary: Vec<usize>,
+    is_arm: bool,
     /// The record up to which operations have been looked for.
     searched: usize,
     numbers: BTreeMap<(u32, String), u8>,
-    /// Place of the tool that is in the spindle.
+    /// The tool that the source has in the spindle, up to the record that operations have been looked for.
+    source_tool: Option<&'a Tool>,
+    /// Place of the tool that is in the spindle, as the control says it.
     tool: u8,
+    /// Place of the tool of the next move, where it is not looked for anew.
+    tool_of_moves: Option<u8>,
     compensation: Option<Compensation>,
     /// What is marked of the next move.
     next_marks: u8,
@@ -622,9 +627,12 @@ impl<'a> Follower<'a> {
             marked: BTreeSet::new(),
             source,
             rotary: machine.rotary.iter().map(|axis| axis.index()).collect(),
+            is_arm: machine.arm.is_some(),
             searched: 0,
             numbers: BTreeMap::new(),
+            source_tool: None,
             tool: NO_TOOL,
+            tool_of_moves: None,
             compensation: None,
             next_marks: 0,
             waits,
@@ -664,11 +672,14 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Notes the operations that begin up to a record.
+    /// Notes the operations that begin up to a record, and the tool that the source has there.
     fn operations(&mut self, record: usize) {
         let records = &self.source.records;
         let end = (record + 1).min(records.len());
         for record in records.get(self.searched..end).unwrap_or_default() {
+            if let Op::Tool(tool) = &record.op {
+                (self.source_tool, self.tool_of_moves) = (Some(&**tool), None);
+            }
             if let Op::Operation(name) = &record.op {
                 let (r#move, time_s) = (self.walk.len(), self.walk.seconds());
                 let begun = Operation { name: name.to_string(), r#move, time_s };
@@ -697,6 +708,25 @@ impl<'a> Follower<'a> {
         self.numbers.insert(key, place);
         let (first, time_s) = (self.walk.len(), self.walk.seconds());
         self.walk.tool_uses.push(ToolUse::new(tool, first, time_s));
+        place
+    }
+
+    /// Place of the tool of the next move: that of the control, with what the source knows of it; that of a robot, whose control knows none, is the source's.
+    fn tool_of_move(&mut self) -> u8 {
+        if let Some(place) = self.tool_of_moves {
+            return place;
+        }
+        let place = match (self.tool, self.source_tool) {
+            (NO_TOOL, Some(tool)) if self.is_arm => self.place_of(tool),
+            (place, Some(tool)) => {
+                if let Some(own) = self.walk.tool_uses.get_mut(usize::from(place)) {
+                    own.know(tool);
+                }
+                place
+            }
+            (place, None) => place,
+        };
+        self.tool_of_moves = Some(place);
         place
     }
 
@@ -766,8 +796,9 @@ impl Observer for Follower<'_> {
             return;
         }
         self.operations(motion.record);
+        let tool = self.tool_of_move();
+        self.walk.tools.push(tool);
         self.walk.push(motion);
-        self.walk.tools.push(self.tool);
         self.walk.marks.push(std::mem::take(&mut self.next_marks));
         self.positions(&motion.axes);
         if !self.rotary.is_empty() {
@@ -787,7 +818,10 @@ impl Observer for Follower<'_> {
             self.next_marks |= SWITCHED;
         }
         self.compensation = Some(state.compensation);
-        self.tool = state.tool.as_ref().map_or(NO_TOOL, |tool| self.place_of(tool));
+        let tool = state.tool.as_ref().map_or(NO_TOOL, |tool| self.place_of(tool));
+        if tool != self.tool {
+            (self.tool, self.tool_of_moves) = (tool, None);
+        }
         // What holds for no move is not kept.
         self.walk.states.pop_if(|(from, _)| *from == at);
         self.walk.states.push((at, state.clone()));

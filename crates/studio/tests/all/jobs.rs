@@ -594,3 +594,79 @@ fn parts_of_a_longer_program_are_named_where_a_shorter_one_takes_its_place() {
     let message = found["message"].as_str().unwrap();
     assert!(message.starts_with("job_1.ls, job_2.ls"), "{message}");
 }
+
+/// The shape of a tool is that of the toolpath: the control knows its number, or its name, alone, and that of a robot not even that.
+#[test]
+fn tools_have_the_shape_that_the_toolpath_gives_them() {
+    let studio = Studio::new();
+    std::fs::copy(root().join("examples/plate.cls"), studio.own().join("plate.cls")).unwrap();
+    let mut page = studio.socket();
+    let tools = |job: &Value| -> Vec<Value> {
+        let tools = job["walk"]["tools"].as_array().unwrap().iter();
+        let shape = |tool: &Value| {
+            json!([tool["number"], tool["diameter"], tool["corner"], tool["length"]])
+        };
+        tools.map(shape).collect()
+    };
+    // By `LOADTL` and `CUTTER`.
+    let plate = json!([
+        [1, 40.0, 0.0, null],
+        [2, 10.0, 0.5, null],
+        [3, 6.0, 3.0, null],
+        [4, 8.0, 0.0, null],
+        [5, 6.8, 0.0, null],
+        [6, 8.0, 0.0, null]
+    ]);
+    let mills = [
+        "generic-3axis-fanuc",
+        "generic-3axis-haas",
+        "generic-3axis-linuxcnc",
+        "generic-3axis-heidenhain",
+        "generic-3axis-sinumerik",
+    ];
+    let mut program = String::new();
+    for mill in mills {
+        let job = page.post("plate.cls", mill);
+        assert_eq!(json!(tools(&job)), plate, "{mill}: {}", job["walk"]["tools"]);
+        // Each begins where its first move does, behind the one before.
+        let starts = job["walk"]["tools"].as_array().unwrap().iter();
+        let starts: Vec<u64> = starts.map(|tool| tool["move"].as_u64().unwrap()).collect();
+        assert!(starts.is_sorted_by(|a, b| a < b), "{mill}: {starts:?}");
+        if mill == mills[0] {
+            let text =
+                json!({ "revision": job["revision"], "of": "program", "from": 1, "to": 100_000 });
+            let mut frame = page.answer("text", text, &[]).unwrap();
+            program = String::from_utf8(frame.take_text("text").unwrap()).unwrap();
+        }
+    }
+    // A program beside the toolpath.
+    let params = json!({ "source": { "file": "plate.cls" }, "machine": mills[0] });
+    let mut prove = |text: &str| {
+        let frame = page.answer("prove", params.clone(), &[Array::text("text", text)]).unwrap();
+        frame.head["done"].clone()
+    };
+    assert_eq!(json!(tools(&prove(&program))), plate);
+    // Another tool than that of the toolpath is none whose shape is known.
+    assert!(program.contains("T1 M6"), "{program}");
+    let other = prove(&program.replacen("T1 M6", "T9 M6", 1));
+    let (first, others) = (json!([9, null, null, null]), &plate.as_array().unwrap()[1..]);
+    assert_eq!(other["verdict"], "failed");
+    assert_eq!(tools(&other), [&[first], others].concat(), "{}", other["walk"]);
+    // By name on a control that calls tools so; from `TLDATA`, whose length is none from the gauge line.
+    let dome = json!([[1, 16.0, 0.0, null], [2, 8.0, 4.0, null], [3, 6.8, 0.0, null]]);
+    for mill in ["fanuc-table-bc", "sinumerik-840d-traori"] {
+        let job = page.post("dome.cls", mill);
+        assert_eq!(json!(tools(&job)), dome, "{mill}: {}", job["walk"]["tools"]);
+    }
+    assert_eq!(
+        page.post("dome.cls", "sinumerik-840d-traori")["walk"]["tools"][1]["name"],
+        "BALL_8"
+    );
+    // A robot, whose tools are changed by hand.
+    let robot = "PARTNO/JOB\nUNITS/MM\nTLDATA/MILL,8,1,50,0,0\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/80,30,20\nFEDRAT/MMPM,600\nGOTO/80,30,0\nGOTO/100,30,0\nRAPID\nGOTO/100,30,20\nFINI\n";
+    std::fs::write(studio.own().join("robot.cls"), robot).unwrap();
+    for robot in ["kuka-kr6-r900", "fanuc-lrmate-200id-mill", "abb-irb120-mill", "universal-ur5e"] {
+        let job = page.post("robot.cls", robot);
+        assert_eq!(json!(tools(&job)), json!([[1, 8.0, 1.0, 50.0]]), "{robot}: {job}");
+    }
+}
