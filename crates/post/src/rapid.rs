@@ -26,6 +26,9 @@ const SWING: f64 = std::f64::consts::PI / 360.0;
 /// What is added to the clearance for the rounding of words, mm.
 const ROUNDING: f64 = 0.01;
 
+/// Of less than this, which is noise of its numbers, no tool is too low, mm.
+const NOISE: f64 = 1e-6;
+
 /// Rotary axes turn at most this much between two places that are looked at, degrees.
 const SAMPLE: f64 = 1.0;
 
@@ -49,7 +52,8 @@ enum RapidMoves {
     Home,
 }
 
-/// Sine of the angle over level from which a tilted tool comes down along itself from above all cuts.
+/// Sine of the angle over level from which a tilted tool comes down along itself from above all cuts, and from as high as the source ever
+/// goes along Z too: from below it would have to go far.
 const STEEP: f64 = 0.5;
 
 /// A tool that points down by more than this sine has no room next to it.
@@ -113,7 +117,7 @@ impl Walk<'_> {
         };
         let at_once = match self.turns(stop) {
             true => matches!(self.course(&from, pose, stop, false)?, RapidMoves::AtOnce),
-            false => !self.vector_strays(pose.axis()) && self.vector_is_beyond(&from, pose),
+            false => !self.vector_strays(pose.axis()) && self.vector_is_free(&from, pose),
         };
         if !at_once {
             return self.by_home(pose, stop);
@@ -147,10 +151,11 @@ impl Walk<'_> {
         !solutions.is_empty() && (is_straight || self.are_free(&tips, [from, to]))
     }
 
-    /// How far `pose` has to go out along its axis to be beyond all cuts, mm.
+    /// How far `pose` has to go out along its axis, so that axes which go each at its own speed may lead the tool from there, mm.
     pub(crate) fn under(&mut self, pose: &Pose) -> f64 {
+        let (height, axis) = (pose.point().dot(pose.axis()), pose.axis());
         let clearance = self.machine.capabilities.rapid_clearance + 2.0 * ROUNDING;
-        (self.cut_reach(pose.axis()) + clearance - pose.point().dot(pose.axis())).max(0.0)
+        ((self.cut_reach(axis) + clearance).max(self.floor(axis)) - height).max(0.0)
     }
 
     /// A rapid in one block, from a known position.
@@ -164,7 +169,8 @@ impl Walk<'_> {
     /// The first position after a tool change or in a new orientation, from home.
     ///
     /// X and Y may stand anywhere. Where the Z of the program is that of the machine, they go first, at the height of
-    /// home; otherwise all axes go together to a place above all cuts. What is left is a way along the tool axis.
+    /// home; otherwise all axes go together to a place above all cuts, as high as the source ever goes. What is left is a way along the
+    /// tool axis.
     pub(crate) fn approach(&mut self, pose: &Pose, stop: &Stop) -> Outcome {
         let axis = pose.axis();
         let in_order = self.machine.approach.iter().map(String::as_str);
@@ -181,9 +187,9 @@ impl Walk<'_> {
             Kind::ToolCenter | Kind::Vectors => is_along(Vec3::Z) && !self.place.begins,
         };
         if is_level && is_along(axis) {
-            // Z that comes down while nobody knows X and Y has room above all cuts alone.
+            // Z that comes down while nobody knows X and Y has room above all cuts alone, and as high as the source ever goes.
             let z_last = self.machine.approach.last().is_some_and(|group| group == "Z");
-            if !z_last && !self.is_beyond(pose.point(), axis) {
+            if !z_last && !self.is_free(pose.point(), axis) {
                 return self.in_groups(pose, stop, ["XY", "Z"]);
             }
             return self.in_groups(pose, stop, in_order);
@@ -287,16 +293,18 @@ impl Walk<'_> {
         if below <= 0.0 {
             return Ok(0.0);
         }
-        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
-        let inside = (self.cut_reach(axis) + clearance - tip.dot(axis)).max(0.0);
+        let inside = (self.free_from(axis) - tip.dot(axis)).max(0.0);
         let hangs = (-rise).max(0.0);
-        Ok(match rise > 0.0 {
-            true => inside.min(below / rise),
-            false => (inside + hangs * below) / (1.0 - hangs * hangs),
+        Ok(if rise >= STEEP {
+            below / rise
+        } else if rise > 0.0 {
+            inside.min(below / rise)
+        } else {
+            (inside + hangs * below) / (1.0 - hangs * hangs)
         })
     }
 
-    /// How far the whole tool at `pose` is below the clearance above all cuts along `up`, mm.
+    /// How far the whole tool at `pose` is below where it may leave the way of the source along `up`, mm.
     ///
     /// # Errors
     /// A tool that points down, whose length nobody says, or next to which there is no room.
@@ -309,14 +317,22 @@ impl Walk<'_> {
                 .help(Unsaid::ToolLength.way_out())
                 .into());
         };
-        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
-        let below = self.cut_reach(up) + clearance + hangs * length - pose.point().dot(up);
+        let below = self.free_from(up) + hangs * length - pose.point().dot(up);
+        let below = if below > NOISE { below } else { 0.0 };
         if below > 0.0 && hangs > NEARLY_DOWN {
             let message = "the tool points down along Z of the machine: from home it reaches no position next to the part";
             let help = "another set-up, in which it points to the side or up";
             return Err(refuse(Rule::RapidPath, message).help(help).into());
         }
         Ok(below)
+    }
+
+    /// How far a steep tool at `pose` has to go out along its axis to be as high along Z as the source ever goes, mm: the places that are as
+    /// high along it as the highest lie on a slope, which reaches into a pocket far from there.
+    fn below_top(&mut self, pose: &Pose) -> f64 {
+        let (z, rise) = (pose.point().z, pose.axis().z);
+        let low = self.top_along(Vec3::Z) - z;
+        if rise >= STEEP && low > NOISE { low / rise } else { 0.0 }
     }
 
     /// Holds home, where its place is known, above all that the source cuts: a table swings the part up to it.
@@ -364,22 +380,21 @@ impl Walk<'_> {
         is_level: bool,
     ) -> Result<Entry, Box<Diagnostic>> {
         let (tip, axis) = (pose.point(), pose.axis());
-        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
         let mut entry = Entry { above: *pose, beyond: *pose };
         let mut farthest = 0.0;
         for &up in ups {
             let rise = axis.dot(up);
-            let below = self.below(pose, up)?;
-            if below <= 0.0 {
+            let (below, low) = (self.below(pose, up)?, self.below_top(pose));
+            if below.max(low) <= 0.0 {
                 continue;
             }
             let hangs = if rise < -LEVEL { -rise } else { 0.0 };
-            let inside = (self.cut_reach(axis) + clearance - tip.dot(axis)).max(0.0);
+            let inside = (self.free_from(axis) - tip.dot(axis)).max(0.0);
             let (out, climb) = if rise >= STEEP || is_level && rise > 0.0 && below / rise <= inside
             {
-                (below / rise, 0.0)
+                ((below / rise).max(low), 0.0)
             } else {
-                let out = (inside + hangs * below) / (1.0 - hangs * hangs);
+                let out = ((inside + hangs * below) / (1.0 - hangs * hangs)).max(low);
                 (out, (below - out * rise).max(0.0))
             };
             if out + climb > farthest {
@@ -473,9 +488,9 @@ impl Walk<'_> {
         self.place.degrees().is_some_and(|degrees| self.written(step.degrees) != degrees)
     }
 
-    /// Whether the tool is beyond all cuts while the control turns it along a vector on the way from `from` to `to`, if
+    /// Whether the tool is free of the part while the control turns it along a vector on the way from `from` to `to`, if
     /// it does.
-    fn vector_is_beyond(&mut self, from: &Pose, to: &Pose) -> bool {
+    fn vector_is_free(&mut self, from: &Pose, to: &Pose) -> bool {
         let (a, b) = (from.axis(), to.axis());
         if same(a, b) {
             return true;
@@ -483,7 +498,7 @@ impl Walk<'_> {
         let count = (angle_between(a, b).to_degrees() / SAMPLE).ceil().max(8.0) as usize;
         (0..=count).all(|i| {
             let part = i as f64 / count as f64;
-            self.is_beyond(from.point().lerp(to.point(), part), between(a, b, part))
+            self.is_free(from.point().lerp(to.point(), part), between(a, b, part))
         })
     }
 
@@ -534,7 +549,11 @@ impl Walk<'_> {
             };
             let aligned = is_straight && off_great_circle(from.axis(), to.axis(), axis) <= SWING;
             let near = nearest_on_segment(from.point(), to.point(), tip).1 <= corridor;
-            let keeps = (aligned && near, self.is_beyond(tip, axis));
+            let is_free = match is_straight && near {
+                true => self.is_beyond(tip, axis),
+                false => self.is_free(tip, axis),
+            };
+            let keeps = (aligned && near, is_free);
             // Also between two places, for the same reason at both.
             at_once &= keeps.0 && before.0 || keeps.1 && before.1;
             before = keeps;
@@ -587,12 +606,32 @@ impl Walk<'_> {
     }
 
     /// Whether the tool may go by these places off the straight way between two poses, where it does not turn: they are beyond all cuts,
-    /// and, since a hole or a pocket may be around the tool, not below the higher end.
+    /// and, since a hole or a pocket may be around the tool, not below the higher end, nor below the floor.
     fn are_free(&mut self, tips: &[Vec3], ends: [&Pose; 2]) -> bool {
         let axis = ends[1].axis();
         let heights = ends.map(|end| end.point().dot(axis));
-        let floor = heights[0].max(heights[1]) - ROUNDING;
+        let floor = heights[0].max(heights[1]).max(self.floor(axis)) - ROUNDING;
         tips.iter().all(|tip| tip.dot(axis) >= floor && self.is_beyond(*tip, axis))
+    }
+
+    /// Below which height along `axis` axes that go each at its own speed may be in a hole or a pocket, mm: where the source goes highest
+    /// along it; of a tool along Z the zero of the part, where the source goes above it.
+    fn floor(&mut self, axis: Vec3) -> f64 {
+        let top = self.top_along(axis);
+        if same(axis, Vec3::Z) { top.min(0.0) } else { top }
+    }
+
+    /// From how far along `axis` on the tool may leave the way of the source, mm: it is as high along it as the source ever goes, and beyond
+    /// all cuts.
+    fn free_from(&mut self, axis: Vec3) -> f64 {
+        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
+        (self.cut_reach(axis) + clearance).max(self.top_along(axis))
+    }
+
+    /// Whether the tool may leave the way of the source there.
+    fn is_free(&mut self, tip: Vec3, axis: Vec3) -> bool {
+        let is_high = axis.z < STEEP || tip.z >= self.top_along(Vec3::Z) - NOISE;
+        is_high && tip.dot(axis) >= self.free_from(axis) - NOISE
     }
 
     /// Whether the tool is beyond all cuts along its axis.

@@ -30,7 +30,7 @@ use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
     Compensation, Coolant, CutBox, Diagnostic, Feed, Op, Program, Progress, Pulse, Record, Rule,
-    Spindle, Tool, WorkOffset, WorkOffsetData,
+    Spindle, Tool, Tops, WorkOffset, WorkOffsetData,
 };
 use std::cell::{Cell, OnceCell};
 use std::collections::BTreeMap;
@@ -99,6 +99,8 @@ pub(crate) struct Walk<'a> {
     cuts: Option<CutBox>,
     /// What it reaches by feed, with the heights from which it comes down; counted where it is asked for.
     fed: Option<CutBox>,
+    /// How high it goes; looked for where it is asked for.
+    tops: Option<Tops>,
     /// The feed for the air, else the fastest that the machine is known to take, mm/min; looked for where it is asked for.
     known_feed: OnceCell<Option<f64>>,
     /// Rapids that are written by feed.
@@ -173,6 +175,7 @@ impl<'a> Walk<'a> {
             statistics: None,
             cuts: None,
             fed: None,
+            tops: None,
             known_feed: OnceCell::new(),
             by_feed: ByFeed::default(),
             radii: OnceCell::new(),
@@ -496,6 +499,11 @@ impl<'a> Walk<'a> {
     /// How far the source reaches by feed along the unit vector `direction`, with the heights from which it comes down, mm.
     pub(crate) fn fed_reach(&mut self, direction: Vec3) -> f64 {
         self.fed.get_or_insert_with(|| CutBox::fed(self.source)).reach(direction)
+    }
+
+    /// How high the source goes along the unit vector `axis`, mm.
+    pub(crate) fn top_along(&mut self, axis: Vec3) -> f64 {
+        self.tops.get_or_insert_with(|| Tops::of(self.source)).along(axis)
     }
 
     /// How far the cuts of the source reach along the unit vector `direction`, mm.

@@ -11,6 +11,9 @@ use program::Rule;
 /// A tool that points down by less than this sine lies level.
 const LEVEL: f64 = 1e-4;
 
+/// Sine of the angle over level from which a tool has to be as high along Z, too, as the source ever goes.
+const STEEP: f64 = 0.5;
+
 impl Prover<'_> {
     /// What is wrong with a rapid block to `to` from a place that nobody knows.
     pub(super) fn wrong_approach(&mut self, to: &ResolvedPose) -> Option<Diagnostic> {
@@ -40,15 +43,16 @@ impl Prover<'_> {
         if let Some(found) = self.low_home(to) {
             return Some(found);
         }
-        let short =
-            ups.iter().map(|up| self.short_below(to, *up)).fold(f64::NEG_INFINITY, f64::max);
-        if short <= self.rounding(to) || self.comes_straight_down(to, &ups) {
+        if self.comes_straight_down(to, &ups) {
             return None;
         }
-        let clearance = Number(self.gauge.machine.capabilities.rapid_clearance);
+        let short = self.short_of_all(to, &ups);
+        if short <= self.rounding(to) {
+            return None;
+        }
         let what = format!(
-            "comes from home while other axes are still on their way, {} mm short of {clearance} mm above all cuts",
-            Number(short)
+            "comes from home while other axes are still on their way, {}",
+            self.too_low(short)
         );
         Some(self.way_refused(to, &what))
     }
@@ -85,7 +89,7 @@ impl Prover<'_> {
         if is_along(&self.gauge, &ups, at.place.axis) {
             return;
         }
-        let is_above = ups.iter().all(|up| self.short_below(&at, *up) <= self.rounding(&at));
+        let is_above = self.short_of_all(&at, &ups) <= self.rounding(&at);
         if is_above && !ups.is_empty() {
             return;
         }
@@ -93,13 +97,11 @@ impl Prover<'_> {
         if short <= self.gauge.slack(&at) {
             return;
         }
-        let clearance = Number(machine.capabilities.rapid_clearance);
         let message = format!(
-            "{}the program sends Z home from {} with a tilted tool, {} mm short of {clearance} mm beyond all \
-             cuts along the tool axis",
+            "{}the program sends Z home from {} with a tilted tool, {}",
             SourceLine(self.cursor.line),
             at.place,
-            Number(short)
+            self.too_low(short)
         );
         let help = "go out along the tool axis first";
         self.found(Diagnostic::error(Rule::RapidPath, message).help(help).line(line));
@@ -115,7 +117,9 @@ impl Prover<'_> {
         if self.comes_straight_down(to, &ups) {
             return None;
         }
-        self.short_of_clearance(std::iter::once(&to.place))?;
+        if self.short_of_free(&to.place) <= self.gauge.slack(to) {
+            return None;
+        }
         let what =
             "goes on from a place that nobody knows, where Z has not been home since the last move";
         Some(self.way_refused(to, what))
@@ -149,7 +153,7 @@ impl Prover<'_> {
             return false;
         }
         let ups = self.ups(to);
-        let is_above = ups.iter().all(|up| self.short_below(to, *up) <= self.gauge.slack(to));
+        let is_above = self.short_of_all(to, &ups) <= self.gauge.slack(to);
         let start = self.progress.start.unwrap_or(self.here);
         let begins = is_above
             && !ups.is_empty()
@@ -212,8 +216,30 @@ impl Prover<'_> {
         }
     }
 
-    /// By how much the tool at `to` is not the clearance above all cuts along `up`, with its length where it hangs from
-    /// its tip, mm.
+    /// By how much the tool at `to` is too low to leave the way of the source, along Z of the machine in all ways that it may stand, mm.
+    fn short_of_all(&mut self, to: &ResolvedPose, ups: &[Vec3]) -> f64 {
+        let short = |up: &Vec3| self.short_below(to, *up);
+        let along = ups.iter().map(short).fold(f64::NEG_INFINITY, f64::max);
+        along.max(self.short_of_top(&to.place))
+    }
+
+    /// By how much a steep tool is lower than the source ever goes along Z, mm: the places that are as high along the tool as the highest
+    /// lie on a slope, which reaches into a pocket far from there.
+    fn short_of_top(&mut self, place: &PartialPose) -> f64 {
+        if place.axis.z >= STEEP && place.known() {
+            self.top_along(Vec3::Z) - place.tip.z
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// By how much the tool is too low to leave the way of the source there, mm.
+    pub(super) fn short_of_free(&mut self, place: &PartialPose) -> f64 {
+        let along = self.free_from(place.axis) - place.tip.dot(place.axis);
+        along.max(self.short_of_top(place))
+    }
+
+    /// By how much the tool at `to` is too low along `up` to leave the way of the source, with its length where it hangs from its tip, mm.
     pub(super) fn short_below(&mut self, to: &ResolvedPose, up: Vec3) -> f64 {
         let point = Vec3::select(to.position.point.is_nan_mask(), Vec3::ZERO, to.position.point);
         let place = self.gauge.resolve(to.line, Position { point, ..to.position }).place;
@@ -226,19 +252,19 @@ impl Prover<'_> {
         if slack.is_nan() { self.gauge.machine.resolution() } else { slack }
     }
 
-    /// How high along `up` a tip has to be, so that the tool along `axis` is the clearance above all cuts, mm.
+    /// How high along `up` a tip has to be, so that the tool along `axis` may leave the way of the source, mm.
     fn needed(&mut self, up: Vec3, axis: Vec3) -> f64 {
+        self.free_from(up) + self.hanging(up, axis)
+    }
+
+    /// How far the tool along `axis` hangs below its tip, along `up`, mm.
+    fn hanging(&self, up: Vec3, axis: Vec3) -> f64 {
         let hangs = (-axis.dot(up)).max(0.0);
-        let below = if hangs > LEVEL {
-            hangs * self.gauge.tool_length.unwrap_or(f64::INFINITY)
-        } else {
-            0.0
-        };
-        self.cut_reach(up) + self.gauge.machine.capabilities.rapid_clearance + below
+        if hangs > LEVEL { hangs * self.gauge.tool_length.unwrap_or(f64::INFINITY) } else { 0.0 }
     }
 
     /// Whether Z of the machine alone comes down, with the tool along it, or beyond all cuts along its own axis until it
-    /// is above them.
+    /// is above them, and so far out.
     fn comes_straight_down(&mut self, to: &ResolvedPose, ups: &[Vec3]) -> bool {
         if !self.moves_z_alone(to, ups) {
             return false;
@@ -247,12 +273,11 @@ impl Prover<'_> {
             || self.short_aside(to, ups) <= self.gauge.slack(to)
     }
 
-    /// By how much the tool is not the clearance beyond all cuts along its own axis, on the way along Z of the machine
-    /// between `to` and where it is above them, mm.
+    /// By how much the tool is not far enough out along its own axis to leave the way of the source, on the way along Z of the machine
+    /// between `to` and where it is above all cuts, mm.
     fn short_aside(&mut self, to: &ResolvedPose, ups: &[Vec3]) -> f64 {
-        let PartialPose { tip, axis } = to.place;
-        let clearance = self.gauge.machine.capabilities.rapid_clearance;
-        let short = self.cut_reach(axis) + clearance - tip.dot(axis);
+        let axis = to.place.axis;
+        let short = self.short_of_free(&to.place);
         let more = |up: &Vec3| (-axis.dot(*up)).max(0.0) * self.short_below(to, *up).max(0.0);
         short + ups.iter().map(more).fold(0.0, f64::max)
     }
@@ -304,7 +329,7 @@ impl Prover<'_> {
             let linear = Vec3::new(0.0, 0.0, home - length - zero.z);
             let (tip, axis) = machine.forward(linear, degrees, length);
             let up = machine.up_at(degrees);
-            self.needed(up, axis) - tip.dot(up)
+            self.beyond_cuts(up) + self.hanging(up, axis) - tip.dot(up)
         };
         let short = stances.into_iter().map(low).fold(f64::NEG_INFINITY, f64::max);
         if short.is_nan() || short <= machine.resolution() {

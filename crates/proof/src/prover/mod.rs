@@ -36,7 +36,7 @@ use program::Rule;
 use program::statistics::Statistics;
 use program::{
     Axes, Compensation, Coolant, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Severity,
-    Spindle, Tool,
+    Spindle, Tool, Tops,
 };
 
 /// The way out of a difference.
@@ -53,6 +53,8 @@ pub struct Prover<'a> {
     statistics: Option<Statistics>,
     /// What it cuts; counted where it is asked for.
     cuts: Option<CutBox>,
+    /// How high it goes; looked for where it is asked for.
+    tops: Option<Tops>,
     gauge: Gauge<'a>,
     cursor: Cursor<'a>,
     running: Running,
@@ -153,6 +155,7 @@ impl<'a> Prover<'a> {
             source,
             statistics: None,
             cuts: None,
+            tops: None,
             here: gauge.resolve(0, unknown),
             standing: PossiblePositions::new(machine),
             travel: Travel::new(machine),

@@ -273,7 +273,7 @@ impl Prover<'_> {
         self.top = to.position.point.z;
         self.check_offsets(&to);
         self.hold_travel(&to, None);
-        let short = self.short_below(&to, Vec3::Z);
+        let short = self.beyond_cuts(Vec3::Z) - to.place.tip.z;
         if short > self.gauge.machine.resolution() {
             let message = format!(
                 "{}the program retracts to Z{}, {} mm short of {} mm above all that the source cuts",

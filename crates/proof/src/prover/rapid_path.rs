@@ -2,8 +2,8 @@
 //!
 //! A block goes near the part only on the straight way that the source goes by rapid, along the tool axis away from a
 //! place or down to it, or from home along Z. Any other way must be beyond all that the source cuts, along the tool
-//! axis as it is at each point. Where the axes of the machine go each at its own speed, the way is anywhere in the box
-//! that they span, and that box may not be below its higher end either.
+//! axis as it is at each point; and where its tip is off the line, as high as the source ever goes. Where the axes of the machine go
+//! each at its own speed, the way is anywhere in the box that they span.
 
 use super::*;
 use crate::line::{blend, turn};
@@ -86,44 +86,58 @@ impl Prover<'_> {
             places.iter().partition(|place| way.holds(place));
         self.note_rapid(way, on_way.into_iter(), to.line);
         let slack = self.gauge.slack(here);
-        if let Some(low) = self.below_its_end([here, to], &elsewhere) {
-            let what = format!(
-                "leaves the straight way of the source {} mm below its higher end: there may be a hole or a pocket around it",
-                Number(low)
-            );
+        if let Some(what) = self.below_its_end([here, to], &elsewhere) {
             self.note_rapid(way, elsewhere.into_iter(), to.line);
             return Some(self.way_refused(to, &what));
         }
-        let short = self.short_of_clearance(elsewhere.iter().copied())?;
-        let low: Vec<&PartialPose> =
-            elsewhere.into_iter().filter(|place| self.short(place) > slack).collect();
-        self.note_rapid(way, low.into_iter(), to.line);
-        let clearance = Number(self.gauge.machine.capabilities.rapid_clearance);
-        let what = format!(
-            "leaves the straight way of the source {} mm short of {clearance} mm beyond all cuts",
-            Number(short)
-        );
+        let turns = here.position.orientation != to.position.orientation;
+        let shorts = elsewhere.into_iter().map(|place| {
+            let is_off = turns && !way.is_on_line(place);
+            let short = match is_off {
+                true => self.short_of_free(place),
+                false => self.beyond_cuts(place.axis) - place.tip.dot(place.axis),
+            };
+            (place, short)
+        });
+        let low: Vec<(&PartialPose, f64)> = shorts.filter(|(_, short)| *short > slack).collect();
+        let short = low.iter().map(|(_, short)| *short).reduce(f64::max)?;
+        self.note_rapid(way, low.into_iter().map(|(place, _)| place), to.line);
+        let what = format!("leaves the straight way of the source {}", self.too_low(short));
         Some(self.way_refused(to, &what))
     }
 
-    /// How far the axes, going each at its own speed, lead the tool below the higher end of a way on which it does not turn, mm: in a
-    /// hole or a pocket that was there before, or was drilled by moves, the tool is beyond all cuts everywhere but at its bottom.
+    /// What is wrong with the places to which axes that go each at its own speed lead the tool, where it does not turn: in a hole or a
+    /// pocket that was there before, or was drilled by moves, the tool is beyond all cuts everywhere but at its bottom. So they are not
+    /// below the higher end, and with the tool along Z not below the zero of the part, else not below where the source goes highest.
     fn below_its_end(
         &mut self,
         ends: [&ResolvedPose; 2],
         elsewhere: &[&PartialPose],
-    ) -> Option<f64> {
+    ) -> Option<String> {
         let axis = ends[1].place.axis;
         let turns = ends[0].position.orientation != ends[1].position.orientation;
         if self.gauge.straight_rapids || turns {
             return None;
         }
         let height = |place: &PartialPose| place.tip.dot(axis);
-        let higher = ends.iter().map(|end| height(&end.place)).fold(f64::NEG_INFINITY, f64::max);
         let lowest = elsewhere.iter().map(|place| height(place)).fold(f64::INFINITY, f64::min);
-        let low = higher - lowest;
-        let corridor = self.gauge.machine.capabilities.rapid_corridor;
-        (low > corridor + self.gauge.slack(ends[0])).then_some(low)
+        let higher = ends.iter().map(|end| height(&end.place)).fold(f64::NEG_INFINITY, f64::max);
+        let allowed = self.gauge.machine.capabilities.rapid_corridor + self.gauge.slack(ends[0]);
+        let is_upright =
+            geom::angle_between(axis, Vec3::Z).to_degrees() <= self.gauge.allowed.axis_degrees;
+        let (low, what) = if higher - lowest > allowed {
+            (higher - lowest, "its higher end")
+        } else if !is_upright || lowest < -allowed {
+            (self.top_along(axis) - lowest, "where the source goes highest")
+        } else {
+            return None;
+        };
+        (low > allowed).then(|| {
+            format!(
+                "leaves the straight way of the source {} mm below {what}: there may be a hole or a pocket around it",
+                Number(low)
+            )
+        })
     }
 
     /// Holds the rounding of corners of rapids, which goes through the part where one of the two ends is not beyond all cuts.
@@ -164,30 +178,40 @@ impl Prover<'_> {
     }
 
     /// By how much the tool is not the clearance beyond all cuts at the worst of these places, mm.
-    pub(super) fn short_of_clearance<'p>(
+    fn short_of_clearance<'p>(
         &mut self,
         places: impl Iterator<Item = &'p PartialPose>,
     ) -> Option<f64> {
-        let worst = places.map(|place| self.short(place)).fold(f64::NEG_INFINITY, f64::max);
+        let short = |place: &PartialPose| self.beyond_cuts(place.axis) - place.tip.dot(place.axis);
+        let worst = places.map(short).fold(f64::NEG_INFINITY, f64::max);
         let slack = self.gauge.slack(&self.here);
         (worst > slack).then_some(worst)
     }
 
-    /// How far a place is below the clearance beyond all cuts, along the tool axis there, mm.
-    fn short(&mut self, place: &PartialPose) -> f64 {
-        let cuts = self.cuts();
-        let clearance = self.gauge.machine.capabilities.rapid_clearance;
-        cuts.reach(place.axis) + clearance - place.tip.dot(place.axis)
+    /// How far along the unit vector `axis` the clearance beyond all cuts is, mm.
+    pub(super) fn beyond_cuts(&mut self, axis: Vec3) -> f64 {
+        let cuts = self.cuts.get_or_insert_with(|| CutBox::of(self.source));
+        cuts.reach(axis) + self.gauge.machine.capabilities.rapid_clearance
     }
 
-    /// The box of all that the source cuts.
-    fn cuts(&mut self) -> CutBox {
-        *self.cuts.get_or_insert_with(|| CutBox::of(self.source))
+    /// From how far along the unit vector `axis` on the tool may leave the way of the source, mm: it is as high as the source ever goes,
+    /// and the clearance beyond all cuts.
+    pub(super) fn free_from(&mut self, axis: Vec3) -> f64 {
+        self.beyond_cuts(axis).max(self.top_along(axis))
     }
 
-    /// How far the cuts of the source reach along the unit vector `direction`, mm.
-    pub(super) fn cut_reach(&mut self, direction: Vec3) -> f64 {
-        self.cuts().reach(direction)
+    /// How high the source goes along the unit vector `axis`, mm.
+    pub(super) fn top_along(&mut self, axis: Vec3) -> f64 {
+        self.tops.get_or_insert_with(|| Tops::of(self.source)).along(axis)
+    }
+
+    /// What is said of a tool that is so many mm too low, or not far enough out, to leave the way of the source.
+    pub(super) fn too_low(&self, short: f64) -> String {
+        let clearance = Number(self.gauge.machine.capabilities.rapid_clearance);
+        format!(
+            "{} mm short of where it may: as high as the source ever goes, and {clearance} mm beyond all cuts",
+            Number(short)
+        )
     }
 
     pub(super) fn way_refused(&self, to: &ResolvedPose, what: &str) -> Diagnostic {
@@ -220,11 +244,16 @@ impl StraightPath<'_> {
     /// Whether a place is on it, with the tool as it is there.
     fn holds(&self, place: &PartialPose) -> bool {
         let Some((from, to)) = &self.straight else { return false };
-        let (machine, allowed) = (self.gauge.machine, &self.gauge.allowed);
-        let corridor = machine.capabilities.rapid_corridor + allowed.tip_mm;
-        let (_, off_path) = nearest_on_segment(from.tip, to.tip, place.tip);
+        let allowed = &self.gauge.allowed;
         let off = off_great_circle(from.axis, to.axis, place.axis).to_degrees();
-        off_path <= corridor && off <= allowed.axis_degrees + allowed.sweep_degrees
+        self.is_on_line(place) && off <= allowed.axis_degrees + allowed.sweep_degrees
+    }
+
+    /// Whether a place is on its line, however the tool leans there.
+    fn is_on_line(&self, place: &PartialPose) -> bool {
+        let machine = self.gauge.machine;
+        let corridor = machine.capabilities.rapid_corridor + self.gauge.allowed.tip_mm;
+        self.off_path(place).is_some_and(|off| off <= corridor)
     }
 
     /// How far a place is from it, mm.
@@ -325,9 +354,17 @@ fn along_axis(
     end: &PartialPose,
 ) -> bool {
     let is_up = stops::lifted(gauge, here, to);
-    let is_down = stops::lifted(gauge, to, here)
-        && gauge.height_over(end, to).is_some_and(|height| height >= -gauge.slack(to));
+    let is_down = stops::lifted(gauge, to, here) && is_over(gauge, end, to);
     let corridor = gauge.machine.capabilities.rapid_corridor;
     let on_line = |place: &PartialPose| here.place.above(place.tip).1 <= corridor;
     (is_up || is_down) && places.iter().all(on_line)
+}
+
+/// Whether `to` is over the end of a way along the tool axis there, but for the rounding of both: the end may be a place of the program,
+/// whose axis is known as well as its words say it, so the higher, the farther from the axis.
+fn is_over(gauge: &Gauge, end: &PartialPose, to: &ResolvedPose) -> bool {
+    let (height, aside) = end.above(to.place.tip);
+    let slack = gauge.slack(to);
+    let rounding = 2.0 * slack + height.abs() * gauge.allowed.axis_degrees.to_radians();
+    height >= -slack && aside <= rounding
 }

@@ -386,7 +386,7 @@ fn each_motion_says_how_far_it_is_from_that_of_the_source() {
 fn the_tool_axis_of_each_motion_says_how_far_it_is_off() {
     let mut source = job(Some(50.0));
     let at = |degrees: f64| Some([degrees.to_radians().sin(), 0.0, degrees.to_radians().cos()]);
-    source.rapid([0.0, 0.0, 50.0], at(0.0)).unwrap();
+    source.rapid([0.0, 0.0, 60.0], at(0.0)).unwrap();
     source.line([0.0, 0.0, 10.0], at(0.0)).unwrap();
     source.line([10.0, 0.0, 10.0], at(10.0)).unwrap();
     source.line([20.0, 0.0, 10.0], at(20.0)).unwrap();
@@ -394,7 +394,7 @@ fn the_tool_axis_of_each_motion_says_how_far_it_is_off() {
     let (source, machine) = (source.build(), machine::load("fanuc-table-bc").unwrap());
     let text = |tilt: &str| {
         format!(
-            "G21\nG0 G17 G40 G49 G69 G80 G90 G94 G54\nG91 G28 Z0\nG90\nT1 M6\nS5000 M3\nG0 B0. C0.\nG43.4 X0. Y0. Z50. H1\nG1 Z10. F300.\nX10. B{tilt}\n\
+            "G21\nG0 G17 G40 G49 G69 G80 G90 G94 G54\nG91 G28 Z0\nG90\nT1 M6\nS5000 M3\nG0 B0. C0.\nG43.4 X0. Y0. Z60. H1\nG1 Z10. F300.\nX10. B{tilt}\n\
              X20. B20.\nG0 Z60.\nG91 G28 Z0\nG90\nG49\nM5\nG0 B0.\nM30\n"
         )
     };

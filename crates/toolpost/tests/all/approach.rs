@@ -79,8 +79,8 @@ fn a_length_begins_with_a_position_above_all_cuts() {
         let machine = fanuc_by_position(setting);
         let good = written(&source, &machine);
         proven(&source, &machine, &good);
-        let entry = "G43.4 X0. Y-201.01 Z20. H1";
-        let apart = with(&good, entry, &["G43.4 H1", "X0. Y-201.01 Z20."]);
+        let entry = "G43.4 X0. Y-260. Z20. H1";
+        let apart = with(&good, entry, &["G43.4 H1", "X0. Y-260. Z20."]);
         if setting.contains("false") {
             proven(&source, &machine, &apart);
         } else {
@@ -132,20 +132,20 @@ fn x_and_y_first_dive_next_to_a_part_that_the_table_has_swung_up() {
     let (source, machine) = (read(LEDGE), fanuc());
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
-    // All axes together to 1 mm over Y -200, then down along the tool.
-    assert!(good.contains("G43.4 H1\n") && good.contains(" X0. Y-201.01 Z20.\n"), "{good}");
+    // All axes together to Y -260, as high as the source ever goes along the tool, then down along it.
+    assert!(good.contains("G43.4 H1\n") && good.contains(" X0. Y-260. Z20.\n"), "{good}");
     assert!(good.lines().any(|line| words(line) == "Y-145."), "{good}");
     // From home, tip at Z 300, X0 Y-145 sends Z of the machine to 45 wherever its Y is: 55 mm under what stands at Z 100.
-    let dives = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-145.", "Z20."]);
+    let dives = with(&good, "X0. Y-260. Z20.", &["X0. Y-145.", "Z20."]);
     let dives = with(&dives, "Y-145.", &[]);
     assert_eq!(refused(&source, &machine, &dives), ("rapid-path", "X0. Y-145.".into()));
     // The same in one block comes down aslant next to what stands out.
-    let aslant = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-145. Z20."]);
+    let aslant = with(&good, "X0. Y-260. Z20.", &["X0. Y-145. Z20."]);
     let aslant = with(&aslant, "Y-145.", &[]);
     assert_eq!(refused(&source, &machine, &aslant), ("rapid-path", "X0. Y-145. Z20.".into()));
-    // So does one that ends 0.1 mm short of the clearance.
-    let low = with(&good, "X0. Y-201.01 Z20.", &["X0. Y-200.9 Z20."]);
-    assert_eq!(refused(&source, &machine, &low), ("rapid-path", "X0. Y-200.9 Z20.".into()));
+    // So does one that ends 0.1 mm short of where the source goes highest: a bore may be around it.
+    let low = with(&good, "X0. Y-260. Z20.", &["X0. Y-259.9 Z20."]);
+    assert_eq!(refused(&source, &machine, &low), ("rapid-path", "X0. Y-259.9 Z20.".into()));
 }
 
 /// `TRAORI` and `M128` count on the part as `G43.4` does.
@@ -153,10 +153,10 @@ fn x_and_y_first_dive_next_to_a_part_that_the_table_has_swung_up() {
 fn x_and_y_first_dive_under_traori_and_m128_too() {
     let source = read(LEDGE);
     for (control, entry, then, first, second) in [
-        ("sinumerik-840d", "X0 Y-201.01 Z20", "Y-145", "X0 Y-145", "Z20"),
+        ("sinumerik-840d", "X0 Y-260 Z20", "Y-145", "X0 Y-145", "Z20"),
         (
             "heidenhain-tnc640",
-            "L X+0 Y-201.01 Z+20 R0 FMAX",
+            "L X+0 Y-260 Z+20 R0 FMAX",
             "L Y-145 R0 FMAX",
             "L X+0 Y-145 R0 FMAX",
             "L Z+20 R0 FMAX",
@@ -189,7 +189,7 @@ fn z_alone_comes_down_where_x_and_y_stand_over_the_place_before_the_tip_is_kept(
     let over = |y: &str| {
         let before = format!("G0 X0. {y}");
         let text = with(&good, "G43.4 H1", &[&before, "G43.4 H1"]);
-        with(&with(&text, "X0. Y-201.01 Z20.", &["X0. Y-145. Z20."]), "Y-145.", &[])
+        with(&with(&text, "X0. Y-260. Z20.", &["X0. Y-145. Z20."]), "Y-145.", &[])
     };
     proven(&source, &machine, &over("Y120."));
     let aside = over("Y119.");
@@ -232,7 +232,7 @@ fn each_return_from_home_is_looked_at_as_the_first_approach_is() {
     }
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
-    let entry = "X0. Y-201.01 Z20.";
+    let entry = "X0. Y-260. Z20.";
     let is_entry = |line: &str| words(line).trim_start_matches("G0 ") == entry;
     let entries: Vec<usize> =
         (0..).zip(good.lines()).filter(|(_, line)| is_entry(line)).map(|(at, _)| at).collect();
@@ -278,10 +278,10 @@ fn the_samples_approach_in_the_machine() {
         ]
     };
     for (name, block, z) in [
-        ("fanuc-table-bc", "G43.4 X-16.84 Y6.946 Z48.294 H2", " Z"),
-        ("haas-umc-750", "X-16.84 Y6.946 Z48.294", " Z"),
-        ("dmu50-heidenhain", "L X-16.84 Y+6.946 Z+48.294 R0 FMAX", " Z"),
-        ("sinumerik-840d-traori", "G0 X7.465 Y10.556 Z77.071", " Z"),
+        ("fanuc-table-bc", "G43.4 X-17.302 Y7.415 Z50.911 H2", " Z"),
+        ("haas-umc-750", "X-17.302 Y7.415 Z50.911", " Z"),
+        ("dmu50-heidenhain", "L X-17.302 Y+7.415 Z+50.911 R0 FMAX", " Z"),
+        ("sinumerik-840d-traori", "G0 X7.465 Y10.556 Z83.64", " Z"),
     ] {
         let (source, machine) = (sample(), load(name).unwrap());
         let good = written(&source, &machine);
@@ -361,16 +361,16 @@ const LEAVES: [&str; 4] = [
     "LOADTL/2,LENGTH,60\nOPSTOP\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,20,0,0,1\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI\n",
 ];
 
-/// Z home brings the machine straight up: from Y -29 Z -29 through the roof of the slot. Out along the tool it is 1.01 mm
-/// above Z 0 after 30.01 mm of Y and of Z, before it is beyond Y -60 along itself.
+/// Z home brings the machine straight up: from Y -29 Z -29 through the roof of the slot. Out along the tool it is as high as the
+/// source ever goes, at Z 50, after 79 mm of Y and of Z.
 #[test]
 fn a_tilted_head_goes_out_along_its_tool_before_z_goes_home() {
     let head = |name| load(name).unwrap();
     for (machine, out) in [
-        (fork(""), "Y-59.01 Z1.01"),
-        // In the plane Z is the tool: 30.01 times the root of 2.
-        (head("sinumerik-840d-traori"), "G0 Z42.441"),
-        (head("linuxcnc-xyzbc-head"), "G0 Y-59.01 Z1.01"),
+        (fork(""), "G0 Y-108. Z50."),
+        // In the plane Z is the tool.
+        (head("sinumerik-840d-traori"), "G0 Z111.723"),
+        (head("linuxcnc-xyzbc-head"), "G0 Y-108 Z50"),
     ] {
         for then in LEAVES {
             let source = slot(then);
@@ -400,7 +400,7 @@ fn a_tilted_head_goes_out_by_the_old_work_offset() {
         |line| program::Record { line, op: Op::WorkOffset(WorkOffset::numbered(55).unwrap()) };
     source.records.insert(at, offset(source.records[at].line));
     let good = written(&source, &machine);
-    let out = good.lines().position(|line| words(line) == "G0 Z42.441");
+    let out = good.lines().position(|line| words(line) == "G0 Z111.723");
     assert!(
         out.is_some_and(|out| good.lines().skip(out).any(|line| words(line) == "G55")),
         "{good}"
@@ -414,14 +414,14 @@ fn a_tilted_head_that_goes_out_by_less_is_refused() {
     let (source, machine) = (slot("FINI\n"), fork(""));
     let good = written(&source, &machine);
     let other = |block: &str| {
-        let lines = good.lines().map(|line| match line.ends_with("Y-59.01 Z1.01") {
-            true => line.replace("Y-59.01 Z1.01", block),
+        let lines = good.lines().map(|line| match line.ends_with("G0 Y-108. Z50.") {
+            true => line.replace("Y-108. Z50.", block),
             false => line.to_owned(),
         });
         lines.map(|line| line + "\n").collect::<String>()
     };
-    assert_eq!(refused(&source, &machine, &other("Y-58.9 Z0.9")).0, "rapid-path");
-    proven(&source, &machine, &other("Y-59.1 Z1.1"));
+    assert_eq!(refused(&source, &machine, &other("Y-107.9 Z49.9")).0, "rapid-path");
+    proven(&source, &machine, &other("Y-108.1 Z50.1"));
 }
 
 /// The same where the tool change itself brings Z up.
@@ -431,7 +431,7 @@ fn a_tool_change_that_retracts_by_itself_takes_no_tilted_head_out_of_a_slot() {
     let machine = fork("[tools]\nretracts = true\nturns_upright = true\n");
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
-    let at = good.lines().position(|line| line.ends_with("Y-59.01 Z1.01")).unwrap();
+    let at = good.lines().position(|line| line.ends_with("G0 Y-108. Z50.")).unwrap();
     let change = at + good.lines().skip(at).position(|line| line.contains("M6")).unwrap();
     let stays = |(i, line): (usize, &str)| {
         (i < at || i >= change || !line.contains("Z")).then(|| line.to_owned() + "\n")
@@ -456,9 +456,9 @@ fn a_tool_that_points_down_goes_out_until_it_is_free_on_its_way_up() {
     proven(&source, &machine, &good);
 }
 
-/// Where Z is down before X and Y are known, it has to be above all cuts.
+/// Where Z is down before X and Y are known, it has to be as high as the source ever goes.
 #[test]
-fn z_first_comes_down_above_all_cuts_only() {
+fn z_first_comes_down_to_where_the_source_goes_highest_only() {
     let source = read(
         "UNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/5,0,3\nGOTO/5,0,-5\nGOTO/25,0,2\nRAPID\n\
          GOTO/25,0,50\nFINI\n",
@@ -466,20 +466,10 @@ fn z_first_comes_down_above_all_cuts_only() {
     let machine = load("generic-3axis-sinumerik").unwrap();
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
-    let z_first =
-        |z: &str| with(&with(&good, "G0 X5 Y0", &[&format!("G0 {z}"), "X5 Y0"]), "Z3", &[]);
-    proven(&source, &machine, &z_first("Z3"));
-    let low = source_with_a_wall();
-    let good = written(&low, &machine);
-    proven(&low, &machine, &good);
-    let z_first = with(&with(&good, "G0 X5 Y0", &["G0 Z3", "X5 Y0"]), "Z3", &[]);
-    assert_eq!(refused(&low, &machine, &z_first), ("rapid-path", "G0 Z3".into()));
-}
-
-/// The same next to a wall that is cut 2.5 mm high.
-fn source_with_a_wall() -> Program {
-    read(
-        "UNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/5,0,3\nGOTO/5,0,-5\nGOTO/25,0,2.5\nRAPID\n\
-         GOTO/25,0,50\nFINI\n",
-    )
+    let z_first = |z: &str| with(&good, "G0 X5 Y0", &[&format!("G0 {z}"), "X5 Y0"]);
+    proven(&source, &machine, &z_first("Z50"));
+    assert_eq!(refused(&source, &machine, &z_first("Z49.9")), ("rapid-path", "G0 Z49.9".into()));
+    // 1 mm above all cuts there may be a pocket around it.
+    let low = with(&z_first("Z3"), "Z3", &[]);
+    assert_eq!(refused(&source, &machine, &low), ("rapid-path", "G0 Z3".into()));
 }

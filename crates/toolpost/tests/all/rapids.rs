@@ -501,6 +501,57 @@ fn a_slanting_rapid_out_of_a_pocket_goes_up_first_where_each_axis_goes_at_its_ow
     let lines: Vec<&str> = text.lines().collect();
     assert!(lines[up_first + 1].ends_with(" X60."), "{text}");
     let at_once = text.replacen(&format!("{}\n", lines[up_first]), "", 1);
-    let at_once = at_once.replacen(" X60.", " X60. Z40.", 1);
+    let at_once = at_once.replacen(" X60.", " G0 X60. Z40.", 1);
     assert_eq!(refused(&source, &machine, &at_once), [("rapid-path", up_first as u32 + 1)]);
+}
+
+/// The first place is in a bore that was there before; the source leaves it upwards, to Z 65. Where X, Y and Z come from home in one block, they come
+/// to there: to Z -20 each axis would go at its own speed, or all together aslant.
+#[test]
+fn from_home_into_a_bore_the_tool_comes_from_as_high_as_the_source_goes() {
+    let source = read(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-20,0,0,1\n\
+         FEDRAT/MMPM,300\nGOTO/100,50,-30\nRAPID\nGOTO/100,50,-20\nRAPID\nGOTO/100,50,65\nSPINDL/OFF\nFINI\n",
+    );
+    let machine = leaning_head();
+    let good = text(&written(&source, &machine));
+    let report = proof::prove(&source, &machine, "job.nc", good.as_bytes(), &Default::default());
+    assert!(report.proven, "{:#?}\n{good}", report.mismatches);
+    let own = "X100. Y50. Z65. H1\nN130 Z-20.\n";
+    assert!(good.contains(own), "{good}");
+    for (low, line) in [("Z-20.", 14), ("Z64.9", 14)] {
+        let other = good.replacen("Z65. H1", &format!("{low} H1"), 1);
+        assert_eq!(refused(&source, &machine, &other).first(), Some(&("rapid-path", line)));
+    }
+}
+
+/// A pocket that was there before, its floor at Z -38, and two holes in it: each axis at its own speed led the tool up to 18.6 mm beside the
+/// straight line of 50 by 20 mm. With the zero of the part at the floor nothing tells it from clearance above a part.
+#[test]
+fn across_on_the_floor_of_a_pocket_the_tool_goes_straight() {
+    let machine = load("generic-3axis-fanuc").unwrap();
+    let source = |floor: f64| {
+        let [top, deep] = [floor + 103.0, floor - 22.0];
+        read(&format!(
+            "PARTNO/JOB\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/10,10,{top}\nRAPID\nGOTO/10,10,{floor}\n\
+             GOTO/10,10,{deep}\nRAPID\nGOTO/10,10,{floor}\nRAPID\nGOTO/60,30,{floor}\nGOTO/60,30,{deep}\nRAPID\nGOTO/60,30,{top}\nFINI\n"
+        ))
+    };
+    let job = source(-38.0);
+    let output = written(&job, &machine);
+    let good = plain(&text(&output));
+    proven(&job, &machine, &good);
+    assert!(good.contains("G0 Z-38.\nG1 X60. Y30. F5000.\n"), "{good}");
+    assert!(output.warnings.iter().any(|found| found.rule.name() == "rapid-path"), "{good}");
+    let at_once = good.replacen("G1 X60. Y30. F5000.\n", "X60. Y30.\nG1 ", 1);
+    assert_eq!(refused(&job, &machine, &at_once).first().map(|found| found.0), Some("rapid-path"));
+    // Above the zero of the part each axis may go as it likes.
+    let over = good.replacen("G1 X60. Y30. F5000.\n", "Z0.\nX60. Y30.\nZ-38.\nG1 ", 1);
+    proven(&job, &machine, &over);
+    let low = over.replacen("Z0.\nX60. Y30.", "Z-0.2\nX60. Y30.", 1);
+    assert_eq!(refused(&job, &machine, &low).first().map(|found| found.0), Some("rapid-path"));
+    let clear = source(2.0);
+    let good = plain(&text(&written(&clear, &machine)));
+    proven(&clear, &machine, &good);
+    assert!(good.contains("G0 Z2.\nX60. Y30.\nG1 Z-20."), "{good}");
 }
