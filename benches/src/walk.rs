@@ -3,9 +3,9 @@
 
 use crate::clock::{self, Taken};
 use crate::{memory, path};
+use geom::ending::Ended;
 use program::Diagnostic;
 use proof::{Motion, Observer, Tolerances};
-use studio::job::Ended;
 use studio::walk::{Follower, Slot};
 
 /// Looks at each motion, and keeps none.

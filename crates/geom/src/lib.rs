@@ -22,12 +22,13 @@
 //! # }
 //! ```
 //!
-//! It never reads or writes anything, and it knows nothing of a machine.
+//! It never reads or writes anything, and it knows nothing of a machine. Long steps may be ended from outside ([`ending`]).
 
 mod arc;
 mod chain;
 mod crossing;
 mod element;
+pub mod ending;
 pub mod lettering;
 pub mod linear;
 pub mod region;

@@ -1,7 +1,7 @@
 //! A walk is drawn while its proof runs: chunk by chunk, in a thread of its own.
 
 use crate::geometry::{Exact, Geometry};
-use crate::job::Ended;
+use geom::ending::Ended;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::JoinHandle;
 

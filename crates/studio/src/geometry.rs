@@ -485,9 +485,9 @@ fn distance(point: Vec3, a: Vec3, b: Vec3) -> f64 {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::job::Ended;
     use crate::walk::{Follower, Pulse, Slot};
     use geom::Arc;
+    use geom::ending::Ended;
     use machine::Machine;
     use program::Program;
     use proof::{AxisPositions, Course, Motion, MotionKind, Observer, Report, ToolPose};

@@ -21,14 +21,14 @@ use app::report::{self, Digests};
 use app::toolpath::{self, Toolpath};
 use app::{Account, Source, Stop, Verdict, Watch, files, post, prove, wire};
 use control::Folders;
+use geom::ending::{Ended, go_on};
 use machine::linkage::Linkage;
 use machine::{Machine, Reach, library};
 use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
 use proof::{Observer, Tolerances};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// The most bytes of a text that are answered at once.
 const MOST_TEXT: usize = 4 << 20;
@@ -111,22 +111,6 @@ impl Waits for () {
     fn walked(&self, _file: &str, _piece: Piece) {}
 }
 
-/// Work that may be ended: by the page, by a newer ask, or because the page has gone.
-#[derive(Clone, Debug, Default)]
-pub struct Ended(Arc<AtomicBool>);
-
-impl Ended {
-    /// Ends it.
-    pub fn end(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether it was ended.
-    pub fn is_ended(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
 /// Follows the work on a job, or on all those of a board at the same time.
 pub(crate) struct Follows<'a> {
     waits: &'a dyn Waits,
@@ -155,6 +139,8 @@ impl Watch for Follows<'_> {
     }
 
     fn is_cancelled(&self) -> bool {
+        // On a thread of the work nothing is made of what is there so far.
+        go_on();
         self.ended.is_ended()
     }
 

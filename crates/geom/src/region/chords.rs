@@ -3,6 +3,7 @@
 use super::kernel::{GridPoint, Keep, Kernel, Operand};
 use super::{Fill, Region, RegionError, crossings, refit};
 use crate::crossing::Carrier;
+use crate::ending::go_on;
 use crate::{Element, Turn, Vec2};
 use std::f64::consts::TAU;
 
@@ -71,6 +72,7 @@ impl Chords {
         let starts = chain.iter().map(|element| GridPoint::of(element.start));
         let ends = starts.clone().cycle().skip(1);
         for (element, (mut from, end)) in chain.iter().zip(starts.zip(ends)) {
+            go_on();
             // There are no more sources than edges.
             let source = self.sources.len() as u32;
             let carrier = if let Some(turn) = element.turn {

@@ -2,6 +2,7 @@
 
 use super::index::tree;
 use crate::crossing::Carrier;
+use crate::ending::go_on;
 use crate::{Element, Vec2};
 use rayon::prelude::*;
 use static_aabb2d_index::Control;
@@ -33,6 +34,7 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<RingCrossing> {
     let Some(index) = tree(boxes.iter().copied()) else { return Vec::new() };
     let mut places: Vec<Option<Vec2>> = vec![None; elements.len()];
     let found = elements.par_iter().zip(&boxes).enumerate().flat_map_iter(|(i, of)| {
+        go_on();
         let ((_, _, element), (low, high)) = of;
         let mut found = Vec::new();
         index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
@@ -76,6 +78,7 @@ pub(super) fn are_more<'a>(
             || pairs.load(Ordering::Relaxed) > most.saturating_mul(PAIRS_OF_A_CROSSING)
     };
     elements.par_iter().zip(&boxes).enumerate().for_each(|(i, (element, (low, high)))| {
+        go_on();
         index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
             let second = elements.get(other).filter(|_| other > i);
             if let Some(second) = second {

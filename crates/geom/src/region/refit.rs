@@ -14,6 +14,7 @@ use super::index::tree;
 use super::kernel::{Edge, GridPoint};
 use super::{Island, Region, Ring};
 use crate::crossing::Carrier;
+use crate::ending::go_on;
 use crate::{Element, Vec2, turn_angle};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -132,6 +133,7 @@ impl Outline {
         edges.rotate_left(first.unwrap_or(0));
         let mut runs: Vec<Run> = Vec::new();
         for (i, edge) in edges.iter().enumerate() {
+            go_on();
             match runs.last_mut() {
                 Some(run) if is_tiny(edge) || run.takes(edge, sources) => run.edges.end = i + 1,
                 _ => runs.push(Run {
@@ -209,6 +211,7 @@ impl Outline {
         self.run_of.clear();
         let nexts = corners.iter().cycle().skip(1);
         for (i, ((run, from), to)) in self.runs.iter().zip(corners).zip(nexts).enumerate() {
+            go_on();
             let edges = self.edges.get(run.edges.clone()).unwrap_or_default();
             let on = run.carrier(sources);
             match on.map(|on| fitted_to(on, edges, *from, *to)) {
@@ -268,6 +271,7 @@ impl Outline {
 
     /// Where run `i` starts.
     fn corner(&self, i: usize, sources: &[Source]) -> Corner {
+        go_on();
         let Some(run) = self.runs.get(i) else { return Corner::default() };
         let chords = self.vertex(run);
         let before = (i + self.runs.len() - 1) % self.runs.len();

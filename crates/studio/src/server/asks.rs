@@ -8,10 +8,11 @@ use crate::ask::{
     MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams, ProveParams, SaveParams,
     SearchParams, TextParams,
 };
-use crate::job::{Ended, Waits};
+use crate::job::Waits;
 use crate::machines;
 use crate::message::{Array, Frame};
 use app::Stop;
+use geom::ending::Ended;
 use program::{Diagnostic, Rule};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -4,8 +4,9 @@ use super::Studio;
 use crate::ask::{Command, FileOrUpload, Given};
 use crate::drawing::Piece;
 use crate::edit::Existing;
-use crate::job::{Asked, Ended, Job, Waits};
+use crate::job::{Asked, Job, Waits};
 use app::Stop;
+use geom::ending::Ended;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -101,8 +102,8 @@ impl Run {
         studio.runs.begin();
         let thread = thread::spawn(move || {
             let _over = Over(&studio);
-            let made = make(&studio, order, &tells, &own);
-            tells.tell(Told::Over(made));
+            let made = own.run(|| make(&studio, order, &tells, &own));
+            tells.tell(Told::Over(made.unwrap_or_else(|| Err(Stop::cancelled()))));
         });
         Run { told, thread, ended: ended.clone() }
     }

@@ -1,0 +1,148 @@
+//! Work that somebody may end while it is in the middle of a step that knows nothing of that.
+//!
+//! [`Ended::run`] does work on threads of its own. Whatever runs there, however deep, asks by [`go_on`]: where the work was ended, that does
+//! not return but unwinds to `run`, which answers `None`. Everything on the way is dropped as it is when a function returns; no hook
+//! of panics is called, and nothing is printed. On all other threads [`go_on`] does nothing.
+//!
+//! ```
+//! use toolpost_geom::ending::{Ended, go_on};
+//!
+//! let ended = Ended::default();
+//! assert_eq!(ended.run(|| 6 * 7), Some(42));
+//! ended.end();
+//! assert_eq!(ended.run(|| loop { go_on() }), None::<()>);
+//! go_on();
+//! ```
+
+use rayon::ThreadPoolBuilder;
+use std::cell::OnceCell;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+thread_local! {
+    /// The work that this thread belongs to.
+    static OWN: OnceCell<Ended> = const { OnceCell::new() };
+}
+
+/// Whether work shall end, for who does it and who ends it.
+#[derive(Clone, Debug, Default)]
+pub struct Ended(Arc<AtomicBool>);
+
+/// What work unwinds with.
+struct Unwound;
+
+impl Ended {
+    /// Ends it.
+    pub fn end(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was ended.
+    pub fn is_ended(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Does `work` on threads of its own, as many as all parallel work here takes; `None` where it was ended meanwhile. Where the system gives no
+    /// threads, it is done here, and ends only where it asks for itself.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Option<T> {
+        let belongs = self.clone();
+        let threads = ThreadPoolBuilder::new().start_handler(move |_| {
+            OWN.with(|own| _ = own.set(belongs.clone()));
+        });
+        let done = match threads.build() {
+            Ok(threads) => catch_unwind(AssertUnwindSafe(|| threads.install(work))),
+            Err(_) => catch_unwind(AssertUnwindSafe(work)),
+        };
+        match done {
+            Ok(done) => Some(done),
+            Err(unwound) if unwound.is::<Unwound>() => None,
+            Err(panic) => resume_unwind(panic),
+        }
+    }
+}
+
+/// The same work for a thread that is begun for it: what it does there belongs to the work of this thread, and ends with it.
+pub fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
+    let belongs = OWN.with(|own| own.get().cloned());
+    move || {
+        if let Some(belongs) = belongs {
+            OWN.with(|own| _ = own.set(belongs));
+        }
+        work()
+    }
+}
+
+/// Unwinds where the work that this thread belongs to was ended. It takes some nanoseconds: a step asks every few microseconds or oftener.
+#[inline]
+pub fn go_on() {
+    if OWN.with(|own| own.get().is_some_and(Ended::is_ended)) {
+        unwind();
+    }
+}
+
+#[cold]
+fn unwind() {
+    // Within a destructor that runs meanwhile, another one would end the process.
+    if !std::thread::panicking() {
+        resume_unwind(Box::new(Unwound));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rayon::prelude::*;
+    use std::sync::mpsc::channel;
+    use std::thread;
+
+    #[test]
+    fn work_on_all_threads_unwinds_and_is_dropped() {
+        struct Tells(std::sync::mpsc::Sender<()>);
+        impl Drop for Tells {
+            fn drop(&mut self) {
+                self.0.send(()).unwrap();
+            }
+        }
+        let (ended, (begins, begun), (tells, told)) = (Ended::default(), channel(), channel());
+        let other = ended.clone();
+        let work = thread::spawn(move || {
+            other.run(|| {
+                let _held = Tells(tells);
+                begins.send(()).unwrap();
+                (0..64).into_par_iter().for_each(|_| {
+                    loop {
+                        go_on();
+                    }
+                });
+            })
+        });
+        begun.recv().unwrap();
+        ended.end();
+        assert!(work.join().unwrap().is_none());
+        told.try_recv().unwrap();
+        let begun = other_thread(&ended);
+        assert!(begun.is_none());
+        // The threads of others go on.
+        assert_eq!(
+            Ended::default().run(|| (0..64).into_par_iter().map(|_| go_on()).count()),
+            Some(64)
+        );
+    }
+
+    /// What is done on a thread that work begins.
+    fn other_thread(ended: &Ended) -> Option<()> {
+        ended.run(|| {
+            thread::scope(|scope| match scope.spawn(carried(go_on)).join() {
+                Ok(()) => (),
+                Err(unwound) => resume_unwind(unwound),
+            })
+        })
+    }
+
+    #[test]
+    fn a_panic_is_no_ending() {
+        let panics = catch_unwind(|| Ended::default().run(|| resume_unwind(Box::new("other"))));
+        assert_eq!(panics.map(|_: Option<()>| ()).unwrap_err().downcast_ref(), Some(&"other"));
+    }
+}
