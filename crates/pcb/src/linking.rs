@@ -9,6 +9,7 @@
 
 use crate::path::PathPoint;
 use crate::{Path, SAME};
+use geom::ending::go_on;
 use geom::region::{Index, Region};
 use geom::{Element, Vec2};
 use static_aabb2d_index::{StaticAABB2DIndex, StaticAABB2DIndexBuilder};
@@ -168,6 +169,7 @@ impl Graph {
         let mut reached: BTreeMap<usize, (f64, Option<usize>)> =
             BTreeMap::from([(from, (0.0, None))]);
         while let Some(Reverse((length, node))) = open.pop() {
+            go_on();
             let length = f64::from_bits(length);
             if reached.get(&node).is_none_or(|(least, _)| length > *least) {
                 continue;
@@ -374,6 +376,7 @@ fn walk(
     // What is still to be done, the next at last.
     let mut stack: Vec<Task> = vec![Task::Around(first, PathPoint { element: 0, t: 0.0 })];
     while let Some(task) = stack.pop() {
+        go_on();
         match task {
             Task::Along(element) => elements.push(element),
             Task::Link(link, is_back) => {
@@ -478,6 +481,7 @@ impl Elements {
     fn links(&self, rings: &[&Path], longest: f64) -> Vec<(f64, Option<usize>, Link)> {
         let mut best: BTreeMap<[usize; 2], (f64, Vec2, Vec2)> = BTreeMap::new();
         for &(ring, i) in &self.of {
+            go_on();
             let Some(element) = rings[ring].elements().get(i) else { continue };
             let (low, high) = element.extents();
             for (other, k) in self.within(low - longest, high + longest) {
@@ -513,6 +517,7 @@ impl Elements {
         from: Vec2,
         most: f64,
     ) -> Option<(usize, PathPoint)> {
+        go_on();
         let mut best: Option<(f64, usize)> = None;
         for (ring, i) in self.within(from - most, from + most) {
             let away =

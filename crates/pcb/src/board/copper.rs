@@ -5,6 +5,7 @@ use crate::contour::{self, Piece, around};
 use crate::gerber::{Image, Object};
 use crate::report::Outcome;
 use crate::stroke;
+use geom::ending::go_on;
 use geom::region::{Fill, Index, Region, RegionError, Ring, strokes};
 use geom::{Element, Vec2};
 use program::{Diagnostic, Rule};
@@ -149,6 +150,7 @@ impl Copper {
     pub fn of_shapes(shapes: &[(Shape, Option<Arc<str>>)]) -> Result<Named, RegionError> {
         let mut all = Shapes::default();
         for (shape, _) in shapes {
+            go_on();
             match shape {
                 Shape::Stroke(path, width) => all.strokes.push((*path, *width)),
                 Shape::Pieces(pieces) => all.add(pieces)?,
@@ -172,6 +174,7 @@ impl Copper {
         // Names are shared: a net has thousands of objects.
         let mut known: BTreeMap<&str, Arc<str>> = BTreeMap::new();
         for (spot, name) in named.filter(|(_, name)| *name != NOT_CONNECTED) {
+            go_on();
             let Some(island) = index.island_at(spot) else { continue };
             match nets.get_mut(island) {
                 Some(Some(net)) if **net != *name => {
@@ -220,6 +223,7 @@ pub fn covered(image: &Image) -> Result<Region, RegionError> {
     let paint = Paint::of(&runs, &|run: &&[Object]| {
         let mut shapes = Shapes::default();
         for object in *run {
+            go_on();
             match image.stroke(object) {
                 Some(stroke) => shapes.strokes.push(stroke),
                 None => shapes.add(&image.pieces(object))?,

@@ -6,6 +6,7 @@
 use super::copper::Shapes;
 use super::outline::{GAP, Outlined};
 use crate::SAME;
+use geom::ending::go_on;
 use geom::region::{Fill, Index, Island, Region, RegionError, Ring};
 use geom::{Element, Vec2};
 use program::{Diagnostic, Rule};
@@ -76,6 +77,7 @@ fn bridges(elements: &[Element], close: f64) -> Vec<Element> {
     };
     let mut loose: Vec<(usize, Vec2)> = Vec::new();
     for (i, element) in elements.iter().enumerate() {
+        go_on();
         if element.start.distance(element.end) <= SAME {
             continue;
         }

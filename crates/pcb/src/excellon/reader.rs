@@ -10,6 +10,7 @@ use crate::FAR;
 use crate::HoleShape;
 use crate::decimal::whole;
 use crate::report::{Location, Outcome, Report, fault};
+use geom::ending::go_on;
 use geom::{Element, Vec2};
 use program::{Diagnostic, Rule, encoding};
 
@@ -70,6 +71,7 @@ pub(super) fn read(
         ended: false,
     };
     for (line, start, text) in lines(text) {
+        go_on();
         if text.is_empty() {
             continue;
         }
@@ -408,6 +410,7 @@ impl Reader<'_> {
         };
         let step = Vec2::new(along(distance[0])?, along(distance[1])?);
         for i in 1..=count {
+            go_on();
             let at = last + step * f64::from(i);
             self.point = Some(at);
             if at.abs().max_element() > FAR {

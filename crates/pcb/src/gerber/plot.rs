@@ -6,6 +6,7 @@ use super::words::{Word, Words};
 use crate::report::{Outcome, fault};
 use crate::stroke::Pen;
 use crate::{FAR, SAME, arc};
+use geom::ending::go_on;
 use geom::{Element, INCH, Vec2};
 use program::Rule;
 use std::f64::consts::FRAC_PI_2;
@@ -43,6 +44,7 @@ impl Reader<'_> {
     pub(super) fn command(&mut self, text: &[u8]) -> Outcome {
         let mut words = Words::of(text);
         let mut coordinates: Coordinates = [None; 4];
+        go_on();
         let mut operation = None;
         let mut modes = false;
         while let Some(word) = words.next()? {
@@ -328,6 +330,7 @@ impl Reader<'_> {
         self.budget.spend(objects.len())?;
         let dark = self.loaded.dark;
         for object in objects.iter() {
+            go_on();
             let copy = object.placed(&transform, at, dark)?;
             self.objects().push(copy);
         }

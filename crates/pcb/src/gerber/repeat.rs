@@ -7,6 +7,7 @@ use crate::Transform;
 use crate::decimal::{decimal, whole};
 use crate::report::{Outcome, fault};
 use geom::Vec2;
+use geom::ending::go_on;
 use program::Rule;
 
 /// A statement that collects objects.
@@ -78,6 +79,7 @@ impl Steps {
             for row in 0..rows {
                 let at = self.distance * Vec2::new(f64::from(column), f64::from(row));
                 for object in objects {
+                    go_on();
                     copies.push(object.placed(&Transform::NONE, at, true)?);
                 }
             }

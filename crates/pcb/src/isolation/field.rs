@@ -1,6 +1,7 @@
 //! How far it is from a place to the conductors around it.
 
 use crate::Copper;
+use geom::ending::go_on;
 use geom::region::Index;
 use geom::{Element, Vec2};
 
@@ -126,6 +127,7 @@ impl<'a> Window<'a> {
         let mut best: [Option<(f64, &Edge<'a>)>; 2] = [None; 2];
         let reach = self.reach(point);
         let mut other = reach;
+        go_on();
         for edge in &self.edges {
             let away = edge.element.away(point);
             match pair.iter().position(|conductor| *conductor == edge.conductor) {

@@ -7,6 +7,7 @@
 
 use super::field::{Field, Foot};
 use super::middle::{CHORD, End, LinePoint, Middle};
+use geom::ending::go_on;
 use geom::{Element, Vec2};
 use static_aabb2d_index::{StaticAABB2DIndex, StaticAABB2DIndexBuilder};
 use std::collections::BTreeMap;
@@ -38,6 +39,7 @@ pub(super) fn lines(field: &Field, limit: f64) -> Result<Vec<Line>, TooMany> {
     for i in 0..lines.seeds.len() {
         lines.follow_seed(i)?;
         while let Some((corner, branch)) = lines.open.pop() {
+            go_on();
             lines.follow_branch(corner, branch)?;
         }
     }
@@ -153,6 +155,7 @@ impl<'f, 'a> Lines<'f, 'a> {
         // Of each seed the chord that is nearest, and the place along it.
         let mut passed: BTreeMap<usize, (f64, usize, f64)> = BTreeMap::new();
         for (i, ends) in points.windows(2).enumerate() {
+            go_on();
             let chord = Element::line(ends[0].at, ends[1].at);
             let (low, high) = chord.extents();
             let (low, high) = (low - CHORD, high + CHORD);
@@ -255,6 +258,7 @@ fn seeds(field: &Field, limit: f64) -> Result<Vec<Seed>, TooMany> {
     let mut seeds = Vec::new();
     let mut looked_at = 0;
     for edge in field.edges() {
+        go_on();
         let (low, high) = edge.element.extents();
         for other in field.within(low - 2.0 * limit, high + 2.0 * limit) {
             looked_at += 1;

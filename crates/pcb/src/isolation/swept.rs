@@ -1,6 +1,7 @@
 //! What a tool takes away along its paths, asked place by place.
 
 use crate::Path;
+use geom::ending::go_on;
 use geom::{Element, Vec2};
 use static_aabb2d_index::{StaticAABB2DIndex, StaticAABB2DIndexBuilder};
 
@@ -41,6 +42,7 @@ impl<'a> Swept<'a> {
     }
 
     fn takes(&self, at: Vec2) -> bool {
+        go_on();
         let (low, high) = (at - self.reach, at + self.reach);
         let near = self.tree.iter().flat_map(|tree| tree.query(low.x, low.y, high.x, high.y));
         let mut near = near.filter_map(|i| self.elements.get(i));

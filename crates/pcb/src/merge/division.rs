@@ -2,6 +2,7 @@
 
 use super::fit::Run;
 use super::{LEAST, SHORT};
+use geom::ending::go_on;
 use geom::{Element, Turn, Vec2, turn_angle};
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -77,6 +78,7 @@ impl Division {
             tolerance,
         };
         for (i, element) in elements.iter().enumerate() {
+            go_on();
             let parts = all.parts(element);
             for part in 0..parts {
                 let [from, to] = [part, part + 1].map(|part| part as f64 / parts as f64);
@@ -188,6 +190,7 @@ impl Division {
         let mut farthest = vec![start];
         let mut far = start;
         for node in start..end {
+            go_on();
             let at = reached[node - start];
             let fewest = at.iter().map(|at| at.elements).min().unwrap_or(usize::MAX);
             if farthest.get(fewest).is_some_and(|far| *far <= node + BEHIND) {

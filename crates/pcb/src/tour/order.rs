@@ -2,6 +2,7 @@
 
 use super::tree::Tree;
 use geom::Vec2;
+use geom::ending::go_on;
 use std::collections::VecDeque;
 
 /// How many neighbours of each stop are tried next to it.
@@ -203,6 +204,7 @@ impl Order {
         };
         // Stop after stop: what is looked at together is near in memory too.
         for low in (0..SHAKES).flat_map(|_| 1..last) {
+            go_on();
             let middle = low + 1 + below(SHAKEN.min(last - low));
             let high = middle + 1 + below(SHAKEN.min(last - middle));
             let places = [low - 1, middle - 1, high - 1];
@@ -231,6 +233,7 @@ impl Order {
         let mut saved = 0.0;
         while let Some(stop) = self.waiting.pop() {
             while let Some((gain, best)) = self.best(stop) {
+                go_on();
                 saved += gain;
                 self.perform(best);
             }
@@ -244,6 +247,7 @@ impl Order {
         let tree = Tree::new(&points);
         self.neighbours.clear();
         for (end, point) in points.iter().enumerate() {
+            go_on();
             let own = end / 2;
             let mut list = [(own as u32, f64::INFINITY); NEIGHBOURS];
             let mut known = 0;

@@ -5,6 +5,7 @@ use super::tree::Tree;
 use crate::Path;
 use crate::path::PathPoint;
 use geom::Vec2;
+use geom::ending::go_on;
 use std::ops::Range;
 
 /// An element longer than this has places of entry between its ends, mm.
@@ -109,6 +110,7 @@ impl Stops {
         let mut at = from;
         let mut visits = Vec::with_capacity(self.stops.len());
         while let Some(place) = tree.nearest(at) {
+            go_on();
             let stop = stop_of[place];
             let Stop { places, form } = &self.stops[stop];
             let turned = *form == Form::Open && place > places.start;

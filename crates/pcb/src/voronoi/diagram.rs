@@ -6,6 +6,7 @@
 
 use super::samples::{Boundary, Sample};
 use geom::Vec2;
+use geom::ending::go_on;
 use geom::region::Index;
 use spade::handles::{FaceHandle, InnerTag};
 use spade::{DelaunayTriangulation, InsertionError, Triangulation};
@@ -55,6 +56,7 @@ pub(super) fn chains(
         if one.is_none() || other.is_none() || one == other {
             continue;
         }
+        go_on();
         let edge = edge.as_directed();
         let sides = [edge.face().as_inner(), edge.rev().face().as_inner()];
         // Around everything is the frame, so that both are triangles.
@@ -216,6 +218,7 @@ fn chains_of(vertices: &mut [Vertex]) -> Vec<Vec<DiagramPoint>> {
     // What is closed has no end to begin with.
     for from in ends.into_iter().chain(all) {
         while let Some(chain) = chain(vertices, from, &is_end) {
+            go_on();
             chains.push(chain);
         }
     }

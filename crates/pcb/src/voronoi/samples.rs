@@ -2,6 +2,7 @@
 
 use super::TooMany;
 use crate::Copper;
+use geom::ending::go_on;
 use geom::region::Index;
 use geom::{Element, Vec2};
 use spade::{HasPosition, Point2};
@@ -47,6 +48,8 @@ impl HasPosition for Sample {
     type Scalar = f64;
 
     fn position(&self) -> Point2<f64> {
+        // The triangulation has nothing else in which it can be asked.
+        go_on();
         Point2::new(self.at.x, self.at.y)
     }
 }
@@ -86,6 +89,7 @@ impl Boundary {
             for part in 0..parts as u64 {
                 let mut open = vec![(part as f64 / parts, (part + 1) as f64 / parts)];
                 while let Some((from, to)) = open.pop() {
+                    go_on();
                     let part = piece.element.part(from, to);
                     let alone = alone(&part, piece.island);
                     if !alone && part.length() * APART > FINEST {

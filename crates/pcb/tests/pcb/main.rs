@@ -6,6 +6,7 @@ mod data;
 mod drill_input;
 mod drilling;
 mod drills;
+mod ending;
 mod engraving;
 mod gerber_input;
 mod isolation;
