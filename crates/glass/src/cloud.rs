@@ -1,5 +1,6 @@
 //! Clouds of points: whole µm in the frame of the block, their boxes, and the proof of their minimum distance.
 
+use geom::ending::go_on;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -73,6 +74,7 @@ impl Grid {
     pub fn new(points: &[Point], side: i64) -> Grid {
         let (low, high) = bounds(points).unwrap_or_default();
         let side = side.max(1);
+        go_on();
         let counts =
             [0, 1, 2].map(|axis: usize| (i64::from(high[axis]) - i64::from(low[axis])) / side + 1);
         let none = Cubes::Rows(Vec::new(), Vec::new());
@@ -168,6 +170,9 @@ impl Grid {
     }
 }
 
+/// So many points are counted between two asks whether the work goes on.
+const SOME: usize = 4096;
+
 /// Points of a slab, at most.
 const SLAB: usize = 1 << 20;
 
@@ -191,16 +196,23 @@ impl Slabs {
         let range = (0..count).into_par_iter().map(|i| (at(i), at(i)));
         let range = range.reduce_with(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         let (low, high) = range.unwrap_or_default();
+        let asked = |i: &usize| {
+            if i.is_multiple_of(SOME) {
+                go_on();
+            }
+        };
         let above = |i: usize| (i64::from(at(i)) - i64::from(low)) as usize;
         // Points are counted µm by µm and then put where theirs begin.
         let mut below = vec![0u32; (i64::from(high) - i64::from(low)) as usize + 2];
-        (0..count).for_each(|i| below[above(i) + 1] += 1);
+        for i in (0..count).inspect(asked) {
+            below[above(i) + 1] += 1;
+        }
         for i in 1..below.len() {
             below[i] += below[i - 1];
         }
         let mut next = below.clone();
         let mut order = vec![0; count];
-        for i in 0..count {
+        for i in (0..count).inspect(asked) {
             let place = &mut next[above(i)];
             order[*place as usize] = i as u32;
             *place += 1;
@@ -275,6 +287,7 @@ fn distances_within(points: &[Point], spacing: i64, reach: i64) -> Distances {
         let own: Vec<Point> = seen.iter().map(|&i| points[i as usize]).collect();
         let grid = Grid::new(&own, reach);
         let of = |&i: &u32| {
+            go_on();
             let here = points[i as usize];
             let (mut nearest, mut close) = ((i64::MAX, 0, 0), 0u64);
             for near in grid.near(here) {

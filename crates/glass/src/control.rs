@@ -3,6 +3,7 @@
 //! A line that is not understood ends the reading with an error, and a coordinate that no line has stated is not zero.
 
 use crate::machine::{Coordinate, Format, Machine};
+use geom::ending::go_on;
 use program::{Diagnostic, Rule};
 
 /// A pulse of the laser.
@@ -176,7 +177,8 @@ fn lines(text: &[u8]) -> Result<impl Iterator<Item = (usize, &str)>, Wrong> {
             String::from("the last line has no end: the program is cut off"),
         ));
     }
-    Ok(text.lines().enumerate().map(|(i, line)| (i + 1, line)))
+    let asked = |_: &(usize, &str)| go_on();
+    Ok(text.lines().enumerate().inspect(asked).map(|(i, line)| (i + 1, line)))
 }
 
 /// A whole number: digits alone, without a sign.

@@ -7,6 +7,7 @@
 use crate::cloud::{self, Point};
 use crate::mesh::{Depth, Mesh};
 use crate::sample::{self, Apart, Dice};
+use geom::ending::go_on;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -139,7 +140,10 @@ pub fn shells(mesh: &Mesh, shells: Shells, apart: Apart, seed: u64) -> Vec<Point
     let depth = Depth::new(mesh, deepest);
     let of = |own: f64| {
         let points = sample::surface(&mesh.shell(own), apart, seed.wrapping_add(own.to_bits()));
-        let is_in = |point: &Point| depth.is_within(cloud::place(*point), own * (1.0 - MISSED));
+        let is_in = |point: &Point| {
+            go_on();
+            depth.is_within(cloud::place(*point), own * (1.0 - MISSED))
+        };
         points.into_par_iter().filter(is_in).collect::<Vec<Point>>()
     };
     depths.flat_map(of).collect()
@@ -153,6 +157,7 @@ fn shaded(mesh: &Mesh, apart: Apart, seed: u64, invert: bool) -> Vec<Point> {
     let count = ranked.len() as f64;
     let is_made = |(rank, &i): (usize, &u32)| {
         let (point, triangle) = (points[i as usize], triangles[i as usize]);
+        go_on();
         let light = mesh.light(triangle, cloud::place(point));
         let part = if invert { 1.0 - light } else { light };
         (rank as f64 + 0.5 < part * count).then_some(point)
@@ -179,6 +184,7 @@ const FLAT: f64 = 0.01;
 /// How many triangles stand so that `is_along` says of the part of their normal that points along `direction`.
 fn lying(mesh: &Mesh, direction: DVec3, is_along: impl Fn(f64) -> bool) -> u64 {
     let lies = |&triangle: &u32| {
+        go_on();
         let [a, b, c] = mesh.corners(triangle);
         is_along((b - a).cross(c - a).normalize_or_zero().dot(direction).abs())
     };
@@ -203,6 +209,7 @@ fn sections(mesh: &Mesh, how: &Sections, step: f64, direction: DVec3) -> (Vec<Po
         let [a, b, c] = heights.map(|h| ((h - first) / layer).floor());
         // One more at the end, for rounding: a plane that does not cut it leaves no piece.
         let (from, to) = (a.min(b).min(c).max(0.0), (a.max(b).max(c) + 2.0).max(0.0));
+        go_on();
         (from as u32..(to as u32).min(count)).map(move |plane| (plane, triangle))
     };
     let all = 0..mesh.triangles.len() as u32;
@@ -247,6 +254,7 @@ fn piece(corners: [u32; 3], is_above: impl Fn(u32) -> bool) -> Option<[Crossing;
 fn contours(pieces: &[[Crossing; 2]]) -> Vec<(Vec<Crossing>, bool)> {
     let mut at: HashMap<Crossing, Vec<u32>> = HashMap::new();
     for (i, piece) in pieces.iter().enumerate() {
+        go_on();
         piece.iter().for_each(|end| at.entry(*end).or_default().push(i as u32));
     }
     let mut is_done = vec![false; pieces.len()];
@@ -262,6 +270,7 @@ fn contours(pieces: &[[Crossing; 2]]) -> Vec<(Vec<Crossing>, bool)> {
             let mut contour = vec![begins];
             let mut next = Some(start as u32);
             while let Some(piece) = next {
+                go_on();
                 is_done[piece as usize] = true;
                 let [a, b] = pieces[piece as usize];
                 let last = *contour.last().unwrap_or(&a);
@@ -300,6 +309,7 @@ fn along(
         let own = pair[0].distance(pair[1]);
         // The end of a closed contour is its begin.
         while next <= passed + own && next < length - if is_closed { 1e-6 } else { 0.0 } {
+            go_on();
             points.extend(cloud::point(pair[0].lerp(pair[1], (next - passed) / own)));
             next += step;
         }
@@ -319,6 +329,7 @@ fn triangles(mesh: &Mesh, step: f64, full: bool) -> (Vec<Point>, Left) {
         let [q, r] = [b, c].map(|corner| DVec2::new((corner - a).dot(right), (corner - a).dot(up)));
         let mut points = Vec::new();
         for row in 0..=(r.y / step).floor() as u32 {
+            go_on();
             let y = f64::from(row) * step;
             // The sides that go up from both ends of the first edge.
             let part = if r.y > 0.0 { y / r.y } else { 0.0 };
@@ -418,6 +429,7 @@ impl Raster {
         let high = flat[0].max(flat[1]).max(flat[2]);
         let mut met = Vec::new();
         for row in (low.y / self.step[1]).floor() as i32..=(high.y / self.step[1]).ceil() as i32 {
+            go_on();
             let shift = self.shift(row);
             let from = ((low.x - shift) / self.step[0]).floor() as i32;
             let to = ((high.x - shift) / self.step[0]).ceil() as i32;
@@ -476,6 +488,7 @@ fn solid(mesh: &Mesh, step: f64, seed: u64) -> (Vec<Point>, Left) {
     let mut left = Left::default();
     let mut points = Vec::new();
     for column in met.chunk_by(|a, b| a.node == b.node) {
+        go_on();
         let node = column[0].node;
         if column.iter().map(|met| met.enters).sum::<i32>() != 0 {
             left.columns += 1;

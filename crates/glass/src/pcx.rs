@@ -1,6 +1,7 @@
 //! PCX pictures (ZSoft, *PCX Technical Reference Manual*, version 5): run-length packed rows of one plane or several.
 
 use crate::mesh::Fault;
+use geom::ending::go_on;
 use image::{DynamicImage, RgbImage};
 use program::Rule;
 
@@ -57,6 +58,7 @@ pub(crate) fn read(bytes: &[u8], most: u64) -> Result<DynamicImage, Fault> {
     // A run may go on in the next row.
     let mut run = (0, 0);
     for _ in 0..height {
+        go_on();
         row.clear();
         while row.len() < wide * planes {
             if run.0 == 0 {

@@ -9,10 +9,11 @@ use crate::cloud::{self, Point};
 use crate::mesh::{Fault, Mesh};
 use crate::pcx;
 use crate::sample::{self, Apart, Dice, SHRINK};
+use geom::ending::go_on;
 use glam::{DVec2, DVec3};
 use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use program::{Diagnostic, Rule};
-use std::io::Cursor;
+use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
 
 /// The plane in which a picture stands, and from where it is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +66,9 @@ pub struct Setting {
 /// The most pixels of a picture.
 const MOST_PIXELS: u64 = 64_000_000;
 
+/// So many pixels become grey at once.
+const BAND: usize = 1 << 18;
+
 /// Up to this part of white a depth map is black: what JPEG makes of it is no exact 0.
 const BLACK: f64 = 0.02;
 
@@ -99,11 +103,43 @@ pub(crate) fn too_many(width: u64, height: u64) -> Fault {
     Fault::new(Rule::TooLarge, message)
 }
 
+/// The bytes of a picture, of which a decoder gets a few at a time, so that it ends in the middle where the work was ended.
+struct Asked<'b>(Cursor<&'b [u8]>);
+
+/// So many bytes: packed as tightly as can be they are some million pixels.
+const FEW_BYTES: usize = 1024;
+
+impl Read for Asked<'_> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        go_on();
+        self.0.read(to)
+    }
+}
+
+impl BufRead for Asked<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        go_on();
+        let all = self.0.fill_buf()?;
+        Ok(&all[..all.len().min(FEW_BYTES)])
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.0.consume(count);
+    }
+}
+
+impl Seek for Asked<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.0.seek(to)
+    }
+}
+
 /// The pixels of a picture of one of the forms that the crate `image` reads, upright.
 fn of_image(bytes: &[u8]) -> Result<DynamicImage, Fault> {
     let wrong = |error: image::ImageError| Fault::new(Rule::Image, error.to_string());
     let open = |error: std::io::Error| Fault::new(Rule::Image, error.to_string());
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(open)?;
+    let mut reader =
+        ImageReader::new(Asked(Cursor::new(bytes))).with_guessed_format().map_err(open)?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(8 * MOST_PIXELS);
     reader.limits(limits);
@@ -125,13 +161,20 @@ fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
     if width == 0 || height == 0 {
         return Err(Fault::new(Rule::Empty, "has no pixel"));
     }
-    let grey = picture.into_luma_alpha16();
     let value = |pixel: &image::LumaA<u16>| {
         let image::LumaA([grey, alpha]) = *pixel;
         let grey = if setting.invert { u16::MAX - grey } else { grey };
         (u32::from(grey) * u32::from(alpha) / u32::from(u16::MAX)) as u16
     };
-    let values = grey.pixels().map(value).collect();
+    // Some rows at a time: no copy of all of it, and an end between them.
+    let rows = BAND.div_ceil(width);
+    let mut values = Vec::with_capacity(width * height);
+    for first in (0..height).step_by(rows) {
+        go_on();
+        let rows = rows.min(height - first) as u32;
+        let band = picture.crop_imm(0, first as u32, width as u32, rows);
+        values.extend(band.into_luma_alpha16().pixels().map(value));
+    }
     Ok(Picture { width, height, values, setting })
 }
 
@@ -264,6 +307,7 @@ impl Picture {
         let rows = span(1.0 - to[1], 1.0 - from[1], self.height);
         let count = (columns.len() * rows.len()) as f64;
         let row = |row: usize| -> u64 {
+            go_on();
             let start = row * self.width;
             self.values[start + columns.start..start + columns.end]
                 .iter()
@@ -310,6 +354,7 @@ impl Picture {
         }
         let number = |row: usize, column: usize| numbers[row * columns + column];
         for row in 0..rows - 1 {
+            go_on();
             for column in 0..columns - 1 {
                 let [a, b] = [number(row, column), number(row, column + 1)];
                 let [c, d] = [number(row + 1, column + 1), number(row + 1, column)];
@@ -361,8 +406,12 @@ fn ranked(places: &[DVec2], spacing: f64, seed: u64) -> Vec<u32> {
     while !waiting.is_empty() && distance > spacing {
         distance = (distance * SHRINK).max(spacing);
         let mut near = Near::new(places, most, distance);
-        ranked.iter().for_each(|&i| near.add(i));
+        for &i in &ranked {
+            go_on();
+            near.add(i);
+        }
         waiting.retain(|&i| {
+            go_on();
             let waits = near.is_near(i);
             if !waits {
                 near.add(i);

@@ -14,6 +14,7 @@
 use crate::cloud::Point;
 use crate::mesh::Mesh;
 use crate::weld::Kept;
+use geom::ending::go_on;
 use glam::{DVec3, IVec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
@@ -116,7 +117,7 @@ fn tiles(mesh: &Mesh, spacing: f64) -> Vec<([i32; 3], Vec<u32>)> {
         };
         let rows = (from[2]..=to[2]).flat_map(move |z| (from[1]..=to[1]).map(move |y| (y, z)));
         let all = rows.flat_map(move |(y, z)| (from[0]..=to[0]).map(move |x| [x, y, z]));
-        all.filter(crossed).map(move |tile| (tile, triangle))
+        all.inspect(|_| go_on()).filter(crossed).map(move |tile| (tile, triangle))
     };
     let count = mesh.triangles.len() as u32;
     let mut all: Vec<([i32; 3], u32)> = (0..count).into_par_iter().flat_map_iter(of).collect();
@@ -293,6 +294,7 @@ impl Room {
             near: corners.map(|corner| near.around(corner, square)),
         });
         while let Some(cell) = open.pop() {
+            go_on();
             if cell.is_covered() {
                 continue;
             }
@@ -369,6 +371,7 @@ impl Room {
         let coarsest = (PATCH * self.spacing).powi(2);
         let mut open = vec![triangle];
         while let Some(triangle) = open.pop() {
+            go_on();
             let (low, high) = box_of(&triangle);
             if high.cmplt(self.tile.0).any() || low.cmpgt(self.tile.1).any() {
                 continue;
@@ -520,8 +523,12 @@ pub(crate) fn ranked(points: &[Point], spacing: u32, seed: u64) -> Vec<u32> {
     while !waiting.is_empty() && distance > spacing {
         distance = (distance * SHRINK).max(spacing);
         let mut near = Kept::new(distance.ceil() as i64);
-        ranked.iter().for_each(|&i| near.push(points[i as usize]));
+        for &i in &ranked {
+            go_on();
+            near.push(points[i as usize]);
+        }
         waiting.retain(|&i| {
+            go_on();
             let waits = near.is_near(points[i as usize]);
             if !waits {
                 near.push(points[i as usize]);

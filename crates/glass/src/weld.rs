@@ -2,6 +2,7 @@
 
 use crate::cloud::{Grid, Point, Slabs, longest, squared};
 use crate::sample::Apart;
+use geom::ending::go_on;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -22,6 +23,7 @@ pub fn welded(points: &[Point], spacing: u32) -> Vec<Point> {
         let mut own = slab.to_vec();
         own.sort_unstable();
         for i in own.into_iter().map(|i| i as usize) {
+            go_on();
             is_kept[i] = !kept.is_near(points[i]);
             if is_kept[i] {
                 kept.push(points[i]);
@@ -90,6 +92,7 @@ pub fn clear(points: &[Point], others: &[Point], apart: Apart) -> Vec<Point> {
         let own: Vec<Point> = seen.iter().map(|&i| others[i as usize]).collect();
         let grid = Grid::new(&own, reach);
         let is_clear = |&i: &u32| {
+            go_on();
             let here = points[i as usize];
             let way = |near: u32| {
                 let other = own[near as usize];

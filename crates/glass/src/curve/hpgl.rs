@@ -5,6 +5,7 @@
 
 use super::{Count, Curve, Curves, arc, whole};
 use crate::mesh::Fault;
+use geom::ending::go_on;
 use glam::DVec2;
 use program::{Diagnostic, Rule};
 use std::collections::BTreeMap;
@@ -46,6 +47,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Curves, Fault> {
     let mut text = Text { bytes, at: 0, line: 1, ends: ETX };
     let mut plotter = Plotter::default();
     while let Some((name, line)) = text.command()? {
+        go_on();
         if let Some((_, kind)) = LEFT_OUT.iter().find(|(left_out, _)| **left_out == name) {
             plotter.left_out.entry(kind).or_insert((line, 0)).1 += 1;
         }

@@ -8,6 +8,7 @@ mod hpgl;
 
 use crate::cloud::{self, Point};
 use crate::mesh::{Fault, LARGEST};
+use geom::ending::go_on;
 use glam::{DVec2, DVec3};
 use program::{Diagnostic, Rule, encoding};
 use std::f64::consts::TAU;
@@ -143,6 +144,7 @@ fn place(corners: &[DVec3], At(i, part): At) -> DVec3 {
 
 /// The first place after `from` that is `chord` away from it as the crow flies.
 fn next(corners: &[DVec3], from: At, chord: f64) -> Option<At> {
+    go_on();
     let center = place(corners, from);
     let square = chord * chord;
     for i in from.0..corners.len() - 1 {
@@ -227,6 +229,7 @@ impl Count {
     /// # Errors
     /// There are too many.
     fn more(&mut self, corners: usize, line: u32) -> Result<(), Fault> {
+        go_on();
         self.0 += corners;
         if self.0 > MOST {
             let message = format!("the curves come to more than {MOST} corners");

@@ -15,6 +15,7 @@ pub use shell::Depth;
 use crate::curve::Curves;
 use crate::list::{self, Columns};
 use crate::picture::Picture;
+use geom::ending::go_on;
 use glam::DVec3;
 use paint::WHITE;
 use program::{Diagnostic, Rule, encoding};
@@ -209,6 +210,7 @@ pub(crate) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, std::borrow::C
     let mut number = 1;
     let mut at = 0;
     lines.map(move |line| {
+        go_on();
         let here = number;
         at += line.len() + 1;
         if bytes.get(at - 1).is_some_and(|end| (*end == b'\n') == feeds) {
@@ -260,6 +262,7 @@ impl Mesh {
     pub fn same_places(&self) -> Vec<u32> {
         let mut places: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.vertices.len());
         let first = |(i, place): (usize, &DVec3)| {
+            go_on();
             // + 0 makes one of both zeros.
             let bits = (*place + DVec3::ZERO).to_array().map(f64::to_bits);
             *places.entry(bits).or_insert(i as u32)
@@ -274,6 +277,7 @@ impl Mesh {
         let mut edges: HashMap<(u32, u32), (u32, i32)> = HashMap::new();
         let (mut flat, mut volume) = (0, 0.0);
         for triangle in 0..self.triangles.len() as u32 {
+            go_on();
             let [a, b, c] = self.corners(triangle);
             let corners = self.triangles[triangle as usize].map(|corner| same[corner as usize]);
             volume += a.dot(b.cross(c)) / 6.0;

@@ -4,6 +4,7 @@
 use super::paint::{Paint, WHITE, luminance};
 use super::{Beside, Fault, MOST, Mesh, fan, lines, number};
 use crate::picture;
+use geom::ending::go_on;
 use glam::DVec3;
 use program::Rule;
 use std::collections::HashMap;
@@ -59,6 +60,7 @@ pub(super) fn read(bytes: &[u8], mut beside: Option<Beside>) -> Result<Mesh, Fau
                 let named: Vec<&str> = words.collect();
                 let corners: Vec<u32> = named
                     .iter()
+                    .inspect(|_| go_on())
                     .map(|word| corner(word, mesh.vertices.len(), at))
                     .collect::<Result<_, _>>()?;
                 if corners.len() < 3 {

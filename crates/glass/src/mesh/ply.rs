@@ -3,6 +3,7 @@
 use super::paint::{Paint, WHITE, luminance};
 use super::{Fault, MOST, Mesh, Shape, fan};
 use crate::cloud::{Point, place};
+use geom::ending::go_on;
 use glam::DVec3;
 use program::Rule;
 
@@ -138,6 +139,7 @@ pub(super) fn read(bytes: &[u8], painted: bool) -> Result<Shape, Fault> {
             continue;
         }
         for _ in 0..element.count {
+            go_on();
             item(element, &mut numbers, &mut mesh, &mut lights)?;
         }
     }

@@ -5,6 +5,7 @@
 //! of the whole surface is nearer than the distance ([`Depth`]): what has crossed is nearer, and is left out.
 
 use crate::mesh::Mesh;
+use geom::ending::go_on;
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
 
@@ -16,6 +17,7 @@ impl Mesh {
         // Of each corner the sums of its faces' normals and of their squares, each weighed by the face's angle there.
         let mut sums = vec![(DMat3::ZERO, DVec3::ZERO); self.vertices.len()];
         for triangle in 0..self.triangles.len() as u32 {
+            go_on();
             let corners = self.corners(triangle);
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             let Some(normal) = normal.try_normalize() else { continue };
@@ -31,6 +33,7 @@ impl Mesh {
             }
         }
         let moved = |(i, place): (usize, &DVec3)| {
+            go_on();
             let (squares, normals) = sums[same[i] as usize];
             *place + inwards * solved(squares, normals)
         };
@@ -84,6 +87,7 @@ impl<'m> Depth<'m> {
             let [from, to] = [a.min(b).min(c), a.max(b).max(c)].map(|place| depth.cube(place));
             for z in from[2]..=to[2] {
                 for y in from[1]..=to[1] {
+                    go_on();
                     for x in from[0]..=to[0] {
                         depth.cubes.entry([x, y, z]).or_default().push(triangle);
                     }

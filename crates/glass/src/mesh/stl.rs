@@ -1,6 +1,7 @@
 //! STL: triangles one by one, as text or in binary.
 
 use super::{Fault, MOST, Mesh, lines, number};
+use geom::ending::go_on;
 use glam::DVec3;
 use program::Rule;
 use std::collections::HashMap;
@@ -20,6 +21,7 @@ struct Corners {
 
 impl Corners {
     fn add(&mut self, triangle: [[f32; 3]; 3]) -> Result<(), Fault> {
+        go_on();
         let vertices = &mut self.mesh.vertices;
         let corners = triangle.map(|corner| {
             // + 0 makes one of both zeros.

@@ -7,6 +7,7 @@ use super::paint::{Paint, WHITE};
 use super::properties::{MOST_TEXTURES, Properties};
 use super::{Fault, Mesh};
 use crate::picture;
+use geom::ending::go_on;
 use glam::{DMat3, DVec3};
 use program::Rule;
 use roxmltree::{Document, Node, ParsingOptions};
@@ -289,6 +290,7 @@ fn mesh(node: Node, unit: f64) -> Result<Mesh, Fault> {
         match child.tag_name().name() {
             "vertices" => {
                 for vertex in children(child, "vertex") {
+                    go_on();
                     let value = |name| vertex.attribute(name).and_then(finite);
                     let (Some(x), Some(y), Some(z)) = (value("x"), value("y"), value("z")) else {
                         let message = "a vertex needs the numbers x, y and z";
@@ -299,6 +301,7 @@ fn mesh(node: Node, unit: f64) -> Result<Mesh, Fault> {
             }
             "triangles" => {
                 for triangle in children(child, "triangle") {
+                    go_on();
                     mesh.triangles.push([
                         whole(triangle, "v1")?,
                         whole(triangle, "v2")?,

@@ -4,6 +4,7 @@ mod bodies;
 mod chain;
 mod common;
 mod curves;
+mod ending;
 mod fill;
 mod galvo;
 mod jobs;
