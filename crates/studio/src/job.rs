@@ -28,7 +28,7 @@ use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
 use proof::{Observer, Tolerances};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most bytes of a text that are answered at once.
 const MOST_TEXT: usize = 4 << 20;
@@ -185,6 +185,19 @@ pub enum Sources {
 }
 
 impl Sources {
+    /// How many bytes there are of them in memory.
+    pub fn bytes(&self) -> usize {
+        let files = match self {
+            Sources::One(file) => std::slice::from_ref(file),
+            Sources::Several(files) | Sources::Folder(_, files) => files,
+        };
+        let bytes = |file: &Source| match file {
+            Source::Memory { bytes, .. } => bytes.len(),
+            Source::File(_) => 0,
+        };
+        files.iter().map(bytes).sum()
+    }
+
     /// What writes the programs.
     pub fn command(&self, machine: Option<&Any>) -> Command {
         match (self, machine) {

@@ -5,6 +5,7 @@ use crate::ask::{Command, FileOrUpload, Given};
 use crate::drawing::Piece;
 use crate::edit::Existing;
 use crate::job::{Asked, Job, Waits};
+use crate::jobs::Jobs;
 use app::Stop;
 use geom::ending::Ended;
 use std::panic::resume_unwind;
@@ -84,6 +85,33 @@ impl Waits for Tells {
 
     fn walked(&self, file: &str, piece: Piece) {
         self.tell(Told::Walked(file.to_owned(), piece));
+    }
+}
+
+/// How many bytes a work takes at the most while it is made, for each byte that it is made of: 5 to 8.5 of toolpaths of a million moves and more.
+const BYTES_OF_A_BYTE: usize = 10;
+
+/// Makes place for a work when what it is made of has been read.
+struct MakesRoom<'a> {
+    waits: &'a dyn Waits,
+    jobs: &'a Jobs,
+    bytes: usize,
+}
+
+impl Waits for MakesRoom<'_> {
+    fn step(&self, what: &'static str) {
+        if what != "reading" {
+            self.jobs.make_room(self.bytes);
+        }
+        self.waits.step(what);
+    }
+
+    fn reached(&self, part: f64) {
+        self.waits.reached(part);
+    }
+
+    fn walked(&self, file: &str, piece: Piece) {
+        self.waits.walked(file, piece);
     }
 }
 
@@ -283,6 +311,12 @@ fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Resu
         _ => None,
     };
     let (source, mut inputs) = studio.sources(&source)?;
+    let text_bytes = match &program {
+        Program::Posted => 0,
+        Program::Text(text) | Program::There(_, text) | Program::Edited { text, .. } => text.len(),
+    };
+    let bytes = source.bytes().saturating_add(text_bytes).saturating_mul(BYTES_OF_A_BYTE);
+    let waits = MakesRoom { waits, jobs: &studio.jobs, bytes };
     let (named, program) = match program {
         Program::Posted => (None, None),
         Program::Text(text) => (None, Some(Existing::new(text, Vec::new()))),
@@ -313,7 +347,7 @@ fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Resu
         program,
         inputs,
     };
-    Job::make(asked, &studio.folder, waits, ended)
+    Job::make(asked, &studio.folder, &waits, ended)
 }
 
 #[cfg(test)]
