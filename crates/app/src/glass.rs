@@ -15,7 +15,7 @@ use ::glass::mesh::{self, Form, Shape};
 use ::glass::optics::Ray;
 use ::glass::picture;
 use glam::DVec3;
-use program::{Diagnostic, Rule, encoding};
+use program::{Diagnostic, Digest, Rule, encoding};
 use serde_json::json;
 use std::path::{Component, Path};
 
@@ -63,6 +63,8 @@ pub struct Job<'s> {
     shapes: Vec<Shape>,
     settings: &'s Settings,
     most: u64,
+    /// SHA-256 of the bodies, in their order.
+    digest: String,
 }
 
 /// A program with its verdict.
@@ -246,7 +248,9 @@ impl<'s> Job<'s> {
         let material = material::find(table, &file, &settings.material, wavelength)?;
         let shapes = bodies.iter().map(|body| shape_of_job(body, settings, beside));
         let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-        Ok(Job { machine, material, shapes, settings, most: u64::MAX })
+        let read = bodies.iter().map(Source::read).collect::<Result<Vec<_>, _>>()?;
+        let digest = Digest::of(read.iter().map(Vec::as_slice));
+        Ok(Job { machine, material, shapes, settings, most: u64::MAX, digest })
     }
 
     /// The same for who has memory for so many pulses: more are refused before they are made.
@@ -268,11 +272,11 @@ impl<'s> Job<'s> {
     /// What cannot be engraved, or that the work was ended.
     pub fn make(self, watch: &dyn Watch) -> Result<Made, Stop> {
         watch.begin("engraving")?;
-        let Job { machine, material, shapes, settings, most } = self;
+        let Job { machine, material, shapes, settings, most, digest } = self;
         let watch = Engraves { watch, most };
         let made = job::make_for(shapes, &material, &machine, &settings.job, &watch);
         let made = made.map_err(|found| watch.stop(found))?;
-        Ok(Made::new(made, machine, material))
+        Ok(Made::new(made, machine, material, digest))
     }
 
     /// Proves the program of this name and text, also one edited by hand.
@@ -280,14 +284,14 @@ impl<'s> Job<'s> {
     /// # Errors
     /// What cannot be engraved, what the machine would not take, or that the work was ended.
     pub fn prove(self, name: &str, text: Vec<u8>, watch: &dyn Watch) -> Result<Made, Stop> {
-        let Job { machine, material, shapes, settings, most } = self;
+        let Job { machine, material, shapes, settings, most, digest } = self;
         let in_program = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
             found.into_iter().map(|found| in_file(found, name)).collect()
         };
         let watch = Engraves { watch, most };
         let made = job::prove_for(text, shapes, &material, &machine, &settings.job, &watch);
         let made = made.map_err(|found| watch.stop(in_program(found)))?;
-        let mut made = Made::new(made, machine, material);
+        let mut made = Made::new(made, machine, material, digest);
         made.account.findings = in_program(made.account.findings);
         Ok(made)
     }
@@ -321,8 +325,10 @@ impl Engraves<'_> {
 }
 
 impl Made {
-    fn new(made: job::Made, machine: Machine, material: Material) -> Made {
-        let account = account(&made, &machine, &material);
+    fn new(made: job::Made, machine: Machine, material: Material, source: String) -> Made {
+        let mut account = account(&made, &machine, &material);
+        account.data["sha256"] =
+            json!({ "program": Digest::of([&made.text[..]]), "source": source });
         Made { made, account, machine, material }
     }
 

@@ -3,7 +3,9 @@
 use crate::account::{Stop, Verdict};
 use crate::fcstd;
 use crate::files;
+use crate::glass;
 use crate::input::Source;
+use crate::pcb;
 use crate::summary::{Shape, number};
 use crate::watch::{Waits, Watch};
 use control::{Folders, Setup, Units, WholeNumbers};
@@ -242,6 +244,10 @@ fn read_by(
             let reading = apt::read_for(&file, &bytes, &options, &progress);
             let reading = reading.map_err(|findings| match is_nc(source.path()) {
                 _ if watch.is_cancelled() => Stop::cancelled(),
+                _ if pcb::is_board(source) => of_other(&file, "a file of a circuit board", "pcb"),
+                _ if glass::is_body(source) => {
+                    of_other(&file, "a body, a picture or points", "glass")
+                }
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
             })?;
@@ -404,6 +410,14 @@ fn without_origin(file: &str) -> Stop {
     let message = "this is no cutter-location data, and as an NC program it has no control named";
     Diagnostic::error(Rule::Source, message)
         .help(format!("--from with a machine or one of {}", controls.join(", ")))
+        .file(file)
+        .into()
+}
+
+/// The refusal of what another command makes programs of.
+fn of_other(file: &str, what: &str, command: &str) -> Stop {
+    Diagnostic::error(Rule::Source, format!("this is no toolpath but {what}"))
+        .help(format!("`toolpost {command}` makes programs of it"))
         .file(file)
         .into()
 }

@@ -170,10 +170,10 @@ pub(crate) fn prove(
 ) -> Result<Job, Stop> {
     let settings = options.board.as_deref().cloned().unwrap_or_default();
     let (job, board) = begun(source, options, machine, &settings)?;
-    let name = Path::new(&file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let folders = called_from(machine, &given);
     let program = (encoding::without_mark(&given.text), &folders);
-    let compared = job.prove(&board, (&name, &file), program, follows)?;
+    // By its whole name: beside `drill.gcode` there is no program `drill.ngc`.
+    let compared = job.prove(&board, (&file, &file), program, follows)?;
     let pcb::Compared { mut account, mut toolpath, machine, widths, board, files, layers } =
         compared;
     account.rows.extend(settings.row());

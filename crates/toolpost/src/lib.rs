@@ -26,10 +26,11 @@ mod studio;
 mod wire;
 
 use answer::Answer;
-use app::files;
+use app::{Stop, files};
 use args::{Command, CommandLine};
 use clap::error::ContextValue;
 use clap::{CommandFactory, Parser};
+use program::{Diagnostic, Rule};
 use serde_json::json;
 use std::ffi::OsString;
 use std::io::Write;
@@ -60,6 +61,11 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let CommandLine { mut command, quiet, json } = match CommandLine::try_parse_from(&words) {
         Ok(line) => line,
         Err(usage) => {
+            if is_json && usage.use_stderr() {
+                let help = "`toolpost --help`, or with a command before it, lists what it takes";
+                let found = misused(usage, Rule::Argument).help(help);
+                return Answer::from(Stop::from(found)).say(is_quiet, is_json);
+            }
             let usage = shortened(usage);
             // Where this cannot be printed, nobody is left to read it.
             let _ = usage.print();
@@ -113,6 +119,14 @@ fn shortened(mut usage: clap::Error) -> clap::Error {
         usage.insert(kind, ContextValue::String(format!("{start}...")));
     }
     usage
+}
+
+/// What is wrong with a command line, as a finding of this rule.
+fn misused(usage: clap::Error, rule: Rule) -> Diagnostic {
+    let message = shortened(usage).render().to_string();
+    let first = message.split("\n\n").next().unwrap_or_default();
+    let words: Vec<&str> = first.trim_start_matches("error: ").split_whitespace().collect();
+    Diagnostic::error(rule, words.join(" "))
 }
 
 fn completions(shell: clap_complete::Shell) -> Answer {

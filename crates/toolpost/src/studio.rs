@@ -161,7 +161,12 @@ fn options(
         })?;
         words.push(match field.value {
             Some(_) => format!("--{name}={value}"),
-            None => format!("--{name}"),
+            None if value.is_empty() => format!("--{name}"),
+            None => {
+                let message = format!("the option `{name}` is on or off: it takes no value");
+                let found = Diagnostic::error(Rule::StudioAsk, message);
+                return Err(found.help("leave it out to switch it off").into());
+            }
         });
     }
     words.extend(["--", "source"].map(str::to_owned));
@@ -179,10 +184,7 @@ fn options(
     };
     let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
         let missing = missing(&usage);
-        let message = crate::shortened(usage).render().to_string();
-        let first = message.split("\n\n").next().unwrap_or_default();
-        let message = first.trim_start_matches("error: ").replace('\n', " ");
-        let found = Diagnostic::error(Rule::StudioAsk, message);
+        let found = crate::misused(usage, Rule::StudioAsk);
         match missing {
             Some(names) => found.help(format!("set {names}")),
             None => found.help("correct the option in the form"),
@@ -275,6 +277,7 @@ mod tests {
             ("tolerance", "5"),
             ("machine", "x"),
             ("output", "/etc/x"),
+            ("strict", "1"),
             ("no", ""),
         ] {
             let stop = given(&[wrong]).unwrap_err();

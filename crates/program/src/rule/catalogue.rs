@@ -68,8 +68,8 @@ rules! {
         "give a rapid to the start before the arc"
         "A toolpath that begins with an arc";
     Argument "argument" []
-        "A function of the Python package got a value that it does not take."
-        "give one of the values that the documentation of the function lists"
+        "An argument of a command is missing or not known, or it or one of a function of the Python package has a value that is not taken."
+        "give one of the values that `--help`, or the documentation of the function, lists"
         "`toolpost.post(path, machine, tolerance=\"fine\")`";
     Arithmetic "arithmetic" ["nc-arithmetic"]
         "The value of an expression is not a finite number."
