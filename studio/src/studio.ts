@@ -53,6 +53,8 @@ export class Studio {
     private readonly keeping = new Newest<Work>((work) => this.keepEdit(work));
     /** An edit that was on the page when it was left, until a server has it. */
     left: Unkept | null = null;
+    /** Why the server could not keep the edit: a full disk, a folder that is read only. */
+    readonly notKept: Signal<string | null> = signal(null);
     /** The edit as it stands is in no draft of a server that is there. */
     readonly isAlone = computed(() => this.edited.value !== null && (this.link.value !== "open" || this.known.value !== this.edited.value));
     readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
@@ -325,9 +327,14 @@ export class Studio {
             this.kept = own;
             try {
                 await this.seam.ask("draft", { name: own, of }, { arrays: { text: octets } });
+                this.notKept.value = null;
                 return true;
             } catch (error) {
-                if (!isOf(error, OTHER_PAGE)) return false;
+                if (!isOf(error, OTHER_PAGE)) {
+                    // That there is no server is said already.
+                    if (error instanceof Stopped && error.verdict !== "cancelled") this.notKept.value = error.message;
+                    return false;
+                }
                 this.said.value = "another tab edits this program too: both edits are kept";
             }
         }

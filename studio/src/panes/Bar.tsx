@@ -33,7 +33,7 @@ export function Bar({ screen }: { screen: Screen }) {
                 {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} isCurrent={studio.isCurrent.value} />}
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
-            {link.value !== "open" && studio.isAlone.value && <Alone studio={studio} />}
+            {studio.isAlone.value && (link.value !== "open" || studio.notKept.value !== null) && <Alone studio={studio} />}
             <span class="soft">{studio.said.value}</span>
             {studio.drafts.value.slice(0, 1).map((draft) => (
                 <span key={draft.name}>
@@ -63,7 +63,7 @@ const links = {
     open: "",
 };
 
-/** While there is no server the edit is in this page alone. */
+/** While there is no server, or it cannot write, the edit is in this page alone. */
 function Alone({ studio }: { studio: Studio }) {
     const download = (): void => {
         for (const [file, text] of studio.unkept?.edit ?? []) {
@@ -76,7 +76,7 @@ function Alone({ studio }: { studio: Studio }) {
     };
     return (
         <span>
-            ▲ your edit is in this page alone{" "}
+            <strong class="warning">▲ your edit is in this page alone{studio.link.value === "open" && `: ${studio.notKept.value}`}</strong>{" "}
             <button type="button" onClick={download}>
                 Download it
             </button>

@@ -55,7 +55,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         await page.keyboard.type("generic-3axis-fanuc");
         await page.keyboard.press("Enter");
         await page.keyboard.press("Control+o");
-        await page.getByText("x<img src=x").click();
+        await page.getByRole("dialog").getByText("x<img src=x").click();
         await proven(page);
         await page.locator(".source .cm-line", { hasText: "<script>alert(1)</script>" }).waitFor();
         expect(await page.locator("img, script:not([src]), b[onmouseover]").count()).toBe(0);
@@ -76,13 +76,13 @@ describe.skipIf(absent() !== null)("the page and others", () => {
             void dialog.dismiss();
         });
         await page.keyboard.press("Control+o");
-        await page.getByText("tool.cls").click();
+        await page.getByRole("dialog").getByText("tool.cls").click();
         await proven(page);
         await page.getByRole("tab", { name: "Verdict" }).click();
         await page.locator("#low td", { hasText: tool }).waitFor();
 
         await page.keyboard.press("Control+o");
-        await page.getByText("net.toml").click();
+        await page.getByRole("dialog").getByText("net.toml").click();
         // Why nothing is posted is shown, whatever was below before.
         await page.getByRole("button", { name: "Set --tool…" }).first().click();
         await page.locator("#option-tool").fill("0.4");
@@ -108,11 +108,27 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         writeFileSync(join(server.folder, "long.cls"), ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...moves, "FINI", ""].join("\n"));
         const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
-        await page.getByText("long.cls").click();
+        await page.getByRole("dialog").getByText("long.cls").click();
         await page.getByRole("progressbar").waitFor();
         await page.getByText(/reading|writing|proving/).waitFor();
         await page.getByRole("button", { name: "Cancel" }).click();
         await page.getByText("■ CANCELLED").waitFor();
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("where no edit can be kept the page says so, and gives it as a file", async () => {
+        const server = await Server.start([example("plate.cls")], ["-m", "generic-3axis-fanuc"]);
+        // No folder of drafts can be made there.
+        writeFileSync(join(server.folder, ".toolpost"), "");
+        const { page, complaints } = await visit(browser(), server.link);
+        await proven(page);
+        await page.locator(".program .cm-line").first().click();
+        await page.keyboard.press("End");
+        await page.keyboard.type(" (mine)");
+        await page.getByText(/your edit is in this page alone: .+/).waitFor();
+        const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Download it" }).click()]);
+        expect(readFileSync(await download.path(), "utf8")).toContain("(mine)");
         expect(complaints).toEqual([]);
         await page.close();
     });

@@ -29,7 +29,7 @@ describe.skipIf(absent() !== null)("a long program", () => {
             };
             new MutationObserver(look).observe(document.body, { subtree: true, childList: true, characterData: true });
         }));
-        await page.getByText("long.cls").click();
+        await page.getByRole("dialog").getByText("long.cls").click();
         expect(await walking).toEqual({ proven: false, saved: false });
         await expect.poll(() => page.locator(".canvas canvas").first().evaluate(covered)).toBeGreaterThan(0);
         await proven(page, 90_000);
@@ -64,7 +64,7 @@ describe.skipIf(absent() !== null)("a long program", () => {
         await page.reload();
         await page.getByRole("button", { name: /^Commands/ }).waitFor();
         await page.keyboard.press("Control+o");
-        await page.getByText("middling.cls").click();
+        await page.getByRole("dialog").getByText("middling.cls").click();
         await proven(page, 60_000);
         await page.locator(".program .cm-line.at").waitFor();
         const first = asked.findIndex((ask) => ask.includes('"of":"program"'));

@@ -167,7 +167,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         writeFileSync(join(server.folder, "pole.cls"), lines.join("\n"));
         const { page, complaints } = await visit(browser(), server.link);
         await page.keyboard.press("Control+o");
-        await page.getByText("pole.cls").click();
+        await page.getByRole("dialog").getByText("pole.cls").click();
         await proven(page);
         await page.getByRole("tab", { name: "Axes over time" }).click();
         await page.getByText("2 cuts turn a rotary axis by more than 30°").click();

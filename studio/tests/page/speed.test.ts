@@ -66,7 +66,7 @@ async function chosen(browser: Browser, source: string): Promise<string> {
     copyFileSync(source, join(server.folder, basename(source)));
     const { page } = await visit(browser, server.link, {}, watch);
     await page.keyboard.press("Control+o");
-    await page.getByText(basename(source)).click();
+    await page.getByRole("dialog").getByText(basename(source)).click();
     const { chosen, picture, verdict } = await all(page);
     await page.close();
     await server.end();
