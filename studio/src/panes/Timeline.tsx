@@ -1,3 +1,6 @@
+import { useSignal } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import type { ToolUse } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { FACTORS, type Pace } from "../player.ts";
 
@@ -15,12 +18,33 @@ const STEPS = [
     { of: "block", back: "‹", on: "›", title: "block" },
 ] as const;
 
+/** Pixels of the button of a tool. */
+const BUTTON = 26;
+
+/** Tools whose buttons do not lie over one another; the others are reached by a step. `pixel`: its time, s. */
+export function apart(tools: ToolUse[], pixel: number): ToolUse[] {
+    let last = Number.NEGATIVE_INFINITY;
+    return tools.filter(({ time_s }) => {
+        if ((time_s - last) / pixel < BUTTON) return false;
+        last = time_s;
+        return true;
+    });
+}
+
 /** Where the cursor is in the machine's time. */
 export function Timeline({ screen }: { screen: Screen }) {
     const { player, studio } = screen;
     const walk = studio.job.value?.walk ?? null;
     const length = walk?.time_s ?? 0;
     const time = studio.cursor.place.value?.time_s ?? 0;
+    const tools = useRef<HTMLSpanElement>(null);
+    const width = useSignal(0);
+    useEffect(() => {
+        const slide = tools.current!.parentElement!;
+        const sizes = new ResizeObserver(() => (width.value = slide.clientWidth));
+        sizes.observe(slide);
+        return () => sizes.disconnect();
+    }, []);
     const step = (by: 1 | -1) =>
         STEPS.map(({ of, back, on, title }) => (
             <button key={of} type="button" disabled={walk === null} aria-label={`${by === 1 ? "Next" : "Previous"} ${title}`} title={`${by === 1 ? "Next" : "Previous"} ${title}`} onClick={() => player.stepTo(by, of)}>
@@ -51,8 +75,8 @@ export function Timeline({ screen }: { screen: Screen }) {
                             void studio.cursor.to({ by: "time", value: event.currentTarget.valueAsNumber });
                         }}
                     />
-                    <span class="tools">
-                        {(walk?.tools ?? []).slice(0, 50).map((tool) => (
+                    <span class="tools" ref={tools}>
+                        {apart(walk?.tools ?? [], (length || 1) / Math.max(1, width.value)).map((tool) => (
                             <button
                                 key={tool.move}
                                 type="button"

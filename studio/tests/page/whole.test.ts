@@ -463,6 +463,25 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await expect.poll(shot).toEqual(plain);
     });
 
+    test.each([[640, 360], [320, 256]])("in a window of %d x %d, as zoomed, the page scrolls one way, and the view stays in sight while it is replayed", async (width, height) => {
+        const page = await begin({ viewport: { width, height }, deviceScaleFactor: 2 });
+        const view = page.locator(".canvas");
+        expect((await view.boundingBox())!.height).toBeGreaterThan(120);
+        await view.focus();
+        for (const key of ["End", ",", ",", "Home", "."]) {
+            await page.keyboard.press(key);
+            await page.waitForTimeout(150);
+        }
+        await expect.poll(async () => (await lit(page, "program")).length).toBeGreaterThan(0);
+        const { y, height: high } = (await view.boundingBox())!;
+        expect(y + high).toBeGreaterThan(0);
+        expect(y).toBeLessThan(height);
+        expect(await page.evaluate(() => [document.documentElement.scrollWidth <= innerWidth, document.documentElement.scrollHeight > innerHeight])).toEqual([true, true]);
+        for (const name of ["Axes", "Machine", "Box", "Ruler", "Play"]) await page.getByRole("button", { name, exact: true }).click({ trial: true });
+        await page.getByRole("tab", { name: "Verdict" }).click();
+        await accessible(page, `${width} x ${height}`);
+    });
+
     test.each(["light", "dark"] as const)("axe-core finds nothing, %s, in the smallest window", async (colorScheme) => {
         const page = await begin({ colorScheme, viewport: { width: 1024, height: 640 } });
         await accessible(page, "page");
