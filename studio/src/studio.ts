@@ -57,7 +57,11 @@ export class Studio {
     readonly notKept: Signal<string | null> = signal(null);
     /** The edit as it stands is in no draft of a server that is there. */
     readonly isAlone = computed(() => this.edited.value !== null && (this.link.value !== "open" || this.known.value !== this.edited.value));
-    readonly findings = computed(() => [...this.stopped.value, ...(this.job.value?.findings ?? [])]);
+    /** What stops the work comes first. */
+    readonly findings = computed(() => {
+        const all = [...this.stopped.value, ...(this.job.value?.findings ?? [])];
+        return all.toSorted((a, b) => Number(b.severity === "error") - Number(a.severity === "error"));
+    });
     readonly cursor: Cursor;
     /** A machine has to be chosen before anything can be posted. */
     asksMachine: () => void = () => {};

@@ -1,6 +1,6 @@
 import { expect, test } from "vitest";
 import { familyOf, tokens } from "../src/text/dialects.ts";
-import { isNearEnd, missing, windowAround } from "../src/text/window.ts";
+import { isNearEnd, missing, placesIn, windowAround } from "../src/text/window.ts";
 
 test("a short text is kept whole, of a long one as much as is allowed, with the line in the middle", () => {
     expect(windowAround(500, 1000, 1000)).toEqual({ from: 1, to: 1001 });
@@ -51,4 +51,10 @@ test("the family is known by the dialect, else by the name of the file", () => {
     expect(familyOf(null, "part.mpf")).toBe("iso");
     expect(familyOf("fanuc", "part.src")).toBe("krl");
     expect(familyOf(null, "dome.cls")).toBe("apt");
+});
+
+test("what was searched for is found in a line whatever its case, and not over itself", () => {
+    expect(placesIn("N10 G1 x1 X10 X1", "x1")).toEqual([7, 10, 14]);
+    expect(placesIn("aaaa", "AA")).toEqual([0, 2]);
+    expect(placesIn("G0", "")).toEqual([]);
 });

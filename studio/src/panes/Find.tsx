@@ -42,7 +42,7 @@ export function Find({ screen, close }: { screen: Screen; close(): void }) {
                 type="text"
                 value={text.value}
                 onInput={(event) => {
-                    text.value = event.currentTarget.value;
+                    text.value = screen.found.value = event.currentTarget.value;
                     from.value = 1;
                 }}
             />

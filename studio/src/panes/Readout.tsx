@@ -29,6 +29,9 @@ export function Readout({ screen }: { screen: Screen }) {
         ...axes.map(({ name, unit }, i): [string, string, string] => [name, number(place.axes[i]), unit]),
         [isGlass ? "Focus" : "Tip", place.tip.map((part) => number(part)).join("  "), "mm"],
     ];
+    const from = screen.from.value;
+    const way = from === null || place === null ? null : place.tip.map((part, i) => (part === null ? null : part - from[i]!));
+    const length = way?.includes(null) === false ? Math.hypot(...(way as number[])) : null;
     const parts: [string, string, string][] = place === null ? [] : isGlass ? [
         ...own,
         ["Pulse", `${counted(place.move + 1)} of ${counted(job.walk.moves)}`, ""],
@@ -53,6 +56,14 @@ export function Readout({ screen }: { screen: Screen }) {
                     </dd>
                 </div>
             ))}
+            {way !== null && (
+                <div title="From the place that was marked (D) to this one">
+                    <dt>Measured</dt>
+                    <dd>
+                        {way.map((part) => number(part)).join("  ")}, {number(length)} <small>mm</small>
+                    </dd>
+                </div>
+            )}
             {pointer !== null && (
                 <div class="soft">
                     <dt>Pointer</dt>

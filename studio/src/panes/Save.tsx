@@ -11,7 +11,11 @@ export function Save({ screen, close }: { screen: Screen; close(): void }) {
     const save = async (event: Event): Promise<void> => {
         event.preventDefault();
         if (await studio.save(path.value, replace.value)) close();
-        else why.value = studio.stopped.value[0]?.message ?? "not saved";
+        else {
+            // It is said here, where it can be mended: the program is none the worse for it.
+            why.value = studio.stopped.value[0]?.message ?? "not saved";
+            studio.stopped.value = [];
+        }
     };
     return (
         <form onSubmit={(event) => void save(event)}>

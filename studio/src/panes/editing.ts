@@ -57,7 +57,7 @@ export function keepUp(screen: Screen, of: Of, host: HTMLElement, compared: Sign
             const name = file.value ?? studio.job.value?.[of]?.file;
             const wrong = studio.findings.value.filter((finding) => finding.of === of && finding.line > 0 && finding.file === name).flatMap(({ line, lines }) => [line, ...lines]);
             const also = of === "program" && place?.source ? linesOf(place.blocks, file.value) : [];
-            editor.mark({ at: line?.file === file.value ? line.line : null, also, wrong: wrong.slice(0, 1000) });
+            editor.mark({ at: line?.file === file.value ? line.line : null, also, wrong: wrong.slice(0, 1000), found: screen.searched.value === of ? screen.found.value : "" });
         }),
         effect(() => {
             const job = studio.job.value;

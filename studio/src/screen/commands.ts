@@ -81,6 +81,7 @@ function looking(screen: Screen): Command[] {
         { name: "pale", title: "What is ahead is pale, or not", keys: ["n"], view: true, run: flip(screen.pale) },
         { name: "box", title: "Box of all moves", keys: ["b"], view: true, run: flip(screen.box) },
         { name: "ruler", title: "Ruler: dragging measures", keys: ["l"], view: true, run: flip(screen.ruler) },
+        { name: "measure", title: "Measure from this place, or no more", keys: ["d"], view: true, run: () => screen.measure() },
         { name: "colours", title: "Colours by the next thing", keys: ["c"], view: true, run: colours },
         { name: "draw-plain", title: "Draw without the graphics processor", run: () => drawBy("plain") },
         { name: "draw-webgl", title: "Draw by WebGL", run: () => drawBy("webgl") },

@@ -52,6 +52,8 @@ export class Screen {
     readonly options: Signal<string[]> = signal([]);
     /** Pane that is searched, and its editors. */
     readonly searched: Signal<"program" | "source"> = signal("program");
+    /** What is searched for there. */
+    readonly found: Signal<string> = signal("");
     readonly reading = new Together();
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
     /** Of a program in several files, the called one that is shown; null: the program itself. */
@@ -72,6 +74,8 @@ export class Screen {
     readonly ruler: Signal<boolean> = signal(false);
     readonly drawing: Signal<Drawing> = signal("auto");
     readonly box: Signal<boolean> = signal(false);
+    /** A place that is measured from. */
+    readonly from: Signal<Vector | null> = signal(null);
     readonly pointer: Signal<Vector | null> = signal(null);
     private readonly dark: Signal<boolean> = signal(false);
     readonly looks = computed((): Looks => ({
@@ -169,7 +173,10 @@ export class Screen {
         else if (board !== null) this.show(board);
         const isOther = this.fitted !== job.source.file;
         this.fitted = job.source.file;
-        if (isOther) this.begun(job);
+        if (isOther) {
+            this.from.value = null;
+            this.begun(job);
+        }
         for (const viewer of this.viewers) viewer.refit(isOther);
     }
 
@@ -407,6 +414,11 @@ export class Screen {
         if (this.viewer === null) return;
         const { camera } = this.viewer;
         this.viewer.look({ ...camera, middle: [x, y, 0], scale: Math.max(camera.scale, 40) });
+    }
+
+    /** Measures from the tip at the cursor, or no more. */
+    measure(): void {
+        this.from.value = this.from.value === null ? vector(this.studio.cursor.place.value?.tip ?? []) : null;
     }
 
     zoomToCursor(): void {

@@ -7,7 +7,7 @@ import { defaultKeymap, history, historyKeymap, undoDepth } from "@codemirror/co
 import { Compartment, EditorState, StateEffect, StateField, Transaction, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { Decoration, EditorView, drawSelection, keymap, lineNumbers, type DecorationSet, type ViewUpdate } from "@codemirror/view";
 import { coloured, type Family } from "./dialects.ts";
-import { firstWindow, isNearEnd, isWithin, KEPT, lastWindow, LONG, missing, type Window } from "./window.ts";
+import { firstWindow, isNearEnd, isWithin, KEPT, lastWindow, LONG, missing, placesIn, type Window } from "./window.ts";
 
 /** Between two jumps to lines that are not here, ms. */
 const JUMPS = 250;
@@ -40,6 +40,8 @@ export interface Marked {
     at: number | null;
     also: number[];
     wrong: number[];
+    /** A text that was searched for: marked where it stands in the cursor's line. */
+    found: string;
 }
 
 const setMarked = StateEffect.define<Marked>();
@@ -47,11 +49,15 @@ const atLine = Decoration.line({ class: "at", attributes: { "aria-current": "tru
 const alsoLine = Decoration.line({ class: "also" });
 const wrongLine = Decoration.line({ class: "wrong" });
 
-function decorations(text: Text, { at, also, wrong }: Marked): DecorationSet {
+const foundText = Decoration.mark({ class: "found" });
+
+function decorations(text: Text, { at, also, wrong, found }: Marked): DecorationSet {
     const marked = (lines: number[], mark: Decoration) => lines.map((line) => ({ line, mark }));
     const lines = [...marked(wrong, wrongLine), ...marked(also, alsoLine), ...(at === null ? [] : [{ line: at, mark: atLine }])];
     const within = lines.filter(({ line }) => line >= 1 && line <= text.lines);
-    return Decoration.set(within.map(({ line, mark }) => mark.range(text.line(line).from)), true);
+    const own = at !== null && at >= 1 && at <= text.lines ? text.line(at) : null;
+    const places = own === null ? [] : placesIn(own.text, found).map((place) => foundText.range(own.from + place, own.from + place + found.length));
+    return Decoration.set([...within.map(({ line, mark }) => mark.range(text.line(line).from)), ...places], true);
 }
 
 const marks = StateField.define<DecorationSet>({
@@ -75,6 +81,7 @@ const look = EditorView.theme({
     ".cm-selectionBackground": { backgroundColor: "var(--selected)" },
     ".at": { backgroundColor: "var(--lit)", boxShadow: "inset 3px 0 var(--accent)" },
     ".also": { boxShadow: "inset 3px 0 var(--accent)" },
+    ".found": { outline: "2px solid var(--accent)", borderRadius: "2px" },
     ".wrong": { textDecoration: "underline wavy var(--bad)" },
 });
 
@@ -94,7 +101,7 @@ export class Editor {
     private readonly left = new Map<string | null, EditorState>();
     /** Until the first lines of the text that is to be shown are here. */
     private showing: Promise<void> = Promise.resolve();
-    private marked: Marked = { at: null, also: [], wrong: [] };
+    private marked: Marked = { at: null, also: [], wrong: [], found: "" };
     private reading = 0;
     /** The lines that are on their way for a jump. */
     private coming: Window | null = null;
@@ -335,10 +342,10 @@ export class Editor {
 
     /** The marks in the lines that are here; a new line of the cursor comes into sight. */
     private drawn(doc: Text, isNew: boolean): StateEffect<unknown>[] {
-        const { at, also, wrong } = this.marked;
+        const { at, also, wrong, found } = this.marked;
         const here = (lines: number[]): number[] => lines.filter((one) => isWithin(this.window, one)).map((one) => one - this.window.from + 1);
         const [line = null] = at === null ? [] : here([at]);
-        const effects: StateEffect<unknown>[] = [setMarked.of({ at: line, also: here(also), wrong: here(wrong) })];
+        const effects: StateEffect<unknown>[] = [setMarked.of({ at: line, also: here(also), wrong: here(wrong), found })];
         if (isNew && line !== null && line <= doc.lines) effects.push(EditorView.scrollIntoView(doc.line(line).from, { y: "nearest", yMargin: 60 }));
         return effects;
     }

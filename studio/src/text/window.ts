@@ -43,3 +43,15 @@ export function missing(here: Window, kept: Window, part = PART): Window | null 
     if (here.from > kept.from) return { from: Math.max(kept.from, here.from - part), to: here.from };
     return here.to < kept.to ? { from: here.to, to: Math.min(kept.to, here.to + part) } : null;
 }
+
+/** A line that is longer is not looked through, characters. */
+const LOOKED_THROUGH = 100_000;
+
+/** Where a text stands in a line, whatever its case. */
+export function placesIn(line: string, text: string): number[] {
+    if (line.length > LOOKED_THROUGH) return [];
+    const [all, one] = [line.toLowerCase(), text.toLowerCase()];
+    const places: number[] = [];
+    for (let at = one === "" ? -1 : all.indexOf(one); at >= 0 && places.length < 100; at = all.indexOf(one, at + one.length)) places.push(at);
+    return places;
+}

@@ -389,6 +389,41 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.getByText("choose the machine that it is for").waitFor();
     });
 
+    test("what is searched for is marked in its line; a save that is refused leaves no error beside the proven program", async () => {
+        const page = await begin();
+        const before = await page.locator("#tab-findings").innerText();
+        await page.keyboard.press("Control+f");
+        await page.keyboard.type("x145");
+        await page.keyboard.press("Enter");
+        await page.locator(".program .cm-line.at .found", { hasText: "X145" }).waitFor();
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("Control+s");
+        await page.locator("#save-path").fill("plate.cls");
+        await page.keyboard.press("Enter");
+        await page.getByRole("dialog").locator(".error").waitFor();
+        await page.keyboard.press("Escape");
+        await page.getByRole("tab", { name: before }).waitFor();
+    });
+
+    test("from a place that is marked the readout measures, by keyboard", async () => {
+        const page = await begin();
+        const at = async (move: string): Promise<number[]> => {
+            await goTo(page, move);
+            await expect.poll(async () => (await readout(page)).Move).toMatch(new RegExp(`^${move.slice(1)} `));
+            return (await readout(page)).Tip!.split(/\s+/).slice(0, 3).map(Number);
+        };
+        const from = await at("m5");
+        await page.locator(".canvas").focus();
+        await page.keyboard.press("d");
+        const to = await at("m8");
+        const way = to.map((part, i) => part - from[i]!);
+        const measured = (await readout(page)).Measured!.split(/[\s,]+/).slice(0, 4).map(Number);
+        expect(measured).toEqual([...way, Math.hypot(...way)].map((part) => expect.closeTo(part, 3)));
+        await page.locator(".canvas").focus();
+        await page.keyboard.press("d");
+        await expect.poll(async () => (await readout(page)).Measured).toBe(undefined);
+    });
+
     test("the view says what its colours mean", async () => {
         const page = await begin();
         const legend = page.locator(".legend");
