@@ -52,9 +52,9 @@ test("finer arcs are asked for by name, and the exact level is drawn until they 
     const chunks = new Chunks(walk, octets, () => {});
     await chunks.load();
     await chunks.exact(0, 0);
-    expect(chunks.best(FINE, 0)).toEqual({ vertices: server["0/0"], isExact: true });
+    expect(chunks.best(FINE, 0)).toEqual({ vertices: server["0/0"], level: 0 });
     await settled();
-    expect(chunks.best(FINE, 0)).toEqual({ vertices: finer, isExact: true });
+    expect(chunks.best(FINE, 0)).toEqual({ vertices: finer, level: FINE });
     expect(asked).toEqual(["index", "0/0-1", "fine/0-1"]);
 });
 
@@ -120,7 +120,7 @@ test("what has not come is asked for, and what is there is drawn meanwhile", asy
 
 test("a chunk that is on its way is not asked for again, and what was walked before is drawn until it has come", async () => {
     const asked: string[] = [];
-    const before = { chunks: [], best: () => ({ vertices: server["1/0"]!, isExact: false }) } as unknown as Vertices;
+    const before = { chunks: [], best: () => ({ vertices: server["1/0"]!, level: null }) } as unknown as Vertices;
     const octets = async (path: string) => {
         asked.push(path);
         await settled();
@@ -142,7 +142,7 @@ test("a chunk that is on its way is not asked for again, and what was walked bef
 test("what was walked is drawn before anything of the job has come", async () => {
     const known = new Chunks(walk, async (path) => answer(server, path), () => {});
     await known.load();
-    const before = { chunks: known.chunks.slice(0, 1), best: () => ({ vertices: server["1/0"]!, isExact: false }) } as unknown as Vertices;
+    const before = { chunks: known.chunks.slice(0, 1), best: () => ({ vertices: server["1/0"]!, level: null }) } as unknown as Vertices;
     const chunks = new Chunks(walk, () => new Promise(() => {}), () => {}, before);
     const one = new Scene(walk, chunks, {} as Rows);
     expect(one.picture(above, size, looks, marks).strips.map(({ vertices }) => vertices)).toEqual([server["1/0"]]);
@@ -236,6 +236,21 @@ test("while the cursor moves, only what is marked is drawn anew; the picture is 
     draw(painting, 4096, { ...looks, width: 2 });
     expect(drawn).toHaveBeenCalledTimes(3);
     drawn.mockRestore();
+});
+
+test("where more is in sight than can be kept, the next level is drawn, and the picture says how far its lines may be off", async () => {
+    const within = async (vertices: number): Promise<Scene> => {
+        const levels = [{ error: 0.1, vertices }, { error: 3, vertices: 4 }];
+        const chunks = new Chunks({ ...walk, levels }, async (path) => answer(server, path), () => {});
+        await chunks.load();
+        for (const level of [0, 1]) for (const chunk of [0, 1]) await chunks.exact(level, chunk);
+        return new Scene({ ...walk, levels }, chunks, {} as Rows);
+    };
+    // A pixel a millimetre; 150 MB are 9.4 million vertices.
+    const few = (await within(9e6)).picture(above, size, looks, marks);
+    expect([few.strips[0]!.vertices, few.off]).toEqual([server["0/0"], 0]);
+    const many = (await within(10e6)).picture(above, size, looks, marks);
+    expect([many.strips[0]!.vertices, many.off]).toEqual([server["1/0"], 3]);
 });
 
 describe("pulses in a block of glass", () => {

@@ -31,6 +31,8 @@ test.each([
     ["heidenhain", "12 L X+1 FMAX M3 ; up", ["12", "L", "X", "+1", "FMAX", "M3", "; up"], ["meta", "keyword", "typeName", "number", "keyword", "keyword", "comment"]],
     ["krl", "LIN {X 1} C_DIS", ["LIN", "{", "X", "1", "}", "C_DIS"], ["keyword", null, "typeName", "number", null, "keyword"]],
     ["rapid", "MoveL p1, v10; ! cut", ["MoveL", "p1", ",", "v10", ";", "! cut"], ["keyword", "typeName", null, "typeName", null, "comment"]],
+    ["ls", "67:!Bore ;", ["67:", "!Bore ;"], ["meta", "comment"]],
+    ["ls", "20:L P[2] 100mm/sec CNT50 ;", ["20:", "L", "P", "[", "2", "]", "100", "mm", "/", "sec", "CNT50", ";"], ["meta", "keyword", "variableName", null, "number", null, "number", "typeName", null, "typeName", "keyword", null]],
     ["apt", "GOTO/1,2 $$ there", ["GOTO", "/", "1", ",", "2", "$$ there"], ["keyword", null, "number", null, "number", "comment"]],
     ["toml", 'linear = "{{N}} G1" # tip', ["linear", "=", '"{{N}} G1"', "# tip"], ["keyword", null, "string", "comment"]],
 ] as const)("words of %s: %s", (family, line, words, tags) => {
@@ -40,7 +42,7 @@ test.each([
 
 test("every character of a line is in one token", () => {
     const line = 'G1 X1 ("}{ \u{1F600} \\ < script > é';
-    for (const family of ["iso", "heidenhain", "krl", "rapid", "script", "apt", "toml"] as const) {
+    for (const family of ["iso", "heidenhain", "krl", "rapid", "ls", "script", "apt", "toml"] as const) {
         expect(tokens(family, line).map(([word]) => word).join("")).toBe(line);
     }
 });

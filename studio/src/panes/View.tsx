@@ -49,6 +49,7 @@ export function View({ screen }: { screen: Screen }) {
                 ))}
                 <Legend screen={screen} />
                 <MachineAbsent screen={screen} />
+                {screen.off.value > 0 && <p class="off soft">lines are up to {counted(screen.off.value)} pixels off here: finer ones are coming, or are too many</p>}
                 <Proving screen={screen} />
                 {screen.studio.job.value === null && screen.studio.running.value === null && <Empty screen={screen} />}
             </div>
@@ -93,7 +94,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             {
                 picked: (move) => void studio.cursor.toMove(move),
                 pointed: (at) => (screen.pointer.value = at),
-                drawn: () => screen.drawn(),
+                drawn: (off) => screen.drawn(off),
             },
             screen.drawing.peek(),
         );

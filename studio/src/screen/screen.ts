@@ -98,6 +98,8 @@ export class Screen {
     readonly viewers: Viewer[] = [];
     /** There has been a picture. */
     readonly isDrawn: Signal<boolean> = signal(false);
+    /** How many pixels lines may be off; 0 where that is not seen. */
+    readonly off: Signal<number> = signal(0);
     /** The ends of the ramp of feeds, mm/min. */
     readonly feeds: Signal<[least: number, most: number] | null> = signal(null);
     /** The view that had the focus last. */
@@ -249,8 +251,9 @@ export class Screen {
     }
 
     /** A view has drawn lines. */
-    drawn(): void {
+    drawn(off: number): void {
         this.isDrawn.value = true;
+        this.off.value = Math.ceil(off);
         const feeds = this.scene.value?.feeds ?? null;
         if (String(feeds) !== String(this.feeds.value)) this.feeds.value = feeds;
     }

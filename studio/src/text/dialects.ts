@@ -6,7 +6,7 @@ import { tags } from "@lezer/highlight";
 import { isToolpath } from "./names.ts";
 
 export type Tag = "comment" | "string" | "keyword" | "meta" | "number" | "typeName" | "variableName";
-export type Family = "iso" | "heidenhain" | "krl" | "rapid" | "script" | "apt" | "toml";
+export type Family = "iso" | "heidenhain" | "krl" | "rapid" | "ls" | "script" | "apt" | "toml";
 
 type Rule = [RegExp, Tag];
 
@@ -49,6 +49,15 @@ const RULES: Record<Family, Rule[]> = {
         text,
         [ordered("MODULE|ENDMODULE|PROC|ENDPROC|FUNC|ENDFUNC|CONST|PERS|VAR|LOCAL|TASK|MoveL|MoveJ|MoveC|MoveAbsJ|IF|THEN|ELSE|ENDIF|FOR|FROM|TO|DO|ENDFOR|WHILE|ENDWHILE|RETURN|TRUE|FALSE|Load|UnLoad|Set|Reset|WaitTime"), "keyword"],
         [/\\\w+/y, "variableName"],
+        [/[A-Z_]\w*/iy, "typeName"],
+        number,
+    ],
+    ls: [
+        [/(?<=^\s*\d*\s*:\s*)!.*/y, "comment"],
+        text,
+        [/^\s*\/[A-Z]+|^\s*\d*\s*:/iy, "meta"],
+        [ordered("J|L|C|A|S|FINE|CNT\\d+|WAIT|CALL|IF|THEN|ELSE|ENDIF|JMP|LBL|FOR|TO|ENDFOR|RUN|END|ABORT|PAUSE|OVERRIDE|ON|OFF|ACC\\d*|Offset|Tool_Offset"), "keyword"],
+        [/(PR|P|R|DO|DI|RO|RI|AO|AI|GO|GI|UFRAME|UTOOL|SR|F)(?=\[)|\$[\w.]+/iy, "variableName"],
         [/[A-Z_]\w*/iy, "typeName"],
         number,
     ],
@@ -109,7 +118,8 @@ export function familyOf(dialect: string | null | undefined, file: string): Fami
     if (name.includes("heidenhain") || extension === "h") return "heidenhain";
     if (name.includes("krl") || name.includes("kuka") || ["src", "dat"].includes(extension)) return "krl";
     if (name.includes("rapid") || ["mod", "prg", "modx"].includes(extension)) return "rapid";
-    if (name.includes("script") || ["script", "urp", "ls", "jbi", "jss"].includes(extension)) return "script";
+    if (extension === "ls") return "ls";
+    if (name.includes("script") || ["script", "urp", "jbi", "jss"].includes(extension)) return "script";
     if (isToolpath(file)) return "apt";
     return "iso";
 }

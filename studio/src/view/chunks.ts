@@ -8,10 +8,10 @@ import type { Vector } from "./vector.ts";
 const INDEX_BYTES = 64;
 
 /** Of the lines' error in pixels: more would be seen. */
-const SEEN = 0.5;
+export const SEEN = 0.5;
 
 /** Vertices kept, bytes: those not drawn for longest go first. */
-const KEPT = 300e6;
+export const KEPT = 300e6;
 
 /** Requests at the same time. */
 const REQUESTS = 6;
@@ -66,13 +66,19 @@ interface Kept {
     used: number;
 }
 
+export interface Best {
+    vertices: ArrayBuffer;
+    /** They are of this level; null where that is not known. */
+    level: number | null;
+}
+
 /** Where the vertices of a walk come from. */
 export interface Vertices {
     readonly chunks: Chunk[];
     /** A picture begins. */
     begin(): void;
     /** Of a chunk, at the level or the nearest that is there. */
-    best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null;
+    best(level: number, chunk: number): Best | null;
     /** Of a chunk, at whatever level has come; nothing is asked for. */
     known(chunk: number): ArrayBuffer | null;
     /** At exactly this level; null where that cannot be had. */
@@ -132,9 +138,9 @@ export class Chunks implements Vertices {
     }
 
     /** The vertices at this level, else at the nearest that is there; what is missing is asked for. */
-    best(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
+    best(level: number, chunk: number): Best | null {
         const vertices = this.take(level, chunk);
-        if (vertices !== null) return { vertices, isExact: level <= 0 };
+        if (vertices !== null) return { vertices, level };
         this.want(this.key(level, chunk));
         return this.nearest(level, chunk) ?? this.before?.best(level, chunk) ?? null;
     }
@@ -143,12 +149,12 @@ export class Chunks implements Vertices {
         return this.nearest(FINE, chunk)?.vertices ?? this.before?.known(chunk) ?? null;
     }
 
-    private nearest(level: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
+    private nearest(level: number, chunk: number): Best | null {
         const coarser = Array.from({ length: this.walk.levels.length - level - 1 }, (_, i) => level + 1 + i);
         const finer = Array.from({ length: level - FINE }, (_, i) => level - 1 - i);
         for (const other of [...coarser, ...finer]) {
             const vertices = this.take(other, chunk);
-            if (vertices !== null) return { vertices, isExact: other <= 0 };
+            if (vertices !== null) return { vertices, level: other };
         }
         return null;
     }

@@ -34,7 +34,7 @@ export class Painting {
     }
 
     /** The colours of all pixels. */
-    draw({ flats, surfaces, strips, over, bodies }: Omit<Picture, "symbols">, projection: Projection, paper: number, isMoving = false): Uint32Array<ArrayBuffer> {
+    draw({ flats, surfaces, strips, over, bodies }: Omit<Picture, "symbols" | "off">, projection: Projection, paper: number, isMoving = false): Uint32Array<ArrayBuffer> {
         const { raster, lines } = this;
         const stride = isMoving ? this.strideFor(strips) : 1;
         if (lines !== null && (isMoving || lines.stride === 1) && lines.paper === paper && areAlike(lines.flats, flats) && areAlike(lines.surfaces, surfaces) && isSame(lines.projection, projection) && areSame(lines.strips, strips)) {

@@ -5,14 +5,14 @@ import type { WalkAbout } from "../protocol/asks.ts";
 import type { Blocks } from "./blocks.ts";
 import type { Board, Flat } from "./board.ts";
 import { toScreen, type Projection, type Size } from "./camera.ts";
-import { inSight, levelFor, type Chunk, type Vertices } from "./chunks.ts";
+import { inSight, KEPT, levelFor, SEEN, type Best, type Chunk, type Vertices } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
 import { GAP, NEEDLES, needlesOf } from "./needles.ts";
 import { painterOf, type Painter } from "./painted.ts";
 import { Raster } from "./raster.ts";
 import type { Rows } from "./rows.ts";
 import { Mark, symbolsOf, type Symbol } from "./symbols.ts";
-import { CHUNK_MOVES, Style, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
+import { CHUNK_MOVES, Style, VERTEX_BYTES, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
 import { surfaceOf } from "./surface.ts";
 import type { Vector } from "./vector.ts";
 
@@ -47,9 +47,9 @@ export interface Picture {
     over: Strip[];
     bodies: Triangles[];
     symbols: Symbol[];
+    /** How far lines may be off while finer ones are on their way or too many, pixels; 0 where that is not seen. */
+    off: number;
 }
-
-type Best = NonNullable<ReturnType<Vertices["best"]>>;
 
 /** The most places of a board that are marked. */
 const PLACES = 400;
@@ -69,6 +69,9 @@ export class Scene {
 
     /** The board that the program is of, when it has come. */
     board: Board | null = null;
+
+    /** Of the last picture. */
+    private last: { scale: number; level: number } | null = null;
 
     private readonly surfaces = new WeakMap<ArrayBuffer, Triangles>();
 
@@ -103,10 +106,13 @@ export class Scene {
         const surfaces: Triangles[] = [];
         const chunks = this.chunks.chunks.filter((chunk) => inSight(chunk, projection, size));
         const level = this.levelOf(projection.scale, chunks.length);
+        this.last = { scale: projection.scale, level };
+        let coarsest = 0;
         for (const chunk of chunks) {
             const best = this.chunks.best(level, chunk.number);
             if (best === null) continue;
             const { vertices } = best;
+            coarsest = Math.max(coarsest, best.level ?? 0);
             if (this.wire !== null) this.surface(surfaces, chunk, vertices, this.wire);
             this.bands(strips, chunk, best, looks, marks, projection.scale);
             this.lines(strips, chunk, best, looks, marks);
@@ -120,7 +126,9 @@ export class Scene {
         if (tabs !== null) strips.push(tabs);
         const flats = this.board?.flats(looks.theme) ?? [];
         this.places(symbols, projection, size);
-        return { flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+        const error = (this.walk.levels[coarsest]?.error ?? 0) * projection.scale;
+        const off = coarsest > 0 && error > SEEN && !this.isPoints ? error : 0;
+        return { off, flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
     }
 
     /** The least and the greatest feed that is known, mm/min. */
@@ -134,12 +142,13 @@ export class Scene {
         return this.blocks !== null;
     }
 
-    /** The level at a scale. Points do not thin out as lines do: where too many are in sight, a coarser one. */
+    /** The level at a scale; where more would be in sight than is kept, and of points, which do not thin out as lines do, than can be drawn, a coarser one. */
     private levelOf(scale: number, inSight: number): number {
         const { levels, chunks } = this.walk;
+        const most = this.isPoints ? POINTS : KEPT / 2 / VERTEX_BYTES;
+        const isTooMany = (level: number): boolean => (levels[Math.max(0, level)]!.vertices * inSight) / Math.max(1, chunks) > most;
         let level = levelFor(this.walk, scale);
-        if (!this.isPoints) return level;
-        while (level + 1 < levels.length && (levels[level]!.vertices * inSight) / Math.max(1, chunks) > POINTS) level++;
+        while (level + 1 < levels.length && isTooMany(level)) level++;
         return level;
     }
 
@@ -200,13 +209,13 @@ export class Scene {
         if (now !== null) this.marked(over, chunk, best, [now, now + 1], () => this.plain(MARKED, looks, 3, 3));
     }
 
-    private marked(over: Strip[], chunk: Chunk, { vertices, isExact }: Best, [from, to]: Range, paintOf: () => Paint): void {
+    private marked(over: Strip[], chunk: Chunk, { vertices, level }: Best, [from, to]: Range, paintOf: () => Paint): void {
         const [low, high] = [Math.max(from - chunk.first, 0), Math.min(to - chunk.first, CHUNK_MOVES)];
         if (low >= high) return;
         const paint = paintOf();
         const begin = vertexOf(vertices, low);
         // At a coarse level a move may have no vertex of its own: the one that it is in is marked.
-        const least = isExact ? begin : Math.min(begin + 1, vertices.byteLength / 16);
+        const least = level !== null && level <= 0 ? begin : Math.min(begin + 1, vertices.byteLength / 16);
         add(over, chunk, vertices, [begin, Math.max(vertexOf(vertices, high), least)], paint);
     }
 
@@ -262,7 +271,7 @@ export class Scene {
     /** What is drawn of the chunks that reach to the pixel. */
     private near(camera: Projection, looks: Looks, x: number, y: number): Strip[] {
         const strips: Strip[] = [];
-        const level = this.levelOf(camera.scale, this.chunks.chunks.length);
+        const level = this.last?.scale === camera.scale ? this.last.level : this.levelOf(camera.scale, this.chunks.chunks.length);
         const reach = REACH + Math.max(0, ...this.bandPaints(looks, camera.scale).map(({ width }) => width / 2));
         const round = { ...camera, at: [camera.at[0] - x + reach, camera.at[1] - y + reach, camera.at[2]] as Vector };
         for (const chunk of this.chunks.chunks) {

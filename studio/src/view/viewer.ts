@@ -41,8 +41,8 @@ const STILL = 150;
 export interface Tell {
     picked(move: number): void;
     pointed(at: Vector | null): void;
-    /** A picture with lines is drawn. */
-    drawn(): void;
+    /** A picture with lines is drawn; its lines may be so many pixels off. */
+    drawn(off: number): void;
 }
 
 export class Viewer {
@@ -171,11 +171,11 @@ export class Viewer {
         const { size, projection } = this;
         const { scene, looks, marks, tip, box, isBoxShown } = this.shown();
         scene?.chunks.begin();
-        const picture = scene?.picture(projection, size, looks, marks) ?? { flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
+        const picture = scene?.picture(projection, size, looks, marks) ?? { off: 0, flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
         this.renderer.draw(picture, projection, size, looks.theme, this.moving !== undefined);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
         if (picture.strips.length > 0) {
-            this.tell.drawn();
+            this.tell.drawn(picture.off / this.ratio);
             if (this.isSought) setTimeout(() => this.seek());
         }
         overlay(this.context, { box: isBoxShown ? box : null, tip, symbols: picture.symbols, drag: this.measured }, projection, size, looks.theme, this.ratio);

@@ -3,7 +3,7 @@
 import type { WalkAbout, Walked } from "../protocol/asks.ts";
 import type { Arrays } from "../protocol/frames.ts";
 import type { Box } from "./camera.ts";
-import { readIndex, type Chunk, type Vertices } from "./chunks.ts";
+import { readIndex, type Best, type Chunk, type Vertices } from "./chunks.ts";
 import { VERTEX_BYTES } from "./strip.ts";
 import { along } from "./vector.ts";
 
@@ -36,9 +36,9 @@ export class Walking implements Vertices {
 
     begin(): void {}
 
-    best(_: number, chunk: number): { vertices: ArrayBuffer; isExact: boolean } | null {
+    best(_: number, chunk: number): Best | null {
         const vertices = this.vertices[chunk];
-        return vertices === undefined ? null : { vertices, isExact: false };
+        return vertices === undefined ? null : { vertices, level: null };
     }
 
     known(chunk: number): ArrayBuffer | null {
