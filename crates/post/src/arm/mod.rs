@@ -524,26 +524,29 @@ impl<'a> Walk<'a> {
             false => (String::new(), ""),
         };
         let high = format!(
-            "off the line of the source joints may lead the tool only beyond all cuts and as high along it as the source ever goes{besides}"
+            "off the line of the source joints may lead the tool only beyond all cuts and as high as the source ever goes, along the tool and along Z{besides}"
         );
         let place = "another place of the part (`part` below [cell]; `toolpost fit` looks for one)";
         let slack = self.machine.capabilities.rapid_corridor / 2.0;
         let [from, to] = ends.map(|end| {
-            let below = self.rapids.below(end);
-            (self.rapids.is_home(end), Some(below).filter(|below| *below > slack))
+            let [along, up] = self.rapids.below(end);
+            let lacks = [(along, "along the tool"), (up, "along Z")];
+            let lacks = lacks.into_iter().filter(|(below, _)| *below > slack);
+            let lacks: Vec<_> = lacks.map(|(mm, along)| format!("{mm:.1} mm {along}")).collect();
+            (self.rapids.is_home(end), lacks.join(" and "))
         });
-        for (is_home, below) in [from, to] {
-            if let (true, Some(below)) = (is_home, below) {
-                let message = format!("home is {below:.1} mm too low: {high}");
+        for (is_home, lacks) in [&from, &to] {
+            if *is_home && !lacks.is_empty() {
+                let message = format!("home is too low, by {lacks}: {high}");
                 let help = format!(
                     "{measured}a higher `home` below [cell], a toolpath whose highest rapid is lower, or {place}"
                 );
                 return Diagnostic::error(Rule::RapidPath, message).help(help);
             }
         }
-        let up = |(_, below): (bool, Option<f64>)| match below {
-            Some(below) => format!("{below:.1} mm up along the tool"),
-            None => String::from("where it is"),
+        let up = |lacks: &str| match lacks.is_empty() {
+            true => String::from("where it is"),
+            false => format!("higher by {lacks}"),
         };
         let what = match (from.0, to.0) {
             (_, true) => "the arm finds no way home",
@@ -554,8 +557,8 @@ impl<'a> Walk<'a> {
         };
         let message = format!(
             "{what}; {high}. That is, at its beginning, {}, and at its end {}: between those, and from up to {:.0} mm higher, there is none",
-            up(from),
-            up(to),
+            up(&from.1),
+            up(&to.1),
             rapid::RETRACTS[rapid::RETRACTS.len() - 1]
         );
         let rail = match self.cell.rail {

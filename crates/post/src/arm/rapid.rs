@@ -1,4 +1,4 @@
-//! How a rapid of an arm goes: by its joints where the tool is then as high as the source ever goes and beyond all cuts, else straight.
+//! How a rapid of an arm goes: by its joints where the tool is then as high as the source ever goes, along itself and along Z, and beyond all cuts, else straight.
 
 use super::plan::Position;
 use ::arm::{Arm, Joints, Posture};
@@ -49,6 +49,36 @@ pub(super) struct RapidSegment {
     pub(super) end: Position,
 }
 
+/// Straight from a position to where joints may lead the tool on: the end of each piece, and the feed of it. None where joints may do so at once.
+struct WayOut(Vec<(Position, f64)>);
+
+impl WayOut {
+    /// Where it ends, which begins there.
+    fn end(&self, from: &Position) -> Position {
+        self.0.last().map_or(*from, |(end, _)| *end)
+    }
+
+    fn there(&self) -> impl Iterator<Item = RapidSegment> {
+        self.0.iter().map(|(end, feed)| straight(*end, *feed))
+    }
+
+    /// The same from its end back to where it begins.
+    fn back(&self, from: &Position) -> impl Iterator<Item = RapidSegment> {
+        let ends = [*from].into_iter().chain(self.0.iter().map(|(end, _)| *end));
+        let back: Vec<_> = ends.zip(&self.0).map(|(end, (_, feed))| straight(end, *feed)).collect();
+        back.into_iter().rev()
+    }
+}
+
+/// Straight to there at so many mm/min.
+fn straight(end: Position, feed: f64) -> RapidSegment {
+    RapidSegment { path: RapidPath::Straight(feed), end }
+}
+
+/// A tool that rises along Z by less than this part of its way along itself lies rather than stands (it leans by more than 60 degrees): it may go straight up
+/// along Z where it is free along itself.
+const LYING: f64 = 0.5;
+
 /// How far the tool is retracted beyond what it has to be, mm: the first that gives a path is taken.
 pub(super) const RETRACTS: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 80.0, 200.0];
 
@@ -96,8 +126,8 @@ impl<'a> RapidPlanner<'a> {
         at.joints == self.home_joints() && at.rail == self.cell.rail_home()
     }
 
-    /// How the arm goes from one position to another, where it can: by its joints, or straight, or up along the tool, by its joints, and
-    /// down along the tool. From home and to home no line of the source leads.
+    /// How the arm goes from one position to another, where it can: by its joints, or straight, or straight out, by its joints, and
+    /// straight in. From home and to home no line of the source leads.
     pub(super) fn route(
         &self,
         tool: &Frame,
@@ -112,15 +142,14 @@ impl<'a> RapidPlanner<'a> {
             return Some(vec![RapidSegment { path: RapidPath::Straight(feed), end: *to }]);
         }
         RETRACTS.into_iter().find_map(|height| {
-            let (start, up) = self.retracted(tool, from, height)?;
-            let (end, down) = self.retracted(tool, to, height)?;
-            if !self.is_clear(tool, [&start, &end], None) {
-                return None;
-            }
-            let up = up.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: start });
-            let down = down.map(|feed| RapidSegment { path: RapidPath::Straight(feed), end: *to });
-            let across = RapidSegment { path: RapidPath::Joints, end };
-            Some(up.into_iter().chain([across]).chain(down).collect())
+            let [outs, ins] = [from, to].map(|at| self.ways_out(tool, at, height));
+            let ways = outs.iter().flat_map(|out| ins.iter().map(move |way_in| (out, way_in)));
+            let is_clear = |(out, way_in): &(&WayOut, &WayOut)| {
+                self.is_clear(tool, [&out.end(from), &way_in.end(to)], None)
+            };
+            let (out, way_in) = ways.into_iter().find(is_clear)?;
+            let across = RapidSegment { path: RapidPath::Joints, end: way_in.end(to) };
+            Some(out.there().chain([across]).chain(way_in.back(to)).collect())
         })
     }
 
@@ -135,12 +164,11 @@ impl<'a> RapidPlanner<'a> {
         let near = |at: &Position| self.raised(tool, at, self.can.rapid_clearance);
         let (out, slow_out) = near(from)?;
         let (over, slow_in) = near(to)?;
-        let straight =
-            |end: Position, feed: f64| RapidSegment { path: RapidPath::Straight(feed), end };
         let joints = |end: Position| RapidSegment { path: RapidPath::Joints, end };
         RETRACTS.into_iter().find_map(|height| {
-            let (start, up) = self.retracted(tool, &out, height)?;
-            let (end, down) = self.retracted(tool, &over, height)?;
+            let [up, down] = [&out, &over].map(|at| self.along_tool(tool, at, height));
+            let (up, down) = (up?, down?);
+            let (start, end) = (up.end(&out), down.end(&over));
             let is_clear = |from: &Position, to: &Position| self.is_clear(tool, [from, to], None);
             // Where the joints go from one posture into the other in one motion the tool may tilt too far.
             let through = match is_clear(&start, &end) {
@@ -149,9 +177,9 @@ impl<'a> RapidPlanner<'a> {
                 false => return None,
             };
             let mut route = vec![straight(out, feed.min(slow_out))];
-            route.extend(up.map(|feed| straight(start, feed)));
+            route.extend(up.there());
             route.extend(through.into_iter().chain([end]).map(joints));
-            route.extend(down.map(|feed| straight(over, feed)));
+            route.extend(down.back(&over));
             route.push(straight(*to, feed.min(slow_in)));
             Some((route, start.tool.translation.distance(from.tool.translation)))
         })
@@ -162,11 +190,16 @@ impl<'a> RapidPlanner<'a> {
         self.tops.get_or_init(|| Tops::of(self.source))
     }
 
-    /// How far the tool is below where joints may lead it from or to, mm along its axis: as high as the source ever goes, beyond all cuts by
+    /// How far the tool is below where joints may lead it from or to, mm along its axis and along Z: as high as the source ever goes, beyond all cuts by
     /// the clearance, and higher by what joints may be off.
-    pub(super) fn below(&self, at: &Position) -> f64 {
+    pub(super) fn below(&self, at: &Position) -> [f64; 2] {
         let axis = -at.tool.matrix3.z_axis;
-        self.floor(axis) - at.tool.translation.dot(axis)
+        let tip = at.tool.translation;
+        [self.floor(axis) - tip.dot(axis), self.floor_along_z() - tip.z]
+    }
+
+    fn floor_along_z(&self) -> f64 {
+        self.tops().along(Vec3::Z) + self.arm.unmeasured()
     }
 
     fn floor(&self, axis: Vec3) -> f64 {
@@ -182,24 +215,63 @@ impl<'a> RapidPlanner<'a> {
         beyond >= clearance - self.can.rapid_corridor / 2.0
     }
 
-    /// The position so far above where joints may lead the tool along its own axis, and the feed to go between it and `at`; none where it is
-    /// that. Home is where it is.
-    fn retracted(
-        &self,
-        tool: &Frame,
-        at: &Position,
-        above: f64,
-    ) -> Option<(Position, Option<f64>)> {
-        let height = self.below(at) + above;
-        if height <= self.can.rapid_corridor / 2.0 || self.is_home(at) {
-            return Some((*at, None));
+    /// The ways straight out to so far above where joints may lead the tool, the best first: along its shaft; and, of a tool that lies, along Z behind that.
+    fn ways_out(&self, tool: &Frame, at: &Position, above: f64) -> Vec<WayOut> {
+        let along = self.along_tool(tool, at, above);
+        let lies = -at.tool.matrix3.z_axis.z < LYING;
+        let then_up = lies.then(|| self.along_tool_and_z(tool, at, above)).flatten();
+        along.into_iter().chain(then_up).collect()
+    }
+
+    /// Straight up along the tool until it is so far above where joints may lead it. Home is where it is.
+    fn along_tool(&self, tool: &Frame, at: &Position, above: f64) -> Option<WayOut> {
+        let Some([along, up]) = self.lacks(at, above) else { return Some(WayOut(Vec::new())) };
+        let rise = -at.tool.matrix3.z_axis.z;
+        let length = if up <= 0.0 { along } else { along.max(up / rise.max(0.0)) };
+        let reaches = length <= 2.0 * self.arm.reach();
+        reaches.then(|| self.raised(tool, at, length)).flatten().map(|end| WayOut(vec![end]))
+    }
+
+    /// Straight up along the tool until it is so far above where joints may lead it, and then along Z. A tool that points down goes so far out that it
+    /// is high enough along itself all the way up.
+    fn along_tool_and_z(&self, tool: &Frame, at: &Position, above: f64) -> Option<WayOut> {
+        let [along, up] = self.lacks(at, above)?;
+        let rise = -at.tool.matrix3.z_axis.z;
+        let out = match rise >= 0.0 {
+            true => along,
+            false => (along - up.max(0.0) * rise) / (1.0 - rise * rise),
+        };
+        let slack = self.can.rapid_corridor / 2.0;
+        let mut pieces = Vec::new();
+        let mut here = *at;
+        if out > slack {
+            let piece = self.raised(tool, at, out)?;
+            here = piece.0;
+            pieces.push(piece);
         }
-        self.raised(tool, at, height).map(|(raised, feed)| (raised, Some(feed)))
+        let up = up - (here.tool.translation.z - at.tool.translation.z);
+        if up > slack {
+            pieces.push(self.moved(tool, &here, Vec3::Z * up)?);
+        }
+        Some(WayOut(pieces))
+    }
+
+    /// How far the tool is below a place so far above where joints may lead it, mm along its axis and along Z; `None` where they may lead it from here, or
+    /// it is home.
+    fn lacks(&self, at: &Position, above: f64) -> Option<[f64; 2]> {
+        let slack = self.can.rapid_corridor / 2.0;
+        let lacks = self.below(at).map(|below| below + above);
+        (lacks.iter().any(|lack| *lack > slack) && !self.is_home(at)).then_some(lacks)
     }
 
     /// The position so many mm up along the tool, and the feed to go between it and `at`.
     fn raised(&self, tool: &Frame, at: &Position, height: f64) -> Option<(Position, f64)> {
-        let tip = at.tool.translation - at.tool.matrix3.z_axis * height;
+        self.moved(tool, at, -at.tool.matrix3.z_axis * height)
+    }
+
+    /// The position so far from another one, the tool as there, and the feed to go straight between them.
+    fn moved(&self, tool: &Frame, at: &Position, way: Vec3) -> Option<(Position, f64)> {
+        let tip = at.tool.translation + way;
         let raised = Frame::from_mat3_translation(at.tool.matrix3, tip);
         let flange = self.cell.part_from(at.rail) * raised * tool.inverse();
         let posture = self.arm.posture(&at.joints);
@@ -210,7 +282,7 @@ impl<'a> RapidPlanner<'a> {
     }
 
     /// Whether the tool is free of the part while the joints go, or near the line: beyond all cuts along its own axis, and as high as the source ever goes,
-    /// along the tool as it leans at the nearer end.
+    /// along the tool as it leans at the nearer end, and along Z.
     fn is_clear(&self, tool: &Frame, [from, to]: [&Position; 2], line: Option<[Vec3; 2]>) -> bool {
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
@@ -218,6 +290,7 @@ impl<'a> RapidPlanner<'a> {
         let slack = self.can.rapid_corridor / 2.0;
         let ends = [from, to].map(|end| -end.tool.matrix3.z_axis);
         let floors = ends.map(|axis| self.floor(axis) - slack);
+        let lowest = self.floor_along_z() - slack;
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
         (0..=count as usize).all(|step| {
@@ -234,7 +307,8 @@ impl<'a> RapidPlanner<'a> {
             }
             let leans = ends.map(|axis| angle_between(axis, -at.matrix3.z_axis));
             let end = usize::from(leans[1] < leans[0]);
-            self.is_beyond_cuts(&at) && at.translation.dot(ends[end]) >= floors[end]
+            let tip = at.translation;
+            self.is_beyond_cuts(&at) && tip.z >= lowest && tip.dot(ends[end]) >= floors[end]
         })
     }
 

@@ -1541,7 +1541,7 @@ rules! {
         "A LinuxCNC file without `rapid` in [axes]";
     RapidPath "rapid-path" []
         "The tool would leave the straight line of a rapid, or comes from home or goes there, where a hole or a pocket may be around it; or the rapid is written in pieces or at a feed so that it does not."
-        "nothing to do where it is a warning; a control that brings all axes to their ends together (`rapid_path = \"linear\"`) needs fewer blocks; a rapid within a pocket that was there before goes along the tool out of it, as high as the toolpath ever goes, or the zero is at the top of the part; a robot goes straight up along the tool to where the toolpath is highest, and down so"
+        "nothing to do where it is a warning; a control that brings all axes to their ends together (`rapid_path = \"linear\"`) needs fewer blocks; a rapid within a pocket that was there before goes along the tool out of it, as high as the toolpath ever goes, or the zero is at the top of the part; a robot goes straight up along the tool to where the toolpath is highest, along the tool and along Z, and down so"
         "A turn of A by 60° in a rapid next to the part";
     RapidStop "rapid-stop" []
         "A rapid ends at a point that the source does not have."

@@ -286,11 +286,74 @@ fn within_a_bore_of_a_side_wall_the_height_along_z_frees_no_tool() {
          {deep}RAPID\n{low}RAPID\n{within}SPINDL/OFF\nFINI\n"
     ));
     let text = proven(&source, &machine);
-    // Without the line out of it, to where the source has come from.
-    let at = text.rfind("LIN {").unwrap();
-    let out = text[at..].strip_prefix("LIN {X 0.000,Y ").unwrap().split_once(',').unwrap().0;
-    assert!(out.parse::<f64>().unwrap() <= -95.0, "{text}");
-    let end = at + text[at..].find("\r\n").unwrap() + 2;
-    let report = proof_of(&source, &machine, &format!("{}{}", &text[..at], &text[end..]));
-    assert_eq!(report.mismatches[0].rule.name(), "rapid-path", "{text}");
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("LIN {X ")).collect();
+    let [.., out, up] = lines[..] else { panic!("{text}") };
+    // Out along the tool, at least to where the source has come from; then straight up along Z.
+    let (aside, above) = (tip_of(out), tip_of(up));
+    assert!(aside.y <= -95.0 && (aside.z, above.y) == (80.0, aside.y), "{text}");
+    assert!(above.z > 80.0, "{text}");
+    let found = |text: &str| {
+        let report = proof_of(&source, &machine, text);
+        let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{text}"));
+        found.rule.name()
+    };
+    let [out_line, up_line] = [out, up].map(|line| format!("{line}\r\n"));
+    assert_eq!(found(&text.replace(&out_line, "").replace(&up_line, "")), "rapid-path");
+    // Up along Z still within the bore, aslant, and from a place that is not out along the tool.
+    let y = |y: f64| format!("Y {:.3}", y);
+    let within = text.replace(&y(aside.y), "Y -60.000");
+    assert_eq!(found(&within), "extra-motion");
+    let aslant = text.replace(up, &up.replace(&y(above.y), &y(above.y - 1.0)));
+    assert_eq!(found(&aslant), "extra-motion");
+    assert_eq!(found(&text.replace(&out_line, "")), "extra-motion");
+}
+
+/// A drafted pocket, 40 mm deep, into which the tool comes upright; it leans along the wall, and the source ends there, 86 mm aside.
+fn ends_leaning(lean: &str) -> Program {
+    let goto = |place: &str| format!("GOTO/{place},{lean}\n");
+    let [high, low, along] = ["-26,60,-20", "-30,60,-38", "-30,-60,-38"].map(goto);
+    let end = goto("-26,-60,-20");
+    source(&format!(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/60,0,5,0,0,1\nRAPID\nGOTO/60,0,-20,0,0,1\n\
+         RAPID\n{high}FEDRAT/MMPM,400\n{low}{along}RAPID\n{end}SPINDL/OFF\nFINI\n"
+    ))
+}
+
+/// The coordinates of a line of a KUKA's program.
+fn tip_of(line: &str) -> Vec3 {
+    let number = |axis: &str| -> f64 {
+        let after = line.split_once(axis).unwrap_or_else(|| panic!("{line}")).1;
+        after.split(',').next().unwrap().parse().unwrap()
+    };
+    Vec3::new(number("{X "), number(",Y "), number(",Z "))
+}
+
+/// Leaning by 10 degrees, the tool is in the pocket as high along itself as where it came in: 9.7 mm up along it, which leaves it 10 mm below the top.
+#[test]
+fn from_a_pocket_a_leaning_tool_goes_straight_until_it_is_as_high_along_z() {
+    let machine = crate::robot::changed(
+        "kuka-kr6-r900",
+        &[("part = [450, 0, 150, 0, 0, 0]", "part = [450, 0, 250, 0, 0, 0]")],
+    );
+    let source = ends_leaning("-0.17364818,0,0.98480775");
+    let text = proven(&source, &machine);
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("LIN {X ")).collect();
+    let [.., end, up] = lines[..] else { panic!("{text}") };
+    let (from, to) = (tip_of(end), tip_of(up));
+    assert!(from.distance(Vec3::new(-26.0, -60.0, -20.0)) < 0.002, "{text}");
+    assert!(to.z >= 4.95, "{to}\n{text}");
+    let axis = Vec3::new(-0.173_648_18, 0.0, 0.984_807_75);
+    assert!((to - from).reject_from_normalized(axis).length() < 0.002, "{to}\n{text}");
+    let way = |mm: f64| {
+        let [x, y, z] = (from + axis * mm).to_array();
+        let turn = up.split_once(",A ").unwrap().1;
+        text.replace(up, &format!("LIN {{X {x:.3},Y {y:.3},Z {z:.3},A {turn}"))
+    };
+    assert!(proof_of(&source, &machine, &way(26.0)).proven, "{text}");
+    for mm in [10.0, 24.0] {
+        let report = proof_of(&source, &machine, &way(mm));
+        let found = report.mismatches.first().unwrap_or_else(|| panic!("{mm} proven\n{text}"));
+        assert_eq!(found.rule.name(), "rapid-path", "{found}");
+        assert!(found.message.contains("lower along Z than the source ever goes"), "{found}");
+    }
 }

@@ -1,8 +1,12 @@
-//! Where joints may lead the tool off the straight line of a rapid: as high as the source ever goes, and beyond all its cuts.
+//! Where joints may lead the tool off the straight line of a rapid: as high as the source ever goes, along the tool and along Z, and beyond all its cuts.
 
-use super::{Comparison, STRIDE, refused};
+use super::super::follow::Path;
+use super::{Comparison, STRIDE, Standing, refused};
 use geom::{Frame, Vec3, angle_between};
-use program::{Outcome, Rule};
+use program::{Outcome, Pose, Rule};
+
+/// The rise of a tool along Z for each mm along itself below which it lies: it leans by more than 60 degrees.
+const LYING: f64 = 0.5;
 
 /// From how high along an axis, mm, nothing is known that would be in the way: as high as the source ever goes, and beyond all cuts.
 #[derive(Clone, Copy, Debug)]
@@ -25,16 +29,24 @@ impl Comparison<'_> {
     }
 
     /// Why the tool is not free of the part with its tip there, `unmeasured` mm off at the most. It is where it is `rapid_clearance` beyond all cuts along its
-    /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest.
-    fn blocked(
+    /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest, and along Z. A tool that
+    /// leans is as high along itself deep in a pocket, far on the side to which it leans.
+    fn blocked(&self, place: (Vec3, Vec3), ends: &[Top; 2], unmeasured: f64) -> Option<String> {
+        self.blocked_along_tool(place, ends, unmeasured).or_else(|| {
+            let upward = Top { axis: Vec3::Z, height: self.tops.along(Vec3::Z) };
+            self.too_low(&upward, place.0, ("Z", unmeasured))
+        })
+    }
+
+    /// The same without its height along Z.
+    fn blocked_along_tool(
         &self,
         (tip, axis): (Vec3, Vec3),
         ends: &[Top; 2],
         unmeasured: f64,
     ) -> Option<String> {
-        let can = &self.machine.capabilities;
         let beyond = tip.dot(axis) - self.cuts.reach(axis);
-        let clearance = can.rapid_clearance + unmeasured;
+        let clearance = self.machine.capabilities.rapid_clearance + unmeasured;
         if beyond < clearance - STRIDE / 2.0 {
             return Some(format!(
                 "{beyond:.2} mm beyond the cuts along the tool: {clearance} mm are asked for"
@@ -42,14 +54,18 @@ impl Comparison<'_> {
         }
         let leans = ends.map(|end| angle_between(axis, end.axis));
         let along = ends[usize::from(leans[1] < leans[0])];
-        let low = along.short(tip) + unmeasured;
-        (low > can.rapid_corridor).then(|| {
+        self.too_low(&along, tip, ("the tool", unmeasured))
+    }
+
+    fn too_low(&self, top: &Top, tip: Vec3, (along, unmeasured): (&str, f64)) -> Option<String> {
+        let low = top.short(tip) + unmeasured;
+        (low > self.machine.capabilities.rapid_corridor).then(|| {
             let besides = match unmeasured > 0.0 {
                 true => format!(" and the {unmeasured} mm that its joints may be off"),
                 false => String::new(),
             };
             format!(
-                "{low:.2} mm lower along the tool than the source ever goes{besides}: nobody knows what is around it there"
+                "{low:.2} mm lower along {along} than the source ever goes{besides}: nobody knows what is around it there"
             )
         })
     }
@@ -71,9 +87,44 @@ impl Comparison<'_> {
             let Some(why) = self.blocked((tip, axis), &tops, unmeasured) else { continue };
             let message =
                 format!("{what} the tip comes to X{:.1} Y{:.1} Z{:.1}, {why}", tip.x, tip.y, tip.z);
-            let help = "go there by a straight line, or straight up along the tool first and down along it at the end; a program of an earlier version: post it again";
+            let help = "go there by a straight line, or straight up along the tool first until it is so high along Z, too, and down along it at the end; a program of an earlier version: post it again";
             return refused(Rule::RapidPath, message).map_err(|found| Box::new(found.help(help)));
         }
         Ok(())
     }
+
+    /// How far a straight line leads the tool up along Z, mm, below 0 where it leads down, with nothing in the way: the tool lies, and is all along as high
+    /// along itself as the source ever goes. 0 where it is none.
+    pub(super) fn ascent(&self, start: &Standing, path: &Path) -> f64 {
+        let ends = [start.tool, (path.at)(1.0)];
+        let [from, to] = ends.map(|end| self.in_part(&end));
+        let (way, axis) = (to.translation - from.translation, -from.matrix3.z_axis);
+        let aside = way.reject_from_normalized(Vec3::Z).length();
+        let is_along = aside <= self.tip(true) + 1e-4 * path.length && path.turn < 1e-4;
+        let tops = [self.top(axis); 2];
+        let mut tips = [from, to].into_iter().map(|end| (end.translation, axis));
+        let is_free = is_along
+            && lies(axis)
+            && tips.all(|tip| self.blocked_along_tool(tip, &tops, 0.0).is_none());
+        if is_free { way.z } else { 0.0 }
+    }
+
+    /// Whether the tool stands where such a line, and one along the tool behind it, lead down to a pose.
+    pub(super) fn is_over(&self, at: &Frame, pose: &Pose) -> bool {
+        let tool = self.in_part(at);
+        let (axis, off) = (pose.axis(), tool.translation - pose.point());
+        if !lies(axis) {
+            return false;
+        }
+        // Across the tool the way is up along Z alone.
+        let across = Vec3::Z.reject_from_normalized(axis);
+        let up = off.dot(across) / across.length_squared();
+        let foot = Frame::from_mat3_translation(tool.matrix3, tool.translation - Vec3::Z * up);
+        up > 0.0 && self.stands_above(&foot, pose, f64::INFINITY)
+    }
+}
+
+/// Whether a tool leans by so much that it lies rather than stands: up along it, it would go far aside before it is higher along Z.
+fn lies(axis: Vec3) -> bool {
+    axis.z < LYING
 }

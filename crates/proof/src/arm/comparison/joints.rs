@@ -43,7 +43,9 @@ impl Comparison<'_> {
         };
         self.clear([&before, &now], line.filter(|_| arrives))?;
         // From above the end of a rapid the tool goes down to it along its axis.
-        let is_over = rapid.is_some_and(|(_, to)| self.is_above(&at, &to, f64::INFINITY));
+        let is_over = rapid.is_some_and(|(_, to)| {
+            self.is_above(&at, &to, f64::INFINITY) || self.is_over(&at, &to)
+        });
         match arrives {
             true => {
                 if let Some((_, to)) = rapid {
@@ -181,7 +183,11 @@ impl Comparison<'_> {
 
     /// Whether the tool stands on the axis of a pose, above it by `most` mm at the most.
     pub(super) fn is_above(&self, at: &Frame, pose: &Pose, most: f64) -> bool {
-        let tool = self.in_part(at);
+        self.stands_above(&self.in_part(at), pose, most)
+    }
+
+    /// The same of a tool in the frame of the source.
+    pub(super) fn stands_above(&self, tool: &Frame, pose: &Pose, most: f64) -> bool {
         let off = tool.translation - pose.point();
         let height = off.dot(pose.axis());
         let lean = angle_between(-tool.matrix3.z_axis, pose.axis());

@@ -66,7 +66,7 @@ impl Comparison<'_> {
                 if lifts || !self.arrives(end, to, false) {
                     return self.retract(line, motion, (start, path), from_corner);
                 }
-                self.is_rapid_path(&start, &at, (from.as_ref(), to), length)?;
+                self.is_rapid_path(&start, &path, (from.as_ref(), to))?;
                 let off = self.off(end, to);
                 Deviation::widen(&mut self.deviation, off);
                 self.report.compared.rapids += 1;
@@ -126,7 +126,7 @@ impl Comparison<'_> {
         self.pass(start, path, (motion, false))
     }
 
-    /// A straight retract up along the tool's own axis, between two steps of the source.
+    /// A straight retract up along the tool's own axis, between two steps of the source; or along Z, of a tool that lies.
     ///
     /// # Errors
     /// It is none.
@@ -137,9 +137,10 @@ impl Comparison<'_> {
         (start, path): (Standing, Path),
         from_corner: Option<Rounding>,
     ) -> Outcome {
-        let lift_mm = self.rise(&start, &path);
-        let is_lift = self.done == 0.0 && lift_mm > 0.0;
-        if !is_lift || from_corner.is_some() || motion.corner != Corner::Exact {
+        let (lift, ascent) = (self.rise(&start, &path), self.ascent(&start, &path));
+        let is_lift = lift > 0.0 || ascent != 0.0;
+        let lift_mm = lift.max(ascent).max(0.0);
+        if !is_lift || self.done > 0.0 || from_corner.is_some() || motion.corner != Corner::Exact {
             return refused(Rule::ExtraMotion, "the tool moves where the source does not");
         }
         self.report.excursion(Excursion {
@@ -165,20 +166,21 @@ impl Comparison<'_> {
     }
 
     /// # Errors
-    /// A straight rapid is neither on the line of the source, nor down along the tool to its end, nor free of the part.
+    /// A straight rapid is neither on the line of the source, nor down along the tool or along Z to its end, nor free of the part.
     fn is_rapid_path(
         &self,
         start: &Standing,
-        at: &dyn Fn(f64) -> Frame,
+        path: &Path,
         (from, to): (Option<&Pose>, &Pose),
-        length: f64,
     ) -> Outcome {
         let tip = self.in_part(&start.tool).translation;
         let is_own = from.is_some_and(|from| tip.distance(from.point()) <= 2.0 * self.tip(true));
-        if is_own || self.is_above(&start.tool, to, f64::INFINITY) {
+        let is_above = self.is_above(&start.tool, to, f64::INFINITY);
+        if is_own || is_above || self.ascent(start, path) != 0.0 {
             return Ok(());
         }
-        let count = (length / STRIDE).ceil().clamp(1.0, 1e6);
+        let at = path.at;
+        let count = (path.length / STRIDE).ceil().clamp(1.0, 1e6);
         let places = (0..=count as usize).map(|step| at(step as f64 / count));
         let what = "on a straight rapid that begins elsewhere than that of the source";
         self.off_line(places, [&start.tool, &at(1.0)], (what, 0.0))
