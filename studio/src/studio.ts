@@ -495,7 +495,8 @@ class Texts {
 function editOf(octets: Uint8Array = new Uint8Array(), files: Drafted["files"] = [[null, octets.length]]): Edit {
     const decoder = new TextDecoder();
     let at = 0;
-    return new Map(files.map(([file, length]) => [file, decoder.decode(octets.subarray(at, (at += length)))]));
+    // Without the end of the last line, as texts are read.
+    return new Map(files.map(([file, length]) => [file, decoder.decode(octets.subarray(at, (at += length))).replace(/\n$/, "")]));
 }
 
 /** Of a program of a board the work says which it is. */

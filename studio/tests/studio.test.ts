@@ -119,11 +119,11 @@ test("an edit of several files is one of what is posted, also after the server h
     expect([studio.isCurrent.value, studio.edited.value, studio.posted.get("a_1.src")]).toEqual([true, edit, "posted"]);
     // A draft: the bytes of each file, not its characters.
     await studio.resume({ name: "d", of: { ...work, files: [[null, 8], ["a_1.src", 5]] }, bytes: 13 });
-    expect([...studio.edited.value!]).toEqual([[null, "ä main\n"], ["a_1.src", "part\n"]]);
+    expect([...studio.edited.value!]).toEqual([[null, "ä main"], ["a_1.src", "part"]]);
     expect(last("prove")[1]).toMatchObject({ revision: 10, files: [[null, 8], ["a_1.src", 5]] });
     // Of the program itself, as drafts are without a word on files.
     await studio.resume({ name: "e", of: work, bytes: 13 });
-    expect([...studio.edited.value!]).toEqual([[null, "ä main\npart\n"]]);
+    expect([...studio.edited.value!]).toEqual([[null, "ä main\npart"]]);
 });
 
 test("what cannot be saved says why", async () => {

@@ -3,7 +3,7 @@
 //! A chunk has 4,096 moves. Its polyline begins where its first move begins; each further vertex ends a segment that belongs to the
 //! vertex's move, or, of kind `gap`, draws no line: the tool has gone there by a way that is not known. Level 0 is exact, arcs, and moves
 //! in which the axes lead the tip, as chords within [`EXACT`]; a line of level `n` is nowhere further from that than `EXACT` times 4 to
-//! the power of `n`. Only the coarsest level is kept; the others are made of the walk when they are asked for. Of kind `pulse` a vertex is a
+//! the power of `n`; moves that go round, and lie as near to one that is drawn, are left out of it, and one that ends near where it began stays a polygon. Only the coarsest level is kept; the others are made of the walk when they are asked for. Of kind `pulse` a vertex is a
 //! point and no line leads to it; a level leaves out points that are as near to one that it has.
 //!
 //! ```text
@@ -38,6 +38,14 @@ pub const COARSEST: usize = 250_000;
 
 /// How many levels there are at most: the last one is within half a metre.
 const MOST_LEVELS: usize = 10;
+
+/// How near a move that goes round is to one that is drawn where it is left out, as a part of the error of the level; and how much further it is
+/// from it between the points that are compared.
+const LEFT_OUT: f64 = 0.4;
+const WIDER: f64 = 1.25;
+
+/// The size of a turn over how far the sides of its polygon may be from it: five sides of a circle.
+const POLYGON: f64 = 12.0;
 
 /// So many vertices are thinned at a time: how long that takes grows with their square where a line winds.
 const STRETCH: usize = 64;
@@ -423,11 +431,26 @@ fn bounds_of(vertices: &[Vertex]) -> Option<[Vec3; 2]> {
 
 /// The vertices of a level, made of those of the finer one (Douglas and Peucker). Where segments look otherwise, their common end stays.
 fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
-    // The errors of all levels add up to no more than that of this one: 3/4 (1 + 1/4 + 1/16 ...) = 1.
-    let most = 0.75 * error(level);
+    // The errors of all levels add up to no more than that of this one: 3/4 (1 + 1/4 + 1/16 ...) = 1. What is left out is off by both.
+    let rounds = rounds(finer);
+    let (fewer, most) = match apart(finer, &rounds, LEFT_OUT * error(level)) {
+        Some(fewer) => (Some(fewer), (0.75 - LEFT_OUT * WIDER) * error(level)),
+        None => (None, 0.75 * error(level)),
+    };
+    let rounds = fewer.as_deref().map_or(rounds, crate::geometry::rounds);
+    let finer = fewer.as_deref().unwrap_or(finer);
+    let mut turns = rounds.into_iter().filter(|round| round.is_turn(most)).peekable();
     let mut kept = Vec::new();
     let mut from = 0;
     while let Some(first) = finer.get(from) {
+        if let Some(turn) = turns.next_if(|turn| turn.from == from) {
+            while from < turn.to {
+                let to = turn.to.min(from + STRETCH);
+                thin(&finer[from - 1..to], most.min(turn.size / POLYGON), &mut kept);
+                from = to;
+            }
+            continue;
+        }
         if first.kind() == PULSE {
             let points = finer[from..].iter().take_while(|vertex| vertex.kind() == PULSE);
             from += points.clone().count();
@@ -436,7 +459,8 @@ fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
         }
         // A stretch of segments that look alike, from the vertex before it.
         let alike = |vertex: &&Vertex| vertex.look() == first.look() && vertex.kind() != GAP;
-        let to = from + finer[from..].iter().take(STRETCH).take_while(alike).count().max(1);
+        let end = turns.peek().map_or(finer.len(), |turn| turn.from);
+        let to = from + finer[from..end].iter().take(STRETCH).take_while(alike).count().max(1);
         match from.checked_sub(1).filter(|_| to - from > 1) {
             Some(anchor) => thin(&finer[anchor..to], most, &mut kept),
             None => kept.extend_from_slice(&finer[from..to]),
@@ -444,6 +468,89 @@ fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
         from = to;
     }
     kept
+}
+
+/// A move that goes round: by several vertices.
+struct Round {
+    /// Its first vertex, behind the one where it begins, and the one behind its last.
+    from: usize,
+    to: usize,
+    /// The diagonal of its box, mm.
+    size: f64,
+    /// How long it is, mm.
+    length: f64,
+    /// How far its end is from its begin, mm.
+    open: f64,
+}
+
+impl Round {
+    /// Whether it comes back, so far that chords within `most` would go through its middle.
+    fn is_turn(&self, most: f64) -> bool {
+        self.open < 0.5 * self.size && self.size > 2.0 * most
+    }
+
+    /// What it looks like and where it goes: nine points of it in cubes of such a side, and its length.
+    fn key(&self, line: &[Vertex], side: f64) -> (u32, i64, [[i64; 3]; 9]) {
+        // No coordinate that programs have is the face of a cube.
+        let cube = |at: Vec3| at.to_array().map(|value| (value / side + 0.37).floor() as i64);
+        let mut places = [[0; 3]; 9];
+        let (mut at, mut behind) = (self.from - 1, 0.0);
+        let mut step = line[at].at.distance(line[at + 1].at);
+        for (number, place) in places.iter_mut().enumerate() {
+            let wanted = self.length * number as f64 / 8.0;
+            while behind + step < wanted && at + 2 < self.to {
+                (at, behind) = (at + 1, behind + step);
+                step = line[at].at.distance(line[at + 1].at);
+            }
+            let part = if step > 0.0 { ((wanted - behind) / step).min(1.0) } else { 0.0 };
+            *place = cube(line[at].at.lerp(line[at + 1].at, part));
+        }
+        (line[self.from].look(), (self.length / (8.0 * side)) as i64, places)
+    }
+}
+
+/// The moves of a line that go round.
+fn rounds(line: &[Vertex]) -> Vec<Round> {
+    let mut rounds = Vec::new();
+    let mut from = 1;
+    while from < line.len() {
+        let own = line[from].packed;
+        let is_drawn = ![GAP, PULSE].contains(&line[from].kind());
+        let more = line[from + 1..].iter().take_while(|vertex| vertex.packed == own);
+        let to = from + 1 + if is_drawn { more.count() } else { 0 };
+        if to - from >= 3 {
+            let own = &line[from - 1..to];
+            let [low, high] = bounds_of(own).unwrap_or_default();
+            let length = own.windows(2).map(|ends| ends[0].at.distance(ends[1].at)).sum();
+            let open = own[0].at.distance(own[own.len() - 1].at);
+            rounds.push(Round { from, to, size: low.distance(high), length, open });
+        }
+        from = to;
+    }
+    rounds
+}
+
+/// The line without the moves that go round within `most` of one before them; `None` where there are none. One that goes round often may have the same nine
+/// points as one that does not: it is none of them.
+fn apart(line: &[Vertex], rounds: &[Round], most: f64) -> Option<Vec<Vertex>> {
+    let side = most / 3f64.sqrt();
+    let mut drawn = HashSet::new();
+    let once = rounds.iter().filter(|round| round.length < 3.0 * round.size);
+    let mut left = once.filter(|round| !drawn.insert(round.key(line, side))).peekable();
+    left.peek()?;
+    let (mut kept, mut at) = (Vec::with_capacity(line.len()), 0);
+    for Round { from, to, .. } in left {
+        kept.extend_from_slice(&line[at..*from]);
+        let Vertex { at: end, packed } = line[to - 1];
+        if kept.last().is_some_and(|last: &Vertex| last.at != end) {
+            // What follows begins there.
+            kept.pop_if(|last| last.kind() == GAP && *from > 1);
+            kept.push(Vertex { at: end, packed: packed & !(15 << 12) | u32::from(GAP) << 12 });
+        }
+        at = *to;
+    }
+    kept.extend_from_slice(&line[at..]);
+    Some(kept)
 }
 
 /// Keeps of points those of which none before is within a cube whose diagonal is `most`.
@@ -697,6 +804,80 @@ pub(crate) mod tests {
                 assert_eq!((coarse.first(), coarse.last()), (exact.first(), exact.last()));
             }
         }
+    }
+
+    /// Turns of 10 mm, each 0.001 mm below the one before: a level leaves out those that lie on one another, and shows no chord through the middle.
+    #[test]
+    fn of_turns_on_one_another_a_level_has_those_that_are_apart() {
+        let turn = |i: u32| {
+            let z = -0.001 * f64::from(i / 2);
+            let at = Vec3::new(10.0, 0.0, z);
+            let arc = Arc::new(at, at, Vec3::new(0.0, 0.0, z), Vec3::Z, 0, 1e-6).unwrap();
+            match i % 2 {
+                0 => (MotionKind::Line, at),
+                _ => (MotionKind::Arc(Box::new(arc)), at),
+            }
+        };
+        let walk = walk((0..10_000).map(turn));
+        let geometry = made(&walk, || true).unwrap();
+        let levels: Vec<(f64, usize)> = geometry.levels().collect();
+        // By hand: a chord within 0.002 mm spans 0.0400 rad, 158 for a turn.
+        assert_eq!(levels[0].1, 158 * 5_000 + 5_000 + geometry.chunks());
+        // Within 0.032 mm: of turns in cubes of 0.0128 mm / √3 = 7.4 of them one is drawn, within 0.008 mm by 79 chords.
+        assert!(levels.len() == 3 && (50_000..60_000).contains(&levels[2].1), "{levels:?}");
+        let middles = |line: &[Vertex]| -> Vec<Vec3> {
+            let drawn = line.windows(2).filter(|ends| ends[1].kind() != GAP);
+            drawn.map(|ends| (ends[0].at + ends[1].at) / 2.0).collect()
+        };
+        let exact = polyline(&walk, 1, EXACT);
+        let mut made = exact.clone();
+        for level in 1..MOST_LEVELS {
+            made = simplified(&made, level);
+            // What is drawn is there, and what is there is drawn: beside the circle and up and down.
+            let drawn = middles(&made);
+            let radius = |at: &Vec3| at.x.hypot(at.y);
+            for at in &drawn {
+                assert!(10.0 - radius(at) <= error(level) + 1e-9, "{level}: {at}");
+                assert!(radius(at) > 7.0, "{level}: {at}");
+            }
+            let mut heights: Vec<f64> = drawn.iter().map(|at| at.z).collect();
+            heights.sort_by(f64::total_cmp);
+            let widest = heights.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+            assert!(widest <= 2.0 * error(level), "{level}: {widest}");
+            for at in exact.iter().step_by(4999) {
+                let segments = made.windows(2).filter(|ends| ends[1].kind() != GAP);
+                let off = segments.map(|ends| distance(at.at, ends[0].at, ends[1].at));
+                let off = off.fold(f64::INFINITY, f64::min);
+                assert!(off <= error(level) + 1e-9, "{level}: {off}");
+            }
+        }
+    }
+
+    /// Two turns up to the same height, and one turn: each is drawn.
+    #[test]
+    fn what_goes_round_otherwise_is_no_copy() {
+        let helix = |turns: u32, from: Vec3, to: Vec3| {
+            let center = Vec3::new(0.0, 0.0, from.z);
+            let arc = Arc::new(from, to, center, Vec3::Z, turns, 1e-6).unwrap();
+            (MotionKind::Arc(Box::new(arc)), to)
+        };
+        let (low, high) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 20.0));
+        let back = || (MotionKind::Line, low);
+        let walk = walk([
+            back(),
+            helix(1, low, high),
+            back(),
+            helix(9, low, high),
+            back(),
+            helix(1, low, high),
+        ]);
+        let made = (1..4).fold(polyline(&walk, 0, EXACT), |finer, level| simplified(&finer, level));
+        let moves: std::collections::BTreeSet<u32> = made
+            .iter()
+            .filter(|vertex| vertex.kind() == crate::walk::ARC)
+            .map(|vertex| vertex.packed & 4095)
+            .collect();
+        assert_eq!(moves.into_iter().collect::<Vec<_>>(), [1, 3]);
     }
 
     /// Chunks of 4,097 vertices: with the 62nd there are more than 250,000, and all become coarser, each between two asks;
