@@ -201,7 +201,10 @@ impl Walk<'_> {
             self.in_groups(&above, stop, ["XYZ"])?;
             self.in_groups(&beyond, stop, ["XYZ"])?;
         }
-        self.in_groups(pose, stop, ["XYZ"])
+        match self.machine.has_straight_rapids() || is_along(axis) || beyond == *pose {
+            true => self.in_groups(pose, stop, ["XYZ"]),
+            false => self.by_feed(pose, stop),
+        }
     }
 
     /// A position in blocks that name these axes, one after the other.
@@ -273,13 +276,10 @@ impl Walk<'_> {
             return Ok(());
         }
         let outside = here.at(here.point() + axis * out)?;
-        if !self.machine.has_straight_rapids() {
-            let message = "the tilted tool has to go out along its axis before Z goes home, and each axis of the machine goes \
-                           at its own speed by rapid";
-            let help = RAPID_PATH_HELP;
-            return Err(refuse(Rule::RapidPath, message).help(help).into());
+        match self.machine.has_straight_rapids() {
+            true => self.rapid_out(&outside),
+            false => self.by_feed(&outside, &stop),
         }
-        self.rapid_out(&outside)
     }
 
     /// How far the tool has to go out along its axis from `pose`, so that it may then go along `up`, mm.

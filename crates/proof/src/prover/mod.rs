@@ -497,7 +497,11 @@ impl<'a> Prover<'a> {
             self.check_contact(line, Some(&to));
             self.check_offsets(&to);
         }
-        if motion == MotionKind::Rapid && self.goes_nowhere_yet(&to) {
+        let is_free = motion == MotionKind::Rapid || self.lifts(motion, &to);
+        if is_free && self.goes_nowhere_yet(&to) {
+            if motion == MotionKind::Feed {
+                self.check_air_feed(line);
+            }
             return Ok(());
         }
         self.miss_events(line);
@@ -509,7 +513,9 @@ impl<'a> Prover<'a> {
             Step::Move(goal) => match &goal.kind {
                 Kind::Rapid => self.rapid(motion, &to),
                 Kind::Line | Kind::Arc(_)
-                    if motion == MotionKind::Rapid || self.progress.left.is_some() =>
+                    if motion == MotionKind::Rapid
+                        || self.progress.left.is_some()
+                        || goal.tool_change && self.lifts(motion, &to) =>
                 {
                     self.excursion(motion, &to)
                 }

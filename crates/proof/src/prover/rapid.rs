@@ -10,6 +10,9 @@ impl Prover<'_> {
         if motion == MotionKind::Feed {
             let from_a_place = self.here.place.known() && goal.from.is_some();
             let straight = self.gauge.straight_rapids;
+            if !straight && self.goes_along_tool(to) {
+                return self.along_tool_by_feed(to);
+            }
             if !straight && from_a_place && self.progress.stops.is_empty() {
                 return self.rapid_by_feed(to);
             }
@@ -36,6 +39,44 @@ impl Prover<'_> {
         }
     }
 
+    /// Whether a feed in place of a rapid goes along the tool, away from the part or down to where the source goes, and on no way of the
+    /// source.
+    fn goes_along_tool(&self, to: &ResolvedPose) -> bool {
+        let Step::Move(goal) = &self.cursor.step else { return false };
+        let gauge = &self.gauge;
+        let is_on_way = goal.from.is_some()
+            && self.progress.stops.is_empty()
+            && line::follow(gauge, goal, self.progress.t, &self.here, to).is_ok();
+        let is_down = gauge.at(to, &goal.to) && stops::lifted(gauge, to, &self.here);
+        !is_on_way && (is_down || stops::lifted(gauge, &self.here, to))
+    }
+
+    /// The way along the tool by feed, which is straight where a rapid of the machine is not: before home, or from above all cuts.
+    fn along_tool_by_feed(&mut self, to: &ResolvedPose) -> Outcome {
+        self.check_air_feed(to.line);
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        if !self.gauge.at(to, &goal.to) {
+            return self.stop_at(to);
+        }
+        self.approached(to)?;
+        self.arrive(to);
+        Ok(())
+    }
+
+    /// Holds a feed in place of a rapid to one that counts in the air.
+    pub(super) fn check_air_feed(&mut self, line: u32) {
+        if !matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed > 0.0) {
+            self.differs(line, (Rule::Feed, "no feed in mm/min is set".into()));
+        }
+        self.check(line, state::fed_rapid_corners(&self.gauge.corners, &self.running));
+    }
+
+    /// Whether a move away along the tool, before home, is by rapid, or by feed where rapids are not straight.
+    pub(super) fn lifts(&self, motion: MotionKind, to: &ResolvedPose) -> bool {
+        let is_straight = motion == MotionKind::Rapid || !self.gauge.straight_rapids;
+        is_straight && stops::lifted(&self.gauge, &self.here, to)
+    }
+
     /// A rapid of the source by feed, which is straight where a rapid of the machine is not.
     fn rapid_by_feed(&mut self, to: &ResolvedPose) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
@@ -47,10 +88,7 @@ impl Prover<'_> {
         })?;
         let done = self.gauge.at(to, &goal.to);
         self.progress.t = t;
-        if !matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed > 0.0) {
-            self.differs(to.line, (Rule::Feed, "no feed in mm/min is set".into()));
-        }
-        self.check(to.line, state::fed_rapid_corners(&self.gauge.corners, &self.running));
+        self.check_air_feed(to.line);
         if done {
             self.approached(to)?;
             self.arrive(to);
@@ -152,6 +190,9 @@ impl Prover<'_> {
             if self.gauge.at(to, &goal.to) || !stops::lifted(&self.gauge, &self.here, to) {
                 let message = "goes by rapid where the source feeds";
                 return Err(self.lost_at(to.line, Rule::RapidFeed, message));
+            }
+            if motion == MotionKind::Feed {
+                self.check_air_feed(to.line);
             }
             self.progress.left = Some(self.here);
             return self.stop_at(to);
@@ -417,14 +458,14 @@ impl Prover<'_> {
 
     /// A move after the last motion of the source: away along the tool axis.
     pub(super) fn closing(&mut self, motion: MotionKind, to: &ResolvedPose) -> Outcome {
-        let lifts = stops::lifted(&self.gauge, &self.here, to);
-        match motion == MotionKind::Rapid && lifts {
-            true => Ok(()),
-            false => {
-                let message = format!("goes to {} after the last motion of the source", to.place);
-                Err(self.lost_at(to.line, Rule::ExtraMotion, &message))
-            }
+        if !self.lifts(motion, to) {
+            let message = format!("goes to {} after the last motion of the source", to.place);
+            return Err(self.lost_at(to.line, Rule::ExtraMotion, &message));
         }
+        if motion == MotionKind::Feed {
+            self.check_air_feed(to.line);
+        }
+        Ok(())
     }
 
     /// Whether a move turns rotary axes alone, while the machine is at home.

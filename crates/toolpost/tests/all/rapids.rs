@@ -555,3 +555,46 @@ fn across_on_the_floor_of_a_pocket_the_tool_goes_straight() {
     proven(&clear, &machine, &good);
     assert!(good.contains("G0 Z2.\nX60. Y30.\nG1 Z-20."), "{good}");
 }
+
+/// A bore along a leaning tool that was there before, in which the toolpath begins and ends, or changes its tool: the way along the tool, from as
+/// high as the toolpath ever goes and out to there, is by feed, which is straight.
+#[test]
+fn from_home_and_to_home_along_a_leaning_tool_the_way_is_straight() {
+    let machine = leaning_head();
+    // Upwards of Z 20 nobody goes: (100, 0, 20) is 80 times the root of 2 above the bottom at (20, 0, -60).
+    let at = |place: &str| format!("GOTO/{place},0.70710678,0,0.70710678\n");
+    let [top, in_bore, bottom] = ["100,0,20", "40,0,-40", "20,0,-60"].map(at);
+    let head = "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nFEDRAT/MMPM,300\n";
+    let change = "LOADTL/2,LENGTH,60\nSPINDL/RPM,9000,CLW\n";
+    let source = read(&format!(
+        "{head}RAPID\n{in_bore}{bottom}{change}RAPID\n{in_bore}{bottom}RAPID\n{top}RAPID\n{in_bore}{bottom}FINI\n"
+    ));
+    let good = plain(&text(&written(&source, &machine)));
+    proven(&source, &machine, &good);
+    let (enters, leaves) = (
+        "X100. Y0. Z20. H1\nG1 X40. Z-40. F300.\nX20. Z-60.\n",
+        "X20. Z-60.\nX100. Z20.\nG91 G28 Z0\n",
+    );
+    assert!(good.contains(enters) && good.matches(leaves).count() == 2, "{good}");
+    none_is_proven(
+        &source,
+        &machine,
+        &good,
+        [
+            (enters, "X100. Y0. Z20. H1\nX40. Z-40.\nG1 X20. Z-60. F300.\n"),
+            (enters, "X40. Y0. Z-40. H1\nG1 X20. Z-60. F300.\n"),
+            (leaves, "X20. Z-60.\nG0 X100. Z20.\nG91 G28 Z0\n"),
+            (leaves, "X20. Z-60.\nX99. Z19.\nG91 G28 Z0\n"),
+            (leaves, "X20. Z-60.\nG91 G28 Z0\n"),
+        ],
+    );
+    // Where rapids are straight, nobody asks for it.
+    let straight = Machine {
+        settings: ControlSettings {
+            rapid_path: Some(machine::RapidPath::Linear),
+            ..machine.settings
+        },
+        ..machine.clone()
+    };
+    assert!(!found(&source, &straight, &good).is_empty());
+}
