@@ -181,7 +181,7 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await page.getByRole("img", { name: "deviation over time" }).waitFor();
         await page.getByLabel("Colour by").selectOption("deviation");
         // Three decimals are written.
-        const most = Number(/0 to ([\d.]+) mm/.exec(await page.locator(".view header").innerText())![1]);
+        const most = Number(/([\d.]+) mm/.exec(await page.locator(".legend").innerText())![1]);
         expect(most).toBeLessThan(0.002);
         await accessible(page, "jumps");
         expect(complaints).toEqual([]);
