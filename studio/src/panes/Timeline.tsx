@@ -63,7 +63,7 @@ export function Timeline({ screen }: { screen: Screen }) {
                     <input
                         type="range"
                         aria-label="Time of the machine"
-                        aria-valuetext={`${clock(time)} of ${clock(length)}`}
+                        aria-valuetext={screen.isUntimed.value ? "time not known" : `${clock(time)} of ${clock(length)}`}
                         min={0}
                         max={length || 1}
                         step="any"
@@ -89,9 +89,15 @@ export function Timeline({ screen }: { screen: Screen }) {
                         ))}
                     </span>
                 </span>
-                <span class="clock">
-                    {clock(time)} / {clock(length)}
-                </span>
+                {screen.isUntimed.value ? (
+                    <span class="clock" title="The program states no feed: how long a cut takes is not known, and the replay goes as fast as the machine can">
+                        time not known
+                    </span>
+                ) : (
+                    <span class="clock">
+                        {clock(time)} / {clock(length)}
+                    </span>
+                )}
                 <Speed screen={screen} />
             </div>
         </section>

@@ -40,6 +40,9 @@ export const axisOf = (axis: (number | null)[]): Vector => vector(axis) ?? [0, 0
 /** Length of a tool of which nothing is known, where the machine is drawn round it, mm. */
 const POINTER = 80;
 
+/** Place of the feed in the row of a move. */
+const FEED = 3;
+
 /** What waits for the picture does not wait longer, ms. */
 const LATE = 2000;
 
@@ -86,6 +89,8 @@ export class Screen {
         theme: theme(this.dark.value),
     }));
     readonly scene: Signal<Scene | null> = signal(null);
+    /** The program of a wire states no feed: nobody knows how long its cuts take. */
+    readonly isUntimed: Signal<boolean> = signal(false);
     /** The board that the program is of. */
     readonly board: Signal<Board | null> = signal(null);
     /** Grows with each chunk that comes. */
@@ -162,6 +167,7 @@ export class Screen {
         const walked = this.walking;
         this.board.value = null;
         this.walking = null;
+        this.isUntimed.value = false;
         if (job === null || job.walk.moves === 0) {
             this.scene.value = null;
             return;
@@ -171,6 +177,7 @@ export class Screen {
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job), this.blocksOf(job));
         this.lookForCuts();
         void chunks.load().catch(() => {});
+        if (job.machine.kind === "wire") void this.lookForFeeds(job).catch(() => {});
         if (job.board !== null) void this.askBoard(job).catch(() => {});
         else if (board !== null) this.show(board);
         const isOther = this.fitted !== job.source.file;
@@ -180,6 +187,12 @@ export class Screen {
             this.begun(job);
         }
         for (const viewer of this.viewers) viewer.refit(isOther);
+    }
+
+    private async lookForFeeds({ revision, walk }: Job): Promise<void> {
+        const rows = new Float32Array(await this.studio.seam.octets(`/moves/${revision}/0`));
+        const feeds = rows.filter((_, at) => at % (walk.row / 4) === FEED);
+        if (this.studio.job.value?.revision === revision) this.isUntimed.value = !feeds.some((feed) => feed > 0);
     }
 
     /** Something of the picture has come. */

@@ -209,6 +209,10 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await slider.focus();
         await page.keyboard.press("End");
         await expect.poll(async () => (await readout(page)).Move).not.toMatch(/^1 /);
+        // Points have no feed: the verdict's row says the same.
+        expect(await page.locator(".clock").innerText()).toBe("time not known");
+        await page.getByRole("tab", { name: "Verdict" }).click();
+        await page.locator("#low").getByText("not known: --feed gives the feed").waitFor();
         expect(complaints).toEqual([]);
         await page.close();
     });
