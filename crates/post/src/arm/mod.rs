@@ -59,6 +59,9 @@ fn is_on_edge(shown: f64) -> bool {
 /// After so many steps whoever waits is asked: some milliseconds at the most.
 const STEPS_AT_ONCE: u32 = 32;
 
+/// How far off the tool axis a cut may end that has drawn the tool back along it, mm.
+const ALONG: f64 = 1e-3;
+
 /// Joints that differ by less are the same, radians.
 const SAME_JOINTS: f64 = 1e-5;
 
@@ -199,6 +202,8 @@ struct Walk<'a> {
     points: u32,
     /// Whether the last motion has cut.
     is_cutting: bool,
+    /// Whether it has, and has not drawn the tool back along its axis.
+    is_in_cut: bool,
     /// The line of the last motion of the source.
     last_line: u32,
     /// Whether the source calls tools of more than one number.
@@ -285,6 +290,7 @@ impl<'a> Walk<'a> {
             table: Cutting::default(),
             points: 0,
             is_cutting: false,
+            is_in_cut: false,
             last_line: 0,
             changes: program.calls_several_tools(),
             held: None,
@@ -334,6 +340,14 @@ impl<'a> Walk<'a> {
             }
         };
         done.map_err(|found| Box::new(if found.line == 0 { found.line(line) } else { *found }))
+    }
+
+    /// Whether a cut draws the tool back along its axis.
+    fn draws_back(&self, motion: &Motion) -> bool {
+        let way = motion.end.tool.translation - self.here.tool.translation;
+        let axis = -motion.end.tool.matrix3.z_axis;
+        let aside = way.reject_from_normalized(axis).length();
+        motion.kind == Kind::Line && way.dot(axis) > 0.0 && aside <= ALONG
     }
 
     /// The arm goes home, and everything is switched off.
@@ -386,6 +400,11 @@ impl<'a> Walk<'a> {
                 if coolant == Coolant::Off { self.stop_coolant() } else { Ok(()) }
             }
             Act::Dwell(seconds) => self.dwell(seconds),
+            Act::Stop if self.is_in_cut => {
+                let message = "the program stops for somebody while the tool is in the cut: the spindle would have to stop there, too";
+                let help = "draw the tool back in the toolpath before STOP, by rapid or along the tool axis";
+                Err(Diagnostic::error(Rule::StopInCut, message).help(help).into())
+            }
             Act::Stop => {
                 self.begin()?;
                 self.switch_off()?;
@@ -505,7 +524,7 @@ impl<'a> Walk<'a> {
         let Some(route) = self.rapids.route(&tool, [&self.here, &home]) else {
             return Err(self.no_way([&self.here, &home]).into());
         };
-        self.is_cutting = false;
+        (self.is_cutting, self.is_in_cut) = (false, false);
         self.follow(&route)
     }
 
@@ -647,7 +666,7 @@ impl<'a> Walk<'a> {
         let Some(route) = self.rapids.route(&tool, [&self.here, &motion.end]) else {
             return Err(self.no_way([&self.here, &motion.end]).into());
         };
-        self.is_cutting = false;
+        (self.is_cutting, self.is_in_cut) = (false, false);
         self.follow(&route)
     }
 
@@ -699,6 +718,7 @@ impl<'a> Walk<'a> {
         self.limits.feed(program::Feed::PerMinute(feed), self.spindle, line)?;
         self.turns_in_time(motion)?;
         self.is_cutting = true;
+        self.is_in_cut = !self.draws_back(motion);
         self.start_spindle()?;
         self.start_coolant()?;
         self.correct()?;

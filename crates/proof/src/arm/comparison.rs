@@ -254,6 +254,10 @@ impl<'a> Comparison<'a> {
             Action::Dwell(seconds) => self.dwell(*seconds),
             Action::Stop => {
                 self.exact()?;
+                if self.stands_in_cut() {
+                    return refused(Rule::StopInCut, "the program stops while the tool is in the cut")
+                        .map_err(|found| Box::new(found.help("draw the tool back in the toolpath before STOP, by rapid or along the tool axis")));
+                }
                 if self.running.is_on || self.running.coolant {
                     return refused(
                         Rule::StopRunning,
@@ -400,23 +404,30 @@ impl<'a> Comparison<'a> {
     fn border(&mut self) -> Outcome {
         self.exact()?;
         self.leave_out();
-        let mut motions = self.expected[..self.next].iter().rev().filter_map(|expected| {
-            let step = &expected.step;
-            match step {
-                Step::Line(..) | Step::Arc(..) | Step::Contour(_) => Some(true),
-                Step::Rapid(..) | Step::Above(_) | Step::Home => Some(false),
-                Step::Tool(_) | Step::Dwell(_) | Step::Stop | Step::Output(_) | Step::Input(_) => {
-                    None
-                }
-            }
-        });
-        let is_cut = motions.next().unwrap_or(false) && !self.is_home;
+        let last = self.last_motion();
+        let is_cut = matches!(last, Some(Step::Line(..) | Step::Arc(..) | Step::Contour(_)));
+        let is_cut = is_cut && !self.is_home;
         if is_cut || self.done > 0.0 || self.gathered.is_some() {
             let message = "the program goes on in another file while the tool is in a cut: the arm stops there";
             let help = "divide the program where a rapid has taken the tool off the part";
             return Err(Diagnostic::error(Rule::FileBorder, message).help(help).into());
         }
         Ok(())
+    }
+
+    /// The last step so far that is a motion.
+    fn last_motion(&self) -> Option<&Step> {
+        let steps = self.expected[..self.next].iter().rev().map(|expected| &expected.step);
+        let mut motions = steps.filter(|step| match step {
+            Step::Line(..)
+            | Step::Arc(..)
+            | Step::Contour(_)
+            | Step::Rapid(..)
+            | Step::Above(_)
+            | Step::Home => true,
+            Step::Tool(_) | Step::Dwell(_) | Step::Stop | Step::Output(_) | Step::Input(_) => false,
+        });
+        motions.next()
     }
 
     /// The program has made the next step, which is a motion.

@@ -357,3 +357,24 @@ fn from_a_pocket_a_leaning_tool_goes_straight_until_it_is_as_high_along_z() {
         assert!(found.message.contains("lower along Z than the source ever goes"), "{found}");
     }
 }
+
+/// A stop at the end of a plunge: the spindle would have to stop there. Drawn back along the tool, by rapid or by feed, the arm stops.
+#[test]
+fn a_stop_in_the_cut_is_refused() {
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    let to = |height: f64| format!("GOTO/100,50,{height}\n");
+    let job = |back: &str, from: f64| {
+        let down = to(-5.0);
+        at_100_50(&format!("{}{down}{back}STOP\n{}RAPID\n{}", to(2.0), to(from), to(65.0)))
+    };
+    let found = post::write(&job("", -6.0), &machine).unwrap_err();
+    assert_eq!((found[0].rule.name(), found[0].line), ("stop-in-cut", 10), "{found:?}");
+    let by_feed = job(&to(1.0), -6.0);
+    let text = proven(&by_feed, &machine);
+    proven(&job(&format!("RAPID\n{}", to(1.0)), -6.0), &machine);
+    // The same program without the line that draws the tool back, against the source that has none.
+    let (before, after) = text.split_once("LIN {X 100.000,Y 50.000,Z 1.000,").unwrap();
+    let (_, after) = after.split_once("\r\n").unwrap();
+    let report = proof_of(&job("", -6.0), &machine, &format!("{before}{after}"));
+    assert_eq!(report.mismatches[0].rule.name(), "stop-in-cut", "{:?}", report.mismatches);
+}

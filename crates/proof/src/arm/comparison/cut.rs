@@ -1,6 +1,6 @@
 //! What the control has to have been given in a cut: frames, feed, spindle, coolant, corners.
 
-use super::super::expected::Expected;
+use super::super::expected::{Expected, Step};
 use super::super::follow::angle;
 use super::{Comparison, Standing, refused};
 use control::Dialect;
@@ -122,6 +122,19 @@ impl Comparison<'_> {
         );
         let help = "stop the spindle, or change its speed, behind the rapid that takes the tool out of the cut: in the source where that stops it in the cut (SPINDL/OFF)";
         Err(Diagnostic::error(Rule::Spindle, message).help(help).into())
+    }
+
+    /// Whether the tool stands where a cut of the source has led it that does not draw it back along its axis.
+    pub(super) fn stands_in_cut(&self) -> bool {
+        let in_cut = match self.last_motion() {
+            Some(Step::Line(from, to)) => {
+                let way = to.point() - from.point();
+                let aside = way.reject_from_normalized(to.axis()).length();
+                way.dot(to.axis()) <= 0.0 || aside > self.report.tolerances.tip_mm
+            }
+            last => matches!(last, Some(Step::Arc(..) | Step::Contour(_))),
+        };
+        self.done > 0.0 || (in_cut && !self.is_home)
     }
 
     /// How the spindle turns, for a message.
