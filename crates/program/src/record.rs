@@ -18,6 +18,8 @@ pub struct Program {
     pub compensated_path: Option<CompensatedPath>,
     /// Smallest and largest corner of the box around the stock, mm, work frame; `None` where the source does not state it.
     pub stock: Option<[Vec3; 2]>,
+    /// The highest Z, mm, work frame, from which the source sends Z home by a word that says no height in the work; `None` where it has none.
+    pub sent_home: Option<f64>,
 }
 
 /// One thing that happens, and the line (from 1) of the source that says so.
@@ -275,9 +277,9 @@ impl Program {
 
     /// The same program with other records.
     pub fn with_records(&self, records: Vec<Record>) -> Program {
-        let Program { name, records: _, compensated_path, stock } = self;
-        let (compensated_path, stock) = (*compensated_path, *stock);
-        Program { name: name.clone(), records, compensated_path, stock }
+        let Program { name, records: _, compensated_path, stock, sent_home } = self;
+        let (compensated_path, stock, sent_home) = (*compensated_path, *stock, *sent_home);
+        Program { name: name.clone(), records, compensated_path, stock, sent_home }
     }
 
     /// Adds a record that came from `line` of the source.

@@ -444,8 +444,11 @@ impl<'a> Conversion<'a> {
             let help = "send Z home before";
             return Err(refuse(Rule::Home, message, help));
         }
-        if axes.contains(Axes::Z) && self.tool_at.pose().is_some() {
+        if let (true, Some(from)) = (axes.contains(Axes::Z), self.tool_at.pose()) {
             self.home.get_or_insert(line);
+            // The higher of both: of a number and none it is the number.
+            let height = self.program.sent_home.unwrap_or(f64::NAN).max(from.tip.z);
+            self.program.sent_home = Some(height).filter(|height| height.is_finite());
         }
         Ok(())
     }

@@ -143,6 +143,14 @@ pub(crate) fn write(
         let help = "begin and end the toolpath with a rapid above the part";
         walk.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
     }
+    if let Some(height) = walk.rapids.sent_home() {
+        let message = format!(
+            "the source sends Z home from Z{height:.1}, the highest place that it names, and cuts above its zero, which is not the top of the part then: \
+             joints lead the tool home from there, and from home to there"
+        );
+        let help = "nothing of the part and its clamps may be higher than that: else a rapid above them before Z goes home";
+        walk.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
+    }
     for record in program.records.iter().filter(|record| matches!(record.op, Op::Clamp(_))) {
         let message = "a clamp of a rotary axis is left out: a robot has none";
         let found = Diagnostic::warning(Rule::Clamp, message).help("nothing to do");

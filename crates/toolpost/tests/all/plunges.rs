@@ -378,3 +378,28 @@ fn a_stop_in_the_cut_is_refused() {
     let report = proof_of(&job("", -6.0), &machine, &format!("{before}{after}"));
     assert_eq!(report.mismatches[0].rule.name(), "stop-in-cut", "{:?}", report.mismatches);
 }
+
+/// An NC program whose zero is at the foot of the block sends Z home, and names no height above 38: the block may be higher.
+#[test]
+fn a_source_that_sends_z_home_from_a_block_of_unknown_height_is_warned() {
+    let mill = machine::load("generic-3axis-linuxcnc").unwrap();
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    for (top, cut, end, told) in [
+        (38, 18, "G53 G0 Z0\n", true),
+        (38, 18, "", false),
+        (38, 18, "G0 Z60\nG53 G0 Z0\n", true),
+        (38, -18, "G53 G0 Z0\n", false),
+    ] {
+        let text = format!(
+            "G21 G90 G17 G54\nT1 M6\nG43 H1\nS9000 M3\nG0 X100 Y50\nG0 Z{top}\nG1 Z{cut} F150\nG0 Z{top}\nM5\n{end}M30\n"
+        );
+        let read = nc::read(&mill, Default::default(), "job.ngc", text.as_bytes());
+        let source = read.unwrap().program;
+        let output = post::write(&source, &machine).unwrap();
+        let found = output.warnings.iter().filter(|found| found.rule.name() == "home-height");
+        let found: Vec<_> = found.map(|found| found.message.clone()).collect();
+        let height = if end.contains("60") { "Z60.0" } else { "Z38.0" };
+        assert_eq!(found.len(), usize::from(told), "{text}\n{found:?}");
+        assert!(found.iter().all(|found| found.contains(height)), "{found:?}");
+    }
+}
