@@ -73,10 +73,17 @@ pub fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
     }
 }
 
+/// Whether the work that this thread belongs to was ended. Parallel work of many small pieces answers anything then, and asks by [`go_on`] behind all of them: each
+/// piece that unwinds takes longer than it does.
+#[inline]
+pub fn is_ended() -> bool {
+    OWN.with(|own| own.get().is_some_and(Ended::is_ended))
+}
+
 /// Unwinds where the work that this thread belongs to was ended. It takes some nanoseconds: a step asks every few microseconds or oftener.
 #[inline]
 pub fn go_on() {
-    if OWN.with(|own| own.get().is_some_and(Ended::is_ended)) {
+    if is_ended() {
         unwind();
     }
 }

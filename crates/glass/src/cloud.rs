@@ -1,6 +1,6 @@
 //! Clouds of points: whole µm in the frame of the block, their boxes, and the proof of their minimum distance.
 
-use geom::ending::go_on;
+use geom::ending::{go_on, is_ended};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -287,7 +287,9 @@ fn distances_within(points: &[Point], spacing: i64, reach: i64) -> Distances {
         let own: Vec<Point> = seen.iter().map(|&i| points[i as usize]).collect();
         let grid = Grid::new(&own, reach);
         let of = |&i: &u32| {
-            go_on();
+            if is_ended() {
+                return none();
+            }
             let here = points[i as usize];
             let (mut nearest, mut close) = ((i64::MAX, 0, 0), 0u64);
             for near in grid.near(here) {
@@ -300,7 +302,9 @@ fn distances_within(points: &[Point], spacing: i64, reach: i64) -> Distances {
             }
             (nearest, close, u64::from(close > 0))
         };
-        in_order(slab).par_iter().map(of).reduce(none, join)
+        let found = in_order(slab).par_iter().map(of).reduce(none, join);
+        go_on();
+        found
     };
     let (nearest, close, crowded) = slabs.each().map(of_slab).fold(none(), join);
     let pair = |(square, a, b): (i64, u32, u32)| Pair {

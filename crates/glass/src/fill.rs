@@ -7,7 +7,7 @@
 use crate::cloud::{self, Point};
 use crate::mesh::{Depth, Mesh};
 use crate::sample::{self, Apart, Dice};
-use geom::ending::go_on;
+use geom::ending::{go_on, is_ended};
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -141,10 +141,11 @@ pub fn shells(mesh: &Mesh, shells: Shells, apart: Apart, seed: u64) -> Vec<Point
     let of = |own: f64| {
         let points = sample::surface(&mesh.shell(own), apart, seed.wrapping_add(own.to_bits()));
         let is_in = |point: &Point| {
-            go_on();
-            depth.is_within(cloud::place(*point), own * (1.0 - MISSED))
+            !is_ended() && depth.is_within(cloud::place(*point), own * (1.0 - MISSED))
         };
-        points.into_par_iter().filter(is_in).collect::<Vec<Point>>()
+        let within = points.into_par_iter().filter(is_in).collect::<Vec<Point>>();
+        go_on();
+        within
     };
     depths.flat_map(of).collect()
 }
@@ -209,14 +210,19 @@ fn sections(mesh: &Mesh, how: &Sections, step: f64, direction: DVec3) -> (Vec<Po
         let [a, b, c] = heights.map(|h| ((h - first) / layer).floor());
         // One more at the end, for rounding: a plane that does not cut it leaves no piece.
         let (from, to) = (a.min(b).min(c).max(0.0), (a.max(b).max(c) + 2.0).max(0.0));
-        go_on();
-        (from as u32..(to as u32).min(count)).map(move |plane| (plane, triangle))
+        (from as u32..(to as u32).min(count))
+            .take_while(|_| !is_ended())
+            .map(move |plane| (plane, triangle))
     };
     let all = 0..mesh.triangles.len() as u32;
     let mut crossed: Vec<(u32, u32)> = all.into_par_iter().flat_map_iter(of).collect();
+    go_on();
     crossed.par_sort_unstable();
     let planes: Vec<&[(u32, u32)]> = crossed.chunk_by(|a, b| a.0 == b.0).collect();
     let of = |plane: &&[(u32, u32)]| {
+        if is_ended() {
+            return Vec::new();
+        }
         let number = plane[0].0;
         let at = first + f64::from(number) * layer;
         let phase = (f64::from(number) * how.twist).fract() * step;
@@ -238,6 +244,7 @@ fn sections(mesh: &Mesh, how: &Sections, step: f64, direction: DVec3) -> (Vec<Po
         points
     };
     let points: Vec<Vec<Point>> = planes.par_iter().map(of).collect();
+    go_on();
     let along = lying(mesh, direction, |part| part > 1.0 - FLAT * FLAT / 2.0);
     (points.concat(), Left { along, ..Left::default() })
 }
@@ -329,7 +336,9 @@ fn triangles(mesh: &Mesh, step: f64, full: bool) -> (Vec<Point>, Left) {
         let [q, r] = [b, c].map(|corner| DVec2::new((corner - a).dot(right), (corner - a).dot(up)));
         let mut points = Vec::new();
         for row in 0..=(r.y / step).floor() as u32 {
-            go_on();
+            if is_ended() {
+                break;
+            }
             let y = f64::from(row) * step;
             // The sides that go up from both ends of the first edge.
             let part = if r.y > 0.0 { y / r.y } else { 0.0 };
@@ -352,6 +361,7 @@ fn triangles(mesh: &Mesh, step: f64, full: bool) -> (Vec<Point>, Left) {
     };
     let count = mesh.triangles.len() as u32;
     let all: Vec<(Vec<Point>, bool)> = (0..count).into_par_iter().map(of).collect();
+    go_on();
     let rejected = all.iter().filter(|(_, rejected)| *rejected).count() as u64;
     let points = all.into_iter().flat_map(|(points, _)| points).collect();
     (points, Left { triangles: rejected, ..Left::default() })
@@ -409,6 +419,7 @@ impl Raster {
         };
         let all = 0..mesh.triangles.len() as u32;
         let mut met: Vec<Meeting> = all.into_par_iter().flat_map_iter(of).collect();
+        go_on();
         met.par_sort_by(|a, b| {
             a.node.cmp(&b.node).then(a.at.total_cmp(&b.at)).then(b.enters.cmp(&a.enters))
         });
@@ -429,7 +440,9 @@ impl Raster {
         let high = flat[0].max(flat[1]).max(flat[2]);
         let mut met = Vec::new();
         for row in (low.y / self.step[1]).floor() as i32..=(high.y / self.step[1]).ceil() as i32 {
-            go_on();
+            if is_ended() {
+                break;
+            }
             let shift = self.shift(row);
             let from = ((low.x - shift) / self.step[0]).floor() as i32;
             let to = ((high.x - shift) / self.step[0]).ceil() as i32;

@@ -14,7 +14,7 @@
 use crate::cloud::Point;
 use crate::mesh::Mesh;
 use crate::weld::Kept;
-use geom::ending::go_on;
+use geom::ending::{go_on, is_ended};
 use glam::{DVec3, IVec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
@@ -87,6 +87,9 @@ pub(crate) fn on_triangles(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Vec<(Poi
         let turn: Vec<usize> = (0..tiles.len()).filter(in_turn).collect();
         let work = |room: &mut Room, &at: &usize| {
             let (tile, triangles) = &tiles[at];
+            if is_ended() {
+                return (at, Vec::new());
+            }
             room.enter(*tile, apart);
             for near in around(*tile) {
                 if let Ok(near) = tiles.binary_search_by_key(&near, |(tile, _)| *tile) {
@@ -96,6 +99,7 @@ pub(crate) fn on_triangles(mesh: &Mesh, apart: Apart, seed: u64) -> Vec<Vec<(Poi
             (at, room.fill(mesh, triangles, seed))
         };
         let new: Vec<_> = turn.par_iter().map_init(Room::default, work).collect();
+        go_on();
         new.into_iter().for_each(|(at, points)| done[at] = points);
     }
     done
@@ -117,10 +121,11 @@ fn tiles(mesh: &Mesh, spacing: f64) -> Vec<([i32; 3], Vec<u32>)> {
         };
         let rows = (from[2]..=to[2]).flat_map(move |z| (from[1]..=to[1]).map(move |y| (y, z)));
         let all = rows.flat_map(move |(y, z)| (from[0]..=to[0]).map(move |x| [x, y, z]));
-        all.inspect(|_| go_on()).filter(crossed).map(move |tile| (tile, triangle))
+        all.take_while(|_| !is_ended()).filter(crossed).map(move |tile| (tile, triangle))
     };
     let count = mesh.triangles.len() as u32;
     let mut all: Vec<([i32; 3], u32)> = (0..count).into_par_iter().flat_map_iter(of).collect();
+    go_on();
     all.par_sort_unstable();
     let same = |a: &([i32; 3], u32), b: &([i32; 3], u32)| a.0 == b.0;
     all.chunk_by(same)

@@ -2,7 +2,7 @@
 
 use crate::cloud::{Grid, Point, Slabs, longest, squared};
 use crate::sample::Apart;
-use geom::ending::go_on;
+use geom::ending::{go_on, is_ended};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -92,7 +92,9 @@ pub fn clear(points: &[Point], others: &[Point], apart: Apart) -> Vec<Point> {
         let own: Vec<Point> = seen.iter().map(|&i| others[i as usize]).collect();
         let grid = Grid::new(&own, reach);
         let is_clear = |&i: &u32| {
-            go_on();
+            if is_ended() {
+                return (i, false);
+            }
             let here = points[i as usize];
             let way = |near: u32| {
                 let other = own[near as usize];
@@ -101,6 +103,7 @@ pub fn clear(points: &[Point], others: &[Point], apart: Apart) -> Vec<Point> {
             (i, grid.near(here).all(|near| apart.squared(way(near)) >= least))
         };
         let found: Vec<(u32, bool)> = slab.par_iter().map(is_clear).collect();
+        go_on();
         found.into_iter().for_each(|(i, clear)| is_kept[i as usize] = clear);
     }
     points.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(point, _)| *point).collect()

@@ -2,7 +2,7 @@
 
 use super::index::tree;
 use crate::crossing::Carrier;
-use crate::ending::go_on;
+use crate::ending::{go_on, is_ended};
 use crate::{Element, Vec2};
 use rayon::prelude::*;
 use static_aabb2d_index::Control;
@@ -34,9 +34,11 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<RingCrossing> {
     let Some(index) = tree(boxes.iter().copied()) else { return Vec::new() };
     let mut places: Vec<Option<Vec2>> = vec![None; elements.len()];
     let found = elements.par_iter().zip(&boxes).enumerate().flat_map_iter(|(i, of)| {
-        go_on();
         let ((_, _, element), (low, high)) = of;
         let mut found = Vec::new();
+        if is_ended() {
+            return found;
+        }
         index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
             if let (true, Some((_, _, second))) = (other > i, elements.get(other))
                 && let Some(point) = crossing(element, second)
@@ -47,7 +49,9 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<RingCrossing> {
         });
         found
     });
-    for (i, point) in found.collect::<Vec<_>>() {
+    let found: Vec<_> = found.collect();
+    go_on();
+    for (i, point) in found {
         if let Some(place) = places.get_mut(i) {
             *place = Some(point);
         }
@@ -78,7 +82,9 @@ pub(super) fn are_more<'a>(
             || pairs.load(Ordering::Relaxed) > most.saturating_mul(PAIRS_OF_A_CROSSING)
     };
     elements.par_iter().zip(&boxes).enumerate().for_each(|(i, (element, (low, high)))| {
-        go_on();
+        if is_ended() {
+            return;
+        }
         index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
             let second = elements.get(other).filter(|_| other > i);
             if let Some(second) = second {
@@ -89,6 +95,7 @@ pub(super) fn are_more<'a>(
             if is_enough() { Control::Break(()) } else { Control::Continue }
         });
     });
+    go_on();
     is_enough()
 }
 

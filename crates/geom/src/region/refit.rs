@@ -14,7 +14,7 @@ use super::index::tree;
 use super::kernel::{Edge, GridPoint};
 use super::{Island, Region, Ring};
 use crate::crossing::Carrier;
-use crate::ending::go_on;
+use crate::ending::{go_on, is_ended};
 use crate::{Element, Vec2, turn_angle};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -55,10 +55,11 @@ const ROUNDS: usize = 8;
 /// The region of `islands`, whose edges are pieces of `sources`.
 pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, sources: &[Source]) -> Region {
     let outlines = islands.into_par_iter().enumerate().flat_map_iter(|(island, rings)| {
-        let outlines = Outline::of_island(rings, sources);
+        let outlines = if is_ended() { Vec::new() } else { Outline::of_island(rings, sources) };
         outlines.into_iter().map(move |outline| (island, outline))
     });
     let mut outlines: Vec<(usize, Outline)> = outlines.collect();
+    go_on();
     for round in 1..=ROUNDS {
         let rings: Vec<&[Element]> = outlines.iter().map(|(_, o)| &*o.elements).collect();
         let mut found = false;
@@ -71,7 +72,11 @@ pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, sources: &[Source]) -> Region
         if !found {
             break;
         }
-        outlines.par_iter_mut().for_each(|(_, outline)| outline.fit(sources));
+        outlines
+            .par_iter_mut()
+            .filter(|_| !is_ended())
+            .for_each(|(_, outline)| outline.fit(sources));
+        go_on();
     }
     let mut region = Region::default();
     let mut last = None;

@@ -14,6 +14,7 @@ use crate::{
     Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, MERGED, Operation, Path, Tool,
     depths,
 };
+use geom::ending::{go_on, is_ended};
 use geom::region::{Fill, Index, Region, RegionError, Ring};
 use geom::{Element, Vec2};
 use program::{Diagnostic, Progress, Rule};
@@ -777,8 +778,9 @@ fn tolerance(work: &Work) -> f64 {
 fn merged_to(paths: &[Path], tolerance: f64) -> (Vec<Path>, Vec<Vec2>) {
     let mut lines = Vec::with_capacity(paths.len());
     let mut dots = Vec::new();
-    let merged: Vec<Option<Path>> =
-        paths.par_iter().with_max_len(1).map(|path| path.merged(tolerance)).collect();
+    let merged = |path: &Path| if is_ended() { None } else { path.merged(tolerance) };
+    let merged: Vec<Option<Path>> = paths.par_iter().with_max_len(1).map(merged).collect();
+    go_on();
     for (path, line) in paths.iter().zip(merged) {
         match line {
             Some(line) => lines.push(line),

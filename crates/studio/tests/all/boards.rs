@@ -287,8 +287,10 @@ fn a_program_of_a_board_is_edited_proven_and_saved_by_itself() {
     // How deep a hole is is known when the tool comes up, in the next block.
     assert_eq!(failed["mismatch"]["program"], at + 2);
     // A name of none of its programs.
-    let stop = prove("other.gcode", &text).unwrap_err();
-    assert_eq!(stop["findings"][0]["rule"], "no-such-part");
+    for other in ["other.gcode", "drill.ngc"] {
+        let stop = prove(other, &text).unwrap_err();
+        assert_eq!(stop["findings"][0]["rule"], "no-such-part", "{other}");
+    }
     // Beside the others it is said that their report is not of it, and the other way round; under no other name.
     let save = |of: &Value, path: &str| json!({ "revision": of["revision"], "path": path, "replace": true });
     page.done("save", save(&front, "out"));

@@ -246,6 +246,34 @@ fn work_ends_when_the_page_goes() {
     assert!(studio.socket().done("open", json!({}))["version"].is_string());
 }
 
+/// Looking for all crossings of a layer takes seconds, and knows nothing of a page.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_long_step_below_ends_with_the_work_that_it_is_of() {
+    let outside = folder();
+    std::fs::create_dir(outside.path().join("own/tangle")).unwrap();
+    std::fs::write(outside.path().join("own/tangle/b-F_Cu.gbr"), crate::boards::tangle()).unwrap();
+    let (process, studio) = Process::start(outside);
+    let mut page = studio.socket();
+    let params = json!({ "source": { "folder": "tangle" }, "machine": "grbl-3018" });
+    let id = page.ask("post", params, &[]);
+    while processor_time(&process) < 0.6 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    page.send(&json!({ "cancel": id }), &[]);
+    assert_eq!(page.answer_of(id).unwrap_err()["verdict"], "cancelled");
+    let answered = processor_time(&process);
+    loop {
+        let before = processor_time(&process);
+        std::thread::sleep(Duration::from_millis(500));
+        let now = processor_time(&process);
+        assert!(now - answered < 0.4, "it works on: {} s of the processor", now - answered);
+        if now - before < 0.02 {
+            break;
+        }
+    }
+}
+
 /// Drafts and programs are there whole, as before, or not at all, whenever the server is killed.
 #[test]
 fn a_killed_server_leaves_no_half_file() {
