@@ -76,6 +76,41 @@ fn json_is_one_object_with_status_and_findings() {
 }
 
 #[test]
+fn a_wrong_command_line_is_answered_in_json_too() {
+    let folder = Folder::new();
+    let said = folder.run(&["--json", "post", "part.cls"]);
+    let answer = said.json();
+    assert_eq!((said.code, said.err.as_str()), (2, ""), "{said:?}");
+    assert_eq!(
+        (&answer["status"], &answer["errors"][0]["rule"]),
+        (&json!("invalid"), &json!("argument"))
+    );
+    let message = answer["errors"][0]["message"].as_str().unwrap();
+    assert!(
+        message.contains("--machine <NAME|FILE>") && message.contains("--output <FILE>"),
+        "{message}"
+    );
+    // Help is asked for, and is no mistake.
+    let said = folder.run(&["--json", "post", "--help"]);
+    assert!(said.code == 0 && said.out.contains("Usage: toolpost post"), "{said:?}");
+}
+
+#[test]
+fn what_another_command_makes_programs_of_is_sent_there() {
+    let folder = Folder::empty();
+    let sources = [
+        ("lamp.kicad_pcb", "toolpost pcb"),
+        ("b-F_Cu.gbr", "toolpost pcb"),
+        ("ball.stl", "toolpost glass"),
+    ];
+    for (file, command) in sources {
+        folder.write(file, "(kicad_pcb (version 20240108))");
+        let said = folder.run(&["post", file, "-m", MACHINE, "-o", "out.mpf"]);
+        assert!(said.code == 2 && said.err.contains(&format!("`{command}`")), "{said:?}");
+    }
+}
+
+#[test]
 fn a_damaged_program_is_shown_with_its_source() {
     let folder = Folder::new();
     assert_eq!(folder.post().code, 0);

@@ -1,6 +1,7 @@
 //! `toolpost glass`.
 
 use crate::folder::{Folder, Said};
+use std::process::Command;
 
 /// A closed roof of 3 mm, as a text STL.
 fn body() -> String {
@@ -60,6 +61,11 @@ fn a_body_becomes_a_proven_program_and_a_report() {
         (proof["shadowed"].as_u64(), proof["ticks"].as_u64()),
         (Some(0), report["glass"]["planned_ticks"].as_u64())
     );
+    for (digest, file) in [("program", "roof.prg"), ("source", "roof.stl")] {
+        let sum = Command::new("sha256sum").arg(folder.path().join(file)).output().unwrap();
+        let sum = String::from_utf8(sum.stdout).unwrap();
+        assert_eq!(report["sha256"][digest].as_str(), sum.split(' ').next(), "{file}");
+    }
     // The same words give the same program.
     assert_eq!(engrave(&folder, &["--json"]).json()["status"], "done");
     assert_eq!(folder.read("roof.prg"), first);
