@@ -209,7 +209,7 @@ fn read(file: &Path) -> Result<Mesh, Vec<Diagnostic>> {
 }
 
 /// A ring around Z, mm.
-fn torus() -> Mesh {
+pub fn torus() -> Mesh {
     let (around, across) = (3 * ROWS, ROWS);
     let place = |(i, j): (u32, u32)| {
         let (sin, cos) = (TAU * f64::from(i) / f64::from(around)).sin_cos();

@@ -35,7 +35,7 @@ pub fn measure(strokes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
 
 /// Tracks of four strokes that end in pads, as KiCad writes them, and a pour of as many corners as there
 /// are strokes.
-fn layer(strokes: usize) -> String {
+pub fn layer(strokes: usize) -> String {
     let mut text = String::from(
         "%TF.FileFunction,Copper,L1,Top*%\n%FSLAX46Y46*%\n%MOMM*%\n%LPD*%\nG01*\n\
          %ADD10C,0.254000*%\n%ADD11R,1.000000X1.500000*%\n",

@@ -16,7 +16,7 @@
 //! ([`layer`]), real boards made whole ([`board`]). Joints of an arm are found for frames ([`mod@arm`]), points
 //! in glass are found and ordered ([`mod@glass`]). Memory is what the program asks the allocator for
 //! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
-//! and memory grow no faster. A proof that hands out its walk, kept and not kept, is compared with the proof alone ([`walk`]). Then come real files
+//! and memory grow no faster. A proof that hands out its walk, kept and not kept, is compared with the proof alone ([`walk`]). Steps that are ended in their middle ([`stop`]). Then come real files
 //! ([`library`]).
 
 mod arm;
@@ -31,6 +31,7 @@ mod memory;
 mod outside;
 mod path;
 mod programs;
+mod stop;
 mod walk;
 mod wire;
 
@@ -138,6 +139,9 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     if arguments.records > 0 {
         five_axes(arguments)?;
         walk::measure(arguments.records, &arguments.machine, arguments.rounds)?;
+    }
+    if arguments.records > 0 {
+        stop::measure(arguments.records / 2, arguments.strokes, arguments.pulses)?;
     }
     library::measure(&arguments.files, arguments.rounds)
 }
