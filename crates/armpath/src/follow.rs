@@ -4,6 +4,7 @@ use crate::grid::{cost_at, share};
 use crate::samples::{Job, Sample};
 use crate::{Position, Section, Why, Worst};
 use arm::{Arm, Joints, Posture, Structure, Vec3};
+use geom::ending::go_on;
 use geom::wrap;
 use std::f64::consts::TAU;
 
@@ -45,6 +46,7 @@ pub(crate) fn follow(
     let mut passed = vec![(joints, turn)];
     let mut speed = (0.0_f64, 0);
     for interval in 1..knots.len() {
+        go_on();
         let samples = &job.samples[knots[interval - 1] + 1..=knots[interval]];
         let whole: f64 = samples.iter().map(|sample| sample.time).sum();
         let count = i64::from(job.settings.turns);

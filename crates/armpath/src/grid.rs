@@ -3,6 +3,7 @@
 use crate::samples::{Job, Sample};
 use crate::{SPACING, Settings, Why};
 use arm::{Arm, Joints, Margins, Posture};
+use geom::ending::{go_on, is_ended};
 use geom::wrap;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -68,7 +69,10 @@ pub(crate) fn start(job: &Job, sample: usize, steps: usize) -> Row {
 /// The rows of the intervals between knots, each from the sample of one knot to that of the next.
 pub(crate) fn rows(job: &Job, knots: &[usize], steps: usize) -> Vec<Row> {
     let intervals: Vec<Range<usize>> = knots.windows(2).map(|pair| pair[0]..pair[1]).collect();
-    intervals.par_chunks(RUN).flat_map_iter(|run| follow(job, run, steps)).collect()
+    let of = |run| if is_ended() { Vec::new() } else { follow(job, run, steps) };
+    let rows = intervals.par_chunks(RUN).flat_map_iter(of).collect();
+    go_on();
+    rows
 }
 
 fn follow(job: &Job, run: &[Range<usize>], steps: usize) -> Vec<Row> {
@@ -76,6 +80,7 @@ fn follow(job: &Job, run: &[Range<usize>], steps: usize) -> Vec<Row> {
     let mut here = candidates(job, &job.samples[first.start], steps);
     let mut rows = Vec::with_capacity(run.len());
     for interval in run {
+        go_on();
         let mut row: Row = here
             .iter()
             .map(|candidate| match candidate {

@@ -373,3 +373,14 @@ fn an_arm_goes_slower_where_the_tool_turns_only_if_its_controller_does() {
     let never = Settings { slows_at: Some(0.0), ..Settings::default() };
     assert_eq!(choose(&arm, &cell(LEANING), &points, &never).unwrap_err().why, Why::Numbers);
 }
+
+/// A search over a long cut ends in its middle where the work was ended.
+#[test]
+fn a_search_ends_with_the_work_that_it_is_of() {
+    let points = dome(200);
+    let ended = geom::ending::Ended::default();
+    let chosen = || choose(&kuka(), &cell(LEANING), &points, &Settings::default()).is_ok();
+    assert!(ended.run(chosen).is_some());
+    ended.end();
+    assert!(ended.run(chosen).is_none());
+}

@@ -2,6 +2,7 @@
 
 use super::plan::Position;
 use ::arm::{Arm, Joints, Posture};
+use geom::ending::go_on;
 use geom::{Frame, Mat3, Quat, Vec3, angle_between, nearest_on_segment, wrap};
 use machine::{Capabilities, Cell, Machine};
 use program::{CutBox, Program, Tops};
@@ -333,6 +334,7 @@ impl<'a> RapidPlanner<'a> {
         let off = tool.inverse();
         let (mut joints, mut slowest) = (from.joints, 0.0_f64);
         for step in 1..=count as usize {
+            go_on();
             let part = step as f64 / count;
             let turned = Mat3::from_quat(a.slerp(b, part));
             let tip = from.tool.translation.lerp(to.tool.translation, part);
