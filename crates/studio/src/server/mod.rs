@@ -13,13 +13,14 @@ use crate::folder::{Folder, SECRET};
 use crate::job::{Options, Sources};
 use crate::jobs::{Jobs, MOST_JOBS};
 use crate::machines::Any;
-use crate::message;
+use crate::message::{self, Array};
 use crate::page;
 use app::{Source, Stop};
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::{Method, Response, StatusCode};
 use closed::{Names, Token, brings, guarded, say};
+use geom::ending::Ended;
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
@@ -27,6 +28,7 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use metered::{Metered, Trusted};
 use program::{Diagnostic, Rule};
 use run::{First, Left};
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::net::{Ipv4Addr, TcpListener};
@@ -108,6 +110,37 @@ pub struct Server {
     studio: Arc<Studio>,
 }
 
+/// What a page asks, without a socket and one ask after the other.
+#[derive(Debug)]
+pub struct Session(Arc<Studio>);
+
+impl Session {
+    /// Opens the folder.
+    ///
+    /// # Errors
+    /// It cannot be opened, or the system gives no random numbers.
+    pub fn open(settings: &Settings) -> Result<Session, Stop> {
+        let folder = Folder::open(&settings.folder)?;
+        Ok(Session(Studio::open(settings, folder, 0)?))
+    }
+
+    /// What an ask of a page is answered, until it is ended: the head's `done`, and arrays.
+    ///
+    /// # Errors
+    /// As the page gets them.
+    pub fn answer(
+        &self,
+        ask: &str,
+        params: Map<String, Value>,
+        arrays: Vec<Array>,
+        ended: &Ended,
+    ) -> Result<(Value, Vec<Array>), Stop> {
+        let asks::Answer { done, arrays } =
+            asks::answer(&self.0, ask, params, arrays, 0, (&(), ended))?;
+        Ok((done, arrays))
+    }
+}
+
 /// What all its connections share.
 #[derive(Debug)]
 pub(crate) struct Studio {
@@ -136,6 +169,44 @@ pub(crate) struct Studio {
 }
 
 impl Studio {
+    /// What the connections of a server at a port share.
+    ///
+    /// # Errors
+    /// The system gives no token.
+    fn open(settings: &Settings, folder: Folder, port: u16) -> Result<Arc<Studio>, Stop> {
+        // A server that was killed while it saved.
+        app::files::sweep_idle(folder.path());
+        let no_token = |error: getrandom::Error| {
+            let message = format!("the system gives no token: {error}");
+            Diagnostic::error(Rule::StudioPort, message)
+        };
+        let token = Token::new().map_err(no_token)?;
+        let own = getrandom::u32().map_err(no_token)?;
+        let given = |path: String| match folder.is_folder(&path) {
+            true => Given::Folder(path),
+            false => Given::File(path),
+        };
+        Ok(Arc::new(Studio {
+            source: settings.source.clone().map(given),
+            folder,
+            machine: settings.machine.clone(),
+            token,
+            names: Names::of(port),
+            sockets: Arc::new(Semaphore::new(SOCKETS)),
+            uploads: files::Uploads::default(),
+            uploading: tokio::sync::Mutex::default(),
+            pages: AtomicU64::default(),
+            drafting: Mutex::default(),
+            jobs: Jobs::new(own),
+            first: Mutex::default(),
+            left: Left::default(),
+            runs: memory::Runs::default(),
+            leads: Mutex::default(),
+            form: settings.form,
+            options: settings.options,
+        }))
+    }
+
     /// Which page that is open keeps a draft.
     fn drafting(&self) -> MutexGuard<'_, BTreeMap<String, u64>> {
         self.drafting.lock().unwrap_or_else(PoisonError::into_inner)
@@ -255,13 +326,11 @@ impl Server {
     /// # Errors
     /// One of them cannot be opened.
     pub fn bind(settings: &Settings) -> Result<Server, Stop> {
-        let folder = Folder::open(&settings.folder)?;
-        // A server that was killed while it saved.
-        app::files::sweep_idle(folder.path());
         let refused = |what: &str, error: &dyn std::fmt::Display| {
             let message = format!("{what}: {error}");
             Diagnostic::error(Rule::StudioPort, message)
         };
+        let folder = Folder::open(&settings.folder)?;
         let address = (Ipv4Addr::LOCALHOST, settings.port.unwrap_or(0));
         let listen = || {
             let listener = TcpListener::bind(address)?;
@@ -272,34 +341,9 @@ impl Server {
         let (listener, port) = listen().map_err(|error: std::io::Error| {
             refused(&format!("port {} of 127.0.0.1 cannot be opened", address.1), &error)
         })?;
-        let no_token = |error| refused("the system gives no token", &error);
-        let token = Token::new().map_err(no_token)?;
-        let own = getrandom::u32().map_err(no_token)?;
         let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(64).build();
         let runtime = runtime.map_err(|error| refused("the server cannot start", &error))?;
-        let given = |path: String| match folder.is_folder(&path) {
-            true => Given::Folder(path),
-            false => Given::File(path),
-        };
-        let studio = Arc::new(Studio {
-            source: settings.source.clone().map(given),
-            folder,
-            machine: settings.machine.clone(),
-            token,
-            names: Names::of(port),
-            sockets: Arc::new(Semaphore::new(SOCKETS)),
-            uploads: files::Uploads::default(),
-            uploading: tokio::sync::Mutex::default(),
-            pages: AtomicU64::default(),
-            drafting: Mutex::default(),
-            jobs: Jobs::new(own),
-            first: Mutex::default(),
-            left: Left::default(),
-            runs: memory::Runs::default(),
-            leads: Mutex::default(),
-            form: settings.form,
-            options: settings.options,
-        });
+        let studio = Studio::open(settings, folder, port)?;
         Ok(Server { runtime, listener, port, studio })
     }
 
