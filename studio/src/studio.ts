@@ -83,7 +83,7 @@ export class Studio {
         // What is worked on is asked for first, the lists behind it, without waiting for one another.
         const work = batch(() => {
             this.machine.value ??= this.work.value?.machine ?? opened.machine;
-            this.drafts.value = opened.drafts;
+            this.drafts.value = opened.drafts.filter(({ name }) => name !== this.kept);
             this.opened.value = opened;
             if (this.edited.value !== null) return this.prove(this.edited.value);
             if (this.work.value !== null) return this.post(this.work.value);
@@ -151,8 +151,9 @@ export class Studio {
         else await this.post({ ...work, machine });
     }
 
-    /** Posts and proves. Edits by hand are gone: who calls this has asked. */
+    /** Posts and proves. An edit by hand is kept, and offered. */
     async post(work: Work): Promise<void> {
+        if (!(await this.setAside())) return;
         clearTimeout(this.typing);
         this.work.value = work;
         this.edited.value = null;
@@ -176,6 +177,7 @@ export class Studio {
             this.show(job ?? null);
             this.isCurrent.value = job !== undefined && this.edited.value === null;
         });
+        if (this.edited.value === null) void this.askDrafts();
         const same = job?.board?.programs.find(({ file, revision }) => file === work.file && revision !== job.revision);
         if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
     }
@@ -198,6 +200,7 @@ export class Studio {
 
     /** Another program of the board. */
     async chooseProgram(revision: number): Promise<void> {
+        if (!(await this.setAside())) return;
         const job = await this.told(async () => (await this.seam.ask("job", { revision })).done);
         if (job === undefined) return;
         clearTimeout(this.typing);
@@ -208,6 +211,7 @@ export class Studio {
             this.job.value = job;
             this.isCurrent.value = true;
         });
+        void this.askDrafts();
     }
 
     /** A file of the program is being edited: all are proven when the typing rests. */
@@ -227,6 +231,7 @@ export class Studio {
     async proveFile(file: string): Promise<void> {
         const work = this.work.value;
         if (work === null || work.machine === null) return;
+        if (!(await this.setAside())) return;
         const { source, machine, options } = work;
         const program = { file };
         const job = await this.told(async (asking) => (await this.seam.ask("prove", { source, machine, options, program }, asking)).done);
@@ -245,6 +250,7 @@ export class Studio {
         const own = ({ name }: File): string | null => (parts.has(name) ? name : null);
         const edit = new Map(await Promise.all(files.map(async (file) => [own(file), await file.text()] as const)));
         if (edit.size === files.length) {
+            if (!(await this.setAside())) return;
             this.given.value = files.find((file) => own(file) === null)?.name ?? null;
             return this.prove(edit);
         }
@@ -327,7 +333,11 @@ export class Studio {
         const { files, octets } = new Texts(edit);
         const of: Drafted = files.length === 1 && files[0]![0] === null ? work : { ...work, files };
         const name = draftName(work);
-        for (const own of new Set([this.kept ?? name, name, ...[2, 3, 4, 5].map((number) => `${name}-${number}`)])) {
+        // What is kept already is another edit, and stays as it is.
+        const offered = new Set(this.drafts.value.map((draft) => draft.name));
+        const names = new Set([this.kept ?? name, name, ...[2, 3, 4, 5, 6, 7, 8, 9].map((number) => `${name}-${number}`)]);
+        if (this.kept === null && offered.has(name)) this.said.value = "there is another edit of this program: both edits are kept";
+        for (const own of [...names].filter((one) => one === this.kept || !offered.has(one))) {
             this.kept = own;
             try {
                 await this.seam.ask("draft", { name: own, of }, { arrays: { text: octets } });
@@ -342,21 +352,54 @@ export class Studio {
                 this.said.value = "another tab edits this program too: both edits are kept";
             }
         }
+        this.notKept.value = "there are nine edits of this program already: drop some";
         return false;
     }
+
+    /** An edit makes room for something else: it stays among the drafts, and is offered. False where it cannot be kept: then nothing else is done. */
+    private async setAside(): Promise<boolean> {
+        const { edited, work } = this;
+        if (edited.value === null || work.value === null) return true;
+        clearTimeout(this.typing);
+        await this.keeping.rest();
+        if (edited.value !== null && this.known.value !== edited.value && !(await this.keep(work.value, edited.value))) {
+            this.stopped.value = [said("edit-not-kept", `the edit on this page cannot be kept: ${this.notKept.value ?? "there is no server"}`, "save it, download it, or discard it; nothing else was done")];
+            return false;
+        }
+        this.kept = null;
+        edited.value = null;
+        await this.askDrafts();
+        return true;
+    }
+
+    /** What is kept of edits that are not on this page. */
+    private async askDrafts(): Promise<void> {
+        const drafts = await this.seam.ask("drafts", {}).then(({ done }) => done, () => null);
+        if (drafts !== null) this.drafts.value = drafts.filter(({ name }) => name !== this.kept);
+    }
+
+    /** Those of the program that is shown come first. */
+    readonly offers = computed(() => {
+        const work = this.work.value;
+        const name = work === null ? null : draftName(work);
+        const rank = (draft: Draft): number => (name !== null && draft.name.replace(/-\d$/, "") === name ? 0 : 1);
+        return this.drafts.value.toSorted((a, b) => rank(a) - rank(b));
+    });
 
     /** The edit, where no server has said to have kept it. */
     get unkept(): Unkept | null {
         const { edited, work, isAlone } = this;
         if (edited.value === null || work.value === null || !isAlone.value) return this.left;
-        return { of: work.value, edit: [...edited.value] };
+        return { of: work.value, edit: [...edited.value], name: this.kept };
     }
 
     /** Gives the server an edit that it has not got, and offers it. */
-    private async offer({ of, edit }: Unkept): Promise<void> {
+    private async offer({ of, edit, name }: Unkept): Promise<void> {
+        // What was kept of the same edit before is older.
+        this.kept = name;
         if (!(await this.keep(of, new Map(edit)))) return;
         this.left = this.kept = null;
-        this.drafts.value = (await this.seam.ask("drafts", {})).done;
+        await this.askDrafts();
     }
 
     private async dropOwn(): Promise<void> {
@@ -369,12 +412,16 @@ export class Studio {
     async discard(): Promise<void> {
         const work = this.work.value;
         if (work === null) return;
+        clearTimeout(this.typing);
+        this.edited.value = null;
+        await this.keeping.rest();
         await this.dropOwn();
         await this.post(work);
     }
 
     /** Goes on with an edit that was kept. */
     async resume(draft: Draft): Promise<void> {
+        if (!(await this.setAside())) return;
         const { arrays } = await this.seam.ask("draft_text", { name: draft.name });
         const { files, ...work } = draft.of as Drafted;
         clearTimeout(this.typing);

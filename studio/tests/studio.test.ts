@@ -13,7 +13,7 @@ const piece = (chunk: number): Parameters<NonNullable<Asking["walked"]>> => [
 ];
 
 /** A server that has answered `post`, and answers `prove` when it is told to. */
-function open(taken: string[] = [], posts = true) {
+function open(taken: string[] = [], posts = true, kept: { name: string }[] = []) {
     const asked: string[] = [];
     const proofs: ((job: object) => void)[] = [];
     let walked: Asking["walked"];
@@ -26,6 +26,7 @@ function open(taken: string[] = [], posts = true) {
             walked = asking?.walked ?? walked;
             if (ask === "post" && !posts) return Promise.reject(new Stopped("failed", [said("posture", "it cannot be posted", "")]));
             if (ask === "post") return Promise.resolve({ done: job(1), arrays: {} });
+            if (ask === "drafts") return Promise.resolve({ done: kept, arrays: {} });
             if (ask === "prove") return new Promise((resolve) => proofs.push((done) => resolve({ done, arrays: {} })));
             return Promise.resolve({ done: { files: ["a.nc"] }, arrays: {} });
         },
@@ -73,7 +74,7 @@ test("an edit of a program that another page edits has a draft of its own, and t
     const proof = studio.prove(main("G0 X1\n"));
     await settled();
     expect(studio.said.value).toContain("another tab");
-    expect(asked.filter((ask) => ask.startsWith("draft"))).toEqual(["draft a.cls.mill", "draft a.cls.mill-2", "draft a.cls.mill-3"]);
+    expect(asked.filter((ask) => ask.startsWith("draft "))).toEqual(["draft a.cls.mill", "draft a.cls.mill-2", "draft a.cls.mill-3"]);
     proved(2);
     await proof;
     await studio.discard();
@@ -85,7 +86,23 @@ test("an edit that is discarded before the server has its draft leaves none", as
     await studio.post(work as never);
     void studio.prove(main("G0 X1\n"));
     await studio.discard();
-    expect(asked.filter((ask) => ask.includes("draft"))).toEqual(["draft a.cls.mill", "drop_draft a.cls.mill"]);
+    expect(asked.filter((ask) => ask.includes("draft") && ask !== "drafts")).toEqual(["draft a.cls.mill", "drop_draft a.cls.mill"]);
+});
+
+test("an edit makes room for another posting: it stays among the drafts and is offered, and the next edit does not overwrite it", async () => {
+    const kept: { name: string }[] = [];
+    const { studio, asked } = open([], true, kept);
+    await studio.post(work as never);
+    studio.typed("G0 X1\n");
+    kept.push({ name: "a.cls.mill" });
+    await studio.post({ ...work, options: [["safe", "5"]] } as never);
+    await settled();
+    expect(studio.edited.value).toBe(null);
+    expect(studio.offers.value.map(({ name }) => name)).toEqual(["a.cls.mill"]);
+    expect(asked.filter((ask) => ask.startsWith("drop"))).toEqual([]);
+    studio.typed("G0 X2\n");
+    await settled();
+    expect(asked.filter((ask) => ask.startsWith("draft "))).toEqual(["draft a.cls.mill", "draft a.cls.mill-2"]);
 });
 
 test("an edit of several files is one of what is posted, also after the server has another; its draft says where each begins", async () => {
@@ -97,7 +114,7 @@ test("an edit of several files is one of what is posted, also after the server h
             if (["post", "prove", "draft"].includes(ask)) asked.push([ask, params, new TextDecoder().decode(octets)]);
             if (ask === "text") return { done: { to: 3 }, arrays: { text: new TextEncoder().encode("posted\n") } };
             if (ask === "open") return { done: { machine: null, drafts: [] }, arrays: {} };
-            if (ask === "machines") return { done: [], arrays: {} };
+            if (ask === "machines" || ask === "drafts") return { done: [], arrays: {} };
             if (ask === "draft_text") return { done: {}, arrays: { text: new TextEncoder().encode("ä main\npart\n") } };
             if (ask === "prove" && Number(params.revision) < first) throw new Stopped("invalid", [said("studio-limit", "not open any more", "")]);
             const revision = ask === "post" ? first : first + 1;

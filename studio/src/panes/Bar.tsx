@@ -30,14 +30,19 @@ export function Bar({ screen }: { screen: Screen }) {
                 Options
             </button>
             <output class="grow" aria-live="polite">
-                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} isCurrent={studio.isCurrent.value} />}
+                {running.value !== null ? <Running screen={screen} /> : <VerdictOf job={job.value} stop={stop.value} isCurrent={studio.isCurrent.value} />}{" "}
+                {studio.stop.value === "cancelled" && studio.edited.value !== null && running.value === null && (
+                    <button type="button" onClick={() => void studio.prove(studio.edited.value!)}>
+                        Prove
+                    </button>
+                )}
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
             {studio.isAlone.value && (link.value !== "open" || studio.notKept.value !== null) && <Alone studio={studio} />}
             <span class="soft">{studio.said.value}</span>
-            {studio.drafts.value.slice(0, 1).map((draft) => (
+            {studio.offers.value.slice(0, 1).map((draft) => (
                 <span key={draft.name}>
-                    ▲ an edit of {nameOf(draft.of as Work)} is kept{" "}
+                    ▲ an edit of {nameOf(draft.of as Work)} is kept{studio.offers.value.length > 1 && ` (and ${studio.offers.value.length - 1} more)`}{" "}
                     <button type="button" onClick={() => void studio.resume(draft)}>
                         Continue
                     </button>{" "}
@@ -102,7 +107,7 @@ function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | 
     if (job === null && stop === null) return <span class="soft">no program yet</span>;
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
     if (!isCurrent && stop === "invalid") return <strong class="failed">{verdicts.failed}</strong>;
-    if (!isCurrent) return <strong class="warning">▲ TO BE PROVEN</strong>;
+    if (!isCurrent) return <strong class="warning">▲ {stop === "cancelled" ? "NOT PROVEN: CANCELLED" : "TO BE PROVEN"}</strong>;
     const isPartly = job.board?.verdict === "partly" && job.verdict === "done";
     const moves = `${counted(job.walk.moves)} ${job.machine.kind === "glass" ? "pulses" : "moves"}`;
     return (

@@ -22,6 +22,8 @@ export interface Unkept {
     of: Work;
     /** The files that were edited, each with its text: [`Edit`] as JSON has it. */
     edit: [string | null, string][];
+    /** Name of the draft that has an older text of it. */
+    name: string | null;
 }
 
 /** How a tab was left. */

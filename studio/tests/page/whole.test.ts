@@ -7,6 +7,12 @@ import { absent, accessible, example, goTo, launch, lit, proven, readout, Server
 /** The numbers of a `GOTO/`. */
 const goto = (text: string): number[] => text.replace(/^GOTO\s*\//, "").split(",").map(Number);
 
+/** An edited program, from its first line on: the place may be farther down. */
+async function editedFromTop(page: Page): Promise<void> {
+    await page.getByText("▲ edited").waitFor();
+    await page.locator(".program .cm-scroller").evaluate((element) => (element.scrollTop = 0));
+}
+
 /** The files of the edits that the server keeps: of each its text, and what it is of. */
 const drafts = (server: Server): string[] => {
     const folder = join(server.folder, ".toolpost/drafts");
@@ -161,6 +167,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await expect.poll(() => drafts(server)).toHaveLength(2);
         await page.reload();
         await page.getByRole("button", { name: "Continue" }).click();
+        await editedFromTop(page);
         await page.locator(".program .cm-line", { hasText: "(mine)" }).waitFor();
         // It is an edit of what is posted: what differs from that is known.
         await page.getByRole("button", { name: "Differences" }).click();
@@ -195,6 +202,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await proven(page);
         expect(await page.getByLabel("Speed of the replay").inputValue()).toBe("f50");
         await page.getByRole("button", { name: "Continue" }).click();
+        await editedFromTop(page);
         await page.locator(".program .cm-line", { hasText: "(last key)(!)" }).waitFor();
         expect(await page.getByRole("button", { name: "Continue" }).count()).toBe(0);
         await page.getByRole("button", { name: "Discard" }).click();
@@ -204,6 +212,49 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.reload();
         await proven(page);
         await expect.poll(() => lit(page, "source")).toBe(at);
+    });
+
+    test("an edit makes room for another machine, other options or a dropped program, and is offered each time; none overwrites another", async () => {
+        const page = await begin();
+        const offer = page.getByText(/an edit of plate\.cls is kept/);
+        const texts = (): string[] => drafts(server).filter((name) => name.endsWith(".text")).map((name) => /\((one|two|three)\)/.exec(readFileSync(join(server.folder, ".toolpost/drafts", name), "utf8"))?.[1] ?? "").toSorted();
+        await edit(page, " (one)");
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("generic-3axis-haas");
+        await page.keyboard.press("Enter");
+        await proven(page);
+        await offer.waitFor();
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("generic-3axis-fanuc");
+        await page.keyboard.press("Enter");
+        await proven(page);
+        // The posted one stands there, and says that there is an edit.
+        await offer.waitFor();
+        expect(texts()).toEqual(["one"]);
+        await edit(page, " (two)");
+        await expect.poll(texts).toEqual(["one", "two"]);
+        await page.getByRole("button", { name: "Options", exact: true }).click();
+        await page.getByRole("button", { name: "Post", exact: true }).click();
+        await proven(page);
+        await page.getByText("is kept (and 1 more)").waitFor();
+        await page.getByRole("button", { name: "Continue" }).click();
+        await editedFromTop(page);
+        await page.locator(".program .cm-line", { hasText: /\((one|two)\)/ }).waitFor();
+        const dropped = await page.evaluateHandle(() => {
+            const data = new DataTransfer();
+            data.items.add(new File(["%\n(three)\nM30\n%\n"], "three.nc"));
+            return data;
+        });
+        await page.dispatchEvent(".program", "drop", { dataTransfer: dropped });
+        await page.locator(".program .cm-line", { hasText: "(three)" }).waitFor();
+        await expect.poll(texts).toEqual(["one", "three", "two"]);
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+        for (const left of [1, 0]) {
+            await page.getByRole("button", { name: "Drop it" }).click();
+            await expect.poll(() => texts().length).toBe(left);
+        }
+        await page.getByRole("button", { name: "Drop it" }).waitFor({ state: "detached" });
     });
 
     test("a server that is killed takes no edit with it: the page asks before it goes, and goes on by the new link", async () => {
@@ -246,7 +297,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         const { page: second, complaints } = await visit(browser, server.link);
         await proven(second);
         await edit(second, " (second)");
-        await second.getByText("another tab edits this program too: both edits are kept").waitFor();
+        await second.getByText(/another (tab edits|edit of) this program.*: both edits are kept/).waitFor();
         await expect.poll(() => kept().map((name) => /\((first|second)\)/.exec(readFileSync(join(drafts, name), "utf8"))?.[1]).toSorted()).toEqual(["first", "second"]);
         for (const page of [second, first]) {
             await page.getByRole("button", { name: "Discard" }).click();
