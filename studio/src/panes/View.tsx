@@ -49,7 +49,7 @@ export function View({ screen }: { screen: Screen }) {
                 ))}
                 <Legend screen={screen} />
                 <MachineAbsent screen={screen} />
-                {screen.off.value > 0 && <p class="off soft">lines are up to {counted(screen.off.value)} pixels off here: finer ones are coming, or are too many</p>}
+                {screen.off.value > 0 && <p class="off soft">{coarse(screen.off.value)}</p>}
                 <Proving screen={screen} />
                 {screen.studio.job.value === null && screen.studio.running.value === null && <Empty screen={screen} />}
             </div>
@@ -68,6 +68,9 @@ function MachineAbsent({ screen }: { screen: Screen }) {
         </p>
     );
 }
+
+const coarse = (off: number): string =>
+    Number.isFinite(off) ? `lines are up to ${counted(off)} pixels off here: finer ones are coming, or are too many` : "lines are coarse here: finer ones are coming";
 
 function Toggle({ on, title, text }: { on: { value: boolean }; title: string; text: string }) {
     return (

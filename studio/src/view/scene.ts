@@ -47,7 +47,7 @@ export interface Picture {
     over: Strip[];
     bodies: Triangles[];
     symbols: Symbol[];
-    /** How far lines may be off while finer ones are on their way or too many, pixels; 0 where that is not seen. */
+    /** How far lines may be off while finer ones are on their way or too many, pixels; 0 where that is not seen, infinite where nobody knows. */
     off: number;
 }
 
@@ -108,11 +108,13 @@ export class Scene {
         const level = this.levelOf(projection.scale, chunks.length);
         this.last = { scale: projection.scale, level };
         let coarsest = 0;
+        let isRough = false;
         for (const chunk of chunks) {
             const best = this.chunks.best(level, chunk.number);
             if (best === null) continue;
             const { vertices } = best;
             coarsest = Math.max(coarsest, best.level ?? 0);
+            isRough ||= best.level === null && this.walk.levels.length > 1;
             if (this.wire !== null) this.surface(surfaces, chunk, vertices, this.wire);
             this.bands(strips, chunk, best, looks, marks, projection.scale);
             this.lines(strips, chunk, best, looks, marks);
@@ -127,7 +129,7 @@ export class Scene {
         const flats = this.board?.flats(looks.theme) ?? [];
         this.places(symbols, projection, size);
         const error = (this.walk.levels[coarsest]?.error ?? 0) * projection.scale;
-        const off = coarsest > 0 && error > SEEN && !this.isPoints ? error : 0;
+        const off = this.isPoints ? 0 : isRough ? Number.POSITIVE_INFINITY : coarsest > 0 && error > SEEN ? error : 0;
         return { off, flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
     }
 
