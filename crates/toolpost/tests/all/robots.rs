@@ -624,3 +624,20 @@ fn a_tool_leaves_a_cut_with_the_spindle_as_in_the_cut() {
     let free = behind(&text, &above, &format!("$OUT[1]=FALSE\r\n{on}"));
     assert!(proof_of(&source, &machine, &free).proven);
 }
+
+/// Ten turns at 9000 a minute are 0.0667 s, of which the words of robots say hundredths.
+#[test]
+fn a_dwell_in_turns_is_as_long_as_its_word_says_it() {
+    let job = JOB.replace("RPM,12000", "RPM,9000");
+    let source = source(&job.replacen("GOTO/60,0,-2\n", "DELAY/REV,10\nGOTO/60,0,-2\n", 1));
+    for (name, dwell, longer) in [
+        ("kuka-kr6-r900", "WAIT SEC 0.07\r\n", "WAIT SEC 0.08\r\n"),
+        ("fanuc-lrmate-200id-mill", "WAIT 0.07(sec)", "WAIT 0.06(sec)"),
+    ] {
+        let machine = machine::load(name).unwrap();
+        let text = proven(&source, &machine);
+        let report = proof_of(&source, &machine, &text.replacen(dwell, longer, 1));
+        let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{text}"));
+        assert_eq!(found.rule.name(), "dwell", "{found}");
+    }
+}

@@ -91,6 +91,9 @@ impl Comparison<'_> {
             self.running.runs_up = 0.0;
             return Ok(());
         }
+        // Its word rounds it: a few turns of the spindle are no whole hundredths of a second.
+        let rounds = self.machine.words.get("P").map_or(0.0, |word| 0.5 * word.resolution());
+        let allowed = allowed.max(rounds * (1.0 + 1e-6));
         let done = self.happens(
             Rule::Dwell,
             "dwells",
