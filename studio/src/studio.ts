@@ -442,7 +442,7 @@ export class Studio {
     /** Why the program cannot be saved as it stands on the page. */
     refusal(): Finding | null {
         if (this.canSave.value) return null;
-        if (this.job.value === null) return said("nothing-to-save", "there is no program to save", "post a toolpath first");
+        if (this.job.value === null || this.job.value.program === null) return said("nothing-to-save", "there is no program to save", "post a toolpath that the machine can cut");
         const help = this.isCurrent.value ? "mend what the findings name, or discard the edit" : "wait until its proof has passed";
         return said("not-proven", "the program as it stands here is not proven: it is not saved", help);
     }

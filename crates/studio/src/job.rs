@@ -15,6 +15,7 @@ use crate::machines::{self, Any};
 use crate::message::{Array, Values};
 use crate::place::{self, At};
 use crate::plots::{Plots, What};
+use crate::sketch;
 use crate::walk::{By, Drawn, Follower, KINDS, NO_TOOL, Slot, Walk};
 use ::post::{Origins, Part};
 use app::report::{self, Digests};
@@ -25,7 +26,7 @@ use geom::ending::{Ended, go_on};
 use machine::linkage::Linkage;
 use machine::{Machine, Reach, library};
 use program::{Diagnostic, Findings, Program, Purpose, Rule, encoding};
-use proof::{Observer, Tolerances};
+use proof::{Observer, Report, Tolerances};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -120,6 +121,18 @@ pub(crate) struct Follows<'a> {
 }
 
 impl Follows<'_> {
+    /// Walks the source itself, of which there is no program `file`.
+    fn sketch(&self, file: &str, source: &Program, machine: &Machine) {
+        let slot = Slot::default();
+        let waits = (self.waits, self.ended);
+        let follower = Follower::new(file, source, machine, waits, Slot::clone(&slot));
+        let mut follower = follower.of_source();
+        sketch::follow(source, machine, &mut follower);
+        follower.ended(&Report::default());
+        let mut walks = self.walks.lock().unwrap_or_else(PoisonError::into_inner);
+        walks.push((file.to_owned(), slot));
+    }
+
     /// The walk of the program that is called `file`, and its drawing.
     fn drawn(&self, file: &str) -> Drawn {
         let walks = self.walks.lock().unwrap_or_else(PoisonError::into_inner);
@@ -240,6 +253,8 @@ pub struct Job {
     board: Option<board::Place>,
     /// Whether its name says which program of a board it is.
     keeps_name: bool,
+    /// Whether there is a program: otherwise what is walked is the source.
+    has_program: bool,
 }
 
 impl Job {
@@ -353,6 +368,7 @@ impl Job {
         mut inputs: Vec<PathBuf>,
     ) -> Job {
         walk.set_widths(&made.widths);
+        let has_program = made.has_program();
         let Made { toolpath, account, text, origins, parts, report, board, .. } = made;
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         let machine_files = match &machine {
@@ -383,6 +399,7 @@ impl Job {
             plots: Plots::default(),
             board,
             keeps_name: false,
+            has_program,
         }
     }
 
@@ -477,7 +494,7 @@ impl Job {
             verdict: self.account.verdict.into(),
             rows: rows(&self.account),
             findings: findings.into_iter().map(|found| self.finding(found)).collect(),
-            program: Some(text(&self.file, self.shown_program())),
+            program: self.has_program.then(|| text(&self.file, self.shown_program())),
             parts: self.files.parts.iter().map(|(file, part)| text(file, &part.lines)).collect(),
             source: text(&self.source_file, &self.source),
             machine: JobMachine {
@@ -649,12 +666,17 @@ impl Job {
             line: source_line,
             text: shown(&self.source, source_line),
         });
+        let block_moves = match line {
+            // Of no block.
+            0 => vec![[number, number + 1]],
+            line => walk.moves_of(By::Block(file), line, MOST_RANGES),
+        };
         let source_moves = match source_line {
             0 => vec![[number, number + 1]],
             line => walk.moves_of(By::Source, line, MOST_RANGES),
         };
         Place {
-            block_moves: walk.moves_of(By::Block(file), line, MOST_RANGES),
+            block_moves,
             blocks: self.blocks_of(&source_moves, source_line),
             source_moves,
             time_s: at.seconds,
@@ -835,17 +857,34 @@ pub(crate) struct Made {
     pub board: Option<board::Place>,
 }
 
-/// Writes the program for a mill or a robot, and proves it.
+impl Made {
+    /// Whether there is a program.
+    fn has_program(&self) -> bool {
+        !self.account.data.is_null()
+    }
+}
+
+/// Writes the program for a mill or a robot, and proves it; where the machine cannot do what the source asks for, there is none, and the source is walked.
 fn posted(
     source: &Source,
     options: &Options,
     machine: &Machine,
     file: &str,
-    watch: &dyn Watch,
+    follows: &Follows,
 ) -> Result<Made, Stop> {
-    let toolpath = toolpath_of(source, options, machine, watch)?;
-    let posted = post::proven(&toolpath, machine, file, &options.tolerances, watch)?;
-    let post::Posted { text, origins, parts, account } = posted;
+    let toolpath = toolpath_of(source, options, machine, follows)?;
+    let posted = post::proven(&toolpath, machine, file, &options.tolerances, follows);
+    let post::Posted { text, origins, parts, account } = match posted {
+        Err(Stop { verdict: Verdict::Failed, findings }) => {
+            follows.step("drawing");
+            follows.sketch(file, &toolpath.program, machine);
+            let (rows, data) = (toolpath.rows(Some(machine)), serde_json::Value::Null);
+            let account = Account { verdict: Verdict::Failed, rows, data, findings };
+            let (text, origins, parts) = (Vec::new(), Origins::default(), Vec::new());
+            post::Posted { text, origins, parts, account }
+        }
+        posted => posted?,
+    };
     let report = Some(account.report());
     Ok(Made { toolpath, account, text, origins, parts, report, widths: Vec::new(), board: None })
 }

@@ -41,6 +41,7 @@ mod page;
 pub mod place;
 pub mod plots;
 pub mod server;
+mod sketch;
 pub mod walk;
 
 pub use job::Options;

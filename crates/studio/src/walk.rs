@@ -584,7 +584,8 @@ pub struct Follower<'a> {
     source: &'a Program,
     /// Which of A, B and C the machine has.
     rotary: Vec<usize>,
-    is_arm: bool,
+    /// The control names no tools: they are those of the source.
+    has_source_tools: bool,
     /// The record up to which operations have been looked for.
     searched: usize,
     numbers: BTreeMap<(u32, String), u8>,
@@ -628,7 +629,7 @@ impl<'a> Follower<'a> {
             marked: BTreeSet::new(),
             source,
             rotary: machine.rotary.iter().map(|axis| axis.index()).collect(),
-            is_arm: machine.arm.is_some(),
+            has_source_tools: machine.arm.is_some(),
             searched: 0,
             numbers: BTreeMap::new(),
             source_tool: None,
@@ -640,6 +641,13 @@ impl<'a> Follower<'a> {
             ended,
             goes_to: to,
         }
+    }
+
+    /// The same of moves of the source itself, which no control has read.
+    #[must_use]
+    pub fn of_source(mut self) -> Follower<'a> {
+        self.has_source_tools = true;
+        self
     }
 
     /// Has the next chunk drawn, and shows what has been drawn.
@@ -718,7 +726,7 @@ impl<'a> Follower<'a> {
             return place;
         }
         let place = match (self.tool, self.source_tool) {
-            (NO_TOOL, Some(tool)) if self.is_arm => self.place_of(tool),
+            (NO_TOOL, Some(tool)) if self.has_source_tools => self.place_of(tool),
             (place, Some(tool)) => {
                 if let Some(own) = self.walk.tool_uses.get_mut(usize::from(place)) {
                     own.know(tool);

@@ -108,6 +108,7 @@ function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | 
     if (job === null) return stop === "cancelled" ? <strong>{verdicts.cancelled}</strong> : <strong class="invalid">{verdicts.invalid}</strong>;
     if (!isCurrent && stop === "invalid") return <strong class="failed">{verdicts.failed}</strong>;
     if (!isCurrent) return <strong class="warning">▲ {stop === "cancelled" ? "NOT PROVEN: CANCELLED" : "TO BE PROVEN"}</strong>;
+    if (job.program === null) return <strong class="failed">{verdicts.invalid}</strong>;
     const isPartly = job.board?.verdict === "partly" && job.verdict === "done";
     const moves = `${counted(job.walk.moves)} ${job.machine.kind === "glass" ? "pulses" : "moves"}`;
     return (

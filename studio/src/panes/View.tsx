@@ -135,10 +135,18 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
     );
 }
 
-/** Over the picture of what the proof has walked so far: nobody takes it for proven. */
+/** Over the picture of what the proof has walked so far, or of a source that the machine cannot cut: nobody takes it for proven. */
 function Proving({ screen }: { screen: Screen }) {
     const walked = screen.studio.walking.value;
-    if (walked === null || screen.studio.job.value !== null) return null;
+    const job = screen.studio.job.value;
+    if (job !== null && job.program === null) {
+        return (
+            <p class="proving">
+                <strong class="warning">▲ there is no program: this is the path of the source</strong>, see the findings below
+            </p>
+        );
+    }
+    if (walked === null || job !== null) return null;
     return (
         <p class="proving">
             <strong class="warning">▲ the proof runs: nothing of this is proven yet</strong> {counted(walked.moves)} moves so far

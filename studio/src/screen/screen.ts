@@ -121,7 +121,7 @@ export class Screen {
             untracked(() => this.viewers.forEach((viewer) => viewer.fitMachine(isShown)));
         });
         effect(() => {
-            if (studio.stop.value === "invalid") this.tab.value = "findings";
+            if (studio.stop.value === "invalid" || studio.job.value?.program === null) this.tab.value = "findings";
         });
         effect(() => {
             const job = studio.job.value;

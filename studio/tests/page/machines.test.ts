@@ -1,4 +1,4 @@
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
 import type { Job, Place } from "../../src/protocol/asks.ts";
@@ -213,6 +213,31 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         expect(await page.locator(".clock").innerText()).toBe("time not known");
         await page.getByRole("tab", { name: "Verdict" }).click();
         await page.locator("#low").getByText("not known: --feed gives the feed").waitFor();
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("a source that the machine cannot cut is shown, and its findings lead to its lines", async () => {
+        const server = await Server.start([example("lean.cls")], ["-m", "generic-3axis-fanuc"]);
+        const { page, complaints } = await visit(browser(), server.link);
+        await page.getByText("✗ NOT POSTED").waitFor();
+        await page.getByText("there is no program: this is the path of the source").waitFor();
+        await page.locator(".source .cm-line", { hasText: "GOTO/" }).first().waitFor();
+        await expect.poll(() => page.locator(".canvas canvas").first().evaluate(covered)).toBeGreaterThan(0.0005);
+        const found = page.getByRole("button", { name: /unreachable-orientation/ });
+        const [, line] = /lean\.cls:(\d+)/.exec(await found.innerText())!;
+        await found.click();
+        const lines = readFileSync(example("lean.cls"), "utf8").split("\n");
+        await expect.poll(() => lit(page, "source")).toBe(lines[Number(line) - 1]);
+        expect(await page.locator(".program .cm-content").innerText()).toBe("\n");
+        await page.keyboard.press("Control+s");
+        await page.getByText("there is no program to save").waitFor();
+        // Another machine can.
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("fanuc-table-bc");
+        await page.keyboard.press("Enter");
+        await proven(page);
+        await page.locator(".program .cm-line", { hasText: "G43.4" }).first().waitFor();
         expect(complaints).toEqual([]);
         await page.close();
     });

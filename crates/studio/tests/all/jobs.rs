@@ -670,3 +670,79 @@ fn tools_have_the_shape_that_the_toolpath_gives_them() {
         assert_eq!(json!(tools(&job)), json!([[1, 8.0, 1.0, 50.0]]), "{robot}: {job}");
     }
 }
+
+/// A machine that cannot do what the source asks for: the source is shown, its path is drawn, and the findings lead into it.
+#[test]
+fn a_source_that_the_machine_cannot_cut_is_shown_without_a_program() {
+    let studio = Studio::new();
+    let far = "UNITS/MM\nLOADTL/1\nCUTTER/10,1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\nGOTO/0,0,-1\nGOTO/99000,0,-1\nCIRCLE/99000,5,-1,0,0,1,5\nGOTO/99000,10,-1\nRAPID\nGOTO/99000,10,10\nFINI\n";
+    std::fs::write(studio.own().join("far.cls"), far).unwrap();
+    let mut page = studio.socket();
+    let job = page.post("far.cls", "linuxcnc-mill");
+    assert_eq!((&job["verdict"], &job["program"]), (&json!("failed"), &Value::Null), "{job}");
+    let finding = job["findings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|found| found["severity"] == "error")
+        .unwrap();
+    assert_eq!(
+        (&finding["rule"], &finding["of"], &finding["line"]),
+        (&json!("axis-limit"), &json!("source"), &json!(9)),
+        "{job}"
+    );
+    assert_eq!((&job["source"]["lines"], &job["walk"]["moves"]), (&json!(14), &json!(5)));
+    assert_eq!(job["walk"]["tools"][0]["diameter"], 10.0);
+    // By hand: 11 mm down, from where nobody knows at first, 99 m along and half a circle of 5 mm, at 90 mm/min.
+    let cuts = (11.0 + 99_000.0 + 5.0 * std::f64::consts::PI) / 90.0 * 60.0;
+    assert!((job["walk"]["time_s"].as_f64().unwrap() - cuts).abs() < 0.01, "{}", job["walk"]);
+    let place =
+        page.done("place", json!({ "revision": job["revision"], "by": "source", "value": 9 }));
+    assert_eq!(
+        (&place["tip"], &place["source"]["line"]),
+        (&json!([99_000.0, 0.0, -1.0]), &json!(9)),
+        "{place}"
+    );
+    assert_eq!(
+        (&place["axes"], &place["block_moves"]),
+        (&json!([null, null, null]), &json!([[2, 3]]))
+    );
+    let middle = page
+        .done("place", json!({ "revision": job["revision"], "by": "time", "value": cuts - 1.0 }));
+    assert_eq!((&middle["kind"], &middle["template"]), (&json!("arc"), &Value::Null), "{middle}");
+    assert_eq!(
+        page.refused(
+            "save",
+            json!({ "revision": job["revision"], "path": "far.ngc", "replace": true })
+        ),
+        "output-file"
+    );
+    assert!(!studio.own().join("far.ngc").exists());
+    // A lean on three axes, and a robot that does not reach.
+    for (source, machine, rule) in [
+        ("lean.cls", "generic-3axis-fanuc", "unreachable-orientation"),
+        ("far.cls", "universal-ur5e", "arm-path"),
+        ("far.cls", "kuka-kr120-rail", "arm-path"),
+    ] {
+        let job = page.post(source, machine);
+        let rules: Vec<&Value> =
+            job["findings"].as_array().unwrap().iter().map(|found| &found["rule"]).collect();
+        assert!(rules.contains(&&json!(rule)), "{machine}: {rules:?}");
+        assert_eq!(
+            (&job["verdict"], &job["program"]),
+            (&json!("failed"), &Value::Null),
+            "{machine}"
+        );
+        let place =
+            page.done("place", json!({ "revision": job["revision"], "by": "move", "value": 3 }));
+        assert_eq!(
+            place["axes"].as_array().unwrap().len(),
+            job["machine"]["axes"].as_array().unwrap().len(),
+            "{machine}: {place}"
+        );
+        for chunk in ["index", "0/0", "fine/0"] {
+            assert!(!studio.get(&format!("/geometry/{}/{chunk}", job["revision"])).is_empty());
+        }
+        studio.get(&format!("/moves/{}/0", job["revision"]));
+    }
+}
