@@ -167,10 +167,14 @@ fn axes(machine: &Machine, kind: MachineKind) -> Vec<Axis> {
         }
         MachineKind::Robot => {
             let arm = machine.arm.as_ref();
+            // Whether joint 2 has no part in what the controller shows as joint 3.
+            let is_alone = arm
+                .and_then(|arm| arm.shown(&[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]))
+                .is_some_and(|shown| shown[2] == 0.0);
             let joints = arm.iter().flat_map(|arm| arm.joints()).zip(1..).map(|(joint, number)| {
                 // How the controller counts joint 3 depends on joint 2, or is not known.
                 let (low, high) = match number {
-                    3 => (f64::NAN, f64::NAN),
+                    3 if !is_alone => (f64::NAN, f64::NAN),
                     _ => (joint.min.to_degrees(), joint.max.to_degrees()),
                 };
                 axis(format!("J{number}"), AxisKind::Joint, "degrees", low, high)
@@ -188,6 +192,18 @@ fn axes(machine: &Machine, kind: MachineKind) -> Vec<Axis> {
 mod tests {
     use super::*;
     use std::fs;
+
+    /// Limits of the makers' data sheets: KR 6 R900 sixx -120 to 156; FANUC counts joint 3 against the horizontal.
+    #[test]
+    fn joint_3_has_limits_where_joint_2_has_no_part_in_it() {
+        let joint_3 = |name: &str| {
+            let axis = axes(&machine::load(name).unwrap(), MachineKind::Robot).remove(2);
+            (axis.low, axis.high)
+        };
+        let (low, high) = joint_3("kuka-kr6-r900");
+        assert!((low.unwrap() + 120.0).abs() < 1e-9 && (high.unwrap() - 156.0).abs() < 1e-9);
+        assert_eq!(joint_3("fanuc-m20ia-mill"), (None, None));
+    }
 
     #[test]
     fn a_machine_of_the_folder_may_extend_what_is_in_it_and_in_the_library() {
