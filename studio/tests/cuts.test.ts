@@ -4,7 +4,7 @@ import { cutsOf } from "../src/view/cuts.ts";
 import { wordOf } from "../src/view/strip.ts";
 
 const KINDS = ["gap", "rapid", "feed", "arc", "joints"];
-const walk = { kinds: KINDS };
+const walk = { kinds: KINDS, chunks: 1 };
 
 type Point = [x: number, y: number, z: number, kind: string];
 
@@ -32,6 +32,11 @@ test("home, also in the midst for another tool, and the ways there are left out;
 
 test("a chunk whose vertices have not come counts as a whole", () => {
     expect(cutsOf(walk, given([[0, 0, 0, "gap"], [1, 1, 1, "feed"]], null))).toEqual({ box: { low: [93, -7, -7], high: [107, 7, 7] }, isWhole: false, kinds: new Set([2]) });
+});
+
+test("before the chunks are known nothing is", () => {
+    expect(cutsOf({ ...walk, chunks: 2 }, given([[0, 0, 0, "gap"], [1, 1, 1, "feed"]])).isWhole).toBe(false);
+    expect(cutsOf(walk, given()).isWhole).toBe(false);
 });
 
 test("where nothing is cut there is no box", () => {

@@ -120,6 +120,13 @@ export class Screen {
             const isShown = this.machine.value;
             untracked(() => this.viewers.forEach((viewer) => viewer.fitMachine(isShown)));
         });
+        let isFitted = false;
+        effect(() => {
+            // Where its axes are not known, as at home, it comes into sight at a later place.
+            const isDrawn = this.machine.value && studio.cursor.place.value !== null && this.unknownAxes.length === 0;
+            if (isDrawn && !isFitted) untracked(() => this.viewers.forEach((viewer) => viewer.refit(false)));
+            isFitted = this.machine.value && (isFitted || isDrawn);
+        });
         effect(() => {
             if (studio.stop.value === "invalid" || studio.job.value?.program === null) this.tab.value = "findings";
         });

@@ -21,11 +21,12 @@ export interface Cuts {
 }
 
 /** Chunks whose vertices have not come count as a whole. */
-export function cutsOf({ kinds }: Pick<WalkAbout, "kinds">, vertices: Vertices): Cuts {
+export function cutsOf({ kinds, chunks }: Pick<WalkAbout, "kinds" | "chunks">, vertices: Vertices): Cuts {
     const isCut = kinds.map((kind) => CUTS.has(kind));
     const box = nothing();
     const seen = new Set<number>();
-    let isWhole = true;
+    // The chunks are known when their index has come.
+    let isWhole = vertices.chunks.length >= chunks;
     for (const chunk of vertices.chunks) {
         const octets = vertices.known(chunk.number);
         if (octets === null) {

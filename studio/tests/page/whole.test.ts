@@ -483,6 +483,14 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await legend.getByText(/^\d[\d,]* *[\d,]+ mm\/min$/).waitFor();
         await page.getByTitle("Colours by (C)").selectOption("tool");
         await legend.getByText("T1").first().waitFor();
+        // Also of a job of which nothing was walked in the view.
+        await page.getByTitle("Colours by (C)").selectOption("kind");
+        await page.getByRole("button", { name: "Options", exact: true }).click();
+        await page.getByRole("button", { name: "Post", exact: true }).click();
+        await page.getByRole("dialog").waitFor({ state: "detached" });
+        await proven(page);
+        await page.waitForTimeout(1000);
+        await legend.getByText("feed, arc").waitFor();
     });
 
     test("near an arc its lines are finer than the exact level, and stay so without an end of requests", async () => {
