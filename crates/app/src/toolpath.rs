@@ -11,7 +11,7 @@ use crate::watch::{Waits, Watch};
 use control::{Folders, Setup, Units, WholeNumbers};
 use freecad::{Job, Listing};
 use geom::Vec3;
-use machine::{Machine, Reach, library};
+use machine::{Machine, Reach, Wire, library};
 use program::{
     CompensatedPath, Diagnostic, Digest, Op, Program, Purpose, Rule, Severity, encoding, line_of,
 };
@@ -180,7 +180,7 @@ fn job_for(
 /// The control of a job without a named machine: it has three axes.
 const THREE_AXES: &str = "iso";
 
-/// The same for a wire, whose upper contour is `height` mm over the lower where that is given.
+/// The same for a wire that `onto` cuts; a source of the same machine counts U and V in the plane that is set up there.
 ///
 /// # Errors
 /// As [`read`].
@@ -188,16 +188,16 @@ pub(crate) fn read_wire(
     source: &Source,
     strict: bool,
     origin: &Origin,
-    height: Option<f64>,
+    onto: &Machine,
     watch: &dyn Watch,
 ) -> Result<Toolpath, Stop> {
-    let set_up = |mut machine: Machine| {
-        if let Some(wire) = &mut machine.wire {
-            wire.height = wire.height.or(height);
-        }
-        machine
-    };
+    let set_up = |own: Machine| Machine { wire: wire_of(&own, onto), ..own };
     read_by((source, source.read()?), strict, origin, Purpose::Contour, set_up, watch)
+}
+
+/// The wire of the machine of a source that `onto` cuts: of the same machine it is set up as there.
+pub(crate) fn wire_of(own: &Machine, onto: &Machine) -> Option<Wire> {
+    if own.loaded_from.digest == onto.loaded_from.digest { onto.wire } else { own.wire }
 }
 
 /// What has stopped the work: whoever watches, or the finding.

@@ -257,7 +257,7 @@ fn planned(
     set_up(machine, settings)?;
     watch.begin("reading")?;
     let Source { mut toolpath, paths, offset, height } =
-        Source::read(source, strict, origin, settings, watch)?;
+        Source::read(source, strict, origin, (settings, machine), watch)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     watch.begin("writing")?;
     let planned = cutting::segments(paths, &offset, &settings.cutting, height);

@@ -6,6 +6,7 @@ use crate::input;
 use crate::toolpath::{self, Origin, Toolpath, is_unknown_position};
 use crate::watch::Watch;
 use geom::Vec2;
+use machine::Machine;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program, Rule};
 use wire::{Contour, Element, OffsetContour, Path, contours, cuts, dxf, offset_contours};
 
@@ -38,18 +39,27 @@ impl Source {
         source: &input::Source,
         strict: bool,
         origin: &Origin,
-        settings: &Settings,
+        (settings, machine): (&Settings, &Machine),
         watch: &dyn Watch,
     ) -> Result<Source, Stop> {
         let is_drawn = is_drawing(source) || settings.upper.as_ref().is_some_and(is_drawing);
         if let Some(found) = without_drawing(settings).filter(|_| !is_drawn) {
             return Err(found.file(source.name()).into());
         }
-        let height = height(origin, settings)?;
+        let own = origin.from.as_ref().map(|from| origin.reach.load_origin(from)).transpose()?;
+        let plane = || own.as_ref().and_then(|own| toolpath::wire_of(own, machine)?.height);
+        let height = settings.height.or_else(plane);
+        let read = |source: &input::Source| {
+            let file = File::read(source, strict, origin, (settings, machine), watch)?;
+            match &own {
+                Some(own) if own.wire.is_some() => file.without_feeds(strict),
+                _ => Ok(file),
+            }
+        };
         let start = origin.start.map(|start| start.truncate());
-        let lower = File::read(source, strict, origin, settings, watch)?;
+        let lower = read(source)?;
         let upper = match &settings.upper {
-            Some(source) => Some(File::read(source, strict, origin, settings, watch)?),
+            Some(source) => Some(read(source)?),
             None => None,
         };
         let offset = match (&lower, &upper) {
@@ -121,12 +131,15 @@ impl File {
         source: &input::Source,
         strict: bool,
         origin: &Origin,
-        settings: &Settings,
+        (settings, machine): (&Settings, &Machine),
         watch: &dyn Watch,
     ) -> Result<File, Stop> {
         if !is_drawing(source) {
-            let toolpath = toolpath::read_wire(source, strict, origin, settings.height, watch);
+            let toolpath = toolpath::read_wire(source, strict, origin, machine, watch);
             let toolpath = toolpath.map_err(without_height)?;
+            if let Some(found) = within_contour(&toolpath.program) {
+                return Err(toolpath.refused(found));
+            }
             let mut warnings = left_out(&toolpath.program);
             toolpath.quote(&mut warnings);
             warnings.splice(0..0, toolpath.warnings.clone());
@@ -144,6 +157,23 @@ impl File {
         let drawing = dxf::read(&text, &options).map_err(|found| toolpath.refused(*found))?;
         let toolpath = toolpath.warned(drawing.warnings, strict)?;
         Ok(File::Drawing(toolpath, drawing.contours))
+    }
+
+    /// With a warning about the feeds of a wire that are in it.
+    fn without_feeds(self, strict: bool) -> Result<File, Stop> {
+        let File::Program(toolpath) = self else { return Ok(self) };
+        let feeds = toolpath.program.records.iter();
+        let mut lines =
+            feeds.filter(|record| matches!(record.op, Op::Feed(_))).map(|record| record.line);
+        let Some(first) = lines.next() else { return Ok(File::Program(toolpath)) };
+        let message = "the feeds of the source are left out: a contour alone is taken from it";
+        let help = "--feed says those of each pass; conditions of the generator are left out, too";
+        let mut found = Diagnostic::warning(Rule::Feed, message).help(help).line(first);
+        lines.for_each(|line| found.again(line));
+        let mut warnings = vec![found];
+        toolpath.quote(&mut warnings);
+        warnings.splice(0..0, toolpath.warnings.clone());
+        Ok(File::Program(toolpath.warned(warnings, strict)?))
     }
 
     fn toolpath(&self) -> &Toolpath {
@@ -196,11 +226,46 @@ fn upright(contours: Vec<Contour>) -> Vec<Path> {
     contours.into_iter().map(Path::upright).collect()
 }
 
+/// What refuses a source that stops, or cuts and threads the wire, between two cuts of a contour: there a slug or the part is held before it
+/// falls, and the path of the wire, which is made anew, has no such place.
+fn within_contour(program: &Program) -> Option<Diagnostic> {
+    let (mut cuts, mut between) = (false, None);
+    for record in &program.records {
+        let what = match record.op {
+            Op::Line(_) | Op::Arc(_) => {
+                if let Some(found) = between.take().filter(|_| cuts) {
+                    return Some(found);
+                }
+                cuts = true;
+                continue;
+            }
+            Op::Rapid(_) | Op::MachineMove(_) | Op::Home => {
+                (cuts, between) = (false, None);
+                continue;
+            }
+            Op::Stop => "the source stops",
+            Op::OptionalStop => "the source has an optional stop",
+            Op::ThreadWire => "the source threads the wire",
+            Op::CutWire => "the source cuts the wire",
+            _ => continue,
+        };
+        let message = format!(
+            "{what} within a contour, and the path of the wire, which is made anew, has no such place"
+        );
+        let help = "take it out of the source; --tab MM leaves a tab, before which the program stops for the operator";
+        let found = Diagnostic::error(Rule::StopInCut, message).help(help).line(record.line);
+        between.get_or_insert(found);
+    }
+    None
+}
+
 /// What a source calls besides its contour, and the program of a wire does not.
 fn left_out(program: &Program) -> Vec<Diagnostic> {
     let found = program.records.iter().filter_map(|record| {
         let what = match &record.op {
             Op::Auxiliary(function) => format!("M{}", function.number),
+            Op::Stop => "M0".to_owned(),
+            Op::OptionalStop => "M1".to_owned(),
             Op::Output(output) => format!("output {}", output.number),
             Op::WorkOffsetData(_) => "G10".to_owned(),
             Op::Input(input) => format!("input {}", input.number),
@@ -272,14 +337,6 @@ fn as_many(below: usize, above: usize) -> Result<(), Box<Diagnostic>> {
 fn without_height_of_part() -> Diagnostic {
     let message = "the wire leans, and the height of the part is not known";
     Diagnostic::error(Rule::WireHeight, message).help("give it with --height")
-}
-
-/// Height of the part, mm: as the call says it, else that of the plane in which a source counts U and V.
-fn height(origin: &Origin, settings: &Settings) -> Result<Option<f64>, Stop> {
-    match (settings.height, &origin.from) {
-        (None, Some(from)) => Ok(origin.reach.load_origin(from)?.wire.and_then(|wire| wire.height)),
-        (given, _) => Ok(given),
-    }
 }
 
 /// The paths of both ends of a wire that the program itself tilts, such as by U and V.

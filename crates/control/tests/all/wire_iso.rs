@@ -121,7 +121,7 @@ fn what_a_wire_cannot_do_or_nobody_knows_is_refused() {
     assert_eq!(refused("M3"), "unknown-word");
     assert_eq!(refused("M50 G1 X1."), "wire");
     assert_eq!(refused("M60 M50"), "modal-group");
-    assert_eq!(refused("G1 X1. U1."), "wire");
+    assert_eq!(refused("G1 X1. U1."), "upper-plane");
     assert_eq!(refused("G41 G1 X1."), "compensation");
     assert_eq!(refused("G1 X1"), "decimal-point");
     let offset = "G21 G90 G0 X0. Y0.\nM60\nG41 D1 G1 X1.\nM50\n";

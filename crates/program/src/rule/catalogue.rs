@@ -2078,7 +2078,7 @@ rules! {
     UpperPlane "upper-plane" []
         "The height of the upper plane is not known, and a block gives U and V."
         "give the height of the upper plane: `height` in [wire] of the machine file, or `--uv-height` for one run"
-        "A point file with U and V for a machine without `height`";
+        "fanuc-wire: `G1 X5. U1. F5.`";
     Urdf "urdf" []
         "The description of an arm (URDF) cannot be read."
         "correct the description: one foot, six revolute joints with limits in a row, a link `tool0` at the flange"
@@ -2110,7 +2110,7 @@ rules! {
     Wire "wire" ["nc-wire"]
         "The wire is not threaded or cut as the control or the source has it."
         "thread the wire before the first cut, and cut it before it is threaded again"
-        "fanuc-wire: `G1 X5. U1. F5.`";
+        "A block that cuts the wire and moves: `M50 G1 X5.`";
     WireHeight "wire-height" []
         "The heights of a wire machine do not fit, or are missing."
         "give the height of the part by `--height`, and that of the plane of U and V by `height` in [wire] or `--uv-height`"

@@ -94,7 +94,7 @@ pub(super) const WORDS: &[(&str, Use)] = &[
     ("SELCTL", By(Reader::select)),
     ("SELECT", By(Reader::select)),
     ("SEQNO", Ignored),
-    ("SET", By(Reader::mode)),
+    ("SET", By(Reader::set)),
     ("SPINDL", By(Reader::spindl)),
     ("STOP", By(Reader::stop)),
     ("THREAD", Refused),
@@ -106,7 +106,7 @@ pub(super) const WORDS: &[(&str, Use)] = &[
     ("TMARK", Ignored),
     ("TOLER", By(Reader::tolerance)),
     ("TOOL PATH", Text(Reader::tool_path)),
-    ("TOOLNO", Ignored),
+    ("TOOLNO", By(Reader::toolno)),
     ("TPRINT", Text(Reader::tprint)),
     ("TRACUT", Refused),
     ("TRANS", By(Reader::trans)),
@@ -167,13 +167,7 @@ impl Reader {
                 self.known = true;
                 Ok(())
             }
-            Some(NotPassedOn) => {
-                let word = super::text::decode(statement.major);
-                let message = format!("{word} is not passed on");
-                let help = "check whether the job needs it";
-                self.report.warn(statement, Rule::IgnoredWord, &message, help);
-                Ok(())
-            }
+            Some(NotPassedOn) => self.not_passed_on(statement),
             Some(Refused) => {
                 let word = super::text::decode(statement.major);
                 let message = format!("{word} changes where the tool goes, and cannot be resolved");
@@ -182,6 +176,28 @@ impl Reader {
             }
             None => self.unknown(statement),
         }
+    }
+
+    /// A statement that says something of the job which is not passed on: a warning.
+    fn not_passed_on(&mut self, statement: &Statement) -> Outcome {
+        let word = super::text::decode(statement.major);
+        let message = format!("{word} is not passed on");
+        self.report.warn(statement, Rule::IgnoredWord, &message, "check whether the job needs it");
+        Ok(())
+    }
+
+    /// `SET/MODE,ABSOL`; others set the machine up: `SET/HOLDER,90` a head, `SET/OFFSETL,7` a register.
+    fn set(&mut self, statement: &Statement) -> Outcome {
+        self.mode(statement)?;
+        if statement.is(0, "MODE") { Ok(()) } else { self.not_passed_on(statement) }
+    }
+
+    /// `TOOLNO/number,diameter`: bookkeeping beside `LOADTL`; with words it names a register or a length, which that has to say.
+    fn toolno(&mut self, statement: &Statement) -> Outcome {
+        let words = ["ADJUST", "LENGTH", "OSETNO"];
+        let says = |i: usize| words.iter().any(|word| statement.is(i, word));
+        let says_more = (0..statement.fields.len()).any(says);
+        if says_more { self.not_passed_on(statement) } else { Ok(()) }
     }
 
     /// A word that is not known: one warning for each, but not without end.

@@ -406,3 +406,21 @@ fn a_cut_for_a_described_tool_that_is_not_loaded_is_refused() {
     // What is described behind the first motion of a tool of unknown size is not passed on, and is said.
     assert_eq!(warnings(&format!("{cuts}CUTTER/10\nGOTO/2,0,0")), ["tool-change"]);
 }
+
+/// A head, a register or a length that a statement names, and no program says.
+#[test]
+fn what_set_and_toolno_say_of_the_job_is_not_dropped_without_a_word() {
+    let warned = |line: &str| {
+        let text = format!("UNITS/MM\nLOADTL/1\n{line}\nRAPID\nGOTO/0,0,100\nFINI");
+        let found = reading(&text).warnings;
+        found.iter().any(|found| found.rule.name() == "ignored-word" && found.line == 3)
+    };
+    for line in
+        ["SET/HOLDER,90", "SET/OFFSETL,7", "SET/ADJUST,7", "TOOLNO/ADJUST,7", "TOOLNO/1,LENGTH,80"]
+    {
+        assert!(warned(line), "{line}");
+    }
+    for line in ["SET/MODE,ABSOL", "TOOLNO/1,10"] {
+        assert!(!warned(line), "{line}");
+    }
+}

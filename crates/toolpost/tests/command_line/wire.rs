@@ -557,3 +557,71 @@ fn a_contour_of_which_no_block_says_z_is_flat() {
         }
     }
 }
+
+/// A square of 10 mm for a wire machine, and what comes in it behind its fifth corner, 1 mm before it closes.
+fn wire_source(first: &str, before_it_closes: &str, rest: &str) -> Folder {
+    let folder = Folder::new();
+    let square = format!(
+        "%\nO0001\nG21 G90 G40\nG92 X5. Y-5.\nM60\nG1 X5. Y0.{first}\nX10.\nY10.\nX0.\nY0.\nX4.\n{before_it_closes}X5.\nY-5.\nM50\n{rest}M2\n%\n"
+    );
+    folder.write("sector.nc", square);
+    folder.write("high.toml", "extends = \"fanuc-wire\"\n[wire]\nheight = 50\n");
+    folder
+}
+
+const ONTO_WIRE: [&str; 8] =
+    ["wire", "sector.nc", "--from", "fanuc-wire", "-m", "fanuc-wire", "-o", "part.nc"];
+
+/// U 1 in a plane 50 mm up is U 1 there, however high the part is; in a plane that nobody knows it is nothing.
+#[test]
+fn u_and_v_of_a_source_never_count_at_the_height_of_the_part() {
+    let folder = wire_source(" U1. V0.5", "U0. V0.\n", "");
+    let on = |from: &str, onto: &str, more: &[&str]| {
+        let mut call = ONTO_WIRE;
+        (call[3], call[5]) = (from, onto);
+        folder.run(&[&call[..], more].concat())
+    };
+    for (from, onto, more) in [
+        ("fanuc-wire", "fanuc-wire", &["--height", "20", "--uv-height", "50"][..]),
+        ("high.toml", "high.toml", &["--height", "20"]),
+        ("high.toml", "fanuc-wire", &["--height", "20", "--uv-height", "50"]),
+        ("fanuc-wire", "fanuc-wire", &["--uv-height", "50"]),
+    ] {
+        let said = on(from, onto, more);
+        assert_eq!(said.code, 0, "{said:?}");
+        let text = folder.read("part.nc");
+        assert!(text.contains("U1. V0.5") || text.contains("V0.5 U1."), "{from} {onto}: {text}");
+    }
+    for (from, onto, more) in [
+        ("fanuc-wire", "high.toml", &["--height", "20"][..]),
+        ("fanuc-wire", "fanuc-wire", &["--height", "20"]),
+    ] {
+        let said = on(from, onto, more);
+        let words = ["error[upper-plane]", "--uv-height"];
+        assert!(said.code == 2 && words.iter().all(|word| said.err.contains(word)), "{said:?}");
+    }
+}
+
+/// What a source of a wire machine says besides its contour: where it stops before the contour closes, a slug is held, which would fall on the wire.
+#[test]
+fn stops_and_ends_of_the_wire_within_a_contour_are_refused_and_what_else_is_left_out_is_told() {
+    let said = |first: &str, before_it_closes: &str, rest: &str| {
+        wire_source(first, before_it_closes, rest).run(&ONTO_WIRE)
+    };
+    for (stops, line) in [("M0\n", 12), ("M1\n", 12), ("M50\nM0\nM60\n", 12), ("M50\nM60\n", 12)] {
+        let said = said("", stops, "");
+        let words = ["error[stop-in-cut]".to_owned(), format!("sector.nc:{line}"), "--tab".into()];
+        assert!(
+            said.code == 2 && words.iter().all(|word| said.err.contains(word)),
+            "{stops} {said:?}"
+        );
+    }
+    let found = said("", "", "");
+    assert_eq!((found.code, found.err.as_str()), (0, ""), "{found:?}");
+    let found = said(" F2.", "F1.\n", "");
+    assert!(found.code == 0 && found.err.contains("warning[feed]"), "{found:?}");
+    assert!(found.err.contains("2 times"), "{found:?}");
+    let second = "M0\nG0 X25. Y-5.\nM60\nG1 X25. Y0.\nX30.\nY10.\nX25.\nY-5.\nM50\n";
+    let found = said("", "", second);
+    assert!(found.code == 0 && found.err.contains("M0 of the source is left out"), "{found:?}");
+}

@@ -79,7 +79,8 @@ impl Step<'_, '_, '_> {
         }
         let refused = |message| Err(self.block.whole(Rule::Wire, message));
         let Some(height) = wire.upper_plane else {
-            return refused("U and V, and the height of the upper plane is not known");
+            let message = "U and V, and the height of the upper plane is not known";
+            return Err(self.block.whole(Rule::UpperPlane, message));
         };
         let Some(axis) = direction(Vec3::new(wire.u, wire.v, height)) else {
             return refused("U and V lie so far out that the wire has no direction");
