@@ -6,6 +6,9 @@ use geom::{Vec3, angle_between, reach_of_box};
 /// A program that stays below its zero may be within a hole from there: it counts as going so far above zero, mm.
 const ABOVE_ZERO: f64 = 1.0;
 
+/// A tool that rises along Z by less than this part of its way along itself lies rather than stands: it leans by more than 60 degrees.
+const LYING: f64 = 0.5;
+
 /// So many points are looked at one by one.
 const FEW: usize = 16;
 
@@ -16,6 +19,8 @@ pub struct Tops {
     /// Boxes around halves of the points, halves of these and so on: each before those of its own halves.
     boxes: Vec<PointBox>,
     below_zero: Option<f64>,
+    /// Whether the tool stands anywhere.
+    stands: bool,
 }
 
 /// The box around some of the points.
@@ -37,6 +42,7 @@ impl Tops {
         let mut here: Option<Pose> = None;
         let mut cycle: Option<&Cycle> = None;
         let mut points = Vec::new();
+        let mut stands = false;
         for record in &program.records {
             if let Op::Cycle(new) = &record.op {
                 cycle = Some(new);
@@ -50,6 +56,7 @@ impl Tops {
                 0.0
             };
             points.push(pose.point() + pose.axis() * height);
+            stands |= pose.axis().z >= LYING;
             here = Some(*pose);
         }
         let highest = points.iter().map(|point: &Vec3| point.z).fold(f64::NEG_INFINITY, f64::max);
@@ -59,7 +66,7 @@ impl Tops {
             points.extend(above.collect::<Vec<_>>());
         }
         let boxes = Vec::with_capacity(2 * points.len() / FEW + 1);
-        let mut tops = Tops { boxes, points, below_zero };
+        let mut tops = Tops { boxes, points, below_zero, stands };
         if !tops.points.is_empty() {
             tops.divide([0, tops.points.len()]);
         }
@@ -74,6 +81,12 @@ impl Tops {
             self.look(0, axis, &mut highest);
         }
         highest
+    }
+
+    /// How high the program goes along Z, mm. −∞ where its tool lies wherever it goes, or points down: Z says nothing then of where the part ends, which may
+    /// be clamped on any of its sides.
+    pub fn upward(&self) -> f64 {
+        if self.stands { self.along(Vec3::Z) } else { f64::NEG_INFINITY }
     }
 
     /// How high a program goes that stays below its zero, Z in mm; `None` of one that does not.
@@ -188,6 +201,21 @@ mod tests {
         assert_eq!(tops([-40.0, -30.0]).along(Vec3::X), 100.0);
         assert_eq!(tops([-40.0, 0.0]).along(Vec3::Z), 0.0);
         assert_eq!(tops([-40.0, 0.0]).below_zero(), None);
+    }
+
+    #[test]
+    fn along_z_counts_where_the_tool_stands_anywhere() {
+        let lean = |degrees: f64, z: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            Op::Rapid(Pose::new(Vec3::new(0.0, 0.0, z), Vec3::new(sin, 0.0, cos)).unwrap())
+        };
+        let upward = |leans: [f64; 2]| {
+            Tops::of(&program([lean(leans[0], 5.0), lean(leans[1], 40.0)])).upward()
+        };
+        assert_eq!(upward([0.0, 90.0]), 40.0);
+        assert_eq!(upward([59.0, 180.0]), 40.0);
+        assert_eq!(upward([61.0, 90.0]), f64::NEG_INFINITY);
+        assert_eq!(upward([180.0, 100.0]), f64::NEG_INFINITY);
     }
 
     /// By hand: over a hole at Z 0 the tool goes 7 mm back, and half a circle of radius 10 that stands upright rises to Z 10.

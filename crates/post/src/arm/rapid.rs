@@ -207,7 +207,7 @@ impl<'a> RapidPlanner<'a> {
     }
 
     fn floor_along_z(&self) -> f64 {
-        self.tops().along(Vec3::Z) + self.arm.unmeasured()
+        self.tops().upward() + self.arm.unmeasured()
     }
 
     fn floor(&self, axis: Vec3) -> f64 {
@@ -240,10 +240,12 @@ impl<'a> RapidPlanner<'a> {
         reaches.then(|| self.raised(tool, at, length)).flatten().map(|end| WayOut(vec![end]))
     }
 
-    /// Straight up along the tool until it is so far above where joints may lead it, and then along Z. A tool that points down goes so far out that it
+    /// Straight up along the tool until it is so far above where joints may lead it, and then along Z to so far above all of the source. A tool that points down goes so far out that it
     /// is high enough along itself all the way up.
     fn along_tool_and_z(&self, tool: &Frame, at: &Position, above: f64) -> Option<WayOut> {
-        let [along, up] = self.lacks(at, above)?;
+        let [along, _] = self.lacks(at, above)?;
+        let top = self.tops().along(Vec3::Z) + self.arm.unmeasured() + above;
+        let up = top - at.tool.translation.z;
         let rise = -at.tool.matrix3.z_axis.z;
         let out = match rise >= 0.0 {
             true => along,
@@ -258,9 +260,10 @@ impl<'a> RapidPlanner<'a> {
             pieces.push(piece);
         }
         let up = up - (here.tool.translation.z - at.tool.translation.z);
-        if up > slack {
-            pieces.push(self.moved(tool, &here, Vec3::Z * up)?);
+        if up <= slack {
+            return None;
         }
+        pieces.push(self.moved(tool, &here, Vec3::Z * up)?);
         Some(WayOut(pieces))
     }
 

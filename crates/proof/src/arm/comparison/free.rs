@@ -33,7 +33,7 @@ impl Comparison<'_> {
     /// leans is as high along itself deep in a pocket, far on the side to which it leans.
     fn blocked(&self, place: (Vec3, Vec3), ends: &[Top; 2], unmeasured: f64) -> Option<String> {
         self.blocked_along_tool(place, ends, unmeasured).or_else(|| {
-            let upward = Top { axis: Vec3::Z, height: self.tops.along(Vec3::Z) };
+            let upward = Top { axis: Vec3::Z, height: self.tops.upward() };
             self.too_low(&upward, place.0, ("Z", unmeasured))
         })
     }
@@ -126,5 +126,6 @@ impl Comparison<'_> {
 
 /// Whether a tool leans by so much that it lies rather than stands: up along it, it would go far aside before it is higher along Z.
 fn lies(axis: Vec3) -> bool {
-    axis.z < LYING
+    // Rounding of the words.
+    axis.z < LYING + 1e-4
 }
