@@ -436,6 +436,43 @@ fn each_program_of_a_board_and_a_wire_has_a_follower_of_its_own() {
     assert!(file == "w" && !motions.is_empty());
 }
 
+/// A list of points says no feed: it is set at the machine.
+#[test]
+fn cuts_of_points_take_the_time_of_the_feed_that_is_set_at_the_machine() {
+    let [source, _] = both("sector.nc");
+    let origin = Origin { from: Some("fanuc-31i".into()), ..Origin::default() };
+    let feeds = [vec![0.1], vec![0.1, 0.2], vec![]];
+    for feeds in feeds {
+        let machine = toolpath::machine("bp-95d").unwrap();
+        let cutting = Cutting {
+            side: Some(Side::Inside),
+            wire: 0.25,
+            round_corners: true,
+            thread: vec![geom::Vec2::new(15.0, 15.0)],
+            leave: feeds.iter().skip(1).map(|_| 0.03).collect(),
+            feeds: feeds.clone(),
+            ..Default::default()
+        };
+        let settings = wire::Settings { cutting, ..wire::Settings::default() };
+        let (tolerances, walks) = (Tolerances::default(), Walks::default());
+        let made =
+            wire::make(&source, false, &origin, machine, &settings, "w", &tolerances, &walks)
+                .unwrap();
+        let report: serde_json::Value = serde_json::from_str(&made.report).unwrap();
+        let walked = walks.0.into_inner().unwrap();
+        let cuts = walked[0].1.iter().filter(|motion| motion.kind == proof::MotionKind::Line);
+        let seconds: f64 = cuts.clone().map(|motion| motion.seconds).sum();
+        match feeds.is_empty() {
+            true => assert!(cuts.clone().all(|motion| motion.feed.is_none())),
+            false => {
+                let said = report["wire"]["cutting_time_s"].as_f64().unwrap();
+                assert!((seconds / said - 1.0).abs() < 1e-3, "{seconds} s, {said} s");
+                assert!(cuts.clone().all(|motion| motion.feed.is_some()));
+            }
+        }
+    }
+}
+
 /// A watch that ends the work when a step is so far, and hears how far each is.
 struct Until {
     end: Option<(&'static str, f64)>,

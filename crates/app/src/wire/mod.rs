@@ -161,7 +161,7 @@ pub fn make(
     let name = &toolpath.program.name;
     let proof = proof::of(&cut, &machine, name, file, &output.text, tolerances, watch)
         .map_err(Box::<Diagnostic>::from)?;
-    let proven = proof::source(&cut, name).map_err(Box::<Diagnostic>::from)?;
+    let proven = cut.source(name).map_err(Box::<Diagnostic>::from)?;
     // An arc of the contour is made by several points of the path.
     let places = ::post::places(&proven, &program);
     let origins = output.origins.moved(|record| places.get(record).copied());

@@ -2,12 +2,12 @@
 //! where it leans against its points, and each end of the wire against its own contour besides.
 
 use super::report::Cut;
-use crate::watch::Watch;
+use crate::watch::{Followed, Watch};
 use control::{Action, Position, Setup};
 use geom::Vec3;
 use machine::Machine;
-use program::{NoPose, Program};
-use proof::{Prover, Report, Tolerances};
+use program::{Diagnostic, Feed, NoPose, Program};
+use proof::{MachineState, Motion, MotionKind, Observer, Prover, Report, Tolerances};
 use wire::segment::{End, Segment};
 
 /// Runs `text` on the control of `machine` and compares it with what `cut` wants, for whoever watches.
@@ -23,8 +23,11 @@ pub fn of(
     tolerances: &Tolerances,
     watch: &dyn Watch,
 ) -> Result<Report, NoPose> {
-    let program = source(cut, name)?;
-    let follower = &mut watch.followed(file, &program, machine);
+    let program = cut.source(name)?;
+    let follower = &mut Timed {
+        follower: watch.followed(file, &program, machine),
+        feeds: cut.feeds_aside(name)?,
+    };
     let mut report = proof::prove_for(&program, machine, file, text, tolerances, follower);
     let leans = cut.segments.iter().any(Segment::leans);
     for end in [End::Lower, End::Upper] {
@@ -46,14 +49,45 @@ pub fn of(
     Ok(report)
 }
 
-/// What the program is compared with as a whole: the contour with its arcs where the wire is upright, where it leans its points.
-///
-/// # Errors
-/// A contour with a point that is not finite.
-pub fn source(cut: &Cut, name: &str) -> Result<Program, NoPose> {
-    match cut.segments.iter().any(Segment::leans) {
-        true => cut.program(name),
-        false => cut.end(name, End::Lower),
+/// Whoever follows the proof. Cuts of a program that says no feed take as long as at the one that is set at the machine, as the
+/// report counts them.
+struct Timed<'a> {
+    follower: Followed<'a>,
+    /// Of each record, mm/min, where it is known; empty where the program says it.
+    feeds: Vec<Option<f64>>,
+}
+
+impl Observer for Timed<'_> {
+    fn reached(&mut self, part: f64) -> bool {
+        self.follower.reached(part)
+    }
+
+    fn wants_motions(&self) -> bool {
+        self.follower.wants_motions()
+    }
+
+    fn moved(&mut self, motion: &Motion) {
+        match self.feeds.get(motion.record).copied().flatten() {
+            Some(feed) if motion.kind == MotionKind::Line => {
+                let [from, to] = motion.tool.map(|pose| pose.tip);
+                let seconds = from.distance(to) / feed * 60.0;
+                let feed = Some(Feed::PerMinute(feed));
+                self.follower.moved(&Motion { seconds, feed, ..motion.clone() });
+            }
+            _ => self.follower.moved(motion),
+        }
+    }
+
+    fn stated(&mut self, state: &MachineState) {
+        self.follower.stated(state);
+    }
+
+    fn mismatched(&mut self, found: &Diagnostic) {
+        self.follower.mismatched(found);
+    }
+
+    fn ended(&mut self, report: &Report) {
+        self.follower.ended(report);
     }
 }
 

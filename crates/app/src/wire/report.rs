@@ -7,7 +7,7 @@ use ::wire::segment::{self, End, Segment};
 use ::wire::{Accuracy, Chords};
 use drawing::{WirePicture, WireSegment};
 use machine::Machine;
-use program::{Diagnostic, NoPose, Program};
+use program::{Diagnostic, NoPose, Op, Program, Record};
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
@@ -46,6 +46,44 @@ impl Cut {
     /// Height of the part, mm, where it is given.
     pub fn height(&self) -> Option<f64> {
         self.height
+    }
+
+    /// The feeds of a program that does not say them, mm/min: of each record of [`Cut::source`] the one that is set at the machine.
+    /// Empty where the program says them.
+    ///
+    /// # Errors
+    /// A point that is not finite.
+    pub fn feeds_aside(&self, name: &str) -> Result<Vec<Option<f64>>, NoPose> {
+        if self.says_feed {
+            return Ok(Vec::new());
+        }
+        let program = self.whole(name, true)?;
+        let mut feed = None;
+        let of_record = |record: &Record| match record.op {
+            Op::Feed(new) => {
+                feed = Some(new.value());
+                None
+            }
+            _ => Some(feed),
+        };
+        Ok(program.records.iter().filter_map(of_record).collect())
+    }
+
+    /// What the program is compared with as a whole: the contour with its arcs where the wire is upright, where it leans its points.
+    ///
+    /// # Errors
+    /// A point that is not finite.
+    pub fn source(&self, name: &str) -> Result<Program, NoPose> {
+        self.whole(name, self.says_feed)
+    }
+
+    fn whole(&self, name: &str, feeds: bool) -> Result<Program, NoPose> {
+        match self.segments.iter().any(Segment::leans) {
+            true => {
+                segment::program(name, &self.segments, self.height.unwrap_or(f64::INFINITY), feeds)
+            }
+            false => segment::end(name, &self.segments, End::Lower, feeds),
+        }
     }
 
     /// The program to write.
