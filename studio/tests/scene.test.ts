@@ -60,7 +60,7 @@ test("finer arcs are asked for by name, and the exact level is drawn until they 
 
 const walk: WalkAbout = {
     moves: 4097, left_out: 0, chunks: 2, levels: [{ error: 0, vertices: 9 }, { error: 0.01, vertices: 4 }], box: null, time_s: 1,
-    tools: [], operations: [], kinds: ["rapid", "feed", "gap"], row: 16, mismatch: null, deviation: null, jumps: [], jumps_in_all: 0, fine: null,
+    tools: [], operations: [], kinds: ["rapid", "feed", "gap"], row: 16, mismatch: null, deviation: null, jumps: [], jumps_in_all: 0, excursions: [], excursions_in_all: 0, fine: null,
 };
 
 /** Points and words. */

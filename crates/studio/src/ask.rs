@@ -744,6 +744,10 @@ pub struct WalkAbout {
     pub jumps: Vec<Jump>,
     /// How many there are.
     pub jumps_in_all: u32,
+    /// The first thousand excursions: where the tool leaves the cut and comes back to it.
+    pub excursions: Vec<Excursion>,
+    /// How many there are.
+    pub excursions_in_all: u32,
     /// How far the lines of the level `fine` may be from the arcs, mm; null where there are no arcs.
     pub fine: Option<f64>,
     /// The last move before the first mismatch.
@@ -764,6 +768,18 @@ pub struct Jump {
     pub from: f64,
     /// And behind it.
     pub to: f64,
+}
+
+/// Where the tool leaves the cut and comes back to it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Excursion {
+    /// Its first move.
+    pub r#move: u32,
+    /// When that begins, s.
+    pub time_s: f64,
+    /// How far the tool is lifted along its axis, mm; 0 where it goes home instead.
+    pub lift_mm: f64,
 }
 
 /// A level of detail.
@@ -1242,6 +1258,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             AxisKind,
             WalkAbout,
             Jump,
+            Excursion,
             Level,
             ToolUse,
             Operation,

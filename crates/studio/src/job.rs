@@ -536,6 +536,8 @@ impl Job {
             deviation: walk.largest_deviation(),
             jumps: walk.jumps().0.to_vec(),
             jumps_in_all: walk.jumps().1,
+            excursions: walk.excursions().0.to_vec(),
+            excursions_in_all: walk.excursions().1,
             fine: walk.has_arcs().then_some(geometry::FINE),
             mismatch: walk.mismatch(),
         }

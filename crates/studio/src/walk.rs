@@ -4,7 +4,7 @@
 //! do not go up with the moves), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
 //! before it ended.
 
-use crate::ask::{Jump, Operation, ToolUse};
+use crate::ask::{Excursion, Jump, Operation, ToolUse};
 use crate::drawing::Drawing;
 use crate::geometry::{self, CHUNK, Exact, Geometry};
 use crate::index::Index;
@@ -55,9 +55,10 @@ const MOST_BYTES: usize = 3 << 29;
 /// How many operations are listed.
 const MOST_NAMED: usize = 10_000;
 
-/// By how much a rotary axis turns in a cut that is listed as a jump, degrees, and how many are listed.
+/// By how much a rotary axis turns in a cut that is listed as a jump, degrees.
 const JUMP: f64 = 30.0;
-const MOST_JUMPS: usize = 1000;
+/// How many jumps, and how many excursions, are listed.
+const LISTED: usize = 1000;
 
 /// After so many moves it is looked at.
 const LOOK: usize = 4096;
@@ -116,6 +117,8 @@ pub struct Walk {
     /// The first cuts in which a rotary axis turns far, and how many there are.
     jumps: Vec<Jump>,
     jumps_in_all: u32,
+    excursions: Vec<Excursion>,
+    excursions_in_all: u32,
     /// Where the tool is before a move that does not begin where the one before it ended.
     starts: Vec<(u32, ToolPose)>,
     arcs: Vec<(u32, Arc)>,
@@ -405,6 +408,11 @@ impl Walk {
     /// The first cuts in which a rotary axis turns far, and how many there are.
     pub fn jumps(&self) -> (&[Jump], u32) {
         (&self.jumps, self.jumps_in_all)
+    }
+
+    /// The first excursions, and how many there are.
+    pub fn excursions(&self) -> (&[Excursion], u32) {
+        (&self.excursions, self.excursions_in_all)
     }
 
     /// Whether there are arcs.
@@ -748,7 +756,7 @@ impl<'a> Follower<'a> {
             let (from, to) = (walk.positions(before)[axis], walk.positions(at)[axis]);
             if (to - from).abs() > JUMP {
                 walk.jumps_in_all += 1;
-                if walk.jumps.len() < MOST_JUMPS {
+                if walk.jumps.len() < LISTED {
                     let time_s = walk.end(before);
                     walk.jumps.push(Jump { axis: axis as u32, r#move: at, time_s, from, to });
                 }
@@ -844,17 +852,27 @@ impl Observer for Follower<'_> {
 
     fn ended(&mut self, report: &Report) {
         // By file and first line: excursions do not overlap.
-        let excursions = report.excursions.iter().map(|excursion| {
-            let from = (excursion.program_file.as_deref(), excursion.first_program_line);
-            (from, excursion.last_program_line)
+        let by_line = report.excursions.iter().map(|excursion| {
+            ((excursion.program_file.as_deref(), excursion.first_program_line), excursion)
         });
-        let excursions: BTreeMap<(Option<&str>, u32), u32> = excursions.collect();
-        for at in (0..self.walk.len()).filter(|_| !excursions.is_empty()) {
+        let by_line: BTreeMap<(Option<&str>, u32), &proof::Excursion> = by_line.collect();
+        self.walk.excursions_in_all = report.excursions.len() as u32;
+        let mut last = None;
+        for at in (0..self.walk.len()).filter(|_| !by_line.is_empty()) {
             let (file, line) = (self.walk.file(at), self.walk.line(at));
-            let found = excursions.range(..=(file, line)).next_back();
-            if found.is_some_and(|((of, _), last)| *of == file && line <= *last) {
-                self.mark(at, EXCURSION);
+            let found = by_line.range(..=(file, line)).next_back().map(|(_, found)| *found);
+            let within = found.filter(|found| {
+                found.program_file.as_deref() == file && line <= found.last_program_line
+            });
+            let Some(found) = within else { continue };
+            if last.replace(found.first_program_line) != Some(found.first_program_line)
+                && self.walk.excursions.len() < LISTED
+            {
+                let time_s = at.checked_sub(1).map_or(0.0, |before| self.walk.end(before));
+                let lift_mm = found.lift_mm;
+                self.walk.excursions.push(Excursion { r#move: at, time_s, lift_mm });
             }
+            self.mark(at, EXCURSION);
         }
         if !self.walk.len().is_multiple_of(CHUNK) {
             self.draw();

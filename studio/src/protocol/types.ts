@@ -850,6 +850,14 @@ jumps: Array<Jump>,
  */
 jumps_in_all: number, 
 /**
+ * The first thousand excursions: where the tool leaves the cut and comes back to it.
+ */
+excursions: Array<Excursion>, 
+/**
+ * How many there are.
+ */
+excursions_in_all: number, 
+/**
  * How far the lines of the level `fine` may be from the arcs, mm; null where there are no arcs.
  */
 fine: number | null, 
@@ -882,6 +890,23 @@ from: number,
  * And behind it.
  */
 to: number, };
+
+/**
+ * Where the tool leaves the cut and comes back to it.
+ */
+export type Excursion = { 
+/**
+ * Its first move.
+ */
+move: number, 
+/**
+ * When that begins, s.
+ */
+time_s: number, 
+/**
+ * How far the tool is lifted along its axis, mm; 0 where it goes home instead.
+ */
+lift_mm: number, };
 
 /**
  * A level of detail.

@@ -65,6 +65,14 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         await finding.getByText(`: 3 of ${count} places`).waitFor();
         expect(new Set(seen).size).toBe(3);
         await accessible(page, "places of a finding");
+        // Each such way out and back is an excursion of the program.
+        await page.getByRole("tab", { name: "Verdict" }).click();
+        await page.getByText(`${count} excursions from a cut and back to it`).click();
+        const excursions = page.locator(".jumps li");
+        const move = /move ([\d,]*\d)/.exec(await excursions.nth(1).innerText())![1];
+        await excursions.nth(1).getByRole("button").click();
+        await page.locator(".readout", { hasText: new RegExp(`Move\\s*${move} rapid`) }).waitFor();
+        await accessible(page, "excursions");
         expect(complaints).toEqual([]);
         await page.close();
     });

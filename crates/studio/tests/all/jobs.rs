@@ -671,6 +671,33 @@ fn tools_have_the_shape_that_the_toolpath_gives_them() {
     }
 }
 
+/// The tool is drawn back where a rotary axis has to be turned back in the cut, and comes back to the same place.
+#[test]
+fn each_excursion_begins_with_the_move_that_leaves_the_cut() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let job = page.post("dome.cls", "sinumerik-840d-traori");
+    let (walk, revision) = (&job["walk"], job["revision"].as_u64().unwrap());
+    let listed = walk["excursions"].as_array().unwrap();
+    let turned_back = |found: &&Value| found["rule"] == "rewind";
+    let finding = job["findings"].as_array().unwrap().iter().find(turned_back).unwrap();
+    assert_eq!(
+        (json!(listed.len()), &walk["excursions_in_all"]),
+        (finding["count"].clone(), &json!(listed.len()))
+    );
+    let mut at = |by: &str, value: &Value| {
+        page.done("place", json!({ "revision": revision, "by": by, "value": value }))
+    };
+    for excursion in listed {
+        let first = at("move", &excursion["move"]);
+        assert_eq!(first["kind"], "rapid", "{first}");
+        let before = at("move", &json!(excursion["move"].as_u64().unwrap() - 1));
+        assert_eq!(before["kind"], "feed", "{before}");
+        let lift = excursion["lift_mm"].as_f64().unwrap();
+        assert!(lift > 0.0, "{excursion}");
+    }
+}
+
 /// A machine that cannot do what the source asks for: the source is shown, its path is drawn, and the findings lead into it.
 #[test]
 fn a_source_that_the_machine_cannot_cut_is_shown_without_a_program() {
