@@ -124,7 +124,7 @@ def test_every_damage_of_a_program_is_found():
     assert done >= 30
 
 
-def test_a_tilted_head_that_comes_from_home_a_millimetre_too_low_is_found(tmp_path):
+def test_a_tilted_head_that_comes_from_home_too_low_is_found(tmp_path):
     name = "linuxcnc-xyzbc-head"
     text, path = stated(name, *STATED[name]), tmp_path / "job.cls"
     (tmp_path / "machine.toml").write_text(text)
@@ -132,13 +132,21 @@ def test_a_tilted_head_that_comes_from_home_a_millimetre_too_low_is_found(tmp_pa
     machine = toolpost.machine(tmp_path / "machine.toml")
     sees = load(text, *library(ROOT, name)[1:])
     program = toolpost.post(toolpost.read(path), machine).text
-    # The highest that the job cuts is the surface of a hole, at -1.244: a millimetre above it, and
-    # what is kept for rounding.
-    one, two, three = program.split("\nZ-0.234\n")
-    low, right = "\nZ-1.234\n", "\nZ-0.234\n"
-    for worse in (one + low + two + right + three, one + right + two + low + three):
-        faults = judge(name, sees, read(job(29)), worse, 1).faults
-        assert {fault.partition(":")[0] for fault in faults} == {"rapid"}
+    # From home it comes to the height of the job's highest place, and then along the tool. The
+    # reference wants a millimetre above all cuts, of which the surface of a hole at -1.244 is the
+    # highest, and what is kept for rounding; it looks at places a millimetre apart.
+    ways = [
+        ("X52.6305 Y35.5037", (35.665335, -15.668456, -2.536206), (0.139168, 0.419772, 0.896897)),
+        ("X48.8039 Y158.0838", (31.606629, -16.168463, -2.448296), (0.083326, 0.844307, 0.529341)),
+    ]
+    for above, place, axis in ways:
+        for height, expected in ((-0.234, set()), (-2, {"rapid"})):
+            x, y, _ = np.array(place) + np.array(axis) * (height - place[2]) / axis[2]
+            begin = f"\n{above}\nZ106.7997\n"
+            assert begin in program
+            lower = program.replace(begin, f"\nX{x:.4f} Y{y:.4f}\nZ{height}\n")
+            faults = judge(name, sees, read(job(29)), lower, 1).faults
+            assert {fault.partition(":")[0] for fault in faults} == expected, (above, height)
 
 
 # The reference itself, by hand and by the tables of the specification.
