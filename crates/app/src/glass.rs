@@ -186,7 +186,11 @@ pub fn shape(source: &Source, columns: Columns) -> Result<Shape, Stop> {
 }
 
 /// A body with its colours and textures.
-fn painted(source: &Source, columns: Columns, beside: Beside) -> Result<Shape, Stop> {
+fn painted(
+    (source, bytes): (&Source, &[u8]),
+    columns: Columns,
+    beside: Beside,
+) -> Result<Shape, Stop> {
     let form = form(source.path(), columns)?;
     let mut beside = |name: &str| {
         // What a body names lies in its folder or below.
@@ -196,26 +200,30 @@ fn painted(source: &Source, columns: Columns, beside: Beside) -> Result<Shape, S
         }
         beside(source, name)
     };
-    Ok(mesh::read_painted(&source.read()?, form, &source.name(), Some(&mut beside))?)
+    Ok(mesh::read_painted(bytes, form, &source.name(), Some(&mut beside))?)
 }
 
-/// What a file of a job holds.
-fn shape_of_job(source: &Source, settings: &Settings, beside: Beside) -> Result<Shape, Stop> {
-    let curves = |form| -> Result<Shape, Stop> {
-        Ok(Shape::Curves(curve::read(&source.read()?, form, &source.name())?))
-    };
-    match files::ending(source.path()).as_str() {
+/// What a file of a job holds, and its bytes.
+fn shape_of_job(
+    source: &Source,
+    settings: &Settings,
+    beside: Beside,
+) -> Result<(Shape, Vec<u8>), Stop> {
+    check(source)?;
+    let (bytes, name) = (source.read()?, source.name());
+    let curves = |form| curve::read(&bytes, form, &name).map(Shape::Curves);
+    let shape = match files::ending(source.path()).as_str() {
         "png" | "jpg" | "jpeg" | "bmp" | "pcx" => {
-            let picture = picture::read(&source.read()?, settings.picture, &source.name())?;
-            Ok(Shape::Picture(picture))
+            Shape::Picture(picture::read(&bytes, settings.picture, &name)?)
         }
-        "dxf" => curves(curve::Form::Dxf),
-        "plt" | "hpgl" | "hpg" => curves(curve::Form::Hpgl),
+        "dxf" => curves(curve::Form::Dxf)?,
+        "plt" | "hpgl" | "hpg" => curves(curve::Form::Hpgl)?,
         _ => match settings.job.filling.fill {
-            Fill::Shaded(_) => painted(source, settings.columns, beside),
-            _ => shape(source, settings.columns),
+            Fill::Shaded(_) => painted((source, &bytes), settings.columns, beside)?,
+            _ => mesh::read(&bytes, form(source.path(), settings.columns)?, &name)?,
         },
-    }
+    };
+    Ok((shape, bytes))
 }
 
 /// The bytes of a program of a machine: only a binary one need not be text.
@@ -246,9 +254,8 @@ impl<'s> Job<'s> {
         };
         let (table, wavelength) = (utf_8(&table, &file)?, machine.laser.wavelength);
         let material = material::find(table, &file, &settings.material, wavelength)?;
-        let shapes = bodies.iter().map(|body| shape_of_job(body, settings, beside));
-        let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
-        let read = bodies.iter().map(Source::read).collect::<Result<Vec<_>, _>>()?;
+        let read = bodies.iter().map(|body| shape_of_job(body, settings, beside));
+        let (shapes, read): (Vec<_>, Vec<_>) = read.collect::<Result<_, _>>()?;
         let digest = Digest::of(read.iter().map(Vec::as_slice));
         Ok(Job { machine, material, shapes, settings, most: u64::MAX, digest })
     }

@@ -5,6 +5,7 @@ import { counted, rounded } from "../numbers.ts";
 import type { Axis, Job, Jump } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import type { Theme } from "../view/colours.ts";
+import { Moves } from "./Moves.tsx";
 import { clock } from "./Timeline.tsx";
 
 type Span = [from: number, to: number];
@@ -52,27 +53,12 @@ const LISTED = 200;
 
 /** Cuts in which a rotary axis turns far: where a tool may swing the wrong way. */
 function Jumps({ screen, job }: { screen: Screen; job: Job }) {
-    const { jumps, jumps_in_all } = job.walk;
-    if (jumps_in_all === 0) return null;
+    const { jumps, jumps_in_all: all } = job.walk;
+    const text = ({ axis, from, to }: Jump): string => `${job.machine.axes[axis]?.name} ${rounded(from)}° → ${rounded(to)}°`;
     return (
-        <details class="jumps">
-            <summary>
-                <strong class="warning">▼ {counted(jumps_in_all)}</strong> {jumps_in_all === 1 ? "cut turns a rotary axis" : "cuts turn a rotary axis"} by more than 30°
-            </summary>
-            <ol>
-                {jumps.slice(0, LISTED).map(({ axis, move, time_s, from, to }) => (
-                    <li key={`${axis} ${move}`}>
-                        <button type="button" onClick={() => void screen.studio.cursor.toMove(move)}>
-                            {job.machine.axes[axis]?.name} {rounded(from)}° → {rounded(to)}°
-                        </button>{" "}
-                        <span class="soft">
-                            move {counted(move + 1)}, {clock(time_s)}
-                        </span>
-                    </li>
-                ))}
-                {jumps_in_all > LISTED && <li class="soft">and {counted(jumps_in_all - LISTED)} more</li>}
-            </ol>
-        </details>
+        <Moves screen={screen} moves={jumps} all={all} most={LISTED} text={text}>
+            <strong class="warning">▼ {counted(all)}</strong> {all === 1 ? "cut turns a rotary axis" : "cuts turn a rotary axis"} by more than 30°
+        </Moves>
     );
 }
 

@@ -1,10 +1,10 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { counted, rounded } from "../numbers.ts";
-import type { Job, Mismatch } from "../protocol/asks.ts";
+import type { Excursion, Job, Mismatch } from "../protocol/asks.ts";
 import { readText } from "../protocol/text.ts";
 import type { Screen } from "../screen/screen.ts";
-import { clock } from "./Timeline.tsx";
+import { Moves } from "./Moves.tsx";
 
 /** The most places that are listed. */
 const SHOWN = 400;
@@ -34,28 +34,12 @@ export function Verdict({ screen }: { screen: Screen }) {
 
 /** Where the tool leaves the cut and comes back to it. */
 function Excursions({ screen, job }: { screen: Screen; job: Job }) {
-    const { excursions, excursions_in_all } = job.walk;
-    if (excursions_in_all === 0) return null;
-    const more = excursions_in_all - Math.min(SHOWN, excursions.length);
+    const { excursions, excursions_in_all: all } = job.walk;
+    const text = ({ lift_mm }: Excursion): string => (lift_mm === 0 ? "home" : `${rounded(lift_mm)} mm along the tool`);
     return (
-        <details class="jumps">
-            <summary>
-                <strong class="warning">△ {counted(excursions_in_all)}</strong> {excursions_in_all === 1 ? "excursion" : "excursions"} from a cut and back to it
-            </summary>
-            <ol>
-                {excursions.slice(0, SHOWN).map(({ move, time_s, lift_mm }) => (
-                    <li key={move}>
-                        <button type="button" onClick={() => void screen.studio.cursor.toMove(move)}>
-                            {lift_mm === 0 ? "home" : `${rounded(lift_mm)} mm along the tool`}
-                        </button>{" "}
-                        <span class="soft">
-                            move {counted(move + 1)}, {clock(time_s)}
-                        </span>
-                    </li>
-                ))}
-                {more > 0 && <li class="soft">and {counted(more)} more</li>}
-            </ol>
-        </details>
+        <Moves screen={screen} moves={excursions} all={all} most={SHOWN} text={text}>
+            <strong class="warning">△ {counted(all)}</strong> {all === 1 ? "excursion" : "excursions"} from a cut and back to it
+        </Moves>
     );
 }
 

@@ -24,10 +24,13 @@ pub fn of(
     watch: &dyn Watch,
 ) -> Result<Report, NoPose> {
     let program = cut.source(name)?;
-    let follower = &mut Timed {
-        follower: watch.followed(file, &program, machine),
-        feeds: cut.feeds_aside(name)?,
+    let follower = watch.followed(file, &program, machine);
+    // Nobody else needs them: for them the program is made once more.
+    let feeds = match follower.wants_motions() {
+        true => cut.feeds_aside(name)?,
+        false => Vec::new(),
     };
+    let follower = &mut Timed { follower, feeds };
     let mut report = proof::prove_for(&program, machine, file, text, tolerances, follower);
     let leans = cut.segments.iter().any(Segment::leans);
     for end in [End::Lower, End::Upper] {
@@ -53,7 +56,7 @@ pub fn of(
 /// report counts them.
 struct Timed<'a> {
     follower: Followed<'a>,
-    /// Of each record, mm/min, where it is known; empty where the program says it.
+    /// Of each record, mm/min, where it is known; empty where the program says it, or nobody is told the motions.
     feeds: Vec<Option<f64>>,
 }
 

@@ -79,9 +79,7 @@ impl Cut {
 
     fn whole(&self, name: &str, feeds: bool) -> Result<Program, NoPose> {
         match self.segments.iter().any(Segment::leans) {
-            true => {
-                segment::program(name, &self.segments, self.height.unwrap_or(f64::INFINITY), feeds)
-            }
+            true => self.points_program(name, feeds),
             false => segment::end(name, &self.segments, End::Lower, feeds),
         }
     }
@@ -91,7 +89,11 @@ impl Cut {
     /// # Errors
     /// A point that is not finite.
     pub fn program(&self, name: &str) -> Result<Program, NoPose> {
-        segment::program(name, &self.segments, self.height.unwrap_or(f64::INFINITY), self.says_feed)
+        self.points_program(name, self.says_feed)
+    }
+
+    fn points_program(&self, name: &str, feeds: bool) -> Result<Program, NoPose> {
+        segment::program(name, &self.segments, self.height.unwrap_or(f64::INFINITY), feeds)
     }
 
     /// The same for one end of the wire, with its arcs.

@@ -319,8 +319,7 @@ fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Resu
     let waits = MakesRoom { waits, jobs: &studio.jobs, bytes };
     let (named, program) = match program {
         Program::Posted => (None, None),
-        Program::Text(text) => (None, Some(Existing::new(text, Vec::new()))),
-        Program::There(FileOrUpload::Upload(_), text) => {
+        Program::Text(text) | Program::There(FileOrUpload::Upload(_), text) => {
             (None, Some(Existing::new(text, Vec::new())))
         }
         // A program of the folder keeps its name, and calls what lies beside it.

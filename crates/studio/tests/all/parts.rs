@@ -43,6 +43,13 @@ fn rows(y: f64, count: usize) -> String {
     )
 }
 
+/// A cell whose controller takes 60 lines a file, and a job that needs several.
+fn set_up(studio: &Studio, machine: &str) {
+    let machine = format!("extends = \"{machine}\"\n\n[capabilities]\nprogram_lines = 60\n");
+    fs::write(studio.own().join("mine.toml"), machine).unwrap();
+    fs::write(studio.own().join("job.cls"), rows(30.0, 30)).unwrap();
+}
+
 fn post(page: &mut Socket, file: &str) -> Value {
     let params = json!({ "source": { "file": "job.cls" }, "machine": "mine.toml", "file": file });
     page.answer("post", params, &[]).unwrap_or_else(|stop| panic!("{stop}")).head["done"].clone()
@@ -85,12 +92,10 @@ fn each_file_of_a_program_is_edited_and_all_are_proven_and_saved_together() {
     for Robot { machine, ending, number, nothing } in ROBOTS {
         let studio = Studio::new();
         let own = |name: &str| studio.own().join(name);
-        let machine = format!("extends = \"{machine}\"\n\n[capabilities]\nprogram_lines = 60\n");
-        fs::write(own("mine.toml"), machine).unwrap();
+        set_up(&studio, machine);
         let main = format!("job.{ending}");
         let mut page = studio.socket();
         // An older program of the same name lies in the folder, with all its parts.
-        fs::write(own("job.cls"), rows(30.0, 30)).unwrap();
         let older = post(&mut page, &main);
         assert_eq!(older["verdict"], "done", "{older}");
         save(&mut page, &older, &main).unwrap();
@@ -242,9 +247,7 @@ fn each_file_of_a_program_is_edited_and_all_are_proven_and_saved_together() {
 #[test]
 fn files_that_a_program_has_not_are_refused() {
     let studio = Studio::new();
-    let machine = "extends = \"kuka-kr6-r900\"\n\n[capabilities]\nprogram_lines = 60\n";
-    fs::write(studio.own().join("mine.toml"), machine).unwrap();
-    fs::write(studio.own().join("job.cls"), rows(30.0, 30)).unwrap();
+    set_up(&studio, "kuka-kr6-r900");
     let mut page = studio.socket();
     let job = post(&mut page, "job.src");
     let main = text(&mut page, &job, None);
@@ -283,9 +286,7 @@ fn files_that_a_program_has_not_are_refused() {
 #[test]
 fn the_files_that_a_program_of_the_folder_calls_are_its_own() {
     let studio = Studio::new();
-    let machine = "extends = \"kuka-kr6-r900\"\n\n[capabilities]\nprogram_lines = 60\n";
-    fs::write(studio.own().join("mine.toml"), machine).unwrap();
-    fs::write(studio.own().join("job.cls"), rows(30.0, 30)).unwrap();
+    set_up(&studio, "kuka-kr6-r900");
     let mut page = studio.socket();
     let job = post(&mut page, "job.src");
     save(&mut page, &job, "job.src").unwrap();
