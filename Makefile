@@ -81,7 +81,7 @@ freecad: python
 ## The page of `toolpost studio`, which cargo builds into the command from then on.
 studio: studio/dist/index.html
 
-PAGE := $(shell find studio/src studio/index.html studio/package-lock.json studio/vite.config.ts studio/licences.ts -type f)
+PAGE := $(shell find studio/src examples studio/index.html studio/package-lock.json studio/vite.config.ts studio/licences.ts -type f)
 
 studio/dist/index.html: $(PAGE)
 	@scripts/setup page

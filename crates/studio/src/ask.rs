@@ -278,6 +278,8 @@ pub struct Entry {
     pub kind: EntryKind,
     /// Size of a file.
     pub bytes: Option<u64>,
+    /// When it was written last, s since 1970 (UTC); 0 where the system does not say.
+    pub written: u64,
 }
 
 /// What an entry is.

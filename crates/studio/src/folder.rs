@@ -11,7 +11,7 @@ use program::{Diagnostic, Rule};
 use std::io::{self, Read, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, UNIX_EPOCH};
 
 /// The most entries of a folder that are listed.
 const MOST_ENTRIES: usize = 10_000;
@@ -105,7 +105,10 @@ impl Folder {
                 _ => continue,
             };
             let path = spelled(&at);
-            entries.push(Entry { name, path, kind, bytes });
+            let written = metadata.modified().ok().map(cap_std::time::SystemTime::into_std);
+            let written = written.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+            let written = written.map_or(0, |since| since.as_secs());
+            entries.push(Entry { name, path, kind, bytes, written });
         }
         entries.sort_by(|a, b| (a.kind, &a.name).cmp(&(b.kind, &b.name)));
         Ok((entries, is_whole))
@@ -450,11 +453,13 @@ mod tests {
 
     #[test]
     fn what_is_in_it_is_listed_folders_first_and_hidden_names_are_not() {
-        let (_all, folder) = folder();
+        let (all, folder) = folder();
+        let file = fs::File::options().append(true).open(all.path().join("own/a.cls")).unwrap();
+        file.set_modified(UNIX_EPOCH + Duration::from_secs(86_400)).unwrap();
         let (entries, is_whole) = folder.list("").unwrap();
         let names: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
         assert_eq!((names, is_whole), (vec!["parts", "a.cls"], true));
-        assert_eq!(entries[1].bytes, Some(11));
+        assert_eq!((entries[1].bytes, entries[1].written), (Some(11), 86_400));
         assert_eq!(folder.list("parts/").unwrap().0[0].path, "parts/b.cls");
         assert_eq!(folder.read("./parts/b.cls").unwrap(), b"GOTO/4,5,6\n");
     }

@@ -163,7 +163,7 @@ function whyEmpty({ work, findings }: Studio): string {
 /** More are found in the dialog. */
 const NEAR = 8;
 
-/** Files of the folder, to begin with. */
+/** Files of the folder, to begin with: what CAM has written last stands first. */
 function Near({ screen }: { screen: Screen }) {
     const { studio } = screen;
     const entries = useSignal<Entry[]>([]);
@@ -174,10 +174,30 @@ function Near({ screen }: { screen: Screen }) {
     if (entries.value.length === 0) return null;
     return (
         <p class="near">
-            In this folder:{" "}
-            {entries.value.slice(0, NEAR).map(({ name, path }) => (
+            In this folder, newest first:{" "}
+            {entries.value.toSorted((a, b) => b.written - a.written).slice(0, NEAR).map(({ name, path }) => (
                 <button key={path} type="button" onClick={() => void studio.open({ file: path })}>
                     {name}
+                </button>
+            ))}
+        </p>
+    );
+}
+
+/** To try it without a toolpath at hand. They are fetched when they are asked for. */
+const examples = [
+    { title: "a plate, three axes", name: "plate.cls", text: () => import("../../../examples/plate.cls?raw") },
+    { title: "a leaning tool, five axes", name: "lean.cls", text: () => import("../../../examples/lean.cls?raw") },
+    { title: "a circuit board", name: "lamp.toml", text: () => import("../../../examples/lamp.toml?raw") },
+];
+
+function Examples({ screen: { studio } }: { screen: Screen }) {
+    return (
+        <p class="near">
+            Examples:{" "}
+            {examples.map(({ title, name, text }) => (
+                <button key={name} type="button" onClick={async () => studio.drop([new File([(await text()).default], name)])}>
+                    {title}
                 </button>
             ))}
         </p>
@@ -196,7 +216,12 @@ function Empty({ screen }: { screen: Screen }) {
                     Choose a machine…
                 </button>
             </p>
-            {screen.studio.work.value === null && <Near screen={screen} />}
+            {screen.studio.work.value === null && (
+                <>
+                    <Near screen={screen} />
+                    <Examples screen={screen} />
+                </>
+            )}
             <p class="soft">A program dropped on the left pane, or beside its toolpath, is proven against it.</p>
         </div>
     );

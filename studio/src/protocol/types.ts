@@ -299,7 +299,11 @@ kind: EntryKind,
 /**
  * Size of a file.
  */
-bytes: number | null, };
+bytes: number | null, 
+/**
+ * When it was written last, s since 1970 (UTC); 0 where the system does not say.
+ */
+written: number, };
 
 /**
  * What an entry is.

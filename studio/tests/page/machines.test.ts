@@ -1,4 +1,4 @@
-import { readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, readFileSync, utimesSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
 import type { Job, Place } from "../../src/protocol/asks.ts";
@@ -192,6 +192,22 @@ describe.skipIf(absent() !== null)("the same part on machines of other kinds", (
         const most = Number(/([\d.]+) mm/.exec(await page.locator(".legend").innerText())![1]);
         expect(most).toBeLessThan(0.002);
         await accessible(page, "jumps");
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
+
+    test("a page with nothing on it offers the folder's files, the newest first, and examples", async () => {
+        const server = await Server.start([], ["-m", "fanuc-table-bc"]);
+        for (const [day, name] of ["b.cls", "c.cls", "a.cls"].entries()) {
+            copyFileSync(example("plate.cls"), join(server.folder, name));
+            utimesSync(join(server.folder, name), 1e9, 1e9 + day * 86_400);
+        }
+        const { page, complaints } = await visit(browser(), server.link);
+        await expect.poll(() => page.getByText("In this folder").getByRole("button").allInnerTexts()).toEqual(["a.cls", "c.cls", "b.cls"]);
+        await accessible(page, "nothing yet");
+        await page.getByText("Examples:").getByRole("button", { name: "a leaning tool, five axes" }).click();
+        await proven(page);
+        await page.locator(".source .cm-line", { hasText: "PARTNO/LEAN" }).waitFor();
         expect(complaints).toEqual([]);
         await page.close();
     });
