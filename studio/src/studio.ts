@@ -122,7 +122,6 @@ export class Studio {
         const command = await this.seam.ask("command", { source: work.source, machine: null }).then(({ done }) => done, () => null);
         if (fits(kind, command) || this.work.value !== work) return posting;
         this.cancel();
-        this.machine.value = null;
         await this.post({ ...work, machine: null });
     }
 
@@ -145,10 +144,10 @@ export class Studio {
     }
 
     async choose(machine: string): Promise<void> {
-        this.machine.value = machine;
         const work = this.work.value;
-        if (work === null) await this.askForm();
-        else await this.post({ ...work, machine });
+        if (work !== null) return this.post({ ...work, machine });
+        this.machine.value = machine;
+        await this.askForm();
     }
 
     /** Posts and proves. An edit by hand is kept, and offered. */
@@ -160,6 +159,7 @@ export class Studio {
         this.kept = null;
         this.isCurrent.value = false;
         const { source, machine, options } = work;
+        this.machine.value = machine;
         if (machine === null) {
             this.job.value = null;
             void this.askForm();

@@ -81,6 +81,15 @@ test("an edit of a program that another page edits has a draft of its own, and t
     expect(asked.filter((ask) => ask.startsWith("drop"))).toEqual(["drop_draft a.cls.mill-3"]);
 });
 
+test("where an edit cannot be kept, another machine is not taken, and the head does not name it", async () => {
+    const { studio, asked } = open(["", ...Array.from({ length: 8 }, (_, number) => `-${number + 2}`)].map((end) => `a.cls.mill${end}`));
+    await studio.post(work as never);
+    studio.typed("G0 X1\n");
+    await studio.choose("lathe");
+    expect([studio.machine.value, studio.work.value!.machine, studio.stopped.value[0]!.rule]).toEqual(["mill", "mill", "edit-not-kept"]);
+    expect(asked.filter((ask) => ask === "post")).toHaveLength(1);
+});
+
 test("an edit that is discarded before the server has its draft leaves none", async () => {
     const { studio, asked } = open();
     await studio.post(work as never);
