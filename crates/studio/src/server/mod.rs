@@ -32,7 +32,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::net::{Ipv4Addr, TcpListener};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicU64;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -74,7 +74,7 @@ pub struct Settings {
     pub source: Option<String>,
     /// The machine that is picked for it.
     pub machine: Option<String>,
-    /// The port that it listens on; `None` for one that is free.
+    /// The port that it listens on; `None` for that of the folder, or any other where that is taken.
     pub port: Option<u16>,
     /// The forms of the commands' own options.
     pub form: Option<Form>,
@@ -100,6 +100,17 @@ pub struct More {
 
 /// The option that names it.
 pub const SETTINGS: &str = "settings";
+
+/// The port of a folder, the same each time: another port is another origin for the browser, and what a tab kept of an edit is not
+/// found there. Below those that systems give away themselves (Linux from 32768, IANA from 49152).
+fn port_of(folder: &Path) -> u16 {
+    // FNV-1a, which stays what it is.
+    let hash =
+        folder.as_os_str().as_encoded_bytes().iter().fold(0x811c_9dc5, |hash: u32, byte| {
+            (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193)
+        });
+    20_000 + (hash % 12_000) as u16
+}
 
 /// A server that listens.
 #[derive(Debug)]
@@ -331,15 +342,19 @@ impl Server {
             Diagnostic::error(Rule::StudioPort, message)
         };
         let folder = Folder::open(&settings.folder)?;
-        let address = (Ipv4Addr::LOCALHOST, settings.port.unwrap_or(0));
-        let listen = || {
-            let listener = TcpListener::bind(address)?;
+        let listen = |port| {
+            let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
             listener.set_nonblocking(true)?;
             let port = listener.local_addr()?.port();
             Ok((listener, port))
         };
-        let (listener, port) = listen().map_err(|error: std::io::Error| {
-            refused(&format!("port {} of 127.0.0.1 cannot be opened", address.1), &error)
+        let listening = match settings.port {
+            Some(port) => listen(port),
+            None => listen(port_of(folder.path())).or_else(|_: std::io::Error| listen(0)),
+        };
+        let (listener, port) = listening.map_err(|error| {
+            let port = settings.port.unwrap_or(0);
+            refused(&format!("port {port} of 127.0.0.1 cannot be opened"), &error)
         })?;
         let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(64).build();
         let runtime = runtime.map_err(|error| refused("the server cannot start", &error))?;

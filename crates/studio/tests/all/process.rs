@@ -417,3 +417,18 @@ fn a_folder_that_cannot_be_written_is_read_all_the_same() {
     assert_eq!(page.done("drafts", json!({})), json!([]));
     assert!(!page.done("folder", json!({ "path": "" }))["entries"].as_array().unwrap().is_empty());
 }
+
+/// What a tab keeps of an edit is found again at the same origin only; while a server has the port, another one gets another.
+#[test]
+fn a_folder_has_the_same_port_each_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let bind =
+        || Server::bind(&Settings { folder: folder.path().into(), ..Settings::default() }).unwrap();
+    let first = bind();
+    let port = first.port();
+    assert!((20_000..32_000).contains(&port), "{port}");
+    let second = bind();
+    assert_ne!(second.port(), port);
+    drop((first, second));
+    assert_eq!(bind().port(), port);
+}

@@ -546,7 +546,7 @@ pub struct Studio {
     /// Folder in which files are read and saved, and none outside it [default: that of the source, or this folder].
     #[arg(long, value_name = "FOLDER")]
     pub folder: Option<PathBuf>,
-    /// Port of 127.0.0.1 on which the studio listens [default: a free one].
+    /// Port of 127.0.0.1 on which the studio listens [default: the folder's own, the same each time, or a free one where that is taken].
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..))]
     pub port: Option<u16>,
     /// Print the link and open no browser.
