@@ -428,6 +428,17 @@ impl Risk {
         refused: true,
     };
 
+    /// Which edge, and so which length and radius, counts behind `M6` where no `D` stands in its block or behind it: none, one that
+    /// MD20270 names, the number of the tool before, or its data until the next `D` (W1, "Selection of the cutting edge when
+    /// changing tool").
+    pub(crate) const EDGE_AS_SET_UP: Risk = Risk {
+        rule: Rule::ToolEdge,
+        what: "moves a tool behind M6 without a D for it: which edge counts, and so its length, MD20270 says; a D before M6 is for the \
+               tool before",
+        help: "write D1 in the block of M6 or behind it; or say `edge_at_change` in [settings] of the machine file (MD20270)",
+        refused: true,
+    };
+
     /// A tool length counts along the axis that stands on the plane, or along Z always (SINUMERIK SD42940, "Tool offsets";
     /// FANUC parameter 5001, tool length types A and B).
     pub(crate) const LENGTH_PLANE: Risk = Risk {

@@ -301,6 +301,9 @@ pub struct Settings {
     /// Whether the tool length counts along Z in every plane, where that is known (SINUMERIK SD42940, FANUC parameter
     /// 5001).
     pub length_along_z: Option<bool>,
+    /// The edge of the tool that counts behind a change where the program says none, 0 for none, where that is known (SINUMERIK
+    /// MD20270).
+    pub edge_at_change: Option<u32>,
     /// Whether Z moves where a tool length begins, ends or changes, where that is known (FANUC parameter 5006#6).
     pub length_moves_axis: Option<bool>,
     /// Whether P of a dwell counts milliseconds, or tenths of them, where that is known (FANUC parameters 1013, 1015#7).
@@ -474,6 +477,7 @@ impl Settings {
             rotary,
             modulo: [None; 3],
             length_along_z: None,
+            edge_at_change: None,
             floating_holder: false,
             retract_above_r: None,
             length_moves_axis: None,

@@ -84,11 +84,18 @@ impl Writing<'_> {
         let _ = writeln!(out, "helix = {helix}");
         let cycles = if self.blocks.contains_key("cycle_drill") { "\"drill\"" } else { "" };
         let _ = writeln!(out, "cycles = [{cycles}]");
-        if self.length {
+        let edges = self.base.capabilities.length_offset == LengthOffset::One;
+        if self.length || edges {
+            let words = if edges { " {{H}}" } else { " {{length}} {{H}}" };
             for name in ["rapid", "linear"] {
                 if let Some(text) = self.blocks.get_mut(name) {
-                    text.push_str(" {{length}} {{H}}");
+                    text.push_str(words);
                 }
+            }
+            if !self.length {
+                let message = "no post says which edge of a tool counts behind its change: D1 stands in the next move; where the machine \
+                               makes it active itself, `edge_at_change = 1` below [settings] leaves it out";
+                self.findings.assumed(Rule::LengthOffset, message.into());
             }
         } else {
             out.push_str("length_offset = \"implicit\"\n");

@@ -223,6 +223,8 @@ pub struct ControlSettings {
     pub retract_above_r: Option<f64>,
     /// The feed of rapids near the part that are written as straight cuts, mm/min.
     pub high_feed: Option<f64>,
+    /// The edge of the tool that counts behind a change where the program says none, 0 for none (SINUMERIK MD20270).
+    pub edge_at_change: Option<u32>,
     /// Whether the tool length counts along Z in every plane (SINUMERIK SD42940, FANUC parameter 5001).
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes (FANUC parameter 5006#6).

@@ -133,6 +133,14 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "SD42940: true where it is 17; arcs of other planes than XY depend on it",
         );
     }
+    let says_edge = machine.blocks.values().any(|block| block.text.contains("{{H}}"));
+    if is_sinumerik && machine.settings.edge_at_change.is_none() && !says_edge {
+        lacks(
+            "[settings]".into(),
+            "edge_at_change = 1",
+            "MD20270: the edge that counts behind M6, since no block says D",
+        );
+    }
     if machine.reader == "fanuc" {
         if machine.settings.dwell_p_milliseconds.is_none() {
             lacks(

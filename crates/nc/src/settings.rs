@@ -56,6 +56,7 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
         modulo,
         floating_holder: machine.settings.floating_holder,
         retract_above_r: machine.settings.retract_above_r,
+        edge_at_change: machine.settings.edge_at_change,
         length_along_z: machine.settings.length_along_z,
         length_moves_axis: machine.settings.length_moves_axis,
         dwell_p_milliseconds: machine.settings.dwell_p_milliseconds,

@@ -4,7 +4,7 @@
 use program::Rule;
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(Rule, &str); 26] = [
+pub const ACCEPTABLE: [(Rule, &str); 27] = [
     (Rule::AdaptiveFeed, "an input of the machine multiplies the feed"),
     (Rule::AxisDynamics, "axes may be faster than their machine data allow"),
     (Rule::DwellUnit, "what a dwell counts in"),
@@ -33,6 +33,7 @@ pub const ACCEPTABLE: [(Rule, &str); 26] = [
     (Rule::TableFrame, "in which frame X, Y and Z count behind G43.4 with a turned table"),
     (Rule::ToolChangeHeight, "the tool change of the machine brings Z up by itself"),
     (Rule::ToolChangeTilt, "the tool change of the machine turns the head upright by itself"),
+    (Rule::ToolEdge, "which edge of the tool counts behind M6"),
     (Rule::TurnHeight, "room for the part and the tool where rotary axes turn"),
 ];
 

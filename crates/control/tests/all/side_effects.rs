@@ -210,7 +210,7 @@ fn a_swivel_data_set_is_the_one_of_the_machines_file() {
         let settings =
             Settings { swivel_data: stated.into(), ..Settings::new(Dialect::Sinumerik, rotary) };
         let text =
-            format!("T1 M6\nG0 X0 Y0 Z9\nCYCLE800(1,{named},0,57,0,0,0,30,0,0,0,0,0,-1)\nM30\n");
+            format!("T1 M6 D1\nG0 X0 Y0 Z9\nCYCLE800(1,{named},0,57,0,0,0,30,0,0,0,0,0,-1)\nM30\n");
         rules(
             &crate::common::ops(&settings, "p.mpf", &text)
                 .unwrap_or_else(|e| panic!("{e}\n{text}")),
@@ -665,6 +665,78 @@ fn a_tool_length_in_another_plane_counts_along_another_axis() {
     // What has begun along Z stays there.
     let before = fanuc.replace("G18\n", "").replace("M30", "G18 G1 X5. F100.\nM30");
     assert!(risks(Dialect::Fanuc, None, &before).is_empty());
+}
+
+/// SINUMERIK W1 11/2006 p. 13, "Selection of the cutting edge when changing tool": the edge that is programmed; else what MD20270
+/// says, which is none (0), an edge by its number, or the number of the tool before (-1). With MD22550 = 1 a D before M6 is an edge of
+/// the tool that is still in the spindle. In G17 the length counts along Z, and with the first motion of that axis.
+#[test]
+fn the_edge_of_a_sinumerik_is_said_behind_the_change() {
+    let found = |edge_at_change, blocks: &str| {
+        let settings =
+            Settings { edge_at_change, ..Settings::new(Dialect::Sinumerik, [true, false, true]) };
+        let text = format!("G17 G54 G71 G90 G94\nG0 SUPA Z0 D0\n{blocks}\nM30\n");
+        let actions = crate::common::ops(&settings, "p.mpf", &text);
+        let actions = actions.unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let edge = actions.iter().rev().find_map(|action| match action {
+            Action::LengthOffset(edge) => Some(*edge),
+            _ => None,
+        });
+        (rules(&actions).len(), rules(&actions).iter().all(|r| *r == "tool-edge"), edge.unwrap())
+    };
+    let leans = (1, true, Some(1));
+    for blocks in [
+        "T1 D1\nM6\nG0 X0 Y0\nZ5",
+        "D1 T1\nM6\nG0 X0 Y0 Z5",
+        "T1 M6\nG0 X0 Y0\nZ5\nG1 Z1 F100",
+        "D0\nT1\nM6\nG0 X0 Y0 Z5",
+        // One tool is said its edge, the next one is not.
+        "T1 M6 D1\nG0 X0 Y0 Z5\nSUPA Z0 D0\nT2 M6\nG0 X0 Y0\nZ5",
+        "T1 M6\nG0 X0 Y0\nF100\nCYCLE81(5,0,2,-5)",
+        "T1 M6\nG0 G41 X0 Y0\nG40 X5",
+        "T1 M6\nTRAORI\nORIWKS ORIVECT\nG54\nG0 X0 Y0",
+        "T1 M6\nCYCLE800(0,\"\",0,57,0,0,0,0,30,0,0,0,0,1)\nG0 X0 Y0",
+        "T1 M6\nPOS[Z]=5",
+        "T1 M6\nG18\nG0 Y5",
+    ] {
+        let (count, only, edge) = found(None, blocks);
+        // G18 with an edge, and a frame that turns, are reported for themselves.
+        assert!(count >= leans.0 && edge == leans.2, "{blocks} {count} {edge:?}");
+        assert!(only || blocks.contains("G18"), "{blocks}");
+        assert!(found(Some(1), blocks).0 < count, "{blocks}");
+    }
+    for (blocks, edge) in [
+        ("T1\nM6\nD1\nG0 X0 Y0 Z5", Some(1)),
+        ("T1 D1 M6\nG0 X0 Y0 Z5", Some(1)),
+        ("T1 M6 D2\nG0 X0 Y0 Z5", Some(2)),
+        ("T1 M6\nG0 X0 Y0\nZ5 D1\nG1 Z1 F100", Some(1)),
+        ("T1 M6\nD0\nG0 X0 Y0 Z5", None),
+        // The place of an axis in the machine has nothing to do with the length.
+        ("T1 M6\nG75 Z0\nSUPA X0 Y0\nD1\nG0 X0 Y0 Z5", Some(1)),
+    ] {
+        assert_eq!(found(None, blocks), (0, true, edge), "{blocks}");
+    }
+    let silent = "T1 M6\nG0 X0 Y0 Z5";
+    assert_eq!(found(Some(0), silent), (0, true, None));
+    assert_eq!(found(Some(2), silent), (0, true, Some(2)));
+    assert_eq!(found(Some(2), "T1 D1\nM6\nG0 X0 Y0 Z5"), (0, true, Some(2)));
+}
+
+/// Before any D the edge of the program before may count (MD20110, bit 6), and `SUPA` leaves it on.
+#[test]
+fn where_a_sinumerik_is_in_the_machine_is_known_behind_d0_alone() {
+    let height = |blocks: &str| {
+        let found = actions(Dialect::Sinumerik, &format!("G90\n{blocks}\nM30\n"));
+        let moved = found.iter().find_map(|action| match action {
+            Action::MachineMove(to) => to.linear[2],
+            _ => None,
+        });
+        moved.unwrap()
+    };
+    assert!(height("G0 SUPA Z0").is_nan());
+    assert_eq!(height("G0 SUPA Z0 D0"), 0.0);
+    assert_eq!(height("D0\nG0 SUPA Z0"), 0.0);
+    assert!(height("D0\nT1 M6\nG0 SUPA Z0").is_nan());
 }
 
 /// Job Planning 7.2.6 and NC programming 4.3.51: MD21104 decides whether ORIWKS and ORIMKS or ORIVECT and ORIAXES say how the tool
@@ -1501,7 +1573,7 @@ fn a_retract_along_the_tool_is_a_way_home_only_where_the_tool_stands_along_z_of_
 
     let sinumerik = |retract: u8| {
         format!(
-            "T1 M6\nG0 X0 Y0 Z9 B20 C0\nCYCLE800({retract},\"\",0,57,0,0,0,0,30,0,0,0,0,-1,50)\nM30\n"
+            "T1 M6 D1\nG0 X0 Y0 Z9 B20 C0\nCYCLE800({retract},\"\",0,57,0,0,0,0,30,0,0,0,0,-1,50)\nM30\n"
         )
     };
     assert_eq!(risks_on(Dialect::Sinumerik, heads, &sinumerik(1)), (vec![], true));

@@ -146,8 +146,9 @@ impl Walk<'_> {
         } else {
             self.writer.forget(ORIENTATION);
         }
-        if self.machine.capabilities.length_offset == LengthOffset::One {
-            // M6 makes the first edge active (SINUMERIK MD20270, as it is delivered).
+        if self.machine.capabilities.length_offset == LengthOffset::One
+            && self.machine.settings.edge_at_change == Some(1)
+        {
             self.writer.is_at(WordName::H, 1.0);
         }
         self.position.change_tool();

@@ -1923,6 +1923,10 @@ rules! {
         "The tool is changed while the head leans."
         "turn the head upright before M6"
         "`M6` with B at 30";
+    ToolEdge "tool-edge" []
+        "Which edge of the tool counts behind the tool change is a setting."
+        "write D1 in the block of M6 or behind it, or state `edge_at_change` in [settings] of the machine file"
+        "sinumerik: `T1 D1`, `M6`, `G0 Z20`";
     ToolLength "tool-length" []
         "The length of the tool is needed and not known."
         "give the tool a length in the source or a tool table (`--tools`)"

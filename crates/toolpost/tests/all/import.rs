@@ -346,13 +346,13 @@ M30
     blocks(
         &machine,
         &[
-            ("linear", "G1 {{X}} {{Y}} {{Z}} {{F}}"),
+            ("linear", "G1 {{X}} {{Y}} {{Z}} {{F}} {{H}}"),
             ("arc_cw", "CIP {{X}} {{Y}} {{Z}} {{MX}} {{MY}} {{MZ}} {{F}}"),
             ("tool_change", "{{N}} G0 SUPA {{SAFE_HEIGHT}} D0\n{{T}}\nM6"),
         ],
     );
     let lost: Vec<u32> = reported(&import).into_iter().map(|(line, _)| line).collect();
-    // The length of the tool, which no block takes; tool radius, approach, leave, the hole by moves, the second end.
+    // The edge of the tool, which no block says; tool radius, approach, leave, the hole by moves, the second end.
     assert_eq!(lost, [0, 3, 7, 16, 25, 27], "{:?}", import.findings);
     let program = sample(&machine).unwrap();
     assert!(program.contains("CIP X40 Y30 Z-2 I1=50 J1=20 K1=-2 F600"), "{program}");

@@ -114,3 +114,57 @@ fn travel_that_depends_on_it_is_reported_as_unchecked() {
     assert_eq!(unchecked(&table, &source("")), [machine::Unsaid::ToolLength]);
     assert!(unchecked(&table, &source(",LENGTH,120")).is_empty());
 }
+
+/// The first mismatch of a proof of `text` for the sample of three axes.
+fn rule_of(machine: &Machine, sample: &Program, text: &str) -> Option<&'static str> {
+    let report = proof::prove(sample, machine, "p", text.as_bytes(), &Default::default());
+    report.mismatches.first().map(|found| found.rule.name())
+}
+
+fn three_axes() -> Program {
+    let sample = std::fs::read(root().join("machines/samples/three-axes.cls")).unwrap();
+    source::apt::read("three-axes.cls", &sample, &Default::default()).unwrap().program
+}
+
+/// SINUMERIK W1 11/2006 p. 13: without a D behind M6 the edge is that of MD20270. A D before M6 is for the tool before.
+#[test]
+fn a_sinumerik_program_says_the_edge_behind_the_change() {
+    let sample = three_axes();
+    let machine = machine::load("generic-3axis-sinumerik").unwrap();
+    let with = |line: &str| {
+        let text = format!("extends = \"generic-3axis-sinumerik\"\n[settings]\n{line}\n");
+        load_text("mill.toml", &text).unwrap()
+    };
+    let stated = [0, 1, 2].map(|edge| with(&format!("edge_at_change = {edge}")));
+    let text = String::from_utf8(written(&machine, &sample).unwrap().text).unwrap();
+    assert_eq!(text.matches(" M6\n").count(), text.matches(" D1\n").count(), "{text}");
+    let unnumbered = |text: &str| -> Vec<String> {
+        text.lines().map(|line| line.split_once(' ').unwrap().1.to_owned()).collect()
+    };
+    let before = text.replace(" T1\n", " T1 D1\n").replace(" T2\n", " T2 D1\n");
+    let before: String = before
+        .split_inclusive('\n')
+        .filter(|line| !line.ends_with(" D1\n") || line.contains('T'))
+        .collect();
+    assert!(before.contains(" T1 D1\n") && !unnumbered(&before).contains(&"D1".into()), "{before}");
+    let never = before.replace(" D1\n", "\n");
+    for silent in [&before, &never] {
+        assert_eq!(rule_of(&machine, &sample, silent), Some("tool-edge"));
+        assert_eq!(rule_of(&stated[0], &sample, silent), Some("length-offset"));
+        assert_eq!(rule_of(&stated[1], &sample, silent), None);
+        assert_eq!(rule_of(&stated[2], &sample, silent), Some("length-offset"));
+    }
+    // In the block of M6 it is the new tool's.
+    let within = never.replace(" M6\n", " M6 D1\n");
+    assert_eq!(rule_of(&machine, &sample, &within), None);
+
+    // A block for the change that says none: the next rapid says it, unless the machine does.
+    let change = "[blocks]\ntool_change = \"\"\"\n{% if not place.home %}{{N}} G0 SUPA {{SAFE_HEIGHT}} D0{% endif %}\n{{N}} {{T}} M6\n\"\"\"\n";
+    for (machine, says) in
+        [(with(change), true), (with(&format!("edge_at_change = 1\n{change}")), false)]
+    {
+        let text = String::from_utf8(written(&machine, &sample).unwrap().text).unwrap();
+        assert_eq!(text.contains(" D1 Z"), says, "{text}");
+        assert_eq!(rule_of(&machine, &sample, &text), None);
+    }
+}

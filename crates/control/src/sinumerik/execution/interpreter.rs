@@ -226,6 +226,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             Some(Code::Dwell) => return self.dwell(source, block),
             Some(Code::FloatingTap) => {
                 self.technology(source, block)?;
+                self.lean_on_edge(source)?;
                 self.emit(source, Action::Risk(Risk::OPERATOR_CONTROLS.into()))?;
                 self.floating_tap(source, block)?;
             }
@@ -241,6 +242,9 @@ impl<'a, 's> Interpreter<'a, 's> {
                     && block.axes[..3].iter().any(Option::is_some)
                 {
                     self.emit(source, Action::Risk(Risk::LENGTH_PLANE.into()))?;
+                }
+                if !self.state.edge_is_known {
+                    self.hold_edge(source, block)?;
                 }
                 if self.state.smoothed.is_loose() {
                     self.hold_smoothing(source, block)?;
@@ -474,11 +478,13 @@ impl<'a, 's> Interpreter<'a, 's> {
             self.emit(source, Action::Tool(tool))?;
             self.report_spindle(source, Spindle::Off)?;
             self.report_coolant(source, Coolant::Off)?;
-            // The change activates edge 1 unless the block says another (MD20270 = 1).
-            edge = edge.or(Some(1));
-            self.state.edge = None;
+            // Which edge counts unless the block says one, MD20270 decides; as delivered the first.
+            let stated = edge.or(self.settings.edge_at_change);
+            self.state.edge_is_known = stated.is_some();
+            edge = stated.or(Some(1));
         }
         if let Some(number) = edge {
+            self.state.edge_is_known |= block.edge.is_some();
             let active = (number > 0).then_some(number);
             if active != self.state.edge || block.has_m(6) {
                 self.state.edge = active;
@@ -486,6 +492,33 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
         }
         Ok(())
+    }
+
+    /// Reports a motion of a tool whose edge no `D` has said since the change: along the axis of its length, compensated, or where
+    /// all axes take part in the length. Once for each change.
+    #[cold]
+    fn hold_edge(&mut self, source: &Source, block: &Block) -> Outcome {
+        let along = self.state.plane_normal;
+        let positioned = block.rare.as_ref().and_then(|rare| rare.positioned[along]);
+        let lengthwise = block.axes[along].or(positioned).is_some();
+        let in_plane = !self.state.frames.moved_only() || self.state.tool_center;
+        let moves = block.has_position() || block.has_arc_word() || positioned.is_some();
+        let compensated = self.state.compensation != Compensation::Off;
+        let leans = lengthwise || block.has_arc_word() || in_plane || compensated;
+        match moves && leans && block.groups[9] == 0 {
+            true => self.lean_on_edge(source),
+            false => Ok(()),
+        }
+    }
+
+    /// Reports that what follows leans on the edge that MD20270 makes active.
+    pub fn lean_on_edge(&mut self, source: &Source) -> Outcome {
+        if self.state.edge_is_known || self.state.tool.is_none() {
+            return Ok(());
+        }
+        // It goes on as a control that is set up as delivered.
+        self.state.edge_is_known = true;
+        self.emit(source, Action::Risk(Risk::EDGE_AS_SET_UP.into()))
     }
 
     fn feed(&mut self, source: &Source, value: f64) -> Outcome {

@@ -59,6 +59,7 @@ impl Interpreter<'_, '_> {
             let message = "the place of the hole is not known: no block has said X and Y";
             return Err(source.block_error(Rule::UnknownPosition, message));
         }
+        self.lean_on_edge(source)?;
         if drilling.needs_feed {
             self.use_feed(source)?;
         }

@@ -487,7 +487,8 @@ impl Interpreter<'_, '_> {
     }
 
     /// The positions of a block in machine coordinates. `SUPA` and its kin leave the tool length on (Programming
-    /// Manual Fundamentals, "Deselect frame": `D0` in their block ends it), so Z of the spindle is not known with an edge.
+    /// Manual Fundamentals, "Deselect frame": `D0` in their block ends it), so Z of the spindle is not known with an edge, nor before
+    /// the program has said one.
     fn machine_target(&self, source: &Source, block: &Block) -> Outcome<MachineMove> {
         let mut to = MachineMove::default();
         for (axis, word) in block.axes.iter().enumerate() {
@@ -497,7 +498,7 @@ impl Interpreter<'_, '_> {
                 continue;
             }
             let value = self.linear(source, *coordinate, f64::NAN, AXIS_NAMES[axis])?;
-            let with_length = axis == 2 && self.state.edge.is_some();
+            let with_length = axis == 2 && (self.state.edge.is_some() || !self.state.edge_is_known);
             to.linear[axis] = Some(if with_length { f64::NAN } else { value });
         }
         Ok(to)

@@ -68,6 +68,7 @@ pub(super) fn read(
             }
             None => Err(unknown(scanner, "the feed")),
         },
+        "P_TOOL" if !state.edge_is_known() => Err(unknown(scanner, "the edge of the tool")),
         "P_TOOL" => Ok(Value::Int(i64::from(state.edge().unwrap_or(0)))),
         "P_TOOLNO" => match state.tool_number() {
             Some(number) => Ok(Value::Int(i64::from(number))),

@@ -38,6 +38,8 @@ pub(crate) trait Readable {
 
     /// The cutting edge that is active.
     fn edge(&self) -> Option<u32>;
+    /// Whether it is known, and not as the machine data have it.
+    fn edge_is_known(&self) -> bool;
 
     /// The number of the tool, where it is called by one.
     fn tool_number(&self) -> Option<u32>;

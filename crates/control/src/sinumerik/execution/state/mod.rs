@@ -123,6 +123,9 @@ pub(crate) struct State {
     pub tool: Option<Box<Tool>>,
     /// `D`; none for `D0`, and before the first tool.
     pub edge: Option<u32>,
+    /// Whether the program has said that edge since the last change of the tool, or the machine's file does. Otherwise `edge` is that
+    /// of a control as it is delivered: none at the start (MD20130), the first behind `M6` (MD20270).
+    pub edge_is_known: bool,
     /// Whether positions are those of the tool tip (`TRAORI`).
     pub tool_center: bool,
     /// The frames.
@@ -247,6 +250,10 @@ impl Readable for State {
         self.edge
     }
 
+    fn edge_is_known(&self) -> bool {
+        self.edge_is_known
+    }
+
     fn tool_number(&self) -> Option<u32> {
         self.tool.as_ref().filter(|tool| tool.name.is_empty()).map(|tool| tool.number)
     }
@@ -286,6 +293,7 @@ impl State {
             selected: None,
             tool: None,
             edge: None,
+            edge_is_known: settings.setup.start.is_some(),
             tool_center: false,
             frames: Frames::new(),
             position: settings.setup.position_at_start(),
