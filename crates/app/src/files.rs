@@ -6,6 +6,7 @@
 //! when it begins, whatever comes of it.
 
 use program::{Diagnostic, Rule, encoding};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -47,19 +48,24 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
 /// # Errors
 /// As [`read`], and as [`text_of`].
 pub fn text(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
-    text_of(path, read(path)?)
+    Ok(text_of(path, Cow::Owned(read(path)?))?.into_owned())
 }
 
 /// The same of the bytes of the file `path`.
 ///
 /// # Errors
 /// The text is in UTF-16.
-pub fn text_of(path: &Path, mut bytes: Vec<u8>) -> Result<Vec<u8>, Box<Diagnostic>> {
+pub fn text_of<'b>(path: &Path, bytes: Cow<'b, [u8]>) -> Result<Cow<'b, [u8]>, Box<Diagnostic>> {
     if encoding::is_utf_16(&bytes) {
         return Err(encoding::utf_16().file(name(path)).into());
     }
-    bytes.drain(..bytes.len() - encoding::without_mark(&bytes).len());
-    Ok(bytes)
+    Ok(match bytes {
+        Cow::Borrowed(bytes) => Cow::Borrowed(encoding::without_mark(bytes)),
+        Cow::Owned(mut bytes) => {
+            bytes.drain(..bytes.len() - encoding::without_mark(&bytes).len());
+            Cow::Owned(bytes)
+        }
+    })
 }
 
 /// The name of a file, for findings and reports: without its folder, so that they do not depend on

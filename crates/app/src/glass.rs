@@ -17,6 +17,7 @@ use ::glass::picture;
 use glam::DVec3;
 use program::{Diagnostic, Digest, Rule, encoding};
 use serde_json::json;
+use std::borrow::Cow;
 use std::path::{Component, Path};
 
 pub use ::glass::chain::Moves;
@@ -204,11 +205,11 @@ fn painted(
 }
 
 /// What a file of a job holds, and its bytes.
-fn shape_of_job(
-    source: &Source,
+fn shape_of_job<'b>(
+    source: &'b Source,
     settings: &Settings,
     beside: Beside,
-) -> Result<(Shape, Vec<u8>), Stop> {
+) -> Result<(Shape, Cow<'b, [u8]>), Stop> {
     check(source)?;
     let (bytes, name) = (source.read()?, source.name());
     let curves = |form| curve::read(&bytes, form, &name).map(Shape::Curves);
@@ -232,8 +233,8 @@ fn shape_of_job(
 /// It cannot be read, or is in UTF-16.
 pub fn program(program: &Source, machine: &Machine) -> Result<Vec<u8>, Stop> {
     match machine.program.format {
-        Format::Binary => Ok(program.read()?),
-        Format::Numbered | Format::Points | Format::Gcode => Ok(program.text()?),
+        Format::Binary => Ok(program.read()?.into_owned()),
+        Format::Numbered | Format::Points | Format::Gcode => Ok(program.text()?.into_owned()),
     }
 }
 
@@ -250,13 +251,13 @@ impl<'s> Job<'s> {
     ) -> Result<Job<'s>, Stop> {
         let (table, file) = match &settings.materials {
             Some(source) => (source.read()?, source.name()),
-            None => (material::TABLE.as_bytes().to_vec(), String::from("materials.toml")),
+            None => (material::TABLE.as_bytes().into(), String::from("materials.toml")),
         };
         let (table, wavelength) = (utf_8(&table, &file)?, machine.laser.wavelength);
         let material = material::find(table, &file, &settings.material, wavelength)?;
         let read = bodies.iter().map(|body| shape_of_job(body, settings, beside));
         let (shapes, read): (Vec<_>, Vec<_>) = read.collect::<Result<_, _>>()?;
-        let digest = Digest::of(read.iter().map(Vec::as_slice));
+        let digest = Digest::of(read.iter().map(|bytes| &bytes[..]));
         Ok(Job { machine, material, shapes, settings, most: u64::MAX, digest })
     }
 

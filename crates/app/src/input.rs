@@ -2,6 +2,7 @@
 
 use crate::files;
 use program::Diagnostic;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -15,14 +16,14 @@ pub enum Source {
         /// The name of the file, for findings and reports.
         name: PathBuf,
         /// Its content.
-        bytes: Arc<[u8]>,
+        bytes: Arc<Vec<u8>>,
     },
 }
 
 impl Source {
     /// Bytes that the caller has.
-    pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Arc<[u8]>>) -> Source {
-        Source::Memory { name: name.into(), bytes: bytes.into() }
+    pub fn memory(name: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Source {
+        Source::Memory { name: name.into(), bytes: Arc::new(bytes.into()) }
     }
 
     /// Its path, or the name that it was given.
@@ -50,10 +51,10 @@ impl Source {
     ///
     /// # Errors
     /// As [`files::read`].
-    pub fn read(&self) -> Result<Vec<u8>, Box<Diagnostic>> {
+    pub fn read(&self) -> Result<Cow<'_, [u8]>, Box<Diagnostic>> {
         match self {
-            Source::File(path) => files::read(path),
-            Source::Memory { bytes, .. } => Ok(bytes.to_vec()),
+            Source::File(path) => Ok(Cow::Owned(files::read(path)?)),
+            Source::Memory { bytes, .. } => Ok(Cow::Borrowed(bytes)),
         }
     }
 
@@ -61,7 +62,7 @@ impl Source {
     ///
     /// # Errors
     /// As there.
-    pub fn text(&self) -> Result<Vec<u8>, Box<Diagnostic>> {
+    pub fn text(&self) -> Result<Cow<'_, [u8]>, Box<Diagnostic>> {
         files::text_of(self.path(), self.read()?)
     }
 }
@@ -75,5 +76,20 @@ impl From<PathBuf> for Source {
 impl From<&Path> for Source {
     fn from(path: &Path) -> Source {
         Source::File(path.to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of hundreds of megabytes each copy would cost as much time as the reading of the file.
+    #[test]
+    fn bytes_of_the_caller_are_read_without_a_copy() {
+        let source = Source::memory("a.cls", *b"\xef\xbb\xbfFINI");
+        let Source::Memory { bytes, .. } = &source else { panic!() };
+        let (read, text) = (source.read().unwrap(), source.text().unwrap());
+        assert_eq!((read.as_ptr(), &text[..]), (bytes.as_ptr(), &b"FINI"[..]));
+        assert_eq!(text.as_ptr(), bytes[3..].as_ptr());
     }
 }

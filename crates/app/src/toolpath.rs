@@ -5,6 +5,7 @@ use crate::fcstd;
 use crate::files;
 use crate::glass;
 use crate::input::Source;
+use crate::parallel::parallel;
 use crate::pcb;
 use crate::summary::{Shape, number};
 use crate::watch::{Waits, Watch};
@@ -17,6 +18,7 @@ use program::{
 };
 use serde_json::{Value, json};
 use source::apt::{self, Csys, Cutcom, SetUps};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +121,7 @@ pub fn read_for(
     watch: &dyn Watch,
 ) -> Result<Toolpath, Stop> {
     let bytes = match fcstd::is(source.path()) {
-        true => fcstd::job(source, watch).map_err(stopped(watch))?,
+        true => Cow::Owned(fcstd::job(source, watch).map_err(stopped(watch))?),
         false => source.read()?,
     };
     let file = source.name();
@@ -206,7 +208,23 @@ fn stopped<T: Into<Stop>>(watch: &dyn Watch) -> impl FnOnce(T) -> Stop {
 }
 
 fn read_by(
-    (source, bytes): (&Source, Vec<u8>),
+    (source, bytes): (&Source, Cow<[u8]>),
+    strict: bool,
+    origin: &Origin,
+    purpose: Purpose,
+    set_up: impl Fn(Machine) -> Machine,
+    watch: &dyn Watch,
+) -> Result<Toolpath, Stop> {
+    origin.goes_with(&source.name())?;
+    let text = files::text_of(source.path(), Cow::Borrowed(&bytes))?;
+    let read = || read_text((source, &text), strict, origin, purpose, set_up, watch);
+    let (toolpath, digest) = parallel(read, || Digest::of([&bytes[..]]));
+    Ok(Toolpath { digest: Some(digest), ..toolpath? })
+}
+
+/// The same of its text, without a digest.
+fn read_text(
+    (source, bytes): (&Source, &[u8]),
     strict: bool,
     origin: &Origin,
     purpose: Purpose,
@@ -215,9 +233,6 @@ fn read_by(
 ) -> Result<Toolpath, Stop> {
     let progress = Waits(watch);
     let file = source.name();
-    origin.goes_with(&file)?;
-    let digest = Some(Digest::of([&bytes[..]]));
-    let bytes = files::text_of(source.path(), bytes)?;
     let mut read_with = Vec::new();
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
@@ -225,11 +240,11 @@ fn read_by(
             let setup = origin.setup(from, purpose)?;
             let folders = setup.folders.clone();
             let asked = |found: &Diagnostic| is_unknown_position(found.rule);
-            let text = (&*file, &bytes[..]);
+            let text = (&*file, bytes);
             let reading = match nc::read_for(&machine, setup.clone(), text, &progress) {
                 Err(_) if watch.is_cancelled() => return Err(Stop::cancelled()),
                 Err(found) if purpose != Purpose::Program && asked(&found) => {
-                    flat(&machine, setup, &file, &bytes)?.ok_or(found)?
+                    flat(&machine, setup, &file, bytes)?.ok_or(found)?
                 }
                 read => read?,
             };
@@ -241,7 +256,7 @@ fn read_by(
         None => {
             let Origin { csys, cutcom, .. } = *origin;
             let options = apt::Options { strict, csys, cutcom, purpose };
-            let reading = apt::read_for(&file, &bytes, &options, &progress);
+            let reading = apt::read_for(&file, bytes, &options, &progress);
             let reading = reading.map_err(|findings| match is_nc(source.path()) {
                 _ if watch.is_cancelled() => Stop::cancelled(),
                 _ if pcb::is_board(source) => of_other(&file, "a file of a circuit board", "pcb"),
@@ -262,7 +277,7 @@ fn read_by(
     Ok(Toolpath {
         source: Some(source.clone()),
         read_with,
-        digest,
+        digest: None,
         file,
         dialect,
         program,
@@ -656,7 +671,7 @@ impl Toolpath {
     }
 
     /// The text of the source, as far as there is one still.
-    fn text(&self) -> Vec<u8> {
+    fn text(&self) -> Cow<'_, [u8]> {
         self.source.as_ref().and_then(|source| source.text().ok()).unwrap_or_default()
     }
 }

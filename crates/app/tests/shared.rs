@@ -745,6 +745,8 @@ fn a_board_is_known_by_its_name_and_in_json_by_what_it_says() {
     assert!(is("a.json", r#"{ "nodes": {}, "tracks": [] }"#));
     let job = std::fs::read_to_string(example("bracket.json")).unwrap();
     assert!(!is("bracket.json", &job));
+    let named = |name: &str| board::is_named_board(Path::new(name));
+    assert_eq!(["a.GBR", "a.cls", "a.JSON"].map(named), [Some(true), Some(false), None]);
 }
 
 /// Of a board it is told how many of its programs are made.

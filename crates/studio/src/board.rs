@@ -193,7 +193,7 @@ pub(crate) fn prove(
 /// line of it.
 fn shown(board: &str, files: &[Source], layers: &[(String, String)]) -> (String, Vec<u8>) {
     match files {
-        [file] => (file.name(), file.text().unwrap_or_default()),
+        [file] => (file.name(), file.text().unwrap_or_default().into_owned()),
         _ => {
             let line = |(file, layer): &(String, String)| format!("{file}: {layer}\n");
             (board.to_owned(), layers.iter().map(line).collect::<String>().into_bytes())

@@ -122,6 +122,15 @@ impl Folder {
         self.bytes(&inner(path)?, MOST_BYTES).map_err(|error| unreadable(path, &error))
     }
 
+    /// Checks that a file can be read.
+    ///
+    /// # Errors
+    /// As [`Folder::read`].
+    pub fn check(&self, path: &str) -> Result<(), Box<Diagnostic>> {
+        let opened = self.open_file(&inner(path)?, MOST_BYTES);
+        opened.map(drop).map_err(|error| unreadable(path, &error))
+    }
+
     /// The files of one of its folders, each with its path and its bytes: no more than so many files and bytes.
     ///
     /// # Errors
@@ -352,6 +361,16 @@ impl Folder {
     }
 
     fn bytes(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
+        let (file, length) = self.open_file(path, most)?;
+        let mut bytes = Vec::new();
+        bytes.try_reserve_exact(length as usize).map_err(io::Error::other)?;
+        // A file that grows while it is read ends where it ended.
+        file.take(length).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// A file that is read, and how many bytes it has: no more than so many.
+    fn open_file(&self, path: &Path, most: u64) -> io::Result<(cap_std::fs::File, u64)> {
         // Looked at before it is opened: opening a pipe would wait for ever. One that takes the place of the file after
         // that is opened without waiting.
         let no_file = || io::Error::other("it is not a file");
@@ -373,11 +392,7 @@ impl Folder {
         if metadata.len() > most {
             return Err(io::Error::other(format!("it is larger than {} MB", most >> 20)));
         }
-        let mut bytes = Vec::new();
-        bytes.try_reserve_exact(metadata.len() as usize).map_err(io::Error::other)?;
-        // A file that grows while it is read ends where it ended.
-        file.take(metadata.len()).read_to_end(&mut bytes)?;
-        Ok(bytes)
+        Ok((file, metadata.len()))
     }
 }
 

@@ -15,7 +15,7 @@ use app::{Source, Stop, Verdict, Watch, glass};
 use geom::{Vec2, Vec3};
 use machine::linkage::{self, Link, LinkBody, LinkKind, Linkage};
 use program::{Diagnostic, Program, Rule};
-use std::borrow::Borrow;
+use std::borrow::{Borrow, Cow};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -282,7 +282,7 @@ fn shown(bodies: &[Source]) -> (String, Lines) {
     };
     let names = bodies.iter().map(Source::name).collect::<Vec<_>>().join(", ");
     let lines = || bodies.iter().map(line).collect::<String>().into_bytes();
-    (names, Lines::of(text.unwrap_or_else(lines)))
+    (names, Lines::of(text.map_or_else(lines, Cow::into_owned)))
 }
 
 /// The pulses of a binary program.

@@ -1008,7 +1008,12 @@ fn source_lines(toolpath: &Toolpath, source: &Source) -> Lines {
     if let Some(text) = toolpath.commands() {
         return Lines::of(text.to_vec());
     }
-    Lines::of(source.text().unwrap_or_default())
+    match (source, source.text()) {
+        (Source::Memory { bytes, .. }, Ok(text)) if text.len() == bytes.len() => {
+            Lines::of(Arc::clone(bytes))
+        }
+        (_, text) => Lines::of(text.unwrap_or_default().into_owned()),
+    }
 }
 
 /// The files in which the templates of a machine stand.

@@ -1,12 +1,14 @@
 //! A text by its lines, which end with LF, CR LF or CR, and are counted from 1.
 
+use std::sync::Arc;
+
 /// The most characters of a line that are shown: the rest of a longer one is left out, and that is said.
 pub const MOST_SHOWN: usize = 2000;
 
 /// A text, and where its lines begin.
 #[derive(Debug, Default)]
 pub struct Lines {
-    text: Vec<u8>,
+    text: Arc<Vec<u8>>,
     /// Where every 16th line begins, from the first.
     begins: Vec<usize>,
     count: u32,
@@ -16,8 +18,9 @@ pub struct Lines {
 const EVERY: usize = 16;
 
 impl Lines {
-    /// Of a text.
-    pub fn of(text: Vec<u8>) -> Lines {
+    /// Of a text, which others may have too.
+    pub fn of(text: impl Into<Arc<Vec<u8>>>) -> Lines {
+        let text = text.into();
         let (mut begins, mut count, mut at) = (Vec::new(), 0usize, 0);
         while at < text.len() {
             if count.is_multiple_of(EVERY) {

@@ -30,6 +30,8 @@ export class Server {
     private constructor(
         readonly link: string,
         readonly folder: string,
+        /** When the command was started, ms since 1970. */
+        readonly begun: number,
         private readonly process: ChildProcess,
     ) {}
 
@@ -37,11 +39,12 @@ export class Server {
     static async start(files: string[], more: string[] = [], folder = mkdtempSync(join(tmpdir(), "studio-"))): Promise<Server> {
         for (const file of files) copyFileSync(file, join(folder, basename(file)));
         const source = files.slice(0, 1).map((file) => join(folder, basename(file)));
+        const begun = Date.now();
         const child = spawn(command, ["studio", "--no-open", "--folder", folder, ...source, ...more], { stdio: ["ignore", "pipe", "inherit"] });
         for await (const line of createInterface({ input: child.stdout! })) {
             const link = /http:\S+/.exec(line)?.[0];
             if (link === undefined) continue;
-            const server = new Server(link, folder, child);
+            const server = new Server(link, folder, begun, child);
             Server.running.add(server);
             return server;
         }

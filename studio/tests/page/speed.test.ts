@@ -122,13 +122,12 @@ describe.skipIf(moves === 0 || absent() !== null)(`the page with ${moves} moves`
         const source = join(tmpdir(), "spiral.cls");
         writeFileSync(source, spiral(moves));
         const browser = await launch();
-        const begun = Date.now();
         const server = await Server.start([source], ["-m", MACHINE]);
         const { page } = await visit(browser, server.link, {}, watch);
         const seen = await all(page);
         const opened = await page.evaluate(() => performance.timeOrigin);
         const since = (from: number): string => (["usable", "picture", "verdict"] as const).map((what) => `${what} ${Math.round(seen[what] - from)} ms`).join(", ");
-        const figures = [`from the command: ${since(begun)}`, `from opening the page: ${since(opened)}`];
+        const figures = [`from the command: ${since(server.begun)}`, `from opening the page: ${since(opened)}`];
         await page.locator(".program .cm-line.at").waitFor({ timeout: 60_000 });
 
         // Turning: a step of the pointer in each frame, all of which is drawn.

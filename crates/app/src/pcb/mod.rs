@@ -7,7 +7,7 @@ mod source;
 pub use ::pcb::board::{Axis, Layer};
 pub use ::pcb::plan::{Problem, Settings};
 pub use drawing::{Area, AreaKind, BoardAreas};
-pub use source::{SETTINGS, is_board};
+pub use source::{SETTINGS, is_board, is_named_board};
 
 use crate::account::{Account, Stop, Verdict};
 use crate::input;

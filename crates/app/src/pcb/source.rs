@@ -189,16 +189,20 @@ fn counted(files: Vec<input::Source>, folder: &str) -> Result<Vec<input::Source>
 
 /// Whether a file is a board, or a part of one: what it holds is not looked at but in JSON, which toolpaths are written in too.
 pub fn is_board(file: &input::Source) -> bool {
-    let ending = ending(file);
-    match ending.as_str() {
-        "json" => {
-            let text = file.text().unwrap_or_default();
-            let text = &text[..text.len().min(LONGEST)];
-            let keys = serde_json::from_slice::<Map<String, Value>>(text).unwrap_or_default();
-            IN_MODELS.iter().any(|key| keys.contains_key(*key))
-        }
-        "kicad_pcb" => true,
-        ending => MODEL.contains(&ending) || PLOTS.contains(&ending),
+    is_named_board(file.path()).unwrap_or_else(|| {
+        let text = file.text().unwrap_or_default();
+        let text = &text[..text.len().min(LONGEST)];
+        let keys = serde_json::from_slice::<Map<String, Value>>(text).unwrap_or_default();
+        IN_MODELS.iter().any(|key| keys.contains_key(*key))
+    })
+}
+
+/// The same by the name of a file alone; `None` where that does not say it.
+pub fn is_named_board(path: &Path) -> Option<bool> {
+    match files::ending(path).as_str() {
+        "json" => None,
+        "kicad_pcb" => Some(true),
+        ending => Some(MODEL.contains(&ending) || PLOTS.contains(&ending)),
     }
 }
 

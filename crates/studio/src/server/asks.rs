@@ -103,7 +103,7 @@ pub fn answer(
                 (None, Some(text), Some(revision)) => Program::Edited { text, revision, files },
                 (None, Some(text), None) if files.is_empty() => Program::Text(text),
                 (Some(program), None, None) if files.is_empty() => {
-                    let text = studio.source(&program)?.read()?;
+                    let text = studio.source(&program)?.read()?.into_owned();
                     Program::There(program, text)
                 }
                 _ => {

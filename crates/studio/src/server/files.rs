@@ -28,14 +28,15 @@ pub struct Uploads(Mutex<Vec<Kept>>);
 struct Kept {
     id: String,
     name: String,
-    bytes: Arc<[u8]>,
+    bytes: Arc<Vec<u8>>,
 }
 
 impl Uploads {
     /// Keeps a file, and answers its id: the digest of its name and bytes. What was made of an upload is of that file alone, also
     /// for another server.
-    fn keep(&self, name: String, bytes: Arc<[u8]>) -> String {
+    fn keep(&self, name: String, bytes: Vec<u8>) -> String {
         let id = Digest::of([name.as_bytes(), &bytes[..]]);
+        let bytes = Arc::new(bytes);
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|file| file.id != id);
         kept.push(Kept { id: id.clone(), name, bytes });
@@ -60,7 +61,7 @@ impl Uploads {
             let message = "this upload is not kept any more: newer ones have taken its place";
             Diagnostic::error(Rule::StudioLimit, message).help("drop the file again")
         })?;
-        Ok(Source::memory(name, Arc::clone(bytes)))
+        Ok(Source::Memory { name: name.into(), bytes: Arc::clone(bytes) })
     }
 }
 
@@ -79,8 +80,8 @@ pub async fn upload(studio: &Studio, name: &str, request: Request) -> Response<B
         let why = "the upload is larger than 256 MB, or was broken off: put the file into the folder instead";
         return say(StatusCode::PAYLOAD_TOO_LARGE, why);
     };
-    let (length, bytes) = (bytes.len() as u64, Arc::from(&bytes[..]));
-    let upload = studio.uploads.keep(name.clone(), bytes);
+    let length = bytes.len() as u64;
+    let upload = studio.uploads.keep(name.clone(), bytes.into());
     let answer = Uploaded { upload, name, bytes: length };
     let mut response = Response::new(Body::from(serde_json::json!(answer).to_string()));
     response.headers_mut().insert("content-type", HeaderValue::from_static("application/json"));
@@ -176,17 +177,17 @@ mod tests {
     #[test]
     fn the_oldest_upload_goes_when_too_many_come() {
         let uploads = Uploads::default();
-        let keep = |name: String| uploads.keep(name, Arc::from(&b"x"[..]));
+        let keep = |name: String| uploads.keep(name, b"x".to_vec());
         let ids: Vec<String> = (0..=MOST_UPLOADS).map(|name| keep(name.to_string())).collect();
         assert!(uploads.find(&ids[0]).unwrap_err().rule == "studio-limit");
-        assert_eq!(uploads.find(&ids[1]).unwrap().read().unwrap(), b"x");
+        assert_eq!(uploads.find(&ids[1]).unwrap().read().unwrap(), &b"x"[..]);
     }
 
     #[test]
     fn an_upload_is_known_by_its_name_and_its_bytes() {
         let (one, other) = (Uploads::default(), Uploads::default());
         let keep = |uploads: &Uploads, name: &str, bytes: &[u8]| {
-            uploads.keep(name.to_owned(), Arc::from(bytes))
+            uploads.keep(name.to_owned(), bytes.to_vec())
         };
         let id = keep(&one, "a.cls", b"x");
         assert_eq!(keep(&other, "a.cls", b"x"), id);

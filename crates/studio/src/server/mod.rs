@@ -309,13 +309,17 @@ impl Studio {
         Ok(found.map(read).transpose()?.map(beside))
     }
 
-    /// What writes the programs of something: a file is read where its name does not say it.
+    /// What writes the programs of something: a file of the folder is read where its name does not say it.
     fn command(&self, given: &Given, machine: Option<&Any>) -> Result<Command, Stop> {
         match given {
             Given::Folder(_) => Ok(match machine {
                 Some(Any::Fires(_)) => Command::Glass,
                 _ => Command::Pcb,
             }),
+            Given::File(path) if app::pcb::is_named_board(Path::new(path)).is_some() => {
+                self.folder.check(path)?;
+                Ok(Sources::One(Source::File(path.into())).command(machine))
+            }
             Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
                 Ok(self.sources(given)?.0.command(machine))
             }

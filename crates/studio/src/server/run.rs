@@ -306,16 +306,16 @@ pub fn made(
 /// Does the work.
 fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Result<Vec<Job>, Stop> {
     let Order { source, machine, options, file, program } = order;
-    let more = match &source {
-        board if studio.command(board, None)? == Command::Pcb => studio.more(board, &options)?,
-        _ => None,
+    let (sources, mut inputs) = studio.sources(&source)?;
+    let more = match sources.command(None) {
+        Command::Pcb => studio.more(&source, &options)?,
+        Command::Post | Command::Wire | Command::Glass => None,
     };
-    let (source, mut inputs) = studio.sources(&source)?;
     let text_bytes = match &program {
         Program::Posted => 0,
         Program::Text(text) | Program::There(_, text) | Program::Edited { text, .. } => text.len(),
     };
-    let bytes = source.bytes().saturating_add(text_bytes).saturating_mul(BYTES_OF_A_BYTE);
+    let bytes = sources.bytes().saturating_add(text_bytes).saturating_mul(BYTES_OF_A_BYTE);
     let waits = MakesRoom { waits, jobs: &studio.jobs, bytes };
     let (named, program) = match program {
         Program::Posted => (None, None),
@@ -339,7 +339,7 @@ fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Resu
         }
     };
     let asked = Asked {
-        source,
+        source: sources,
         machine: &machine,
         options: &|command| studio.options(command, &options, more.as_ref()),
         file: file.or(named),

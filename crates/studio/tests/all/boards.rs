@@ -433,8 +433,13 @@ fn what_is_no_board_is_refused_with_the_way_out() {
 #[test]
 fn the_server_says_which_command_makes_a_source() {
     let studio = studio();
+    fs::write(studio.own().join("board.json"), r#"{ "nodes": {}, "tracks": [] }"#).unwrap();
+    fs::copy(root().join("examples/bracket.json"), studio.own().join("bracket.json")).unwrap();
     let mut page = studio.socket();
     for (source, machine, command) in [
+        // The name of JSON does not say what it is.
+        (json!({ "file": "board.json" }), json!(null), "pcb"),
+        (json!({ "file": "bracket.json" }), json!(null), "post"),
         (json!({ "file": "dome.cls" }), json!(null), "post"),
         (json!({ "file": "dome.cls" }), json!("bp-95d"), "wire"),
         (json!({ "file": "lamp/lamp.toml" }), json!(null), "pcb"),
@@ -442,6 +447,15 @@ fn the_server_says_which_command_makes_a_source() {
     ] {
         let params = json!({ "source": source, "machine": machine });
         assert_eq!(page.done("command", params), command, "{source}");
+    }
+    for (file, rule) in [
+        ("none.cls", "unreadable"),
+        ("none.json", "unreadable"),
+        ("lamp", "unreadable"),
+        ("../x.cls", "folder-reach"),
+    ] {
+        let params = json!({ "source": { "file": file }, "machine": null });
+        assert_eq!(page.refused("command", params), rule, "{file}");
     }
 }
 
