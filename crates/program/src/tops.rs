@@ -2,6 +2,7 @@
 
 use crate::{ArcTo, Cycle, Op, Pose, Program};
 use geom::{Vec3, angle_between, reach_of_box};
+use std::sync::OnceLock;
 
 /// A program that stays below its zero may be within a hole from there: it counts as going so far above zero, mm.
 const ABOVE_ZERO: f64 = 1.0;
@@ -12,15 +13,25 @@ const LYING: f64 = 0.5;
 /// So many points are looked at one by one.
 const FEW: usize = 16;
 
-/// The places to which a program goes, so arranged that the highest along any axis is found without a look at each.
+/// The places to which a program goes, and how high the highest of them is.
 #[derive(Clone, Debug)]
-pub struct Tops {
-    points: Vec<Vec3>,
-    /// Boxes around halves of the points, halves of these and so on: each before those of its own halves.
-    boxes: Vec<PointBox>,
+pub struct Tops<'p> {
+    program: &'p Program,
+    /// How high it goes along Z, mm.
+    along_z: f64,
     below_zero: Option<f64>,
     /// Whether the tool stands anywhere.
     stands: bool,
+    /// Its places, once they are looked at along another axis than Z.
+    tree: OnceLock<Tree>,
+}
+
+/// Places, so arranged that the highest along any axis is found without a look at each.
+#[derive(Clone, Debug)]
+struct Tree {
+    points: Vec<Vec3>,
+    /// Boxes around halves of the points, halves of these and so on: each before those of its own halves.
+    boxes: Vec<PointBox>,
 }
 
 /// The box around some of the points.
@@ -34,64 +45,90 @@ struct PointBox {
     second: usize,
 }
 
-impl Tops {
+impl Tops<'_> {
     /// Those of `program`, in the work frame: where its motions end, how high its arcs rise along the tool, and the heights from which
     /// and to which the tool goes at its holes. Where all are below zero, which is then the part's top for all that is known, the same places 1 mm
     /// above it, too.
-    pub fn of(program: &Program) -> Tops {
-        let mut here: Option<Pose> = None;
-        let mut cycle: Option<&Cycle> = None;
-        let mut points = Vec::new();
-        let mut stands = false;
-        for record in &program.records {
-            if let Op::Cycle(new) = &record.op {
-                cycle = Some(new);
-            }
-            let Some(pose) = record.op.pose() else { continue };
-            let height = if matches!(record.op, Op::Hole(_)) {
-                cycle.map_or(0.0, |cycle| cycle.clearance.max(cycle.retract))
-            } else if let Op::Arc(to) = &record.op {
-                rise(here, to)
-            } else {
-                0.0
-            };
-            points.push(pose.point() + pose.axis() * height);
-            stands |= pose.axis().z >= LYING;
-            here = Some(*pose);
-        }
-        let highest = points.iter().map(|point: &Vec3| point.z).fold(f64::NEG_INFINITY, f64::max);
-        let below_zero = (highest < 0.0 && !points.is_empty()).then_some(highest);
-        if below_zero.is_some() {
-            let above = points.iter().map(|point| Vec3::new(point.x, point.y, ABOVE_ZERO));
-            points.extend(above.collect::<Vec<_>>());
-        }
-        let boxes = Vec::with_capacity(2 * points.len() / FEW + 1);
-        let mut tops = Tops { boxes, points, below_zero, stands };
-        if !tops.points.is_empty() {
-            tops.divide([0, tops.points.len()]);
-        }
-        tops
+    pub fn of(program: &Program) -> Tops<'_> {
+        let (mut highest, mut stands) = (f64::NEG_INFINITY, false);
+        places(program, |place, axis| {
+            highest = highest.max(place.dot(Vec3::Z));
+            stands |= axis.z >= LYING;
+        });
+        let below_zero = (highest < 0.0 && highest > f64::NEG_INFINITY).then_some(highest);
+        let along_z = if below_zero.is_some() { ABOVE_ZERO } else { highest };
+        Tops { program, along_z, below_zero, stands, tree: OnceLock::new() }
     }
 
     /// How high the program goes along `axis`, a unit vector, mm from the origin, however its tool leans: from below that nobody knows what
     /// is around the tool elsewhere than on the program's own way. −∞ where it goes nowhere.
     pub fn along(&self, axis: Vec3) -> f64 {
-        let mut highest = f64::NEG_INFINITY;
-        if !self.boxes.is_empty() {
-            self.look(0, axis, &mut highest);
+        // A mill without rotary axes asks for no other: to arrange millions of places takes seconds.
+        if axis == Vec3::Z {
+            return self.along_z;
         }
-        highest
+        let tree = || {
+            let mut points = Vec::new();
+            places(self.program, |place, _| points.push(place));
+            if self.below_zero.is_some() {
+                let above = points.iter().map(|point: &Vec3| point.with_z(ABOVE_ZERO));
+                points.extend(above.collect::<Vec<_>>());
+            }
+            Tree::of(points)
+        };
+        self.tree.get_or_init(tree).along(axis)
     }
 
     /// How high the program goes along Z, mm. −∞ where its tool lies wherever it goes, or points down: Z says nothing then of where the part ends, which may
     /// be clamped on any of its sides.
     pub fn upward(&self) -> f64 {
-        if self.stands { self.along(Vec3::Z) } else { f64::NEG_INFINITY }
+        if self.stands { self.along_z } else { f64::NEG_INFINITY }
     }
 
     /// How high a program goes that stays below its zero, Z in mm; `None` of one that does not.
     pub fn below_zero(&self) -> Option<f64> {
         self.below_zero
+    }
+}
+
+/// Tells each place to which a program goes, and the tool axis there.
+fn places(program: &Program, mut tell: impl FnMut(Vec3, Vec3)) {
+    let mut here: Option<Pose> = None;
+    let mut cycle: Option<&Cycle> = None;
+    for record in &program.records {
+        if let Op::Cycle(new) = &record.op {
+            cycle = Some(new);
+        }
+        let Some(pose) = record.op.pose() else { continue };
+        let height = if matches!(record.op, Op::Hole(_)) {
+            cycle.map_or(0.0, |cycle| cycle.clearance.max(cycle.retract))
+        } else if let Op::Arc(to) = &record.op {
+            rise(here, to)
+        } else {
+            0.0
+        };
+        tell(pose.point() + pose.axis() * height, pose.axis());
+        here = Some(*pose);
+    }
+}
+
+impl Tree {
+    fn of(points: Vec<Vec3>) -> Tree {
+        let boxes = Vec::with_capacity(2 * points.len() / FEW + 1);
+        let mut tree = Tree { boxes, points };
+        if !tree.points.is_empty() {
+            tree.divide([0, tree.points.len()]);
+        }
+        tree
+    }
+
+    /// The highest along `axis`; −∞ where there are none.
+    fn along(&self, axis: Vec3) -> f64 {
+        let mut highest = f64::NEG_INFINITY;
+        if !self.boxes.is_empty() {
+            self.look(0, axis, &mut highest);
+        }
+        highest
     }
 
     /// Puts a box around points, and others around each half of them.
@@ -183,9 +220,9 @@ mod tests {
         let mut any = || Vec3::new(number(), number(), number()) * 2.0 - 1.0;
         let points: Vec<Vec3> = (0..3000).map(|_| any() * 200.0).collect();
         let rapids = points.iter().map(|point| Op::Rapid(Pose::upright(*point).unwrap()));
-        let tops = Tops::of(&program(rapids));
-        for _ in 0..200 {
-            let axis = any().normalize();
+        let program = program(rapids);
+        let tops = Tops::of(&program);
+        for axis in std::iter::repeat_with(|| any().normalize()).take(200).chain([Vec3::Z]) {
             let heights = points.iter().map(|point| point.dot(axis));
             assert_eq!(tops.along(axis), heights.fold(f64::NEG_INFINITY, f64::max));
         }
@@ -195,12 +232,16 @@ mod tests {
     #[test]
     fn what_stays_below_zero_counts_as_going_above_it() {
         let at = |z: f64| Op::Rapid(Pose::upright(Vec3::new(100.0, 50.0, z)).unwrap());
-        let tops = |heights: [f64; 2]| Tops::of(&program(heights.map(at)));
-        assert_eq!(tops([-40.0, -30.0]).along(Vec3::Z), 1.0);
-        assert_eq!(tops([-40.0, -30.0]).below_zero(), Some(-30.0));
-        assert_eq!(tops([-40.0, -30.0]).along(Vec3::X), 100.0);
-        assert_eq!(tops([-40.0, 0.0]).along(Vec3::Z), 0.0);
-        assert_eq!(tops([-40.0, 0.0]).below_zero(), None);
+        let [below, above] = [[-40.0, -30.0], [-40.0, 0.0]].map(|z| program(z.map(at)));
+        let [below, above] = [&below, &above].map(Tops::of);
+        assert_eq!(below.below_zero(), Some(-30.0));
+        assert_eq!(below.along(Vec3::X), 100.0);
+        assert_eq!(above.below_zero(), None);
+        // Along Z, and along an axis that is Z but for rounding, which is looked for among the places.
+        for axis in [Vec3::Z, Vec3::new(1e-12, 0.0, 1.0)] {
+            let heights = [&below, &above].map(|tops| tops.along(axis));
+            assert!((heights[0] - 1.0).abs() < 1e-9 && heights[1].abs() < 1e-9, "{heights:?}");
+        }
     }
 
     #[test]

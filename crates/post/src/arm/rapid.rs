@@ -31,7 +31,7 @@ pub(super) struct RapidPlanner<'a> {
     source: &'a Program,
     cuts: CutBox,
     /// How high the source goes, once that is asked for.
-    tops: OnceCell<Tops>,
+    tops: OnceCell<Tops<'a>>,
 }
 
 /// How a rapid goes.
@@ -187,7 +187,7 @@ impl<'a> RapidPlanner<'a> {
     }
 
     /// How high the source goes.
-    pub(super) fn tops(&self) -> &Tops {
+    pub(super) fn tops(&self) -> &Tops<'_> {
         self.tops.get_or_init(|| Tops::of(self.source))
     }
 

@@ -100,7 +100,7 @@ pub(crate) struct Walk<'a> {
     /// What it reaches by feed, with the heights from which it comes down; counted where it is asked for.
     fed: Option<CutBox>,
     /// How high it goes; looked for where it is asked for.
-    tops: Option<Tops>,
+    tops: Option<Tops<'a>>,
     /// The feed for the air, else the fastest that the machine is known to take, mm/min; looked for where it is asked for.
     known_feed: OnceCell<Option<f64>>,
     /// Rapids that are written by feed.

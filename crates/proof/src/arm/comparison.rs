@@ -75,7 +75,7 @@ pub(super) struct Comparison<'a> {
     cell: &'a Cell,
     cuts: CutBox,
     /// How high the source goes.
-    tops: Tops,
+    tops: Tops<'a>,
     expected: Vec<Expected>,
     next: usize,
     /// How much of the next step is done, 0 to 1.

@@ -54,7 +54,7 @@ pub struct Prover<'a> {
     /// What it cuts; counted where it is asked for.
     cuts: Option<CutBox>,
     /// How high it goes; looked for where it is asked for.
-    tops: Option<Tops>,
+    tops: Option<Tops<'a>>,
     gauge: Gauge<'a>,
     cursor: Cursor<'a>,
     running: Running,
