@@ -22,6 +22,9 @@ pub(super) const RADIUS_TOLERANCE: f64 = 0.005;
 /// Cosine of 3°: closer than that to the tangent, a straight move goes on from the arc smoothly.
 const SMOOTH: f64 = 0.9986;
 
+/// An arc that turns by no more is the shorter one of its circle between its ends, radians; of half a turn, within rounding, neither is.
+const SHORT: f64 = PI - 1e-3;
+
 /// A direction nearer to a coordinate axis than this (radians) is the axis: what `INDIRV` loses in five
 /// decimals.
 const SNAP: f64 = 1e-4;
@@ -297,28 +300,63 @@ pub(super) struct Evidence {
     pub(super) first_reversed: u32,
 }
 
+/// A straight move next to an arc.
+#[derive(Clone, Copy)]
+struct Straight {
+    direction: Vec3,
+    /// Along the tool: a plunge or a retract.
+    is_along_tool: bool,
+}
+
+/// An arc, with what went before it.
+struct Turned {
+    line: u32,
+    before: Option<Straight>,
+    start: Vec3,
+    end: Vec3,
+    sweep: f64,
+}
+
+impl Turned {
+    /// Whether it goes on smoothly from or into a straight move, and whether it reverses the path.
+    fn joints(&self, behind: Option<Straight>) -> (bool, bool) {
+        let before = self.before.map(|straight| (straight, straight.direction.dot(self.start)));
+        let behind = behind.map(|straight| (straight, straight.direction.dot(self.end)));
+        let joints: Vec<(Straight, f64)> = before.into_iter().chain(behind).collect();
+        let smooth = joints.iter().any(|(_, cosine)| *cosine > SMOOTH);
+        // A plunge is no part of a contour: a short arc may rise out of it along the same line, and the other way round it would first go
+        // on down, by more than half a turn.
+        let shows = match joints[..] {
+            [(straight, _)] => !straight.is_along_tool || self.sweep > SHORT,
+            _ => !joints.is_empty(),
+        };
+        // A cusp at one end is a corner being cleaned; one at every end is the wrong direction.
+        (smooth, shows && joints.iter().all(|(_, cosine)| *cosine < -SMOOTH))
+    }
+}
+
 /// Compares the arcs of `program` with the straight moves next to them.
 pub(super) fn weigh(program: &Program) -> Evidence {
     let mut evidence = Evidence::default();
-    // Direction of the straight cut that ended at `here`, and the arc (line, tangents) after it.
-    let (mut here, mut before): (Option<Vec3>, Option<Vec3>) = (None, None);
-    let mut open: Option<(u32, Option<Vec3>, Vec3, Vec3)> = None;
+    // The straight cut that ended at `here`, and the arc after it.
+    let (mut here, mut before): (Option<Vec3>, Option<Straight>) = (None, None);
+    let mut open: Option<Turned> = None;
     for record in &program.records {
         let Some(pose) = record.op.pose() else { continue };
         let straight = match (&record.op, here) {
             (Op::Line(_), Some(here)) => direction(pose.point() - here),
             _ => None,
         };
-        if let Some((line, before, start, end)) = open.take() {
-            let joints = [before.map(|b| b.dot(start)), straight.map(|s| s.dot(end))];
-            let mut joints = joints.into_iter().flatten().peekable();
-            // A cusp at one end is a corner being cleaned; one at every end is the wrong direction.
-            let reversed = joints.peek().is_some() && joints.clone().all(|c| c < -SMOOTH);
-            let smooth = joints.any(|c| c > SMOOTH);
+        let straight = straight.map(|direction| Straight {
+            direction,
+            is_along_tool: direction.dot(pose.axis()).abs() > SMOOTH,
+        });
+        if let Some(arc) = open.take() {
+            let (smooth, reversed) = arc.joints(straight);
             evidence.smooth += usize::from(smooth);
             if reversed {
                 if evidence.reversed == 0 {
-                    evidence.first_reversed = line;
+                    evidence.first_reversed = arc.line;
                 }
                 evidence.reversed += 1;
             }
@@ -327,7 +365,8 @@ pub(super) fn weigh(program: &Program) -> Evidence {
             && let Ok(arc) = to.circle.arc(start, pose.point(), f64::MAX)
         {
             let back = Arc { start: arc.end, end: arc.start, normal: -arc.normal, ..arc };
-            open = Some((record.line, before, arc.tangent(), -back.tangent()));
+            let (start, end, sweep) = (arc.tangent(), -back.tangent(), arc.sweep);
+            open = Some(Turned { line: record.line, before, start, end, sweep });
         }
         before = straight;
         here = Some(pose.point());

@@ -55,6 +55,29 @@ fn the_path_is_held_against_the_habit() {
     assert!(warnings[0].excerpt.starts_with("GOTO/0,10,0\n^"));
 }
 
+/// In the plane of X and Z: down to X0 Z0, then a quarter about X10 Z0 up to X10 Z10. The other way round it would go on down, three quarters.
+#[test]
+fn a_short_arc_that_rises_out_of_a_plunge_is_read_as_it_stands() {
+    let plunge = "GOTO/0,0,5\nGOTO/0,0,0\n";
+    let after = "\nRAPID\nGOTO/10,0,30";
+    let quarter = |k: i32| format!("CIRCLE/10,0,0,0,{k},0,10\nGOTO/10,0,10");
+    let whole = reading(&format!("{HEAD}{plunge}{}{after}\nFINI", quarter(1)));
+    assert!(whole.program.records.iter().any(|record| matches!(record.op, Op::Arc(_))));
+    // The long way goes on smoothly, down and around.
+    reading(&format!("{HEAD}{plunge}{}{after}\nFINI", quarter(-1)));
+    // What goes up by the long way, out of the plunge, and is short the other way round: its direction is wrong.
+    let long = |k: i32| format!("{plunge}CIRCLE/10,0,0,0,{k},0,10\nGOTO/10,0,-10{after}");
+    assert_eq!(error(&long(1)), "arc-direction");
+    reading(&format!("{HEAD}{}\nFINI", long(-1)));
+    // With a cut behind it that it reverses too, also a short one is.
+    let behind = format!("{plunge}{}\nGOTO/0,0,10{after}", quarter(1));
+    assert_eq!(error(&behind), "arc-direction");
+    // In the plane of the cut as ever: straight along +Y and back.
+    let level =
+        "GOTO/10,-5,0\nGOTO/10,0,0\nCIRCLE/0,0,0,0,0,-1,10\nGOTO/0,-10,0\nRAPID\nGOTO/0,-10,30";
+    assert_eq!(error(level), "arc-direction");
+}
+
 #[test]
 fn arcs_lie_in_any_plane_and_go_round_as_often_as_asked() {
     let creo = "$$* Pro/CLfile";
