@@ -10,6 +10,8 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contour {
     elements: Vec<Element>,
+    /// The line of the source that brings the wire to its start; 0 for none.
+    brought_by: u32,
 }
 
 /// A point on a contour.
@@ -66,12 +68,26 @@ impl Contour {
         if last.end.distance(start) <= gap && (many || whole) {
             *last = last.spanning(last.start, start);
         }
-        Ok(Contour { elements: chain })
+        Ok(Contour { elements: chain, brought_by: 0 })
     }
 
     /// The elements in their order; never empty.
     pub fn elements(&self) -> &[Element] {
         &self.elements
+    }
+
+    /// The same, to whose start this line of the source brings the wire.
+    #[must_use]
+    pub fn starting_by(self, line: u32) -> Contour {
+        Contour { brought_by: line, ..self }
+    }
+
+    /// The line of the source that brings the wire to its start: that of the first element where no other does.
+    pub fn starts_by(&self) -> u32 {
+        match self.brought_by {
+            0 => self.elements.first().map_or(0, |element| element.line),
+            line => line,
+        }
     }
 
     /// Where it starts.
@@ -128,7 +144,8 @@ impl Contour {
 
     /// The same, travelled the other way.
     pub fn reversed(&self) -> Contour {
-        Contour { elements: self.elements.iter().rev().map(Element::reversed).collect() }
+        let elements = self.elements.iter().rev().map(Element::reversed).collect();
+        Contour { elements, brought_by: 0 }
     }
 
     /// The point of the contour nearest to `point`; of equally near ones the first.
@@ -165,7 +182,7 @@ impl Contour {
         let parts = start.up_to(&self.point_at(f64::INFINITY));
         let parts = parts.chain(self.point_at(0.0).up_to(start));
         let part = |(i, from, to): (usize, f64, f64)| Some(self.elements.get(i)?.part(from, to));
-        Contour { elements: parts.filter_map(part).collect() }
+        Contour { elements: parts.filter_map(part).collect(), brought_by: 0 }
     }
 }
 

@@ -66,4 +66,4 @@ pub use contour::{Contour, ContourPoint};
 pub use lead::{Lead, LeadShape};
 pub use path::{Limits, Path};
 pub use sketch::{ARC_TOLERANCE, Direction, Element};
-pub use trace::{OffsetContour, contours, cuts, offset_contours};
+pub use trace::{Cut, OffsetContour, contours, cuts, offset_contours};

@@ -33,6 +33,12 @@ impl Path {
         Path { lower, upper: Some(upper) }
     }
 
+    /// The same, to whose start this line of the source brings the wire.
+    #[must_use]
+    pub fn starting_by(self, line: u32) -> Path {
+        Path { lower: self.lower.starting_by(line), ..self }
+    }
+
     /// Where the lower end goes.
     pub fn lower(&self) -> &Contour {
         &self.lower

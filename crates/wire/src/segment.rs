@@ -82,6 +82,14 @@ impl Segment {
         lines.find(|line| *line > 0).unwrap_or_default()
     }
 
+    /// The line of the source that brings the wire to where it begins.
+    fn starts_by(&self) -> u32 {
+        match self.path.lower().starts_by() {
+            0 => self.line(),
+            line => line,
+        }
+    }
+
     /// Whether the wire leans anywhere.
     pub fn leans(&self) -> bool {
         self.path.upper().is_some()
@@ -135,7 +143,7 @@ fn assemble(
     let mut line = 0;
     for segment in segments {
         let (start, moves) = moves(segment)?;
-        line = segment.line();
+        line = segment.starts_by();
         if segment.stop {
             program.push(line, Op::Stop);
         }

@@ -12,7 +12,18 @@ use sketch::{ARC_TOLERANCE, Direction, Element, SAME};
 /// # Errors
 /// Those of [`cuts`] and [`Contour::new`].
 pub fn contours(program: &Program, start: Option<Vec2>) -> Result<Vec<Contour>, Box<Diagnostic>> {
-    cuts(program, start)?.into_iter().map(|cut| Contour::new(cut, 0.0)).collect()
+    let contour =
+        |Cut { brought_by, elements }| Ok(Contour::new(elements, 0.0)?.starting_by(brought_by));
+    cuts(program, start)?.into_iter().map(contour).collect()
+}
+
+/// What is cut from one rapid to the next, move by move.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cut {
+    /// The line of the rapid that brings the wire to its start; 0 for none.
+    pub brought_by: u32,
+    /// The moves.
+    pub elements: Vec<Element>,
 }
 
 /// The same move by move: also those that only the other end of the wire makes.
@@ -21,22 +32,28 @@ pub fn contours(program: &Program, start: Option<Vec2>) -> Result<Vec<Contour>, 
 /// The first record that a wire cannot follow: an arc out of the plane, a tilted or turned tool, a
 /// hole cycle, a compensation that is not resolved, a cut from an unknown place; and what
 /// [`Element::arc_by_center`] refuses. `empty-contour` where nothing is cut.
-pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>, Box<Diagnostic>> {
+pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Cut>, Box<Diagnostic>> {
     let mut position = start.unwrap_or(Vec2::NAN);
-    let mut cuts = vec![Vec::new()];
+    let mut cuts = vec![Cut::default()];
     for record in &program.records {
         let at = |d: Box<Diagnostic>| Box::new(d.line(record.line));
         let element = match &record.op {
             Op::Line(pose) => Element::line(position, upright(pose).map_err(at)?),
             Op::Arc(arc) => turned(position, arc).map_err(at)?,
             Op::Rapid(pose) => {
-                position = upright(pose).map_err(at)?;
-                cuts.push(Vec::new());
+                let to = upright(pose).map_err(at)?;
+                // What only goes down stays where the one before has brought it.
+                let before = cuts
+                    .last()
+                    .filter(|cut| cut.elements.is_empty() && cut.brought_by > 0 && to == position);
+                let brought_by = before.map_or(record.line, |cut| cut.brought_by);
+                position = to;
+                cuts.push(Cut { brought_by, elements: Vec::new() });
                 continue;
             }
             Op::MachineMove(_) | Op::Joints(_) => {
                 position = Vec2::NAN;
-                cuts.push(Vec::new());
+                cuts.push(Cut::default());
                 continue;
             }
             Op::Hole(_) => return Err(at(refused(Rule::NotACut, "a hole cycle", "take it out"))),
@@ -62,10 +79,10 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
         }
         position = element.end;
         if let Some(cut) = cuts.last_mut() {
-            cut.push(element.from_line(record.line));
+            cut.elements.push(element.from_line(record.line));
         }
     }
-    cuts.retain(|cut| cut.iter().any(|element| element.length() >= SAME));
+    cuts.retain(|cut| cut.elements.iter().any(|element| element.length() >= SAME));
     if cuts.is_empty() {
         return Err(refused(Rule::EmptyContour, "the program cuts nothing in X and Y", ""));
     }

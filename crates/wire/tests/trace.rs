@@ -5,6 +5,7 @@ use geom::Vec2;
 use program::{ArcTo, Axes, Circle, Compensation, Cycle, CycleKind, Op, Pose, Program};
 use std::f64::consts::PI;
 use toolpost_wire::points::{Step, points};
+use toolpost_wire::segment::{self, Segment};
 use toolpost_wire::{Path, contours, cuts, offset_contours};
 
 type Vec3 = geom::Vec3;
@@ -71,6 +72,13 @@ fn rapids_part_the_contours_of_a_program() {
     let lines: Vec<u32> = sector.elements().iter().map(|e| e.line).collect();
     assert_eq!((lines, hole.elements()[0].line), (vec![3, 4, 5], 7));
     assert_eq!(hole.start(), Vec2::new(100.0, 5.0));
+    // Each is begun by its rapid, and so is the program of it.
+    assert_eq!((sector.starts_by(), hole.starts_by()), (2, 6));
+    let segments = [sector, hole].map(|contour| Segment::of(Path::upright(contour.clone())));
+    let made = segment::program("a", &segments, 0.0, false).unwrap();
+    let lines: Vec<u32> = made.records.iter().map(|record| record.line).collect();
+    // Rapid, threading, the cuts, the wire is cut; then the end of the program.
+    assert_eq!(lines, [2, 2, 3, 4, 5, 5, 6, 6, 7, 7, 7]);
     let found = points(&[&Path::upright(sector.clone())], Step::Length(0.1), None).unwrap();
     assert_eq!(found[0].of_line(4).next().unwrap().len(), 629);
 }
@@ -83,7 +91,7 @@ fn two_programs_are_the_two_ends_of_the_wire() {
             "O1 G21 G90 G94\nG0 X{half:.1} Y-{half:.1}\nG1 Y{half:.1} F5.\nX-{half:.1}\n\
              Y-{half:.1}\nX{half:.1}\nM30\n"
         );
-        cuts(&program(&text), None).unwrap().remove(0)
+        cuts(&program(&text), None).unwrap().remove(0).elements
     };
     let path = Path::by_block(square(10.0), square(9.0)).unwrap();
     let found = points(&[&path], Step::Length(1.0), None).unwrap().remove(0);

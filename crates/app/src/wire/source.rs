@@ -8,7 +8,7 @@ use crate::watch::Watch;
 use geom::Vec2;
 use machine::Machine;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program, Rule};
-use wire::{Contour, Element, OffsetContour, Path, contours, cuts, dxf, offset_contours};
+use wire::{Contour, Cut, OffsetContour, Path, contours, cuts, dxf, offset_contours};
 
 /// A source with the wire paths that it gives.
 pub struct Source {
@@ -209,10 +209,14 @@ impl File {
     }
 
     /// Move by move.
-    fn cuts(&self, start: Option<Vec2>) -> Result<Vec<Vec<Element>>, Box<Diagnostic>> {
+    fn cuts(&self, start: Option<Vec2>) -> Result<Vec<Cut>, Box<Diagnostic>> {
         match self {
             File::Drawing(_, contours) => {
-                Ok(contours.iter().map(|contour| contour.elements().to_vec()).collect())
+                let cut = |contour: &Contour| Cut {
+                    elements: contour.elements().to_vec(),
+                    ..Cut::default()
+                };
+                Ok(contours.iter().map(cut).collect())
             }
             File::Program(toolpath) => {
                 self.in_one_frame()?;
@@ -294,12 +298,13 @@ fn without_height(mut stop: Stop) -> Stop {
     stop
 }
 
-fn by_block(
-    below: Vec<Vec<Element>>,
-    above: Vec<Vec<Element>>,
-) -> Result<Vec<Path>, Box<Diagnostic>> {
+fn by_block(below: Vec<Cut>, above: Vec<Cut>) -> Result<Vec<Path>, Box<Diagnostic>> {
     as_many(below.len(), above.len())?;
-    below.into_iter().zip(above).map(|(below, above)| Path::by_block(below, above)).collect()
+    let path = |(below, above): (Cut, Cut)| {
+        let path = Path::by_block(below.elements, above.elements)?;
+        Ok(path.starting_by(below.brought_by))
+    };
+    below.into_iter().zip(above).map(path).collect()
 }
 
 /// By the points of `pairs`, each of which belongs to the lower contour that is nearest to it; between
