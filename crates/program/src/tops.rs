@@ -245,6 +245,16 @@ mod tests {
     }
 
     #[test]
+    fn places_are_arranged_where_another_axis_than_z_is_asked_for() {
+        let program = program([Op::Rapid(Pose::upright(Vec3::ONE).unwrap())]);
+        let tops = Tops::of(&program);
+        assert_eq!((tops.along(Vec3::Z), tops.upward()), (1.0, 1.0));
+        assert!(tops.tree.get().is_none());
+        assert_eq!(tops.along(Vec3::X), 1.0);
+        assert!(tops.tree.get().is_some());
+    }
+
+    #[test]
     fn along_z_counts_where_the_tool_stands_anywhere() {
         let lean = |degrees: f64, z: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
