@@ -82,7 +82,7 @@ fn fastest(board: &Path, more: &[&str], rounds: usize) -> Result<Made, Vec<Diagn
     let mut best: Option<Made> = None;
     for _ in 0..rounds.max(1) {
         let ((code, peak), time) =
-            clock::time(|| memory::peak(|| toolpost::run(words.iter().map(Into::into))));
+            clock::time(|| memory::peak(|| toolpost::run(words.iter().map(Into::into), None)));
         let report = std::fs::read(folder.join("report.json")).unwrap_or_default();
         let _ = std::fs::remove_dir_all(&folder);
         let report: Value = serde_json::from_slice(&report).unwrap_or_default();

@@ -159,7 +159,7 @@ pub fn asked() -> Option<u8> {
     }
     let words: Vec<OsString> = words.collect();
     if words.first().is_some_and(|word| word == "toolpost") {
-        return Some(toolpost::run(words));
+        return Some(toolpost::run(words, None));
     }
     Some(match stage(&words) {
         Ok(()) => 0,

@@ -5,6 +5,7 @@ use crate::error::{class, findings, raised, released};
 use crate::machine::Machine;
 use crate::program::Program;
 use app::files;
+use app::helper::Launcher;
 use app::post::{Posted, proven};
 use app::prove::compare;
 use app::{Account, Stop, Verdict};
@@ -163,8 +164,11 @@ pub fn save(
     })
 }
 
-/// Obey the words of a command line, the name of the command first, and answer its exit code.
+/// Obey the words of a command line, the name of the command first, and answer its exit code. By the words `helper` the
+/// studio starts its helpers.
 #[pyfunction]
-pub fn run_command(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
-    released(py, || Ok::<_, Stop>(toolpost::run(words)))
+pub fn run_command(py: Python<'_>, words: Vec<OsString>, helper: Vec<OsString>) -> PyResult<u8> {
+    let mut helper = helper.into_iter();
+    let helper = helper.next().map(|program| Launcher::new(program, helper));
+    released(py, || Ok::<_, Stop>(toolpost::run(words, helper)))
 }

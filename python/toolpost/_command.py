@@ -1,13 +1,17 @@
 """The command ``toolpost``."""
 
+import os
 import signal
 import sys
 
-from ._native import run_command
+from . import _native
 
 
 def main() -> int:
     """Obey the command line and answer its exit code."""
     # What runs is no Python, which would only look for the interrupt when it is over.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return run_command(["toolpost", *sys.argv[1:]])
+    script = os.path.join(os.path.dirname(__file__), "_helper.py")
+    # An interpreter within another program has none.
+    helper = [sys.executable, "-I", "-S", script, _native.__file__] if sys.executable else []
+    return _native.run_command(["toolpost", *sys.argv[1:]], helper)

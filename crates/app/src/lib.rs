@@ -38,6 +38,7 @@ mod fcstd;
 pub mod files;
 pub mod fit;
 pub mod glass;
+pub mod helper;
 mod input;
 mod parallel;
 pub mod pcb;

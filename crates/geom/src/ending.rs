@@ -4,6 +4,9 @@
 //! not return but unwinds to `run`, which answers `None`. Everything on the way is dropped as it is when a function returns; no hook
 //! of panics is called, and nothing is printed. On all other threads [`go_on`] does nothing.
 //!
+//! A long step that cannot ask, since it is the work of a library, is given to a [`Helper`] where the owner of the work has one: it does the step
+//! in another process, which is killed where the work is ended ([`helped`]).
+//!
 //! ```
 //! use toolpost_geom::ending::{Ended, go_on};
 //!
@@ -16,6 +19,8 @@
 
 use rayon::ThreadPoolBuilder;
 use std::cell::OnceCell;
+use std::fmt::Debug;
+use std::io::{self, Read, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,9 +30,28 @@ thread_local! {
     static OWN: OnceCell<Ended> = const { OnceCell::new() };
 }
 
-/// Whether work shall end, for who does it and who ends it.
+/// Whether work shall end, for who does it and who ends it; and who helps to do it.
 #[derive(Clone, Debug, Default)]
-pub struct Ended(Arc<AtomicBool>);
+pub struct Ended {
+    flag: Arc<AtomicBool>,
+    helper: Option<Arc<dyn Helper>>,
+}
+
+/// Does steps of work in another process. A step is a function of bytes, which answers the same in each process.
+pub trait Helper: Debug + Send + Sync {
+    /// Has the step of this name do what is `asked`, and `take` read all of its answer. Whether that was done; if not, nothing of what was taken counts. Returns
+    /// within some milliseconds where the work of this thread is ended meanwhile.
+    fn help(&self, step: &'static str, asked: &[u8], take: &mut Take<'_>) -> bool;
+}
+
+/// Reads an answer.
+pub type Take<'a> = dyn FnMut(&mut dyn Read) -> io::Result<()> + Send + 'a;
+
+/// A step as the helping process has it: it reads all that is asked, bounded in memory whatever that says, and answers what will do it.
+pub type Step = fn(&mut dyn Read) -> io::Result<Does>;
+
+/// Does a step and writes its answer.
+pub type Does = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()>>;
 
 /// What work unwinds with.
 struct Unwound;
@@ -35,12 +59,17 @@ struct Unwound;
 impl Ended {
     /// Ends it.
     pub fn end(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.flag.store(true, Ordering::Relaxed);
     }
 
     /// Whether it was ended.
     pub fn is_ended(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.flag.load(Ordering::Relaxed)
+    }
+
+    /// The same work, with somebody who helps to do it.
+    pub fn with_helper(&self, helper: Option<Arc<dyn Helper>>) -> Ended {
+        Ended { flag: Arc::clone(&self.flag), helper }
     }
 
     /// Does `work` on threads of its own, as many as all parallel work here takes; `None` where it was ended meanwhile. Where the system gives no
@@ -78,6 +107,33 @@ pub fn carried<T>(work: impl FnOnce() -> T) -> impl FnOnce() -> T {
 #[inline]
 pub fn is_ended() -> bool {
     OWN.with(|own| own.get().is_some_and(Ended::is_ended))
+}
+
+/// Who helps with the work that this thread belongs to.
+fn helper() -> Option<Arc<dyn Helper>> {
+    OWN.with(|own| own.get()?.helper.clone())
+}
+
+/// Whether anybody helps with the work that this thread belongs to.
+pub fn has_helper() -> bool {
+    helper().is_some()
+}
+
+/// What the helper of this work answers to a step, where there is one and it could be asked; otherwise the step is to be done here. Unwinds where the work was
+/// ended. It is for steps of 10 ms and more that do not ask by [`go_on`]: to start the process takes some milliseconds.
+pub fn helped<T: Send>(
+    step: &'static str,
+    asked: impl FnOnce() -> Vec<u8>,
+    read: impl Fn(&mut dyn Read) -> io::Result<T> + Sync,
+) -> Option<T> {
+    let helper = helper()?;
+    let mut answer = None;
+    let is_done = helper.help(step, &asked(), &mut |from| {
+        answer = Some(read(from)?);
+        Ok(())
+    });
+    go_on();
+    answer.filter(|_| is_done)
 }
 
 /// Unwinds where the work that this thread belongs to was ended. It takes some nanoseconds: a step asks every few microseconds or oftener.

@@ -9,9 +9,9 @@ use crate::cloud::{self, Point};
 use crate::mesh::{Fault, Mesh};
 use crate::pcx;
 use crate::sample::{self, Apart, Dice, SHRINK};
-use geom::ending::go_on;
+use geom::ending::{self, Does, Step, go_on};
 use glam::{DVec2, DVec3};
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, ImageResult, Limits};
 use program::{Diagnostic, Rule};
 use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
 
@@ -65,6 +65,12 @@ pub struct Setting {
 
 /// The most pixels of a picture.
 const MOST_PIXELS: u64 = 64_000_000;
+
+/// To decode more pixels than this may take longer than 10 ms, in which a decoder does not ask whether it goes on.
+const LONG: u64 = 1 << 19;
+
+/// The largest file of a picture that is given to a helper, bytes.
+const MOST_BYTES: u64 = 1 << 30;
 
 /// So many pixels become grey at once.
 const BAND: usize = 1 << 18;
@@ -134,40 +140,36 @@ impl Seek for Asked<'_> {
     }
 }
 
-/// The pixels of a picture of one of the forms that the crate `image` reads, upright.
-fn of_image(bytes: &[u8]) -> Result<DynamicImage, Fault> {
-    let wrong = |error: image::ImageError| Fault::new(Rule::Image, error.to_string());
-    let open = |error: std::io::Error| Fault::new(Rule::Image, error.to_string());
-    let mut reader =
-        ImageReader::new(Asked(Cursor::new(bytes))).with_guessed_format().map_err(open)?;
+/// A decoder of a picture of one of the forms that the crate `image` reads.
+fn decoder(bytes: &[u8]) -> ImageResult<impl ImageDecoder> {
+    let mut reader = ImageReader::new(Asked(Cursor::new(bytes))).with_guessed_format()?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(8 * MOST_PIXELS);
     reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(wrong)?;
-    let (width, height) = decoder.dimensions();
-    if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        return Err(too_many(u64::from(width), u64::from(height)));
-    }
-    let orientation = decoder.orientation().map_err(wrong)?;
-    let mut picture = DynamicImage::from_decoder(decoder).map_err(wrong)?;
+    reader.into_decoder()
+}
+
+/// The picture of a decoder, upright.
+fn upright(mut decoder: impl ImageDecoder) -> ImageResult<DynamicImage> {
+    let orientation = decoder.orientation()?;
+    let mut picture = DynamicImage::from_decoder(decoder)?;
     picture.apply_orientation(orientation);
     Ok(picture)
 }
 
-fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
-    let picture =
-        if pcx::is_pcx(bytes) { pcx::read(bytes, MOST_PIXELS)? } else { of_image(bytes)? };
+/// Width, height and the values, row by row from above: from 0 to 65535, as they are coded; where the picture is transparent, 0.
+type Grey = (usize, usize, Vec<u16>);
+
+/// The values of a picture, or those of its negative.
+fn grey(picture: &DynamicImage, invert: bool) -> Grey {
     let (width, height) = (picture.width() as usize, picture.height() as usize);
-    if width == 0 || height == 0 {
-        return Err(Fault::new(Rule::Empty, "has no pixel"));
-    }
     let value = |pixel: &image::LumaA<u16>| {
         let image::LumaA([grey, alpha]) = *pixel;
-        let grey = if setting.invert { u16::MAX - grey } else { grey };
+        let grey = if invert { u16::MAX - grey } else { grey };
         (u32::from(grey) * u32::from(alpha) / u32::from(u16::MAX)) as u16
     };
     // Some rows at a time: no copy of all of it, and an end between them.
-    let rows = BAND.div_ceil(width);
+    let rows = BAND.div_ceil(width.max(1));
     let mut values = Vec::with_capacity(width * height);
     for first in (0..height).step_by(rows) {
         go_on();
@@ -175,7 +177,92 @@ fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
         let band = picture.crop_imm(0, first as u32, width as u32, rows);
         values.extend(band.into_luma_alpha16().pixels().map(value));
     }
+    (width, height, values)
+}
+
+fn decoded(bytes: &[u8], setting: Setting) -> Result<Picture, Fault> {
+    let (width, height, values) = if pcx::is_pcx(bytes) {
+        grey(&pcx::read(bytes, MOST_PIXELS)?, setting.invert)
+    } else {
+        let wrong = |error: ImageError| Fault::new(Rule::Image, error.to_string());
+        let decoder = decoder(bytes).map_err(wrong)?;
+        let (width, height) = decoder.dimensions();
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels > MOST_PIXELS {
+            return Err(too_many(width.into(), height.into()));
+        }
+        let helped = if pixels > LONG { helped(bytes, setting.invert) } else { None };
+        let here = || Ok(grey(&upright(decoder)?, setting.invert));
+        let decoded =
+            helped.unwrap_or_else(|| here().map_err(|wrong: ImageError| wrong.to_string()));
+        decoded.map_err(|why| Fault::new(Rule::Image, why))?
+    };
+    if values.is_empty() {
+        return Err(Fault::new(Rule::Empty, "has no pixel"));
+    }
     Ok(Picture { width, height, values, setting })
+}
+
+/// The decoding of pictures, for a helper: its name and what it does. Asked is by a byte whether the negative is, and by the bytes of the file. The answer is
+/// a byte, and 1 is followed by width and height (4 bytes each) and the grey values (2 bytes each), little-endian; 0 by why there are none.
+pub const STEP: (&str, Step) = ("picture", step);
+
+/// What the helper of this work decodes, or why it cannot be decoded; none where nobody helps.
+fn helped(bytes: &[u8], invert: bool) -> Option<Result<Grey, String>> {
+    ending::helped(STEP.0, || [&[u8::from(invert)], bytes].concat(), answer)
+}
+
+/// Reads what is asked, and answers what will do it.
+fn step(from: &mut dyn Read) -> io::Result<Does> {
+    let mut bytes = Vec::new();
+    from.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(Box::new(move |to| {
+        let (invert, bytes) = bytes.split_first().ok_or(io::ErrorKind::InvalidData)?;
+        let decoded = decoder(bytes).and_then(|decoder| Ok(grey(&upright(decoder)?, *invert != 0)));
+        match decoded {
+            Ok((width, height, values)) => {
+                to.write_all(&[1])?;
+                to.write_all(&(width as u32).to_le_bytes())?;
+                to.write_all(&(height as u32).to_le_bytes())?;
+                values.iter().try_for_each(|value| to.write_all(&value.to_le_bytes()))
+            }
+            Err(why) => {
+                to.write_all(&[0])?;
+                to.write_all(why.to_string().as_bytes())
+            }
+        }
+    }))
+}
+
+/// Reads the answer.
+fn answer(from: &mut dyn Read) -> io::Result<Result<Grey, String>> {
+    let mut is_decoded = [0];
+    from.read_exact(&mut is_decoded)?;
+    if is_decoded == [0] {
+        let mut why = String::new();
+        from.take(MOST_BYTES).read_to_string(&mut why)?;
+        return Ok(Err(why));
+    }
+    let mut side = || {
+        let mut bytes = [0; 4];
+        from.read_exact(&mut bytes).map(|()| u32::from_le_bytes(bytes))
+    };
+    let (width, height) = (side()?, side()?);
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > MOST_PIXELS {
+        return Err(io::ErrorKind::InvalidData.into());
+    }
+    let mut values = Vec::new();
+    let mut band = vec![0; 2 * BAND];
+    let mut left = pixels as usize;
+    while left > 0 {
+        let bytes = &mut band[..2 * left.min(BAND)];
+        from.read_exact(bytes)?;
+        let value = |pair: &[u8]| u16::from_le_bytes([pair[0], pair[1]]);
+        values.extend(bytes.chunks_exact(2).map(value));
+        left -= left.min(BAND);
+    }
+    Ok(Ok((width as usize, height as usize, values)))
 }
 
 /// Reads the bytes of a texture: PNG, JPEG, BMP or PCX.

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! let words = ["toolpost", "--quiet", "machines", "show", "iso"];
-//! assert_eq!(toolpost::run(words.map(Into::into)), 0);
+//! assert_eq!(toolpost::run(words.map(Into::into), None), 0);
 //! ```
 
 pub mod answer;
@@ -26,6 +26,7 @@ mod studio;
 mod wire;
 
 use answer::Answer;
+use app::helper::{self, Launcher};
 use app::{Stop, files};
 use args::{Command, CommandLine};
 use clap::error::ContextValue;
@@ -50,8 +51,12 @@ fn end_cleanly() {
 /// The exit code of a command that was interrupted: 128 and the number of the signal, as shells have it.
 const INTERRUPTED: u8 = 130;
 
-/// Obeys a command line, whose first word is the name of the command, and answers the exit code.
-pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+/// The command by which a program is a helper of another.
+pub const HELPER: &str = "helper";
+
+/// Obeys a command line, whose first word is the name of the command, and answers the exit code. The studio starts its helpers by `helper`, which
+/// gives such a program the word [`HELPER`]; without it, steps that cannot be ended in their middle go on to their end.
+pub fn run(words: impl IntoIterator<Item = OsString>, helper: Option<Launcher>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let (is_quiet, is_json) = said_first(&words);
     let settings::Expanded { words, found, origins, .. } = match settings::expanded(words) {
@@ -87,7 +92,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),
         Command::Fit(args) => fit::run(&args, silent),
-        Command::Studio(args) => studio::run(&args, json),
+        Command::Studio(args) => studio::run(&args, json, helper),
+        Command::Helper => return helper::serve().is_err().into(),
         Command::Explain { topic } => explain::run(topic.as_deref()),
         Command::Completions { shell } => Ok(completions(shell)),
     };

@@ -8,6 +8,7 @@ use ::studio::ask::{self, Field};
 use ::studio::board::Settings;
 use ::studio::server::{More, SETTINGS};
 use ::studio::{Options, Server};
+use app::helper::Launcher;
 use app::{Source, Stop, Verdict};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, CommandFactory, Parser};
@@ -23,7 +24,7 @@ use std::time::Instant;
 ///
 /// # Errors
 /// Why it did not start.
-pub fn run(args: &Studio, json: bool) -> Result<Answer, Stop> {
+pub fn run(args: &Studio, json: bool, helper: Option<Launcher>) -> Result<Answer, Stop> {
     if !::studio::has_page() {
         let message = "this command was built without the page of the studio";
         return Err(Diagnostic::error(Rule::StudioPage, message).into());
@@ -42,6 +43,7 @@ pub fn run(args: &Studio, json: bool) -> Result<Answer, Stop> {
         port: args.port,
         form: Some(form),
         options: Some(options),
+        helper,
     };
     let server = Server::bind(&settings)?;
     let link = server.link();

@@ -1,9 +1,9 @@
 //! Elements as chords: what the kernel is given.
 
 use super::kernel::{GridPoint, Keep, Kernel, Operand};
-use super::{Fill, Region, RegionError, crossings, refit};
+use super::{Fill, Region, RegionError, crossings, refit, step};
 use crate::crossing::Carrier;
-use crate::ending::go_on;
+use crate::ending::{go_on, has_helper};
 use crate::{Element, Turn, Vec2};
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 const CHORD_ERROR: f64 = 0.0009;
 
 /// The most edges of one boolean: some 5 GB.
-const MOST_EDGES: usize = 1 << 25;
+pub(super) const MOST_EDGES: usize = 1 << 25;
 
 /// So many edges are taken however few elements they are of: some 1.2 GB.
 const MANY_EDGES: usize = 1 << 23;
@@ -22,6 +22,9 @@ const EDGES_OF_AN_ELEMENT: usize = 128;
 
 /// So many crossings are taken however few elements there are: some 600 MB.
 const MANY_CROSSINGS: usize = 1 << 20;
+
+/// With more edges and pairs of elements that may cross than this the kernel may take longer than 10 ms, in which it does not ask whether it goes on.
+const LONG: usize = 8192;
 
 /// An end of an arc stands for the place of the grid of angles that is this near, mm.
 const SAME: f64 = 1e-6;
@@ -39,17 +42,36 @@ pub(super) fn boolean<'a>(
     if edges > MOST_EDGES.min(MANY_EDGES.max(elements.saturating_mul(EDGES_OF_AN_ELEMENT))) {
         return Err(RegionError::TooLarge);
     }
-    if crossings::are_more(chains, MANY_CROSSINGS.max(elements.saturating_mul(4))) {
-        return Err(RegionError::TooTangled);
+    let allowed = MANY_CROSSINGS.max(elements.saturating_mul(4));
+    let mut pairs = elements.saturating_mul(elements) / 2;
+    if pairs > allowed || has_helper() && edges.saturating_add(pairs) > LONG {
+        pairs = crossings::pairs(chains, allowed).ok_or(RegionError::TooTangled)?;
     }
+    if edges.saturating_add(pairs) > LONG
+        && let Some(region) = step::helped(first.clone(), second.clone(), keep, fill)
+    {
+        return Ok(region);
+    }
+    Ok(bounded(first, second, keep, fill, edges))
+}
+
+/// The same of what becomes so many edges, neither too many nor too tangled.
+pub(super) fn bounded<'a>(
+    first: impl Iterator<Item = &'a [Element]> + Clone,
+    second: impl Iterator<Item = &'a [Element]> + Clone,
+    keep: Keep,
+    fill: Fill,
+    edges: usize,
+) -> Region {
+    let elements = first.clone().chain(second.clone()).map(<[Element]>::len).sum();
     let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::with_capacity(elements) };
     first.for_each(|chain| chords.add(chain, Operand::First));
     second.for_each(|chain| chords.add(chain, Operand::Second));
-    Ok(refit::region(chords.kernel.islands(keep, fill), &chords.sources))
+    refit::region(chords.kernel.islands(keep, fill), &chords.sources)
 }
 
 /// How many edges the chains become.
-fn count<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
+pub(super) fn count<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
     let inner = |element: &Element| element.turn.map_or(0, |turn| Inner::of(element, turn).count());
     let edges = chains.flatten().map(|element| inner(element) + 1);
     edges.fold(0, usize::saturating_add)
@@ -121,21 +143,21 @@ impl Inner {
             center: turn.center,
             radius,
             steps: 8 * eighth as i64,
-            first: ((low + margin) / step).floor() as i64 + 1,
-            last: ((high - margin) / step).ceil() as i64 - 1,
+            first: (((low + margin) / step).floor() as i64).saturating_add(1),
+            last: (((high - margin) / step).ceil() as i64).saturating_sub(1),
             backwards: turn.sweep < 0.0,
         }
     }
 
     fn count(&self) -> usize {
-        usize::try_from(self.last - self.first + 1).unwrap_or(0)
+        usize::try_from(self.last.saturating_sub(self.first).saturating_add(1)).unwrap_or(0)
     }
 
     fn places(&self) -> impl Iterator<Item = GridPoint> {
         // Circles that are one but for rounding get the same places.
         let center = GridPoint::of(self.center).point();
         let radius = GridPoint::of(Vec2::splat(self.radius)).point().x;
-        (0..=self.last - self.first).map(move |i| {
+        (0..self.count() as i64).map(move |i| {
             let step = if self.backwards { self.last - i } else { self.first + i };
             let angle = step.rem_euclid(self.steps) as f64 / self.steps as f64 * TAU;
             GridPoint::of(center + Vec2::from_angle(angle) * radius)

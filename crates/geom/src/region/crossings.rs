@@ -64,18 +64,12 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<RingCrossing> {
         .collect()
 }
 
-/// Whether more than `most` pairs of elements of `chains` cross, or may: no more than so many pairs are looked at.
-pub(super) fn are_more<'a>(
-    chains: impl Iterator<Item = &'a [Element]> + Clone,
-    most: usize,
-) -> bool {
-    let elements: usize = chains.clone().map(<[Element]>::len).sum();
-    if elements.saturating_mul(elements) / 2 <= most {
-        return false;
-    }
+/// How many pairs of elements of `chains` have boxes that overlap, so that they may cross or touch; none where more than `most` pairs cross, or more pairs are
+/// looked at than that many crossings are worth.
+pub(super) fn pairs<'a>(chains: impl Iterator<Item = &'a [Element]>, most: usize) -> Option<usize> {
     let elements: Vec<&Element> = chains.flatten().collect();
     let boxes: Vec<(Vec2, Vec2)> = elements.iter().map(|element| element.extents()).collect();
-    let Some(index) = tree(boxes.iter().copied()) else { return false };
+    let Some(index) = tree(boxes.iter().copied()) else { return Some(0) };
     let (pairs, found) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let is_enough = || {
         found.load(Ordering::Relaxed) > most
@@ -96,7 +90,7 @@ pub(super) fn are_more<'a>(
         });
     });
     go_on();
-    is_enough()
+    (!is_enough()).then(|| pairs.into_inner())
 }
 
 /// Where two elements cross deeper than by rounding.

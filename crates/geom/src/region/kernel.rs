@@ -79,7 +79,7 @@ impl OverlayEdgeData for Carried {
     type Store = ();
 
     // Called for each cut of an edge, each turned one and each two that fall together: nothing else of the kernel can ask. Between these it
-    // looks for crossings and sweeps, without end for somebody who waits: some 0.9 s for a million edges.
+    // looks for crossings and sweeps, some 0.9 s for a million edges: what is long is done by a helper, where there is one.
     fn split<I: IntNumber>(self, _: EdgeDataSplit<I>, (): &mut ()) -> (Carried, Carried) {
         go_on();
         (self, self)

@@ -48,11 +48,13 @@ mod offset;
 mod refit;
 mod ring;
 mod shape;
+mod step;
 mod sweep;
 
 pub use index::{Index, Nearest, Piece};
 pub use ring::Ring;
 pub use shape::Cap;
+pub use step::STEP;
 pub use sweep::strokes;
 
 use crate::{Element, Transform, Vec2};

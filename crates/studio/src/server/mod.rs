@@ -15,12 +15,13 @@ use crate::jobs::{Jobs, MOST_JOBS};
 use crate::machines::Any;
 use crate::message::{self, Array};
 use crate::page;
+use app::helper::Launcher;
 use app::{Source, Stop};
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::{Method, Response, StatusCode};
 use closed::{Names, Token, brings, guarded, say};
-use geom::ending::Ended;
+use geom::ending::{Ended, Helper};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
@@ -80,6 +81,8 @@ pub struct Settings {
     pub form: Option<Form>,
     /// What such options, names without dashes and values, mean; `None`: there are none.
     pub options: Option<ReadOptions>,
+    /// What starts processes for steps of work that cannot be ended otherwise; `None`: these go on to their end.
+    pub helper: Option<Launcher>,
 }
 
 /// Makes a form of the options of a command.
@@ -177,6 +180,7 @@ pub(crate) struct Studio {
     leads: Mutex<Option<String>>,
     form: Option<Form>,
     options: Option<ReadOptions>,
+    helper: Option<Arc<dyn Helper>>,
 }
 
 impl Studio {
@@ -215,6 +219,7 @@ impl Studio {
             leads: Mutex::default(),
             form: settings.form,
             options: settings.options,
+            helper: settings.helper.clone().map(|helper| Arc::new(helper) as _),
         }))
     }
 

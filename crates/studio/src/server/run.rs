@@ -18,7 +18,7 @@ use std::time::{Duration, SystemTime};
 /// How often who waits looks whether the work was ended.
 const LOOK: Duration = Duration::from_millis(4);
 
-/// How many runs that nobody waits for may be in their last step while another begins.
+/// How many runs that nobody waits for may be in a step that goes on to its end, since no helper does it, while another begins.
 const MOST_LEFT: usize = 1;
 
 /// What is to be made.
@@ -126,7 +126,8 @@ struct Run {
 impl Run {
     fn begin(studio: &Arc<Studio>, order: Order, ended: &Ended) -> Run {
         let (tells, told) = channel();
-        let (tells, own, studio) = (Tells(tells), ended.clone(), Arc::clone(studio));
+        let (tells, studio) = (Tells(tells), Arc::clone(studio));
+        let own = ended.with_helper(studio.helper.clone());
         studio.runs.begin();
         let thread = thread::spawn(move || {
             let _over = Over(&studio);
@@ -173,7 +174,8 @@ impl Drop for Over<'_> {
     }
 }
 
-/// Runs that nobody waits for any more, and that have not ended yet: a step that is not asked meanwhile goes on to its end.
+/// Runs that nobody waits for any more, and that have not ended yet. They do within milliseconds where helpers do the steps that are not asked meanwhile; such a step goes on
+/// to its end where the system starts no process.
 #[derive(Debug, Default)]
 pub struct Left(Mutex<Vec<JoinHandle<()>>>);
 

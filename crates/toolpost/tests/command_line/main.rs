@@ -8,6 +8,7 @@ mod fit;
 mod folder;
 mod freecad;
 mod glass;
+mod helper;
 mod import;
 mod nc;
 mod questions;

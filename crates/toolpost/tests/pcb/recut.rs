@@ -46,7 +46,7 @@ impl Made {
         words.extend(tool);
         words.extend(["--as-drawn", "--picture", "none"]);
         words.extend(more);
-        assert_eq!(toolpost::run(words.iter().map(Into::into)), 0, "{words:?}");
+        assert_eq!(toolpost::run(words.iter().map(Into::into), None), 0, "{words:?}");
         let report = std::fs::read(folder.path().join("report.json")).unwrap();
         let bite = if more.contains(&"leave-out") { 0.0 } else { BITE };
         Made { report: serde_json::from_slice(&report).unwrap(), folder, machine, width, bite }
