@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 const CHORD_ERROR: f64 = 0.0009;
 
 /// The most edges of one boolean: some 5 GB.
-pub(super) const MOST_EDGES: usize = 1 << 25;
+const MOST_EDGES: usize = 1 << 25;
 
 /// So many edges are taken however few elements they are of: some 1.2 GB.
 const MANY_EDGES: usize = 1 << 23;
@@ -23,7 +23,7 @@ const EDGES_OF_AN_ELEMENT: usize = 128;
 /// So many crossings are taken however few elements there are: some 600 MB.
 const MANY_CROSSINGS: usize = 1 << 20;
 
-/// With more edges and pairs of elements that may cross than this the kernel may take longer than 10 ms, in which it does not ask whether it goes on.
+/// With more edges, and pairs of elements that may cross, than this a boolean may take longer than 10 ms, in which the kernel does not ask whether it goes on.
 const LONG: usize = 8192;
 
 /// An end of an arc stands for the place of the grid of angles that is this near, mm.
@@ -36,44 +36,47 @@ pub(super) fn boolean<'a>(
     keep: Keep,
     fill: Fill,
 ) -> Result<Region, RegionError> {
-    let edges = count(first.clone()).saturating_add(count(second.clone()));
     let chains = first.clone().chain(second.clone());
-    let elements: usize = chains.clone().map(<[Element]>::len).sum();
+    let (edges, elements) = (count(chains.clone()), len(chains.clone()));
+    if has_helper()
+        && is_long(chains.clone(), edges, elements)
+        && let Some(made) = step::helped(first.clone(), second.clone(), keep, fill)
+    {
+        return made;
+    }
     if edges > MOST_EDGES.min(MANY_EDGES.max(elements.saturating_mul(EDGES_OF_AN_ELEMENT))) {
         return Err(RegionError::TooLarge);
     }
-    let allowed = MANY_CROSSINGS.max(elements.saturating_mul(4));
-    let mut pairs = elements.saturating_mul(elements) / 2;
-    if pairs > allowed || has_helper() && edges.saturating_add(pairs) > LONG {
-        pairs = crossings::pairs(chains, allowed).ok_or(RegionError::TooTangled)?;
+    let crossings = MANY_CROSSINGS.max(elements.saturating_mul(4));
+    if all_pairs(elements) > crossings && crossings::pairs(chains, crossings).is_none() {
+        return Err(RegionError::TooTangled);
     }
-    if edges.saturating_add(pairs) > LONG
-        && let Some(region) = step::helped(first.clone(), second.clone(), keep, fill)
-    {
-        return Ok(region);
-    }
-    Ok(bounded(first, second, keep, fill, edges))
-}
-
-/// The same of what becomes so many edges, neither too many nor too tangled.
-pub(super) fn bounded<'a>(
-    first: impl Iterator<Item = &'a [Element]> + Clone,
-    second: impl Iterator<Item = &'a [Element]> + Clone,
-    keep: Keep,
-    fill: Fill,
-    edges: usize,
-) -> Region {
-    let elements = first.clone().chain(second.clone()).map(<[Element]>::len).sum();
     let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::with_capacity(elements) };
     first.for_each(|chain| chords.add(chain, Operand::First));
     second.for_each(|chain| chords.add(chain, Operand::Second));
-    refit::region(chords.kernel.islands(keep, fill), &chords.sources)
+    Ok(refit::region(chords.kernel.islands(keep, fill), &chords.sources))
+}
+
+/// Whether the boolean of chains may take long.
+fn is_long<'a>(chains: impl Iterator<Item = &'a [Element]>, edges: usize, elements: usize) -> bool {
+    let is_with = |pairs: usize| edges.saturating_add(pairs) > LONG;
+    is_with(0) || is_with(all_pairs(elements)) && crossings::pairs(chains, LONG).is_none_or(is_with)
+}
+
+/// How many pairs there are of so many elements, at the most.
+fn all_pairs(elements: usize) -> usize {
+    elements.saturating_mul(elements) / 2
+}
+
+/// How many elements the chains have.
+fn len<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
+    chains.map(<[Element]>::len).sum()
 }
 
 /// How many edges the chains become.
-pub(super) fn count<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
+fn count<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
     let inner = |element: &Element| element.turn.map_or(0, |turn| Inner::of(element, turn).count());
-    let edges = chains.flatten().map(|element| inner(element) + 1);
+    let edges = chains.inspect(|_| go_on()).flatten().map(|element| inner(element) + 1);
     edges.fold(0, usize::saturating_add)
 }
 

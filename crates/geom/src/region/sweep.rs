@@ -9,6 +9,7 @@ use super::kernel::GridPoint;
 use super::ring::place;
 use super::shape::circle;
 use super::{FAR, RegionError, Ring};
+use crate::ending::go_on;
 use crate::{Element, Turn, Vec2};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -25,6 +26,7 @@ pub fn strokes(strokes: &[(Element, f64)]) -> Result<Vec<Ring>, RegionError> {
     let mut rings = Vec::with_capacity(2 * strokes.len());
     let mut ends = Ends::default();
     for (stroke, width) in strokes {
+        go_on();
         place(stroke.start)?;
         place(stroke.end)?;
         if !(*width > 0.0 && *width <= FAR) {
@@ -47,7 +49,7 @@ pub fn strokes(strokes: &[(Element, f64)]) -> Result<Vec<Ring>, RegionError> {
             }
         }
     }
-    rings.extend(ends.all.iter().filter_map(End::ring));
+    rings.extend(ends.all.iter().inspect(|_| go_on()).filter_map(End::ring));
     Ok(rings)
 }
 
