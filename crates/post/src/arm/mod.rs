@@ -135,22 +135,6 @@ pub(crate) fn write(
         let found = Diagnostic::warning(Rule::CompensatedPath, message);
         walk.findings.warn(found.help("a robot has no compensation").line(line));
     }
-    if let Some(height) = walk.rapids.tops().below_zero() {
-        let message = format!(
-            "the toolpath goes no higher than Z{height:.1}, below its zero, which is taken for the top of the part: joints lead the tool from home to 1 mm above \
-             zero, and it goes straight along its axis from there"
-        );
-        let help = "begin and end the toolpath with a rapid above the part";
-        walk.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
-    }
-    if let Some(height) = walk.rapids.sent_home() {
-        let message = format!(
-            "the source sends Z home from Z{height:.1}, the highest place that it names, and cuts above its zero, which is not the top of the part then: \
-             joints lead the tool home from there, and from home to there"
-        );
-        let help = "nothing of the part and its clamps may be higher than that: else a rapid above them before Z goes home";
-        walk.findings.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
-    }
     for record in program.records.iter().filter(|record| matches!(record.op, Op::Clamp(_))) {
         let message = "a clamp of a rotary axis is left out: a robot has none";
         let found = Diagnostic::warning(Rule::Clamp, message).help("nothing to do");

@@ -191,13 +191,6 @@ impl<'a> RapidPlanner<'a> {
         self.tops.get_or_init(|| Tops::of(self.source))
     }
 
-    /// The highest place of the source, mm, where it sends Z home from there without a word of how high, and cuts above its zero.
-    pub(super) fn sent_home(&self) -> Option<f64> {
-        let top = self.tops().along(Vec3::Z);
-        let from = self.source.sent_home.filter(|from| *from >= top - self.can.rapid_corridor);
-        from.filter(|_| self.cuts.reach(Vec3::Z) > 0.0)
-    }
-
     /// How far the tool is below where joints may lead it from or to, mm along its axis and along Z: as high as the source ever goes, beyond all cuts by
     /// the clearance, and higher by what joints may be off.
     pub(super) fn below(&self, at: &Position) -> [f64; 2] {

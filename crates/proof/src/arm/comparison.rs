@@ -195,6 +195,7 @@ impl<'a> Comparison<'a> {
             }
         }
         self.report.proven = self.report.mismatches.is_empty();
+        self.assumed_heights();
         (self.report, self.files)
     }
 

@@ -255,14 +255,14 @@ fn into_a_hole_that_the_source_never_leaves_the_tool_comes_from_above_its_zero()
     let head = "PARTNO/JOB\nUNITS/MM\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,-40\nFEDRAT/MMPM,300\nGOTO/100,50,-60\nRAPID\n";
     for (end, told) in [("GOTO/100,50,-30\n", true), ("GOTO/100,50,5\n", false)] {
         let source = source(&format!("{head}{end}SPINDL/OFF\nFINI\n"));
-        let warnings = post::write(&source, &machine).unwrap().warnings;
+        let text = proven(&source, &machine);
+        let warnings = proof_of(&source, &machine, &text).warnings;
         let found = warnings.iter().find(|found| found.rule.name() == "home-height");
         assert_eq!(
             found.is_some_and(|found| found.message.contains("Z-30.0")),
             told,
             "{warnings:?}"
         );
-        let text = proven(&source, &machine);
         let lowest =
             ends_of_joints(&machine, &text).iter().fold(f64::INFINITY, |z, end| z.min(end.z));
         assert!(lowest > 0.95, "{lowest}\n{text}");
@@ -402,8 +402,8 @@ fn a_source_that_sends_z_home_from_a_block_of_unknown_height_is_warned() {
         );
         let read = nc::read(&mill, Default::default(), "job.ngc", text.as_bytes());
         let source = read.unwrap().program;
-        let output = post::write(&source, &machine).unwrap();
-        let found = output.warnings.iter().filter(|found| found.rule.name() == "home-height");
+        let report = proof_of(&source, &machine, &proven(&source, &machine));
+        let found = report.warnings.iter().filter(|found| found.rule.name() == "home-height");
         let found: Vec<_> = found.map(|found| found.message.clone()).collect();
         let height = if end.contains("60") { "Z60.0" } else { "Z38.0" };
         assert_eq!(found.len(), usize::from(told), "{text}\n{found:?}");

@@ -3,7 +3,7 @@
 use super::super::follow::Path;
 use super::{Comparison, STRIDE, Standing, refused};
 use geom::{Frame, Vec3, angle_between};
-use program::{Outcome, Pose, Rule};
+use program::{Diagnostic, Outcome, Pose, Rule};
 
 /// The rise of a tool along Z for each mm along itself below which it lies: it leans by more than 60 degrees.
 const LYING: f64 = 0.5;
@@ -26,6 +26,28 @@ impl Comparison<'_> {
     fn top(&self, axis: Vec3) -> Top {
         let beyond = self.cuts.reach(axis) + self.machine.capabilities.rapid_clearance;
         Top { axis, height: self.tops.along(axis).max(beyond) }
+    }
+
+    /// Says what was taken for the top of the part where the source does not say how high that is.
+    pub(super) fn assumed_heights(&mut self) {
+        if let Some(height) = self.tops.below_zero() {
+            let message = format!(
+                "the toolpath goes no higher than Z{height:.1}, below its zero, which is taken for the top of the part: joints may lead the tool from 1 mm above \
+                 zero on, and from there it goes straight along its axis"
+            );
+            let help = "begin and end the toolpath with a rapid above the part";
+            self.report.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
+        }
+        let highest = self.tops.along(Vec3::Z) - self.machine.capabilities.rapid_corridor;
+        let sent_home = self.source.sent_home.filter(|from| *from >= highest);
+        if let Some(height) = sent_home.filter(|_| self.cuts.reach(Vec3::Z) > 0.0) {
+            let message = format!(
+                "the source sends Z home from Z{height:.1}, the highest place that it names, and cuts above its zero, which is not the top of the part then: \
+                 joints may lead the tool home from there, and from home to there"
+            );
+            let help = "nothing of the part and its clamps may be higher than that: else a rapid above them before Z goes home";
+            self.report.warn(Diagnostic::warning(Rule::HomeHeight, message).help(help));
+        }
     }
 
     /// Why the tool is not free of the part with its tip there, `unmeasured` mm off at the most. It is where it is `rapid_clearance` beyond all cuts along its
