@@ -62,6 +62,9 @@ const STEPS_AT_ONCE: u32 = 32;
 /// How far off the tool axis a cut may end that has drawn the tool back along it, mm.
 const ALONG: f64 = 1e-3;
 
+/// A tool that rises along Z by no less than this part of its way along itself stands upright: it leans by 5 degrees at the most.
+const UPRIGHT: f64 = 0.996;
+
 /// Joints that differ by less are the same, radians.
 const SAME_JOINTS: f64 = 1e-5;
 
@@ -576,8 +579,25 @@ impl<'a> Walk<'a> {
             Some(_) => ", or of the rail nearer to the part (`home` below [cell.rail])",
             None => "",
         };
+        // Up along a tool that leans, the way to a height along Z is long, and leads aside.
+        let is_aslant = |end: &Position| {
+            let [_, up] = self.rapids.below(end);
+            let rise = -end.tool.matrix3.z_axis.z;
+            up > slack && (rapid::LYING..UPRIGHT).contains(&rise)
+        };
+        let upright = match (from.0, to.0) {
+            (false, true) if is_aslant(ends[0]) => {
+                "a rapid of the toolpath that sets the tool upright where it is out of the part, from where it goes straight up, "
+            }
+            (true, false) if is_aslant(ends[1]) => {
+                "a rapid of the toolpath with the tool upright before it leans, to where it comes straight down, "
+            }
+            _ => "",
+        };
         let other = match from.0 || to.0 {
-            true => format!("a `home` below [cell] with the tool leaning more as here{rail}"),
+            true => {
+                format!("{upright}a `home` below [cell] with the tool leaning more as here{rail}")
+            }
             false => String::from("a rapid that lifts the tool before it turns"),
         };
         let own = format!("{other}, {measured}a toolpath whose highest rapid is lower, or {place}");

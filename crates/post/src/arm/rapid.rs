@@ -78,7 +78,7 @@ fn straight(end: Position, feed: f64) -> RapidSegment {
 
 /// A tool that rises along Z by less than this part of its way along itself lies rather than stands (it leans by more than 60 degrees): it may go straight up
 /// along Z where it is free along itself.
-const LYING: f64 = 0.5;
+pub(super) const LYING: f64 = 0.5;
 
 /// How far the tool is retracted beyond what it has to be, mm: the first that gives a path is taken.
 pub(super) const RETRACTS: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 80.0, 200.0];

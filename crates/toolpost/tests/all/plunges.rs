@@ -231,6 +231,27 @@ fn leans_below() -> Program {
     ))
 }
 
+/// A bore that leans by 45 degrees, and a rapid 230 mm above it: up along the tool the way to that height is longer than the arm. With the tool set upright out of
+/// the bore it goes straight up, and the refusal says so.
+#[test]
+fn out_of_a_leaning_bore_an_upright_rapid_leads_home() {
+    let machine = machine::load("kuka-kr6-r900").unwrap();
+    let lean = "0.7071068,0,0.7071068";
+    let job = |upright: &str| {
+        source(&format!(
+            "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/100,50,250,0,0,1\nRAPID\nGOTO/100,50,20,0,0,1\n\
+             RAPID\nGOTO/100,50,20,{lean}\nFEDRAT/MMPM,300\nGOTO/85.8579,50,5.8579,{lean}\nRAPID\nGOTO/100,50,20,{lean}\n{upright}SPINDL/OFF\nFINI\n"
+        ))
+    };
+    let found = post::write(&job(""), &machine).unwrap_err();
+    assert_eq!((found[0].rule.name(), found[0].line), ("rapid-path", 15), "{found:?}");
+    assert!(
+        found[0].help.starts_with("a rapid of the toolpath that sets the tool upright"),
+        "{found:?}"
+    );
+    proven(&job("RAPID\nGOTO/100,50,20,0,0,1\n"), &machine);
+}
+
 #[test]
 fn the_way_home_by_joints_is_refused_from_where_the_source_goes_higher() {
     let machine = machine::load("kuka-kr6-r900").unwrap();
