@@ -2,6 +2,7 @@
 
 use crate::{ArcTo, Cycle, Op, Pose, Program};
 use geom::{Vec3, angle_between, reach_of_box};
+use std::collections::HashSet;
 use std::sync::OnceLock;
 
 /// A program that stays below its zero may be within a hole from there: it counts as going so far above zero, mm.
@@ -22,6 +23,8 @@ pub struct Tops<'p> {
     below_zero: Option<f64>,
     /// Whether the tool stands anywhere.
     stands: bool,
+    /// The axes with which the tool comes to its first place, and to that behind each call of a tool or way home; each once. None where it stands anywhere.
+    ways_in: Vec<Vec3>,
     /// Its places, once they are looked at along another axis than Z.
     tree: OnceLock<Tree>,
 }
@@ -57,7 +60,8 @@ impl Tops<'_> {
         });
         let below_zero = (highest < 0.0 && highest > f64::NEG_INFINITY).then_some(highest);
         let along_z = if below_zero.is_some() { ABOVE_ZERO } else { highest };
-        Tops { program, along_z, below_zero, stands, tree: OnceLock::new() }
+        let ways_in = if stands { Vec::new() } else { ways_in(program) };
+        Tops { program, along_z, below_zero, stands, ways_in, tree: OnceLock::new() }
     }
 
     /// How high the program goes along `axis`, a unit vector, mm from the origin, however its tool leans: from below that nobody knows what
@@ -85,6 +89,13 @@ impl Tops<'_> {
         if self.stands { self.along_z } else { f64::NEG_INFINITY }
     }
 
+    /// Where the tool stands nowhere, the axes from which one that leans so differs by no more than 60 degrees and with which it comes in from home: as high
+    /// along itself alone it would be deep in a pocket of a side wall, far from where it came in, on the side to which it leans.
+    pub fn ways_in(&self, axis: Vec3) -> impl Iterator<Item = Vec3> + '_ {
+        let is_near = move |way: &&Vec3| way.dot(axis) >= LYING && **way != axis;
+        self.ways_in.iter().filter(is_near).copied()
+    }
+
     /// How high a program goes that stays below its zero, Z in mm; `None` of one that does not.
     pub fn below_zero(&self) -> Option<f64> {
         self.below_zero
@@ -110,6 +121,20 @@ fn places(program: &Program, mut tell: impl FnMut(Vec3, Vec3)) {
         tell(pose.point() + pose.axis() * height, pose.axis());
         here = Some(*pose);
     }
+}
+
+/// The axes with which the tool comes in, each once.
+fn ways_in(program: &Program) -> Vec<Vec3> {
+    let (mut ways, mut known, mut comes) = (Vec::new(), HashSet::new(), true);
+    for record in &program.records {
+        comes |= matches!(record.op, Op::Tool(_) | Op::Home);
+        let Some(pose) = record.op.pose() else { continue };
+        let axis = pose.axis();
+        if std::mem::take(&mut comes) && known.insert(axis.to_array().map(f64::to_bits)) {
+            ways.push(axis);
+        }
+    }
+    ways
 }
 
 impl Tree {
@@ -267,6 +292,24 @@ mod tests {
         assert_eq!(upward([59.0, 180.0]), 40.0);
         assert_eq!(upward([61.0, 90.0]), f64::NEG_INFINITY);
         assert_eq!(upward([180.0, 100.0]), f64::NEG_INFINITY);
+    }
+
+    #[test]
+    fn where_no_tool_stands_the_ways_in_count_to_which_it_leans_near() {
+        let lean = |degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            Vec3::new(cos, sin, 0.0)
+        };
+        let at = |degrees: f64| Op::Rapid(Pose::new(Vec3::ZERO, lean(degrees)).unwrap());
+        let ways_in = |tops: &Tops, degrees: f64| tops.ways_in(lean(degrees)).collect::<Vec<_>>();
+        let tops = Tops::of(&program([at(0.0), at(40.0), Op::Home, at(90.0), Op::Home, at(0.0)]));
+        assert_eq!(ways_in(&tops, 0.0), []);
+        assert_eq!(ways_in(&tops, 20.0), [lean(0.0)]);
+        assert_eq!(ways_in(&tops, 40.0), [lean(0.0), lean(90.0)]);
+        assert_eq!(ways_in(&tops, 70.0), [lean(90.0)]);
+        assert_eq!(ways_in(&tops, 151.0), []);
+        let upright = Op::Rapid(Pose::upright(Vec3::ZERO).unwrap());
+        assert_eq!(ways_in(&Tops::of(&program([at(0.0), upright])), 20.0), []);
     }
 
     /// By hand: over a hole at Z 0 the tool goes 7 mm back, and half a circle of radius 10 that stands upright rises to Z 10.

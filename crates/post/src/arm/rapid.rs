@@ -196,7 +196,16 @@ impl<'a> RapidPlanner<'a> {
     pub(super) fn below(&self, at: &Position) -> [f64; 2] {
         let axis = -at.tool.matrix3.z_axis;
         let tip = at.tool.translation;
-        [self.floor(axis) - tip.dot(axis), self.floor_along_z() - tip.z]
+        let ways = self.floors(axis).map(|(of, floor)| (floor - tip.dot(of)) / of.dot(axis));
+        [ways.fold(f64::NEG_INFINITY, f64::max), self.floor_along_z() - tip.z]
+    }
+
+    /// How high a tool that leans so has to be for joints to lead it: along itself, and, where the tool stands nowhere, along the ways in to which it leans
+    /// near.
+    fn floors(&self, axis: Vec3) -> impl Iterator<Item = (Vec3, f64)> + '_ {
+        let tops = self.tops();
+        let ways_in = tops.ways_in(axis).map(|way| (way, tops.along(way) + self.arm.unmeasured()));
+        [(axis, self.floor(axis))].into_iter().chain(ways_in)
     }
 
     fn floor_along_z(&self) -> f64 {
@@ -293,7 +302,7 @@ impl<'a> RapidPlanner<'a> {
         let unmeasured = self.arm.unmeasured();
         let slack = self.can.rapid_corridor / 2.0;
         let ends = [from, to].map(|end| -end.tool.matrix3.z_axis);
-        let floors = ends.map(|axis| self.floor(axis) - slack);
+        let floors = ends.map(|axis| self.floors(axis).collect::<Vec<_>>());
         let lowest = self.floor_along_z() - slack;
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
@@ -312,7 +321,8 @@ impl<'a> RapidPlanner<'a> {
             let leans = ends.map(|axis| angle_between(axis, -at.matrix3.z_axis));
             let end = usize::from(leans[1] < leans[0]);
             let tip = at.translation;
-            self.is_beyond_cuts(&at) && tip.z >= lowest && tip.dot(ends[end]) >= floors[end]
+            let is_high = floors[end].iter().all(|(of, floor)| tip.dot(*of) >= floor - slack);
+            self.is_beyond_cuts(&at) && tip.z >= lowest && is_high
         })
     }
 

@@ -386,6 +386,43 @@ fn from_a_pocket_a_leaning_tool_goes_straight_until_it_is_as_high_along_z() {
     }
 }
 
+/// A pocket in a side wall, which the tool enters along -Y and leaves leaning by 10 degrees: 20.1 mm out along itself it is as high along itself as where it came in, and
+/// still 5 mm within the mouth, for which it takes 25.4 mm.
+#[test]
+fn from_a_pocket_of_a_side_wall_a_leaning_tool_goes_straight_until_it_is_out_along_the_way_in() {
+    let machine = crate::robot::changed(
+        "kuka-kr6-r900",
+        &[("part = [450, 0, 150, 0, 0, 0]", "part = [450, 0, 250, 0, 0, 0]")],
+    );
+    let lean = "-0.17364818,-0.98480775,0";
+    let source = source(&format!(
+        "PARTNO/JOB\nUNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/0,-85,80,0,-1,0\nRAPID\nGOTO/0,-60,80,0,-1,0\n\
+         RAPID\nGOTO/-26,-60,60,{lean}\nFEDRAT/MMPM,400\nGOTO/-30,-42,60,{lean}\nGOTO/-30,-42,-60,{lean}\nRAPID\nGOTO/-26,-60,-60,{lean}\nSPINDL/OFF\nFINI\n"
+    ));
+    let text = proven(&source, &machine);
+    let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("LIN {X ")).collect();
+    let [.., end, out, up] = lines[..] else { panic!("{text}") };
+    let (from, to) = (tip_of(end), tip_of(out));
+    assert!(from.distance(Vec3::new(-26.0, -60.0, -60.0)) < 0.002, "{text}");
+    assert!(to.y <= -84.95, "{to}\n{text}");
+    let axis = Vec3::new(-0.173_648_18, -0.984_807_75, 0.0);
+    assert!((to - from).reject_from_normalized(axis).length() < 0.002, "{to}\n{text}");
+    // Out by so much, and straight up along Z from there.
+    let found = |mm: f64| {
+        let aside = from + axis * mm;
+        let mut text = text.clone();
+        for line in [out, up] {
+            let behind = line.split_once(",Z ").unwrap().1;
+            let moved = format!("LIN {{X {:.3},Y {:.3},Z {behind}", aside.x, aside.y);
+            text = text.replace(line, &moved);
+        }
+        let report = proof_of(&source, &machine, &text);
+        report.mismatches.first().map(|found| found.rule.name())
+    };
+    assert_eq!(found(22.0), Some("extra-motion"));
+    assert_ne!(found(26.0), Some("extra-motion"));
+}
+
 /// A stop at the end of a plunge: the spindle would have to stop there. Drawn back along the tool, by rapid or by feed, the arm stops.
 #[test]
 fn a_stop_in_the_cut_is_refused() {

@@ -4,6 +4,7 @@ use super::super::follow::Path;
 use super::{Comparison, STRIDE, Standing, refused};
 use geom::{Frame, Vec3, angle_between};
 use program::{Diagnostic, Outcome, Pose, Rule};
+use std::iter;
 
 /// The rise of a tool along Z for each mm along itself below which it lies: it leans by more than 60 degrees.
 const LYING: f64 = 0.5;
@@ -23,9 +24,13 @@ impl Top {
 }
 
 impl Comparison<'_> {
-    fn top(&self, axis: Vec3) -> Top {
+    /// Those of a tool that leans so: along itself first; and, where the tool stands nowhere, along the ways in to which it leans near.
+    fn tops_of(&self, axis: Vec3) -> Vec<Top> {
         let beyond = self.cuts.reach(axis) + self.machine.capabilities.rapid_clearance;
-        Top { axis, height: self.tops.along(axis).max(beyond) }
+        let own = Top { axis, height: self.tops.along(axis).max(beyond) };
+        let ways_in = self.tops.ways_in(axis);
+        let ways_in = ways_in.map(|axis| Top { axis, height: self.tops.along(axis) });
+        [own].into_iter().chain(ways_in).collect()
     }
 
     /// Says what was taken for the top of the part where the source does not say how high that is.
@@ -53,7 +58,12 @@ impl Comparison<'_> {
     /// Why the tool is not free of the part with its tip there, `unmeasured` mm off at the most. It is where it is `rapid_clearance` beyond all cuts along its
     /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest, and along Z. A tool that
     /// leans is as high along itself deep in a pocket, far on the side to which it leans.
-    fn blocked(&self, place: (Vec3, Vec3), ends: &[Top; 2], unmeasured: f64) -> Option<String> {
+    fn blocked(
+        &self,
+        place: (Vec3, Vec3),
+        ends: &[Vec<Top>; 2],
+        unmeasured: f64,
+    ) -> Option<String> {
         self.blocked_along_tool(place, ends, unmeasured).or_else(|| {
             let upward = Top { axis: Vec3::Z, height: self.tops.upward() };
             self.too_low(&upward, place.0, ("Z", unmeasured))
@@ -64,7 +74,7 @@ impl Comparison<'_> {
     fn blocked_along_tool(
         &self,
         (tip, axis): (Vec3, Vec3),
-        ends: &[Top; 2],
+        ends: &[Vec<Top>; 2],
         unmeasured: f64,
     ) -> Option<String> {
         let beyond = tip.dot(axis) - self.cuts.reach(axis);
@@ -74,9 +84,11 @@ impl Comparison<'_> {
                 "{beyond:.2} mm beyond the cuts along the tool: {clearance} mm are asked for"
             ));
         }
-        let leans = ends.map(|end| angle_between(axis, end.axis));
-        let along = ends[usize::from(leans[1] < leans[0])];
-        self.too_low(&along, tip, ("the tool", unmeasured))
+        let leans = [&ends[0], &ends[1]]
+            .map(|end| end.first().map_or(f64::INFINITY, |own| angle_between(axis, own.axis)));
+        let names = ["the tool"].into_iter().chain(iter::repeat("the way in"));
+        let mut tops = ends[usize::from(leans[1] < leans[0])].iter().zip(names);
+        tops.find_map(|(top, along)| self.too_low(top, tip, (along, unmeasured)))
     }
 
     fn too_low(&self, top: &Top, tip: Vec3, (along, unmeasured): (&str, f64)) -> Option<String> {
@@ -102,7 +114,7 @@ impl Comparison<'_> {
         ends: [&Frame; 2],
         (what, unmeasured): (&str, f64),
     ) -> Outcome {
-        let tops = ends.map(|tool| self.top(-self.in_part(tool).matrix3.z_axis));
+        let tops = ends.map(|tool| self.tops_of(-self.in_part(tool).matrix3.z_axis));
         for tool in places {
             let at = self.in_part(&tool);
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
@@ -123,7 +135,7 @@ impl Comparison<'_> {
         let (way, axis) = (to.translation - from.translation, -from.matrix3.z_axis);
         let aside = way.reject_from_normalized(Vec3::Z).length();
         let is_along = aside <= self.tip(true) + 1e-4 * path.length && path.turn < 1e-4;
-        let tops = [self.top(axis); 2];
+        let tops = [self.tops_of(axis), Vec::new()];
         let mut tips = [from, to].into_iter().map(|end| (end.translation, axis));
         let is_free = is_along
             && lies(axis)
