@@ -153,6 +153,11 @@ pub fn segments(
         Diagnostic::warning(Rule::CornerRounded, message).line(corner.line)
     };
     let warnings = plan.rounded.iter().map(corner).collect();
+    // What brings the wire to a contour brings it to where that is cut from.
+    let starting = |path: Path, opening: usize| {
+        let line = openings.get(opening).map_or(0, |opening| opening.contour.starts_by());
+        path.starting_by(line)
+    };
     let segments = plan.passes.into_iter().map(|pass| Segment {
         feed: feed(pass.number),
         opening: pass.opening,
@@ -162,7 +167,7 @@ pub fn segments(
         thread: pass.thread,
         cut: pass.cut,
         stop: pass.stop,
-        ..Segment::of(pass.path)
+        ..Segment::of(starting(pass.path, pass.opening))
     });
     Ok((segments.collect(), warnings))
 }
