@@ -5,10 +5,10 @@ use crate::account::{Account, Stop, Verdict};
 use crate::files;
 use crate::input::Source;
 use crate::watch::Watch;
-use ::glass::cloud::{self, Pair, Point};
+use ::glass::cloud::{self, Pair};
 use ::glass::curve;
 use ::glass::fill::Fill;
-use ::glass::list::Columns;
+use ::glass::list::{self, Columns};
 use ::glass::machine::LIBRARY;
 use ::glass::material::{self, Material};
 use ::glass::mesh::{self, Form, Shape};
@@ -21,6 +21,7 @@ use std::borrow::Cow;
 use std::path::{Component, Path};
 
 pub use ::glass::chain::Moves;
+pub use ::glass::cloud::{Point, point};
 pub use ::glass::control::Run;
 pub use ::glass::job;
 pub use ::glass::machine::{Format, Machine, Table};
@@ -54,6 +55,23 @@ pub type Beside<'b> = &'b mut dyn FnMut(&Source, &str) -> Result<Vec<u8>, String
 pub fn beside(body: &Source, name: &str) -> Result<Vec<u8>, String> {
     let folder = body.path().parent().unwrap_or(Path::new(""));
     files::read(&folder.join(name)).map_err(|found| format!("{name:.80}: {}", found.message))
+}
+
+/// Which of the bodies of a job a pulse comes from.
+#[derive(Debug)]
+pub struct Origins {
+    places: ::glass::origin::Origins,
+    /// The lines of the points of each body that is a list.
+    lines: Vec<Vec<u32>>,
+}
+
+impl Origins {
+    /// The body of a point of the block, from 0, and its line there, where the body is a list of points; `None` where it may be of several.
+    pub fn of(&self, at: Point) -> Option<(usize, Option<u32>)> {
+        let found = self.places.of(at)?;
+        let line = |point: usize| self.lines.get(found.body)?.get(point).copied();
+        Some((found.body, found.point.and_then(line)))
+    }
 }
 
 /// A job whose files have been read.
@@ -177,6 +195,11 @@ pub fn check(source: &Source) -> Result<(), Stop> {
     }
 }
 
+/// Whether a file has the form of a list of points.
+pub fn is_list(source: &Source) -> bool {
+    matches!(form(source.path(), Columns::default()), Ok(Form::List(_)))
+}
+
 /// The body or the points of a file.
 ///
 /// # Errors
@@ -264,6 +287,21 @@ impl<'s> Job<'s> {
     /// The same for who has memory for so many pulses: more are refused before they are made.
     pub fn within(self, most: u64) -> Job<'s> {
         Job { most, ..self }
+    }
+
+    /// Which of its `bodies` its points come from.
+    ///
+    /// # Errors
+    /// What cannot be engraved.
+    pub fn origins(&self, bodies: &[Source]) -> Result<Origins, Stop> {
+        let Job { machine, material, shapes, settings, .. } = self;
+        let lines = |body: &Source| {
+            let bytes = is_list(body).then(|| body.read()).transpose()?;
+            Ok(bytes.map_or(Vec::new(), |bytes| list::lines_of_points(&bytes, settings.columns)))
+        };
+        let lines = bodies.iter().map(lines).collect::<Result<_, Stop>>()?;
+        let places = job::origins(shapes.clone(), material, machine, &settings.job)?;
+        Ok(Origins { places, lines })
     }
 
     /// The text of a program of its machine.

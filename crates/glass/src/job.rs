@@ -10,6 +10,7 @@ use crate::material::Material;
 use crate::mesh::{self, Health, Mesh, Shape};
 use crate::optics::{self, Beam, Cut, Ray};
 use crate::order::{self, Effort, Shadow};
+use crate::origin::{Origins, Placed};
 use crate::picture::{Picture, Sheet};
 use crate::proof::{self, Proof};
 use crate::sample::Apart;
@@ -20,6 +21,7 @@ use glam::{DMat3, DVec3};
 use program::{Diagnostic, Rule};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::Range;
 
 /// In which order points are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -288,15 +290,8 @@ impl<'m> Job<'m> {
         watch: &'m dyn Watch,
     ) -> Result<Job<'m>, Vec<Diagnostic>> {
         watch.go_on()?;
-        let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
-        check(&settings.placing, &lens)?;
-        let spacing = settings.spacing.unwrap_or(lens.spacing);
-        let micrometres = spacing_in_micrometres(spacing, &lens)?;
-        let beam = Beam::new(&lens, machine.laser.beam, material.index);
-        // Two heights are rounded by half a µm of drive each.
-        // Angles are rounded too: less than a µm of the place of two points.
-        let more = u32::from(machine.polar.is_some() || machine.chain.is_some());
-        let apart = Apart { spacing: micrometres + more, lost: 1.0 / beam.drive(Ray::Marginal) };
+        let Distance { lens, beam, spacing, micrometres, apart } =
+            Distance::of(material, machine, settings)?;
         on_machine(machine, settings)?;
         enough_energy(material, machine, &lens, settings)?;
         let Placing { block, margin, .. } = settings.placing;
@@ -724,9 +719,56 @@ fn spacing_in_micrometres(spacing: f64, lens: &Lens) -> Result<u32, Vec<Diagnost
     Ok(micrometres as u32)
 }
 
+/// How near to each other points may be, and what says so.
+struct Distance {
+    lens: Lens,
+    beam: Beam,
+    /// mm.
+    spacing: f64,
+    micrometres: u32,
+    apart: Apart,
+}
+
+impl Distance {
+    fn of(
+        material: &Material,
+        machine: &Machine,
+        settings: &Settings,
+    ) -> Result<Distance, Vec<Diagnostic>> {
+        let lens = machine.lens(settings.focal).map_err(|found| vec![*found])?;
+        check(&settings.placing, &lens)?;
+        let spacing = settings.spacing.unwrap_or(lens.spacing);
+        let micrometres = spacing_in_micrometres(spacing, &lens)?;
+        let beam = Beam::new(&lens, machine.laser.beam, material.index);
+        // Two heights are rounded by half a µm of drive each.
+        // Angles are rounded too: less than a µm of the place of two points.
+        let more = u32::from(machine.polar.is_some() || machine.chain.is_some());
+        let apart = Apart { spacing: micrometres + more, lost: 1.0 / beam.drive(Ray::Marginal) };
+        Ok(Distance { lens, beam, spacing, micrometres, apart })
+    }
+}
+
+/// What of `shapes` is where in the block, as a job of the same settings puts them there.
+///
+/// # Errors
+/// As [`make`].
+pub fn origins(
+    shapes: Vec<Shape>,
+    material: &Material,
+    machine: &Machine,
+    settings: &Settings,
+) -> Result<Origins, Vec<Diagnostic>> {
+    let Distance { apart, .. } = Distance::of(material, machine, settings)?;
+    let room = DVec3::from_array(settings.placing.block) - 2.0 * settings.placing.margin;
+    let (parts, ..) = placed(shapes, room, apart, settings)?;
+    Ok(Origins::new(&parts.bodies, &parts.mesh.vertices, &parts.points))
+}
+
 /// What shapes are made of.
 #[derive(Default)]
 struct Parts {
+    /// What of it each shape is.
+    bodies: Vec<Placed>,
     /// All bodies as one.
     mesh: Mesh,
     /// What is unusual about each of them.
@@ -746,9 +788,16 @@ struct Parts {
 
 impl Parts {
     /// Of `shapes` in a block with `room` (mm) within its margins.
-    fn new(shapes: Vec<Shape>, room: DVec3, apart: Apart) -> Result<Parts, Vec<Diagnostic>> {
+    fn new(
+        shapes: Vec<(usize, Shape)>,
+        room: DVec3,
+        apart: Apart,
+    ) -> Result<Parts, Vec<Diagnostic>> {
         let mut parts = Parts::default();
-        for shape in shapes {
+        for (number, shape) in shapes {
+            let (vertices, points) = (parts.mesh.vertices.len(), parts.points.len());
+            // Curves are repeated, and pictures lie on sheets.
+            let is_bounded = matches!(shape, Shape::Mesh(_) | Shape::Points(_));
             match shape {
                 Shape::Mesh(body) => {
                     if !body.triangles.is_empty() {
@@ -781,12 +830,22 @@ impl Parts {
                     parts.pictures.push((picture, sheets.len()));
                 }
             }
+            let vertices = vertices..parts.mesh.vertices.len();
+            let points = points..parts.points.len();
+            parts.bodies.push(Placed { number, vertices, points, is_bounded });
         }
         Ok(parts)
     }
 
     /// Takes over what `other` has.
     fn join(&mut self, other: Parts) {
+        let (vertices, points) = (self.mesh.vertices.len(), self.points.len());
+        let behind = |own: &Range<usize>, first: usize| own.start + first..own.end + first;
+        self.bodies.extend(other.bodies.into_iter().map(|body| Placed {
+            vertices: behind(&body.vertices, vertices),
+            points: behind(&body.points, points),
+            ..body
+        }));
         self.mesh.join(other.mesh);
         self.health.extend(other.health);
         self.points.extend(other.points);
@@ -845,7 +904,7 @@ fn placed(
     for (number, shape) in shapes.into_iter().enumerate() {
         match settings.alone.iter().find(|(own, _)| *own == number) {
             Some((_, placing)) => by_themselves.push((number, shape, placing)),
-            None => together.push(shape),
+            None => together.push((number, shape)),
         }
     }
     let has_frame = !together.is_empty() || by_themselves.is_empty();
@@ -858,7 +917,7 @@ fn placed(
             let message = format!("body {}: {}", number + 1, found.message);
             Diagnostic { message, ..found }
         };
-        let mut own = Parts::new(vec![shape], room, apart)?;
+        let mut own = Parts::new(vec![(number, shape)], room, apart)?;
         let (scale, ends) = own
             .place(&Placing { block, margin, ..*placing })
             .map_err(|found| found.into_iter().map(in_body).collect::<Vec<_>>())?;

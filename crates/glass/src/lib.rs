@@ -37,6 +37,7 @@ pub mod material;
 pub mod mesh;
 pub mod optics;
 pub mod order;
+pub mod origin;
 mod pcx;
 pub mod picture;
 pub mod polar;

@@ -2,7 +2,7 @@
 
 use crate::mesh::{Fault, lines, number};
 use glam::DVec3;
-use program::Rule;
+use program::{Rule, encoding};
 
 /// In which columns the coordinates stand, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +24,21 @@ fn may_hold_decimal_commas(line: &str) -> bool {
 /// Reads the points (mm). Lines that begin with `#`, `;` or `//` are comments; a first line without a number is a head.
 pub(crate) fn read(bytes: &[u8], columns: Columns) -> Result<Vec<DVec3>, Fault> {
     let mut points = Vec::new();
+    each(bytes, columns, |_, point| points.push(point))?;
+    Ok(points)
+}
+
+/// The lines of the points of a list, from 1; none of what is no list.
+pub fn lines_of_points(bytes: &[u8], columns: Columns) -> Vec<u32> {
+    let mut found = Vec::new();
+    let read = each(encoding::without_mark(bytes), columns, |line, _| {
+        found.push(u32::try_from(line).unwrap_or(u32::MAX));
+    });
+    read.map(|()| found).unwrap_or_default()
+}
+
+/// Gives each point with its line.
+fn each(bytes: &[u8], columns: Columns, mut take: impl FnMut(usize, DVec3)) -> Result<(), Fault> {
     let mut head = true;
     for (at, line) in lines(bytes) {
         let line = line.trim();
@@ -45,7 +60,7 @@ pub(crate) fn read(bytes: &[u8], columns: Columns) -> Result<Vec<DVec3>, Fault> 
         for (axis, &column) in columns.0.iter().enumerate() {
             place[axis] = number(words.get(column).copied(), at)?;
         }
-        points.push(place);
+        take(at, place);
     }
-    Ok(points)
+    Ok(())
 }
