@@ -70,7 +70,10 @@ export class Cursor {
         if (this.job.value?.revision !== job.revision) return;
         if (done === null) {
             // Of another job, and this one does not come so far: its end, which is the first mismatch of a failed proof.
-            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? job.walk.moves - 1, isAgain);
+            // Another program of a board makes nothing of that file: there the place is the move of this number.
+            const isOther = by.by === "source" && (by.file ?? null) !== null;
+            const move = isOther ? (this.place.value?.move ?? 0) : job.walk.moves - 1;
+            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? move, isAgain);
             return;
         }
         this.revision = job.revision;
@@ -89,7 +92,7 @@ export class Cursor {
             this.first = null;
             void this.to(first);
         } else if (place?.source) {
-            void this.to({ by: "source", value: place.source.line }, true);
+            void this.to({ by: "source", value: place.source.line, file: place.source.file }, true);
         } else {
             void this.toMove(place?.move ?? walk.mismatch ?? 0, place !== null);
         }

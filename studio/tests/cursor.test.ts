@@ -63,10 +63,31 @@ test("the cursor is at the same record of the source after a new posting", async
     await settled();
     now.value = job(2);
     await settled();
-    expect(asked.at(-1)).toEqual({ revision: 2, by: "source", value: 40 });
+    expect(asked.at(-1)).toEqual({ revision: 2, by: "source", value: 40, file: null });
     expect(asked.at(-2)).toEqual({ revision: 1, by: "move", value: 8 });
     now.value = null;
     expect(cursor.place.value).toBe(null);
+});
+
+test("another program of a board, which makes nothing of the same file, is shown at the move of the same number", async () => {
+    const asked: PlaceParams[] = [];
+    const seam = {
+        async ask(_: string, params: PlaceParams) {
+            asked.push(params);
+            const place = { move: params.value, block: { file: null, line: 1, text: "" }, source: { file: "front.gbr", line: 40, text: "" } } as unknown as Place;
+            return { done: params.by === "source" ? null : place, arrays: {} };
+        },
+    } as unknown as Seam;
+    const now = signal<Job | null>(job(1));
+    const cursor = new Cursor(seam, now);
+    await cursor.toMove(5);
+    await settled();
+    now.value = job(2);
+    await settled();
+    expect(asked.slice(-2)).toEqual([
+        { revision: 2, by: "source", value: 40, file: "front.gbr" },
+        { revision: 2, by: "move", value: 5 },
+    ]);
 });
 
 test("steps that come before the answer to the one before are all made", async () => {

@@ -496,6 +496,8 @@ pub struct Job {
     pub parts: Vec<Text>,
     /// The source.
     pub source: Text,
+    /// More files of it, as those of a board.
+    pub sources: Vec<Text>,
     /// The machine.
     pub machine: JobMachine,
     /// The moves that the proof has walked.

@@ -10,6 +10,7 @@ use crate::job::{Follows, Job, Made, Options, Sources, called, called_from, repo
 use crate::lines::Lines;
 use crate::machines::Any;
 use crate::message::{Array, Values};
+use crate::origin::Texts;
 use ::post::Origins;
 use app::pcb::{AreaKind, Axis, BoardAreas, Layer};
 use app::{Account, Source, Stop, Verdict, Watch, files, pcb, post};
@@ -114,23 +115,39 @@ pub(crate) fn make(
         inputs,
         account,
     });
-    let (text_name, text) = shown(made.name(), &made.files, made.layers());
+    let texts = Arc::new(texts(made.name(), &made.files, made.layers()));
+    let drawn = made.drawn(&job);
     let areas: Vec<BoardAreas> = made.programs.iter().map(|program| made.areas(program)).collect();
-    let programs = made.programs.into_iter().zip(areas).enumerate();
-    let job = |(number, (program, areas)): (usize, (pcb::Program, BoardAreas))| {
+    let lines = made
+        .programs
+        .iter()
+        .map(|program| numbered(&made.lines(&job, &drawn, program), &texts, &made.files));
+    let lines: Vec<Vec<u32>> = lines.collect();
+    drop(drawn);
+    let programs = made.programs.into_iter().zip(areas).zip(lines).enumerate();
+    let job = |(number, ((program, areas), lines)): (usize, ((pcb::Program, BoardAreas), _))| {
         let widths = program.widths();
         let pcb::Program { file, mut toolpath, machine, posted, .. } = program;
         let post::Posted { text: written, origins, parts, account } = posted;
-        toolpath.file.clone_from(&text_name);
+        texts.name().clone_into(&mut toolpath.file);
         let width = match widths[..] {
             [(.., width)] => Some(width),
             _ => None,
         };
         let board = Some(Place { whole: Arc::clone(&whole), number, areas, width });
-        let made =
-            Made { toolpath, account, text: written, origins, parts, report: None, widths, board };
+        let made = Made {
+            toolpath,
+            account,
+            text: written,
+            origins,
+            parts,
+            report: None,
+            widths,
+            board,
+            lines: Some(lines),
+        };
         let machine = (machine_name, Any::Moves(machine.into()));
-        Job::of(made, Lines::of(text.clone()), (file, machine), Vec::new(), follows)
+        Job::of(made, Arc::clone(&texts), (file, machine), Vec::new(), follows)
     };
     programs.map(job).collect()
 }
@@ -174,31 +191,41 @@ pub(crate) fn prove(
     let program = (encoding::without_mark(&given.text), &folders);
     // By its whole name: beside `drill.gcode` there is no program `drill.ngc`.
     let compared = job.prove(&board, (&file, &file), program, follows)?;
-    let pcb::Compared { mut account, mut toolpath, machine, widths, board, files, layers } =
+    let lines = compared.lines(&job);
+    let pcb::Compared { mut account, mut toolpath, machine, widths, board, files, layers, .. } =
         compared;
     account.rows.extend(settings.row());
     let (text, parts) = called(&account, given, &folders);
     let report = report_of(&account, &text, &parts, &toolpath, &machine);
-    let shown = shown(&board, &files, &layers);
-    toolpath.file = shown.0;
+    let texts = texts(&board, &files, &layers);
+    let lines = Some(numbered(&lines, &texts, &files));
+    texts.name().clone_into(&mut toolpath.file);
     follows.step("drawing");
     let (origins, board) = (Origins::default(), None);
-    let made = Made { toolpath, account, text, origins, parts, report, widths, board };
+    let made = Made { toolpath, account, text, origins, parts, report, widths, board, lines };
     let machine = (machine_name, Any::Moves(machine.into()));
-    let job = Job::of(made, Lines::of(shown.1), (file, machine), inputs, follows)?;
+    let job = Job::of(made, texts.into(), (file, machine), inputs, follows)?;
     Ok(job.keeping_its_name())
 }
 
-/// What is shown as the source: the file of a board that is one file, of others what each was taken for. No line of a program is made by a
-/// line of it.
-fn shown(board: &str, files: &[Source], layers: &[(String, String)]) -> (String, Vec<u8>) {
-    match files {
-        [file] => (file.name(), file.text().unwrap_or_default().into_owned()),
-        _ => {
-            let line = |(file, layer): &(String, String)| format!("{file}: {layer}\n");
-            (board.to_owned(), layers.iter().map(line).collect::<String>().into_bytes())
-        }
+/// What is shown as the source: the file of a board that is one file; of others what each was taken for, and those files.
+fn texts(board: &str, files: &[Source], layers: &[(String, String)]) -> Texts {
+    let text = |file: &Source| Lines::of(file.text().unwrap_or_default().into_owned());
+    if let [file] = files {
+        return Texts::of(file.name(), text(file));
     }
+    let line = |(file, layer): &(String, String)| format!("{file}: {layer}\n");
+    let listed = Lines::of(layers.iter().map(line).collect::<String>().into_bytes());
+    let of_layer = |file: &&Source| layers.iter().any(|(name, _)| *name == file.name());
+    let files = files.iter().filter(of_layer);
+    files.fold(Texts::of(board.to_owned(), listed), |all, file| all.with(file.name(), text(file)))
+}
+
+/// The lines of records as the texts count them; 0 for none.
+fn numbered(lines: &[Option<pcb::Line>], texts: &Texts, files: &[Source]) -> Vec<u32> {
+    let names: Vec<String> = files.iter().map(Source::name).collect();
+    let number = |line: &pcb::Line| texts.number(Some(names.get(line.file as usize)?), line.line);
+    lines.iter().map(|line| line.as_ref().and_then(number).unwrap_or(0)).collect()
 }
 
 impl Place {

@@ -618,6 +618,7 @@ pub(crate) mod tests {
             at: *at,
             positions: at.to_array().to_vec(),
             end: number as f64,
+            source_line: 0,
             operation: None,
         };
         let walk = Walk::of_pulses(points.iter().enumerate().map(pulse), &|| true).unwrap();

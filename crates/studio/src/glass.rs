@@ -6,6 +6,7 @@ use crate::geometry::{CHUNK, Exact, Geometry};
 use crate::job::{Follows, Job, Made, Options, Sources};
 use crate::lines::Lines;
 use crate::machines::Any;
+use crate::origin::Texts;
 use crate::place::{At, Stand};
 use crate::walk::{Drawn, Pulse, Walk};
 use ::post::Origins;
@@ -228,6 +229,10 @@ pub(crate) fn make(
     });
     let job = glass::Job::read(&bodies, (*machine).clone(), settings, &mut beside)?;
     let job = job.within(MOST_PULSES);
+    let texts = texts(&bodies);
+    let origins = (bodies.len() > 1 || bodies.iter().any(glass::is_list))
+        .then(|| job.origins(&bodies))
+        .transpose()?;
     let made = match program {
         Some(text) => {
             let text = job.program(&Source::memory(&file, text))?;
@@ -241,7 +246,19 @@ pub(crate) fn make(
     }
     follows.step("drawing");
     let focus = made.focus(settings)?;
-    let drawn = drawn(&made, focus, follows)?;
+    let line = |at: glass::Point| {
+        let (body, line) = origins.as_ref()?.of(at)?;
+        match (line, &bodies[..]) {
+            (Some(line), [_]) => texts.number(None, line),
+            (Some(line), _) => texts.number(Some(&bodies.get(body)?.name()), line),
+            (None, [_]) => None,
+            // Of several bodies each has a line in the list of them.
+            (None, _) => texts.number(None, body as u32 + 1),
+        }
+    };
+    // As it was made here, but where the points were moved to the motions, the cloud is in the order of the pulses.
+    let is_in_order = made.made.report.planned_ticks.is_some() && made.made.report.moved.is_none();
+    let drawn = drawn(&made, focus, (is_in_order, &line), follows)?;
     // As the command saves it: there findings of a program that it has made name no file.
     let report = (made.account.verdict == Verdict::Done).then(|| made.account.report());
     let glass::Made { made: job::Made { text, run, .. }, mut account, .. } = made;
@@ -254,9 +271,8 @@ pub(crate) fn make(
     for found in account.findings.iter_mut().filter(|found| found.line > 0) {
         found.file.clone_from(&file);
     }
-    let (name, source) = shown(&bodies);
     let made = Made {
-        toolpath: Toolpath::of_program(Program::new(name), "glass"),
+        toolpath: Toolpath::of_program(Program::new(texts.name()), "glass"),
         account,
         text,
         origins: Origins::default(),
@@ -264,25 +280,31 @@ pub(crate) fn make(
         report,
         widths: Vec::new(),
         board: None,
+        lines: None,
     };
     let glass = Glass { machine: *machine, focus, focal: settings.job.focal, listing };
     let named = (file, (machine_name, Any::Fires(glass.into())));
-    Ok(Job::drawn(made, drawn, source, named, inputs))
+    Ok(Job::drawn(made, drawn, texts.into(), named, inputs))
 }
 
-/// What is shown as the source: the text of a body, where it is one; of others what they are.
-fn shown(bodies: &[Source]) -> (String, Lines) {
+/// What is shown as the source: the text of a body, where it is one; of others what they are, and those of them that are lists of points.
+fn texts(bodies: &[Source]) -> Texts {
+    let text = |body: &Source| {
+        let bytes = body.read().ok().filter(|bytes| std::str::from_utf8(bytes).is_ok());
+        bytes.map(Cow::into_owned)
+    };
     let line = |body: &Source| {
         let bytes = body.read().map_or(0, |bytes| bytes.len());
         format!("{}: {bytes} bytes\n", body.name())
     };
-    let text = match bodies {
-        [one] => one.read().ok().filter(|bytes| std::str::from_utf8(bytes).is_ok()),
-        _ => None,
-    };
+    let listed = || bodies.iter().map(line).collect::<String>().into_bytes();
+    if let [one] = bodies {
+        return Texts::of(one.name(), Lines::of(text(one).unwrap_or_else(listed)));
+    }
     let names = bodies.iter().map(Source::name).collect::<Vec<_>>().join(", ");
-    let lines = || bodies.iter().map(line).collect::<String>().into_bytes();
-    (names, Lines::of(text.map_or_else(lines, Cow::into_owned)))
+    let lists = bodies.iter().filter(|body| glass::is_list(body));
+    let lists = lists.filter_map(|body| Some((body.name(), Lines::of(text(body)?))));
+    lists.fold(Texts::of(names, Lines::of(listed())), |all, (name, text)| all.with(name, text))
 }
 
 /// The pulses of a binary program.
@@ -296,7 +318,13 @@ fn listing(run: &Run) -> Lines {
 }
 
 /// The pulses as the virtual machine has fired them, in levels of detail.
-fn drawn(made: &glass::Made, focus: Focus, watch: &dyn Watch) -> Result<Drawn, Stop> {
+fn drawn(
+    made: &glass::Made,
+    focus: Focus,
+    (is_in_order, line): (bool, &dyn Fn(glass::Point) -> Option<u32>),
+    watch: &dyn Watch,
+) -> Result<Drawn, Stop> {
+    let cloud = &made.made.cloud;
     let (run, machine) = (&made.made.run, &made.machine);
     let (in_first, are_several) = (focus.from_first(), focus.blocks > 1 && machine.polar.is_some());
     let steps = Steps::new(run, machine);
@@ -321,11 +349,17 @@ fn drawn(made: &glass::Made, focus: Focus, watch: &dyn Watch) -> Result<Drawn, S
             Some([x, y]) => vec![x, y, a - x, b - y, z],
             None => vec![a, b, z],
         };
+        let from = match is_in_order {
+            // Each block has the same points.
+            true => cloud.get(number % cloud.len().max(1)).copied(),
+            false => glass::point(focus.at(machine, pulse.at).0),
+        };
         Pulse {
             line: pulse.line,
             at: in_first.at(machine, pulse.at).0,
             positions,
             end: ticks as f64 / machine.laser.rate,
+            source_line: from.and_then(line).unwrap_or(0),
             operation,
         }
     });

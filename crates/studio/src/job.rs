@@ -13,6 +13,7 @@ use crate::glass::{self, Glass};
 use crate::lines::{Lines, readable};
 use crate::machines::{self, Any};
 use crate::message::{Array, Values};
+use crate::origin::Texts;
 use crate::place::{self, At};
 use crate::plots::{Plots, What};
 use crate::sketch;
@@ -234,9 +235,8 @@ pub struct Job {
     machine_name: String,
     machine: Any<Glass>,
     machine_files: BTreeMap<String, Lines>,
-    source_file: String,
-    source: Lines,
-    /// The lines of the toolpath's records; 0 for none.
+    source: Arc<Texts>,
+    /// The lines of the toolpath's records, as [`Texts`] count them; 0 for none.
     record_lines: Vec<u32>,
     file: String,
     files: Files,
@@ -337,6 +337,7 @@ impl Job {
         follows.step("drawing");
         let machine = (asked.machine, Any::Moves(machine.into()));
         let text = source_lines(&made.toolpath, &source);
+        let text = Texts::of(made.toolpath.file.clone(), text).into();
         let job = Job::of(made, text, (file, machine), inputs, &follows)?;
         Ok(vec![job.edit_of(of.as_deref())])
     }
@@ -347,7 +348,7 @@ impl Job {
     /// The work was ended.
     pub(crate) fn of(
         made: Made,
-        source: Lines,
+        source: Arc<Texts>,
         named: (String, (&str, Any<Glass>)),
         inputs: Vec<PathBuf>,
         follows: &Follows,
@@ -363,13 +364,16 @@ impl Job {
     pub(crate) fn drawn(
         made: Made,
         Drawn { mut walk, geometry }: Drawn,
-        source: Lines,
+        source: Arc<Texts>,
         (file, (machine_name, machine)): (String, (&str, Any<Glass>)),
         mut inputs: Vec<PathBuf>,
     ) -> Job {
         walk.set_widths(&made.widths);
         let has_program = made.has_program();
-        let Made { toolpath, account, text, origins, parts, report, board, .. } = made;
+        let Made { toolpath, account, text, origins, parts, report, board, lines, .. } = made;
+        let record_lines = lines
+            .unwrap_or_else(|| toolpath.program.records.iter().map(|record| record.line).collect());
+        walk.set_source_lines(&record_lines);
         inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
         let machine_files = match &machine {
             Any::Moves(machine) => {
@@ -386,8 +390,7 @@ impl Job {
             machine_name: machine_name.to_owned(),
             machine_files,
             source,
-            record_lines: toolpath.program.records.iter().map(|record| record.line).collect(),
-            source_file: toolpath.file,
+            record_lines,
             machine,
             file,
             files: Files { program: Text::of(text, origins), parts },
@@ -441,7 +444,9 @@ impl Job {
     pub fn bytes(&self) -> usize {
         let records = size_of_val(&self.record_lines[..]);
         let posted = self.posted.as_ref().map_or(0, Files::bytes);
-        let texts = self.source.bytes() + self.files.bytes() + posted;
+        // All programs of a board have one.
+        let source = self.source.bytes() / Arc::strong_count(&self.source);
+        let texts = source + self.files.bytes() + posted;
         let board = self.board.as_ref().map_or(0, board::Place::bytes);
         let listing = match &self.machine {
             Any::Fires(glass) => glass.bytes(),
@@ -489,6 +494,8 @@ impl Job {
             lines: lines.count(),
             bytes: lines.text().len() as u64,
         };
+        let mut sources: Vec<ask::Text> =
+            self.source.all().map(|(file, lines)| text(file, lines)).collect();
         ask::Job {
             revision,
             verdict: self.account.verdict.into(),
@@ -496,7 +503,8 @@ impl Job {
             findings: findings.into_iter().map(|found| self.finding(found)).collect(),
             program: self.has_program.then(|| text(&self.file, self.shown_program())),
             parts: self.files.parts.iter().map(|(file, part)| text(file, &part.lines)).collect(),
-            source: text(&self.source_file, &self.source),
+            source: sources.remove(0),
+            sources,
             machine: JobMachine {
                 name: self.machine_name.clone(),
                 title: self.machine.title().to_owned(),
@@ -559,7 +567,7 @@ impl Job {
         let of = match &*found.file {
             "" => None,
             file if file == self.file || self.files.parts.contains_key(file) => Some(Of::Program),
-            file if file == self.source_file => Some(Of::Source),
+            file if self.source.text(Some(file)).is_some() => Some(Of::Source),
             file if self.machine_files.contains_key(file) => Some(Of::Machine),
             _ => None,
         };
@@ -579,8 +587,7 @@ impl Job {
             (Of::Program, None) => Some(self.shown_program()),
             (Of::Program, Some(file)) if file == self.file => Some(self.shown_program()),
             (Of::Program, Some(file)) => self.files.parts.get(file).map(|part| &part.lines),
-            (Of::Source, None) => Some(&self.source),
-            (Of::Source, Some(file)) => (file == self.source_file).then_some(&self.source),
+            (Of::Source, file) => self.source.text(file),
             (Of::Machine, None) => match &self.machine {
                 Any::Moves(machine) => self.machine_files.get(&machine.file),
                 Any::Fires(_) => None,
@@ -631,7 +638,14 @@ impl Job {
             // Lines count from 1.
             ask::By::Block | ask::By::Source if whole == 0 => None,
             ask::By::Block => place::at_line(walk, By::Block(file), whole),
-            ask::By::Source => place::at_line(walk, By::Source, whole),
+            ask::By::Source => {
+                let at = place::at_line(walk, By::Source, self.source.number(file, whole)?)?;
+                // What another file makes is no answer.
+                let (of, _) = self.source.place(walk.source_line(at.r#move));
+                let is_of_it =
+                    file.unwrap_or(self.source.name()) == of.unwrap_or(self.source.name());
+                is_of_it.then_some(at)
+            }
         }?;
         Some(self.place_at(at))
     }
@@ -663,10 +677,10 @@ impl Job {
             }
         });
         let source_line = walk.source_line(number);
-        let source = (source_line > 0).then(|| Line {
-            file: None,
-            line: source_line,
-            text: shown(&self.source, source_line),
+        let source = (source_line > 0).then(|| {
+            let (file, line) = self.source.place(source_line);
+            let text = self.source.text(file).map(|text| shown(text, line));
+            Line { file: file.map(str::to_owned), line, text: text.unwrap_or_default() }
         });
         let block_moves = match line {
             // Of no block.
@@ -730,9 +744,10 @@ impl Job {
 
     /// The moves that a line makes.
     pub fn moves(&self, by: ask::By, line: u32, file: Option<&str>) -> Result<Moves, Stop> {
-        let by = match by {
-            ask::By::Block => By::Block(file),
-            ask::By::Source => By::Source,
+        let (by, line) = match by {
+            ask::By::Block => (By::Block(file), line),
+            // A line that there is none of makes no move.
+            ask::By::Source => (By::Source, self.source.number(file, line).unwrap_or(0)),
             ask::By::Time | ask::By::Move => {
                 let message = "moves are asked for by a line: by `block` or by `source`";
                 return Err(Diagnostic::error(Rule::StudioAsk, message).into());
@@ -857,6 +872,8 @@ pub(crate) struct Made {
     /// Numbers and names of tools, and how wide they cut, mm, where that is known.
     pub widths: Vec<(u32, String, f64)>,
     pub board: Option<board::Place>,
+    /// The lines of the toolpath's records as the texts of its source count them; where there are none, the records have them.
+    pub lines: Option<Vec<u32>>,
 }
 
 impl Made {
@@ -888,7 +905,17 @@ fn posted(
         posted => posted?,
     };
     let report = Some(account.report());
-    Ok(Made { toolpath, account, text, origins, parts, report, widths: Vec::new(), board: None })
+    Ok(Made {
+        toolpath,
+        account,
+        text,
+        origins,
+        parts,
+        report,
+        widths: Vec::new(),
+        board: None,
+        lines: None,
+    })
 }
 
 /// Proves a program that is there already.
@@ -909,7 +936,7 @@ fn compared(
     let (text, parts) = called(&account, given, &folders);
     let report = report_of(&account, &text, &parts, &toolpath, machine);
     let (origins, widths) = (Origins::default(), Vec::new());
-    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
+    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None, lines: None })
 }
 
 /// Where programs are looked for that a program calls: those of a robot are its own, or lie beside it.
@@ -972,7 +999,7 @@ fn recut(
         wire::prove(source, strict, origin, owned, settings, read, tolerances, watch)?;
     let report = report_of(&account, &text, &[], &toolpath, machine);
     let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
-    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
+    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None, lines: None })
 }
 
 /// Writes the program of a wire, and proves it.
@@ -990,7 +1017,7 @@ fn cut(
     let wire::Made { posted, report, toolpath, .. } = made;
     let post::Posted { text, origins, parts, account } = posted;
     let (report, widths) = (Some(report), Vec::new());
-    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None })
+    Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None, lines: None })
 }
 
 fn toolpath_of(

@@ -37,6 +37,7 @@ pub mod jobs;
 pub mod lines;
 pub mod machines;
 pub mod message;
+mod origin;
 mod page;
 pub mod place;
 pub mod plots;

@@ -1,7 +1,7 @@
 //! The walk: all moves of a program in the control's order, as columns. Whatever the page asks is looked up here.
 //!
 //! A move takes 47 bytes on three axes (those of a machine that has more take 8 bytes each, 24 more where any tool leans, 4 where its lines
-//! do not go up with the moves), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
+//! do not go up with the moves, 4 while the records of its source have no lines), and what changes seldom is kept where it changes: feeds, states, arcs, waits, and where a move does not begin where the one
 //! before it ended.
 
 use crate::ask::{Excursion, Jump, Operation, ToolUse};
@@ -93,6 +93,8 @@ pub struct Walk {
     marks: Vec<u8>,
     lines: Vec<u32>,
     source_lines: Vec<u32>,
+    /// The records of the moves, where these have no lines of their own, until somebody says which they have.
+    records: Vec<u32>,
     /// The moves by their blocks, and by the lines of the source.
     by_block: Index,
     by_source: Index,
@@ -173,6 +175,8 @@ pub struct Pulse {
     pub positions: Vec<f64>,
     /// When it fires, s.
     pub end: f64,
+    /// The line of the source that it comes from; 0 for none.
+    pub source_line: u32,
     /// What begins with it.
     pub operation: Option<String>,
 }
@@ -184,7 +188,7 @@ impl Walk {
         goes_on: &dyn Fn() -> bool,
     ) -> Option<Walk> {
         let mut walk = Walk::default();
-        for Pulse { line, at, positions, end, operation } in pulses {
+        for Pulse { line, at, positions, end, source_line, operation } in pulses {
             if walk.kinds.len().is_multiple_of(LOOK) {
                 walk.is_full |= walk.bytes() > MOST_BYTES;
                 goes_on().then_some(())?;
@@ -205,7 +209,7 @@ impl Walk {
             walk.tools.push(NO_TOOL);
             walk.marks.push(0);
             walk.lines.push(line);
-            walk.source_lines.push(0);
+            walk.source_lines.push(source_line);
             walk.ends.push(end);
             walk.tips.push(at);
             walk.stride = positions.len();
@@ -262,6 +266,17 @@ impl Walk {
                 tool.width = Some(tool.width.map_or(*width, |known| known.max(*width)));
             }
         }
+    }
+
+    /// Says of which lines the records of a source are that have none of their own.
+    pub fn set_source_lines(&mut self, lines: &[u32]) {
+        let records = std::mem::take(&mut self.records);
+        if records.is_empty() {
+            return;
+        }
+        let line = |record: &u32| lines.get(*record as usize).copied().unwrap_or(0);
+        self.source_lines = records.iter().map(line).collect();
+        self.by_source = Index::of(&self.source_lines, &|| true).unwrap_or_default();
     }
 
     /// The operations of the source.
@@ -498,7 +513,13 @@ impl Walk {
             + self.states.len() * size_of::<(u32, MachineState)>()
             + self.offsets.len() * size_of::<(u32, Vec3)>();
         let axes = self.axes.len() * size_of::<Vec3>() + self.positions.len() * size_of::<f64>();
-        self.kinds.len() * each + axes + rare + self.by_block.bytes() + self.by_source.bytes()
+        let records = size_of_val(&self.records[..]);
+        self.kinds.len() * each
+            + axes
+            + rare
+            + records
+            + self.by_block.bytes()
+            + self.by_source.bytes()
     }
 
     fn push(&mut self, motion: &Motion) {
@@ -590,6 +611,8 @@ pub struct Follower<'a> {
     drawn: u32,
     marked: BTreeSet<u32>,
     source: &'a Program,
+    /// The records of the source have no lines of a file.
+    has_no_lines: bool,
     /// Which of A, B and C the machine has.
     rotary: Vec<usize>,
     /// The control names no tools: they are those of the source.
@@ -636,6 +659,8 @@ impl<'a> Follower<'a> {
             drawn: 0,
             marked: BTreeSet::new(),
             source,
+            has_no_lines: !source.records.is_empty()
+                && source.records.iter().all(|record| record.line == 0),
             rotary: machine.rotary.iter().map(|axis| axis.index()).collect(),
             has_source_tools: machine.arm.is_some(),
             searched: 0,
@@ -815,6 +840,9 @@ impl Observer for Follower<'_> {
         self.operations(motion.record);
         let tool = self.tool_of_move();
         self.walk.tools.push(tool);
+        if self.has_no_lines {
+            self.walk.records.push(u32::try_from(motion.record).unwrap_or(u32::MAX));
+        }
         self.walk.push(motion);
         self.walk.marks.push(std::mem::take(&mut self.next_marks));
         self.positions(&motion.axes);

@@ -1,19 +1,20 @@
 import { useSignal } from "@preact/signals";
 import type { Screen } from "../screen/screen.ts";
+import { MORE } from "./more.ts";
 
 /** Searches the whole text, which the page may not have: the server does. */
 export function Find({ screen, close }: { screen: Screen; close(): void }) {
     const { studio, searched } = screen;
     const text = useSignal("");
     const from = useSignal(1);
-    /** Of a program in several files, the one that is searched next. */
-    const file = useSignal(screen.searched.value === "program" ? screen.file.value : null);
+    /** Of a text in several files, the one that is searched next. */
+    const file = useSignal(screen.files[searched.value].value);
     const said = useSignal("");
     const next = async (): Promise<void> => {
         const job = studio.job.value;
         if (job === null || text.value === "") return;
         const of = searched.value;
-        const files = [null, ...(of === "program" ? job.parts.map((part) => part.file) : [])];
+        const files = [null, ...job[MORE[of]].map((part) => part.file)];
         // Behind the last line of a file the next one follows.
         for (let more = files.length; more >= 0; more--) {
             const { done } = await studio.seam.ask("search", { revision: job.revision, of, file: file.value, text: text.value, from: from.value });
@@ -54,7 +55,7 @@ export function Find({ screen, close }: { screen: Screen; close(): void }) {
                     const line = from.value - 1;
                     close();
                     if (line === 0) return;
-                    if (searched.value === "program") screen.file.value = file.value;
+                    screen.files[searched.value].value = file.value;
                     void screen.editors[searched.value]?.go(line);
                 }}
             >

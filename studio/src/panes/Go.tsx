@@ -26,7 +26,7 @@ export function Go({ screen, close }: { screen: Screen; close(): void }) {
                 event.preventDefault();
                 if (where === null) return;
                 close();
-                void screen.studio.cursor.to(where.by === "block" ? { ...where, file: screen.file.value } : where);
+                void screen.studio.cursor.to({ ...where, file: where.by === "block" ? screen.files.program.value : where.by === "source" ? screen.files.source.value : null });
             }}
         >
             <label for="go">Line of the program (120), line of the source (s120), move (m5000) or time (3:12, 12.5 s)</label>

@@ -2,7 +2,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { Programs } from "./Programs.tsx";
 import type { Screen } from "../screen/screen.ts";
-import type { Of } from "./editing.ts";
+import { MORE, type Of } from "./more.ts";
 
 /** Program or source. The cursor's line is lit; a line that one clicks becomes the cursor. */
 export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
@@ -10,7 +10,8 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
     const host = useRef<HTMLDivElement>(null);
     const compared = useSignal(false);
     const text = studio.job.value?.[of] ?? null;
-    const parts = of === "program" ? (studio.job.value?.parts ?? []) : [];
+    const parts = studio.job.value?.[MORE[of]] ?? [];
+    const file = screen.files[of];
     const title = of === "program" ? "Program" : "Source";
 
     useEffect(() => {
@@ -33,10 +34,10 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
                     {title} <span class="soft">{(of === "program" ? studio.given.value : null) ?? text?.file}</span>
                 </h2>
                 {parts.length > 0 && (
-                    <select aria-label="File of the program" value={screen.file.value ?? ""} onChange={(event) => (screen.file.value = event.currentTarget.value || null)}>
-                        {[null, ...parts.map((part) => part.file)].map((file) => (
-                            <option key={file} value={file ?? ""}>
-                                {stateOf(screen, file)} {file ?? text?.file}
+                    <select aria-label={`File of the ${of}`} value={file.value ?? ""} onChange={(event) => (file.value = event.currentTarget.value || null)}>
+                        {[null, ...parts.map((part) => part.file)].map((name) => (
+                            <option key={name} value={name ?? ""}>
+                                {of === "program" && stateOf(screen, name)} {name ?? text?.file}
                             </option>
                         ))}
                     </select>

@@ -1,13 +1,12 @@
 /** What a pane of a text shows, and what is done in it: apart from the pane, which is there before its editor. */
 
-import { effect, signal, untracked, type Signal } from "@preact/signals";
+import { effect, untracked, type Signal } from "@preact/signals";
 import { readText } from "../protocol/text.ts";
 import type { Blocks, Job, Text } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
 import { familyOf } from "../text/dialects.ts";
 import { Editor, type Origin } from "../text/editor.ts";
-
-export type Of = "program" | "source";
+import { MORE, type Of } from "./more.ts";
 
 /** The lines of a file. */
 function linesOf(blocks: Blocks[], file: string | null): number[] {
@@ -19,7 +18,7 @@ function linesOf(blocks: Blocks[], file: string | null): number[] {
 export function keepUp(screen: Screen, of: Of, host: HTMLElement, compared: Signal<boolean>): () => void {
     const { studio } = screen;
     const { cursor, seam } = studio;
-    const file = of === "program" ? screen.file : signal(null);
+    const file = screen.files[of];
     const editor = new Editor(host, of === "program" ? "Program" : "Source", {
         picked: (value, file) => {
             if (studio.edited.peek() !== null && !studio.isCurrent.peek()) return;
@@ -62,7 +61,7 @@ export function keepUp(screen: Screen, of: Of, host: HTMLElement, compared: Sign
         effect(() => {
             const job = studio.job.value;
             const name = file.value;
-            const text = (name === null ? job?.[of] : job?.parts.find((part) => part.file === name)) ?? null;
+            const text = (name === null ? job?.[of] : job?.[MORE[of]].find((part) => part.file === name)) ?? null;
             const edit = of === "program" ? untracked(() => studio.edited.value) : null;
             if (job === null || text === null) {
                 if (name !== null && job !== null) file.value = null;

@@ -504,6 +504,10 @@ parts: Array<Text>,
  */
 source: Text, 
 /**
+ * More files of it, as those of a board.
+ */
+sources: Array<Text>, 
+/**
  * The machine.
  */
 machine: JobMachine, 

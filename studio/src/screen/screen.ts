@@ -59,8 +59,8 @@ export class Screen {
     readonly found: Signal<string> = signal("");
     readonly reading = new Together();
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
-    /** Of a program in several files, the called one that is shown; null: the program itself. */
-    readonly file: Signal<string | null> = signal(null);
+    /** Of a program or a source in several files, the one that is shown; null: the first. */
+    readonly files: Record<"program" | "source", Signal<string | null>> = { program: signal(null), source: signal(null) };
     /** Number of the finding that was led to last, and of its place among those of that finding. */
     readonly finding: Signal<number> = signal(-1);
     readonly findingPlace: Signal<number> = signal(0);
@@ -380,8 +380,9 @@ export class Screen {
             return void this.studio.chooseProgram(other.revision).then(() => (line === undefined ? undefined : cursor.to({ by: "block", value: line })));
         }
         if (line === undefined) return;
-        if (found.of === "source") void cursor.to({ by: "source", value: line });
-        else if (found.of === "program") void cursor.to({ by: "block", value: line, file: found.file === job.value.program?.file ? null : found.file });
+        const file = found.file === (found.of === "source" ? job.value.source : job.value.program)?.file ? null : found.file;
+        if (found.of === "source") void cursor.to({ by: "source", value: line, file });
+        else if (found.of === "program") void cursor.to({ by: "block", value: line, file });
     }
 
     /** All places of all findings in turn. */
@@ -418,7 +419,7 @@ export class Screen {
         const place = this.studio.cursor.place.value;
         const line = of === "program" ? place?.block : place?.source;
         if (!line) return;
-        if (of === "program") this.file.value = line.file;
+        this.files[of].value = line.file;
         void this.editors[of]?.go(line.line);
     }
 

@@ -6,6 +6,7 @@ mod source;
 
 pub use ::pcb::board::{Axis, Layer};
 pub use ::pcb::plan::{Problem, Settings};
+pub use ::pcb::{Drawn, Line};
 pub use drawing::{Area, AreaKind, BoardAreas};
 pub use source::{SETTINGS, is_board, is_named_board};
 
@@ -72,6 +73,9 @@ pub struct Compared {
     pub files: Vec<input::Source>,
     /// As of [`Made::layers`].
     pub layers: Vec<(String, String)>,
+    kind: source::Kind,
+    /// What of the board it is about, and how that lies; `None` where it measures its height.
+    placed: Option<(Part, Setup)>,
 }
 
 /// The programs of a board.
@@ -83,6 +87,7 @@ pub struct Made {
     /// The files that were read.
     pub files: Vec<input::Source>,
     layers: Vec<(String, String)>,
+    kind: source::Kind,
     /// The board with its front up, and with its back up.
     setups: [Setup; 2],
     /// Whether it is turned over for one of the programs.
@@ -133,7 +138,7 @@ impl<'a> Job<'a> {
     /// that cannot be made is left out otherwise, and all others are made.
     pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
         let running = &self.settings.running;
-        let Begun { shop, tasks, mut left_out, mut warnings, layers, files } =
+        let Begun { shop, tasks, mut left_out, mut warnings, layers, files, kind } =
             self.begun(board, watch)?;
         let mut programs = Vec::with_capacity(tasks.len() + 1);
         if let Some(grid) = running.probe.filter(|_| !running.on_control) {
@@ -191,7 +196,7 @@ impl<'a> Job<'a> {
         let sheet = self.picture.map(|format| format.bytes(shop.sheet())).transpose()?;
         let Shop { front, back, is_turned, .. } = shop;
         let setups = [front, back];
-        Ok(Made { programs, left_out, files, layers, setups, is_turned, warnings, sheet })
+        Ok(Made { programs, left_out, files, layers, kind, setups, is_turned, warnings, sheet })
     }
 
     /// Proves the text of the program `name` (`front`, `drill`), which is called `file` and may call those of `folders`, against what
@@ -207,7 +212,7 @@ impl<'a> Job<'a> {
         watch: &dyn Watch,
     ) -> Result<Compared, Stop> {
         let running = &self.settings.running;
-        let Begun { shop, tasks, layers, files, .. } = self.begun(board, watch)?;
+        let Begun { shop, tasks, layers, files, kind, .. } = self.begun(board, watch)?;
         let is_called = |of: &str| of == name || self.file(of) == file;
         let probe = running.probe.filter(|_| is_called(PROBE) && !running.on_control);
         let (toolpath, place) = match (probe, tasks.iter().find(|task| is_called(&task.name))) {
@@ -225,10 +230,17 @@ impl<'a> Job<'a> {
         let machine = self.shaped(numbered(self.machine, place)).into_owned();
         let text = (file, text, folders);
         let account = prove::compare(&toolpath, &machine, text, self.tolerances, watch)?;
-        let work = tasks.into_iter().find(|task| is_called(&task.name)).map(|task| task.work);
-        let widths = widths(&toolpath, &work.unwrap_or_default());
+        let (part, work) = match tasks.into_iter().find(|task| is_called(&task.name)) {
+            Some(Task { part, work, .. }) => (Some(part), work),
+            None => (None, Work::default()),
+        };
+        let widths = widths(&toolpath, &work);
         let board = shop.front.board.name.clone();
-        Ok(Compared { account, toolpath, machine, widths, board, files, layers })
+        let placed = part.map(|part| match plan::face(part, self.settings) {
+            Face::Front => (part, shop.front),
+            Face::Back => (part, shop.back),
+        });
+        Ok(Compared { account, toolpath, machine, widths, board, files, layers, kind, placed })
     }
 
     /// Everything up to the programs: the board is read, and what is cut of it is planned.
@@ -264,8 +276,8 @@ impl<'a> Job<'a> {
         watch.begin("writing and proving")?;
         let shop = Shop { job: self, front, back, is_turned, rack, watch, surface };
         let tasks = tasks(works, running.split_tools);
-        let source::Source { layers, files, .. } = source;
-        Ok(Begun { shop, tasks, left_out, warnings, layers, files })
+        let source::Source { layers, files, kind, .. } = source;
+        Ok(Begun { shop, tasks, left_out, warnings, layers, files, kind })
     }
 
     /// The file in which a program of this name is saved.
@@ -332,6 +344,15 @@ fn plain(text: &str) -> String {
     format!("{{% raw %}}{text}{{% endraw %}}")
 }
 
+impl Compared {
+    /// As of [`Made::lines`].
+    pub fn lines(&self, job: &Job) -> Vec<Option<Line>> {
+        let Some((part, setup)) = &self.placed else { return Vec::new() };
+        let drawn = source::drawn(&self.files, &self.kind, job.settings);
+        drawn.lines(*part, setup, job.settings, &self.toolpath.program)
+    }
+}
+
 impl Made {
     /// What is reported of all programs together, and of `more` that the caller has found; where nothing is saved, what is
     /// reported of the first program that is not proven.
@@ -357,6 +378,19 @@ impl Made {
         let setup = if program.up == Some(Face::Back) { back } else { front };
         let Program { work, toolpath, .. } = program;
         BoardAreas::of(&picture(setup, work, &toolpath.program, self.is_turned))
+    }
+
+    /// What the files of the board draw: they are read once more.
+    pub fn drawn(&self, job: &Job) -> Drawn {
+        source::drawn(&self.files, &self.kind, job.settings)
+    }
+
+    /// Of each record of a program's toolpath the line of [`Made::files`] that it comes from.
+    pub fn lines(&self, job: &Job, drawn: &Drawn, program: &Program) -> Vec<Option<Line>> {
+        let [front, back] = &self.setups;
+        let setup = if program.up == Some(Face::Back) { back } else { front };
+        let lines = |part| drawn.lines(part, setup, job.settings, &program.toolpath.program);
+        program.part.map(lines).unwrap_or_default()
     }
 
     /// What the board is called.
@@ -393,6 +427,7 @@ struct Begun<'a> {
     warnings: Vec<Diagnostic>,
     layers: Vec<(String, String)>,
     files: Vec<input::Source>,
+    kind: source::Kind,
 }
 
 /// Every program is written and proven for who watches all of them: their steps are not reported.

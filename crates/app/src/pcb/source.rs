@@ -6,6 +6,7 @@ use crate::input;
 use pcb::board::{Artwork, File, Layer};
 use pcb::model::LONGEST;
 use pcb::plan::{self, Settings};
+use pcb::{Drawn, LayerFile};
 use program::{Diagnostic, Rule};
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -21,6 +22,40 @@ pub struct Source {
     pub layers: Vec<(String, String)>,
     /// The files that were read.
     pub files: Vec<input::Source>,
+    /// Which of them draws what.
+    pub kind: Kind,
+}
+
+/// How the files of a board draw it.
+pub enum Kind {
+    /// One file of KiCad has all of it.
+    Kicad,
+    /// One file says by which rules it is made: it draws nothing itself.
+    Model,
+    /// Files of layers, each by its place among all.
+    Layers(Vec<(usize, Layer)>),
+}
+
+/// What the files of a board draw, each element with its line; nothing of files that have been changed since they were read, or of a
+/// model.
+pub fn drawn(files: &[input::Source], kind: &Kind, settings: &Settings) -> Drawn {
+    let text = |place: usize| Some((files.get(place)?.name(), files.get(place)?.text().ok()?));
+    let drawn = match kind {
+        Kind::Model => None,
+        Kind::Kicad => text(0).map(|(name, text)| Drawn::of_kicad(&name, &text)),
+        Kind::Layers(layers) => {
+            let layer = |place: usize| layers.iter().find(|(of, _)| *of == place);
+            let texts = (0..files.len()).map(|place| Some((layer(place)?.1, text(place)?)));
+            let texts: Vec<_> = texts.collect();
+            let unit = settings.unit;
+            let layers = texts.iter().map(|read| {
+                let (layer, (name, text)) = read.as_ref()?;
+                Some(LayerFile { name, layer: *layer, unit, text })
+            });
+            Some(Drawn::of_layers(&layers.collect::<Vec<_>>()))
+        }
+    };
+    drawn.and_then(Result::ok).unwrap_or_default()
 }
 
 /// Reads the board that `given` is (all that is in a folder of the name `folder`, where there is one), and the files `named` of which
@@ -56,14 +91,14 @@ pub fn read(
     for file in &files {
         texts.push((file.name(), file.text()?));
     }
-    let (artwork, layers) = match (&texts[..], files.first().map(ending)) {
+    let (artwork, layers, kind) = match (&texts[..], files.first().map(ending)) {
         ([(file, text)], Some(kind)) if kind == "kicad_pcb" => {
             let artwork = pcb::kicad::artwork(file, text).map_err(Stop::invalid)?;
-            (artwork, vec![(file.clone(), String::from("a board of KiCad"))])
+            (artwork, vec![(file.clone(), String::from("a board of KiCad"))], Kind::Kicad)
         }
         ([(file, text)], Some(kind)) if MODEL.contains(&kind.as_str()) => {
             let artwork = pcb::model::artwork(file, text).map_err(Stop::invalid)?;
-            (artwork, vec![(file.clone(), String::from("a model"))])
+            (artwork, vec![(file.clone(), String::from("a model"))], Kind::Model)
         }
         _ => {
             let layer = |i: usize| Some(named.get(i.checked_sub(unnamed)?)?.1);
@@ -74,8 +109,11 @@ pub fn read(
             let wanted = |layer| plan::needs(layer, settings);
             let (artwork, layers) =
                 pcb::board::artwork(&name, &all, wanted).map_err(Stop::invalid)?;
-            let named = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());
-            (artwork, layers.into_iter().map(named).collect())
+            let place = |name: &str| texts.iter().position(|(of, _)| of == name);
+            let places = layers.iter().filter_map(|(name, layer)| Some((place(name)?, *layer)));
+            let kind = Kind::Layers(places.collect());
+            let named = |(name, layer): (String, Layer)| (name, layer.to_string());
+            (artwork, layers.into_iter().map(named).collect(), kind)
         }
     };
     let asked = &settings.outline;
@@ -85,7 +123,7 @@ pub fn read(
         let margin = asked.board_margin.unwrap_or(0.0);
         artwork = artwork.rectangular(margin).map_err(Stop::invalid)?;
     }
-    Ok(Source { artwork, layers, files })
+    Ok(Source { artwork, layers, files, kind })
 }
 
 /// Whether two are one file: bytes in memory by their name.

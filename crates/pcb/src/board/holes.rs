@@ -31,7 +31,7 @@ pub(super) fn of_drill(drill: Drill, plated: Option<bool>) -> Vec<Hole> {
 ///
 /// # Errors
 /// `hole-form` where it paints anything else.
-pub(super) fn of_image(image: &Image, plated: Option<bool>) -> Outcome<Vec<Hole>> {
+pub(crate) fn of_image(image: &Image, plated: Option<bool>) -> Outcome<Vec<Hole>> {
     let hole = |object: &Object| {
         let odd = || {
             let help = "holes are circles that are flashed, slots are drawn with them";

@@ -52,14 +52,14 @@ impl fmt::Display for Layer {
 
 /// How a file is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
+pub(crate) enum Format {
     Gerber,
     Excellon,
 }
 
 impl Format {
     /// The one that `text` is in; `None` where it is in neither.
-    pub(super) fn of(text: &[u8]) -> Option<Format> {
+    pub(crate) fn of(text: &[u8]) -> Option<Format> {
         let head = text.get(..1 << 16).unwrap_or(text);
         let has = |word: &str| memmem::find(head, word.as_bytes()).is_some();
         if ["%FS", "%MO", "%ADD"].into_iter().any(has) {

@@ -24,6 +24,7 @@ pub use artwork::Artwork;
 pub use copper::{Copper, Named, Shape, covered};
 pub(crate) use copper::{Drawn, Pattern};
 pub use files::{File, Layers, Reading, artwork, read};
+pub(crate) use layer::Format;
 pub use layer::{Face, Layer};
 pub use placed::Axis;
 

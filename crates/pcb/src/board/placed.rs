@@ -34,7 +34,7 @@ pub enum Axis {
 
 impl Axis {
     /// How this reflects: mirrored or turned about the origin, which goes there.
-    fn reflection(self) -> (Transform, Vec2) {
+    pub(crate) fn reflection(self) -> (Transform, Vec2) {
         match self {
             Axis::X(x) => (Transform::new(true, 0.0, 1.0), Vec2::new(2.0 * x, 0.0)),
             Axis::Y(y) => (Transform::new(true, 180.0, 1.0), Vec2::new(0.0, 2.0 * y)),

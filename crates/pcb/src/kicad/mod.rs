@@ -17,7 +17,9 @@ mod text;
 mod tree;
 mod zone;
 
-use crate::{Artwork, Board};
+use crate::board::Shape;
+use crate::{Artwork, Board, Hole};
+use geom::Element;
 use program::Diagnostic;
 
 /// What a board file says.
@@ -40,7 +42,23 @@ pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
     Ok(Reading { board, warnings })
 }
 
-/// The same, with copper that is still to be united.
+/// What a board draws, each with its line in the file.
+pub(crate) struct Items {
+    pub(crate) front: Vec<(Shape, u32)>,
+    pub(crate) back: Vec<(Shape, u32)>,
+    pub(crate) holes: Vec<(Hole, u32)>,
+    pub(crate) edges: Vec<(Element, u32)>,
+}
+
+/// The items of a board as they stand in its file.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn items(file_name: &str, text: &[u8]) -> Result<Items, Vec<Diagnostic>> {
+    reader::items(file_name, text)
+}
+
+/// The board of such a file, with copper that is still to be united.
 ///
 /// # Errors
 /// As [`read`].

@@ -1,5 +1,6 @@
 //! The items of a board, and what becomes of them.
 
+use super::Items;
 use super::frame::Frame;
 use super::graphic::{Graphic, arc};
 use super::layer::Layers;
@@ -41,6 +42,8 @@ struct Reader<'a> {
     holes: Vec<Hole>,
     /// The lines and arcs of the edge, each with its line in the file.
     edges: Vec<(Element, u32)>,
+    /// The lines in the file of what is on the front, on the back, and of the holes.
+    lines: [Vec<u32>; 3],
 }
 
 /// What is known to have no copper, though it may name a layer of copper.
@@ -56,6 +59,25 @@ const NO_COPPER: &[&[u8]] = &[
 ];
 
 pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnostic>> {
+    obeyed(file_name, text).finish(file_name)
+}
+
+/// What a board draws, each with its line in the file.
+pub(super) fn items(file_name: &str, text: &[u8]) -> Result<Items, Vec<Diagnostic>> {
+    let Reader { report, front, back, holes, edges, lines, .. } = obeyed(file_name, text);
+    if !report.errors.is_empty() {
+        return Err(report.errors);
+    }
+    let [of_front, of_back, of_holes] = lines;
+    let side = |shapes: Vec<(Shape, Net)>, lines: Vec<u32>| {
+        shapes.into_iter().map(|(shape, _)| shape).zip(lines).collect()
+    };
+    let holes = holes.into_iter().zip(of_holes).collect();
+    Ok(Items { front: side(front, of_front), back: side(back, of_back), holes, edges })
+}
+
+/// A board that has been read, with the errors that were found in it.
+fn obeyed<'a>(file_name: &'a str, text: &'a [u8]) -> Reader<'a> {
     let mut reader = Reader {
         report: Report::new(file_name, text),
         nets: BTreeMap::new(),
@@ -65,6 +87,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnost
         back: Vec::new(),
         holes: Vec::new(),
         edges: Vec::new(),
+        lines: Default::default(),
     };
     let tree = Tree::new(text);
     let board = tree.and_then(|tree| {
@@ -75,7 +98,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnost
     if let Err(fault) = board {
         reader.report.error(fault.location, *fault.what);
     }
-    reader.finish(file_name)
+    reader
 }
 
 impl Reader<'_> {
@@ -174,12 +197,21 @@ impl Reader<'_> {
                 b"via" => self.via(item),
                 _ => self.item(item, Frame::BOARD),
             };
+            self.note(item);
             if let Err(fault) = done {
                 self.report.error(fault.location, *fault.what);
             }
             if self.report.is_full() {
                 return;
             }
+        }
+    }
+
+    /// What has been added since is of this item.
+    fn note(&mut self, item: Node) {
+        let counts = [self.front.len(), self.back.len(), self.holes.len()];
+        for (lines, count) in self.lines.iter_mut().zip(counts) {
+            lines.resize(count, item.location().line);
         }
     }
 
@@ -190,6 +222,7 @@ impl Reader<'_> {
                 b"pad" => self.pad(item, &frame),
                 _ => self.item(item, frame),
             };
+            self.note(item);
             if let Err(fault) = done {
                 self.report.error(fault.location, *fault.what);
             }

@@ -3,6 +3,7 @@
 mod boards;
 mod clearing;
 mod data;
+mod drawn;
 mod drill_input;
 mod drilling;
 mod drills;

@@ -262,6 +262,74 @@ fn layers_are_posted_from_a_folder_and_from_uploads_and_nothing_else_is_read() {
     assert_eq!(page.refused("post", named), "folder-reach");
 }
 
+/// A track, the holes and the edge: each move leads to the line of the file that draws what it cuts, and back.
+#[test]
+fn moves_of_a_board_and_lines_of_its_files_lead_to_each_other() {
+    let studio = Studio::with(Some(options));
+    let (track, edge) = (track(), edge(CLOSED));
+    let holes = "M48\nMETRIC,TZ\nT1C0.800\n%\nT1\nX2.0Y2.0\nX8.0Y2.0\nM30\n";
+    let files = [("b.gtl", &*track), ("b.gko", &*edge), ("b.drl", holes)];
+    plots(&studio.own().join("board"), &files);
+    let mut page = studio.socket();
+    let front = post(&mut page, json!({ "folder": "board" }));
+    assert_eq!(front["source"]["file"], "board");
+    let listed: Vec<&str> = front["sources"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|text| text["file"].as_str().unwrap())
+        .collect();
+    assert_eq!(listed, ["b.drl", "b.gko", "b.gtl"]);
+    for (program, file, lines) in [
+        ("front", "b.gtl", &[6][..]),
+        ("drill", "b.drl", &[6, 7]),
+        ("outline", "b.gko", &[6, 7, 8, 9]),
+    ] {
+        let programs = front["board"]["programs"].as_array().unwrap();
+        let own = programs.iter().find(|own| own["name"] == program).unwrap();
+        let revision = &own["revision"];
+        let mut seen = Vec::new();
+        let job = page.done("job", json!({ "revision": revision }));
+        for number in 0..job["walk"]["moves"].as_u64().unwrap() {
+            let by = json!({ "revision": revision, "by": "move", "value": number });
+            let place = page.done("place", by);
+            let source = &place["source"];
+            if source.is_null() {
+                assert_ne!(place["kind"], "feed", "{program}: {place}");
+                continue;
+            }
+            assert_eq!(source["file"], file, "{program}: {place}");
+            let line = source["line"].as_u64().unwrap();
+            let (_, text) = files.iter().find(|(name, _)| *name == file).unwrap();
+            assert_eq!(source["text"], text.lines().nth(line as usize - 1).unwrap());
+            let back = json!({ "revision": revision, "by": "source", "value": line, "file": file });
+            assert_eq!(page.done("place", back)["source"], *source, "{program}");
+            let ranges = place["source_moves"].as_array().unwrap();
+            let of = |range: &Value| range[0].as_u64().unwrap()..range[1].as_u64().unwrap();
+            assert!(ranges.iter().any(|range| of(range).contains(&number)), "{place}");
+            seen.push(line);
+        }
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen, lines, "{program}");
+        // A line of a file that this program cuts nothing of leads nowhere, and so does one of the list of files.
+        let other = if file == "b.gtl" { json!("b.drl") } else { json!("b.gtl") };
+        for file in [other, Value::Null] {
+            let by = json!({ "revision": revision, "by": "source", "value": 1, "file": file });
+            assert!(page.done("place", by).is_null());
+        }
+    }
+    // The text of each is there, and is searched.
+    let revision = &front["revision"];
+    let find =
+        json!({ "revision": revision, "of": "source", "file": "b.drl", "text": "t1c", "from": 1 });
+    assert_eq!(page.done("search", find)["line"], 3);
+    // An edited program has them too.
+    let job = edited(&mut page, json!({ "folder": "board" }), &front);
+    let by = json!({ "revision": job["revision"], "by": "source", "value": 6, "file": "b.gtl" });
+    assert_eq!(page.done("place", by)["source"]["file"], "b.gtl", "{job}");
+}
+
 #[test]
 fn a_program_of_a_board_is_edited_proven_and_saved_by_itself() {
     let studio = studio();

@@ -177,7 +177,13 @@ fn each_pulse_is_a_move_with_its_place_its_block_and_its_time() {
         let text = by_move["block"]["text"].as_str().unwrap();
         assert!(text.starts_with(&format!("N{} PULSE X{:.3}", number + 2, tip[0])), "{text}");
         let by_block = place("block", f64::from(number + 2));
-        assert_eq!((&by_block["move"], &by_block["source"]), (&json!(number), &Value::Null));
+        assert_eq!(by_block["move"], number);
+        // The list has a point on each of its lines.
+        let line = made[number as usize] + 1;
+        assert_eq!(
+            (&by_block["source"]["file"], &by_block["source"]["line"]),
+            (&Value::Null, &json!(line))
+        );
     }
     made.sort_unstable();
     assert_eq!(made, [0, 1, 2]);
@@ -434,6 +440,61 @@ fn several_bodies_that_are_dropped_lie_in_one_block() {
     let job = page.done("post", params);
     assert_eq!((&job["verdict"], &job["walk"]["moves"]), (&json!("done"), &json!(4)), "{job}");
     assert_eq!(job["source"]["file"], "a.xyz, b.xyz");
+}
+
+/// By hand: points and triangle reach from 0 to 8 in X and Y and to 2 in Z, so that they lie 6 6 14 mm farther on in the middle of the block.
+#[test]
+fn a_pulse_leads_to_the_line_of_its_list_or_to_its_body_and_back() {
+    let studio = studio();
+    let upload = |name: &str, text: &str| {
+        let (_, _, answer) = studio.request(&format!("PUT /upload/{name}"), "", text.as_bytes());
+        serde_json::from_slice::<Value>(&answer).unwrap()["upload"].clone()
+    };
+    let list = "x y z\n# a comment\n0 0 0\n\n1 0 0\n0 0 2\n";
+    let (points, shift) =
+        ([(3, [0.0; 3]), (5, [1.0, 0.0, 0.0]), (6, [0.0, 0.0, 2.0])], [6.0, 6.0, 14.0]);
+    let triangle = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 6 6 0\nvertex 8 6 0\nvertex 6 8 0\nendloop\nendfacet\nendsolid t\n";
+    let ids = [upload("t.stl", triangle), upload("dots.xyz", list)];
+    let mut page = studio.socket();
+    let job = page.done("post", json!({ "source": { "uploads": ids }, "machine": MACHINE }));
+    assert_eq!(job["sources"][0]["file"], "dots.xyz", "{job}");
+    let revision = &job["revision"];
+    let (mut seen, mut of_body) = (Vec::new(), 0);
+    for number in 0..job["walk"]["moves"].as_u64().unwrap() {
+        let by = json!({ "revision": revision, "by": "move", "value": number });
+        let place = page.done("place", by);
+        let source = &place["source"];
+        let tip = numbers(&place["tip"]);
+        let own =
+            points.iter().find(|(_, at)| (0..3).all(|i| (tip[i] - at[i] - shift[i]).abs() < 2e-3));
+        let Some((line, _)) = own else {
+            assert_eq!((&source["file"], &source["line"]), (&Value::Null, &json!(1)), "{place}");
+            of_body += 1;
+            continue;
+        };
+        assert_eq!(
+            (&source["file"], &source["line"]),
+            (&json!("dots.xyz"), &json!(line)),
+            "{place}"
+        );
+        let back =
+            json!({ "revision": revision, "by": "source", "value": line, "file": "dots.xyz" });
+        assert_eq!(page.done("place", back)["move"], number);
+        seen.push(*line);
+    }
+    seen.sort_unstable();
+    assert_eq!((seen, of_body > 3), (vec![3, 5, 6], true));
+    // A list alone is the source itself; a body alone has no lines.
+    let job = post(&mut page, "dots.xyz", MACHINE, &[]);
+    let place =
+        page.done("place", json!({ "revision": job["revision"], "by": "source", "value": 2 }));
+    assert_eq!(
+        (&place["source"]["file"], &place["source"]["text"]),
+        (&Value::Null, &json!("1 0 0"))
+    );
+    let job = post(&mut page, "ball.stl", MACHINE, &[]);
+    let by = json!({ "revision": job["revision"], "by": "move", "value": 1 });
+    assert_eq!(page.done("place", by)["source"], Value::Null);
 }
 
 #[test]

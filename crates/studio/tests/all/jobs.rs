@@ -504,6 +504,18 @@ fn a_wire_is_posted_by_the_options_of_its_own_command() {
         (&json!("done"), &json!("wire")),
         "{job}"
     );
+    // `N20` goes to where the wire is threaded, for the rapid of the source; the cuts are of their own lines.
+    let mut place = |by: &str, line: u32| {
+        page.done("place", json!({ "revision": job["revision"], "by": by, "value": line }))
+    };
+    for place in [place("block", 4), place("source", 5)] {
+        let found = (&place["block"]["text"], &place["source"]["line"]);
+        assert_eq!(found, (&json!("N20 G0 X15. Y15."), &json!(5)), "{place}");
+    }
+    for (source, kind) in [(6, "feed"), (7, "arc"), (8, "feed")] {
+        let place = place("source", source);
+        assert_eq!((&place["source"]["line"], &place["kind"]), (&json!(source), &json!(kind)));
+    }
     let place =
         page.done("place", json!({ "revision": job["revision"], "by": "move", "value": 3 }));
     assert_eq!(place["axes"].as_array().unwrap().len(), 5);
