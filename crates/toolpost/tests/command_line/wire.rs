@@ -356,7 +356,8 @@ fn a_list_says_one_opening_only() {
     let folder = sector();
     let second = "G0 X100. Y0.\nG1 X110.\nY10.\nX100. Y0.\nN60 M30";
     folder.write("sector.nc", SECTOR.replace("N60 M30", second));
-    refused(&folder, &[], 1, &["error[one-opening]", "sector.nc:10:"]);
+    // It begins with the rapid to where it is threaded.
+    refused(&folder, &[], 1, &["error[one-opening]", "sector.nc:9:", "| G0 X100. Y0."]);
 }
 
 #[test]
