@@ -2,7 +2,7 @@
 //!
 //! A process does one step. What is asked comes by its standard input, the answer leaves by its standard output, both as blocks, each with its
 //! length and a sum of all up to there, so that what is damaged or cut off is never taken for a step or an answer. The input stays
-//! open meanwhile: the process ends as soon as that is closed, which it is with the process that has started it, however that ends.
+//! open meanwhile: the process ends as soon as that is closed, which it is with the process that has started it, however that ends; on Linux the system kills it then.
 
 mod blocks;
 
@@ -125,6 +125,10 @@ impl Drop for Killed {
 /// What has come is no step, or who has asked is gone.
 pub fn serve() -> io::Result<()> {
     panic::set_hook(Box::new(|_| {}));
+    // The input is closed late where the system has much memory of the other process to free first. The signal comes with the end of the thread that has
+    // started this process, which waits for it.
+    #[cfg(target_os = "linux")]
+    rustix::process::set_parent_process_death_signal(Some(rustix::process::Signal::KILL))?;
     let mut asked = Reader::new(io::stdin().lock());
     let step = named(&mut asked)?;
     let does = step(&mut asked)?;

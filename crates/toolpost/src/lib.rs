@@ -51,13 +51,17 @@ fn end_cleanly() {
 /// The exit code of a command that was interrupted: 128 and the number of the signal, as shells have it.
 const INTERRUPTED: u8 = 130;
 
-/// The command by which a program is a helper of another.
+/// The command by which a program is a helper of another ([`app::helper`]).
 pub const HELPER: &str = "helper";
 
 /// Obeys a command line, whose first word is the name of the command, and answers the exit code. The studio starts its helpers by `helper`, which
 /// gives such a program the word [`HELPER`]; without it, steps that cannot be ended in their middle go on to their end.
 pub fn run(words: impl IntoIterator<Item = OsString>, helper: Option<Launcher>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
+    // Nobody types it, so that it is in no help.
+    if words.get(1).is_some_and(|word| word == HELPER) {
+        return helper::serve().is_err().into();
+    }
     let (is_quiet, is_json) = said_first(&words);
     let settings::Expanded { words, found, origins, .. } = match settings::expanded(words) {
         Ok(expanded) => expanded,
@@ -93,7 +97,6 @@ pub fn run(words: impl IntoIterator<Item = OsString>, helper: Option<Launcher>) 
         Command::Show(args) => show::run(&args, silent),
         Command::Fit(args) => fit::run(&args, silent),
         Command::Studio(args) => studio::run(&args, json, helper),
-        Command::Helper => return helper::serve().is_err().into(),
         Command::Explain { topic } => explain::run(topic.as_deref()),
         Command::Completions { shell } => Ok(completions(shell)),
     };

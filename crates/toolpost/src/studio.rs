@@ -373,7 +373,7 @@ mod tests {
         for (source, rule) in [("missing.cls", Rule::Unreadable), ("Cargo.toml", Rule::FolderReach)]
         {
             let expected = if ::studio::has_page() { rule } else { Rule::StudioPage };
-            let found = run(&args(source), false).unwrap_err().findings.remove(0);
+            let found = run(&args(source), false, None).unwrap_err().findings.remove(0);
             assert_eq!(found.rule, expected, "{found}");
             assert!(!found.help.is_empty());
         }

@@ -65,9 +65,6 @@ pub enum Command {
     /// Open the studio in the browser: source, program, machine and proof in one window. The server listens on this computer alone
     /// and reads and writes one folder alone.
     Studio(Studio),
-    /// Do one step of the work of a studio that has started this.
-    #[command(name = crate::HELPER, hide = true)]
-    Helper,
     /// Say what a name of machine and control files, or a rule of a finding, means.
     Explain {
         /// A key, a word, a block, a variable, or a rule; without one, all of them.

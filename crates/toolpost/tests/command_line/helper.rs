@@ -46,16 +46,16 @@ fn strokes(count: u32, mut seed: u64) -> Vec<Region> {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 33) as f64 / (1_u64 << 31) as f64
     };
-    let mut stroke = |i: u32| {
+    let stroke = |i: u32| {
         let from = Vec2::new(number(), number()) * f64::from(count).sqrt();
         let center = from + Vec2::new(number() - 0.5, 0.1);
         let sweep = 5.0 * (number() - 0.5);
         let end = center + Vec2::from_angle(sweep).rotate(from - center);
         let arc = Element::arc(from, end, center, sweep);
-        let middle = if i % 2 == 0 { arc } else { Element::line(from, end) };
+        let middle = if i.is_multiple_of(2) { arc } else { Element::line(from, end) };
         Region::stroke(&middle, 0.1 + 0.2 * number(), Cap::Round).unwrap()
     };
-    (0..count).map(|i| stroke(i)).collect()
+    (0..count).map(stroke).collect()
 }
 
 #[test]
