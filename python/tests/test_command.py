@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import struct
 import subprocess
 import sys
+import zlib
 
 import pytest
 
+import toolpost
 from conftest import EXAMPLES
+from toolpost import _command
 
 
 @pytest.mark.parametrize(
@@ -54,3 +58,27 @@ def test_the_reader_of_the_output_may_leave(installed):
     with subprocess.Popen([installed, "explain"], stdout=subprocess.PIPE) as command:
         command.stdout.close()
         assert command.wait() == 0
+
+
+def blocks(data: bytes) -> bytes:
+    """Write a block as helpers read and write it, with its length and sum, and an end."""
+    total = zlib.crc32(data)
+    return struct.pack("<II", len(data), total) + data + struct.pack("<II", 0, total)
+
+
+def test_the_helper_of_the_studio_does_a_step_without_the_package():
+    name = f"{toolpost.__version__} region".encode()
+    # The intersection of nothing with nothing.
+    asked = blocks(bytes([len(name)]) + name + bytes([1, 1]) + bytes(8))
+    with subprocess.Popen(
+        _command.helper(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as helper:
+        helper.stdin.write(asked)
+        helper.stdin.flush()
+        # No reason against it, and no islands.
+        assert helper.stdout.read() == blocks(bytes(5))
+        assert helper.wait() == 0
+        assert helper.stderr.read() == b""
+    for wrong in [b"", b"studio", asked[:-1], asked.replace(b"region", b"legion")]:
+        done = subprocess.run(_command.helper(), input=wrong, capture_output=True, check=False)
+        assert (done.returncode, done.stdout, done.stderr) == (1, b"", b"")

@@ -11,7 +11,10 @@ def main() -> int:
     """Obey the command line and answer its exit code."""
     # What runs is no Python, which would only look for the interrupt when it is over.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _native.run_command(["toolpost", *sys.argv[1:]], helper())
+
+
+def helper() -> list[str]:
+    """Give the words by which the studio starts its helpers; none where no interpreter is known."""
     script = os.path.join(os.path.dirname(__file__), "_helper.py")
-    # An interpreter within another program has none.
-    helper = [sys.executable, "-I", "-S", script, _native.__file__] if sys.executable else []
-    return _native.run_command(["toolpost", *sys.argv[1:]], helper)
+    return [sys.executable, "-I", "-S", script, _native.__file__] if sys.executable else []

@@ -1,6 +1,6 @@
 """A helper of the studio: ``python -I -S _helper.py`` and the file of the compiled module.
 
-It is no part of the package, since that would import NumPy first, which takes ten times as long as the rest.
+It does not import the package, which would import NumPy first: a helper shall begin at once.
 """
 
 import sys
