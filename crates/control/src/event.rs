@@ -439,6 +439,42 @@ impl Risk {
         refused: true,
     };
 
+    /// What holds of these modes before a program says them is data of the machine, which its builder, its integrator or its operator
+    /// has set up (`docs/controls/start.md`).
+    const fn start_mode(what: &'static str, help: &'static str) -> Risk {
+        Risk { rule: Rule::StartMode, what, help, refused: true }
+    }
+
+    /// FANUC 3402#1, #2; SINUMERIK MD20150; LinuxCNC RS274NGC_STARTUP_CODE; GRBL $N; Mach3 General Config.
+    pub(crate) const START_PLANE: Risk = Risk::start_mode(
+        "has an arc, a hole or compensation and has not said in which plane: in which the control starts is set up at the machine",
+        "write G17 at the start; or state it in `start_modes` in [settings] of the machine file",
+    );
+
+    /// FANUC 3402#3, and the others as the plane.
+    pub(crate) const START_DISTANCE: Risk = Risk::start_mode(
+        "moves and has not said whether its positions are absolute: how the control starts is set up at the machine",
+        "write G90 at the start; or state it in `start_modes` in [settings] of the machine file",
+    );
+
+    /// FANUC 3402#4, and the others as the plane.
+    pub(crate) const START_FEED: Risk = Risk::start_mode(
+        "cuts and has not said what F counts: how the control starts is set up at the machine",
+        "write G94 at the start; or state it in `start_modes` in [settings] of the machine file",
+    );
+
+    /// Mach3 General Config, "IJ Mode"; LinuxCNC RS274NGC_STARTUP_CODE, and `G90.1` of a program before.
+    pub(crate) const START_CENTERS: Risk = Risk::start_mode(
+        "has an arc by I, J or K and has not said whether these count from its start or are places: the operator has set that up",
+        "write G91.1 at the start; or state it in `start_modes` in [settings] of the machine file",
+    );
+
+    /// SINUMERIK MD20150, G group 13, and MD10240.
+    pub(crate) const START_UNITS: Risk = Risk::start_mode(
+        "moves and has not said in which unit: how the control starts is set up at the machine",
+        "write G710 (or G71) at the start; or state G71 in `start_modes` in [settings] of the machine file",
+    );
+
     /// A tool length counts along the axis that stands on the plane, or along Z always (SINUMERIK SD42940, "Tool offsets";
     /// FANUC parameter 5001, tool length types A and B).
     pub(crate) const LENGTH_PLANE: Risk = Risk {

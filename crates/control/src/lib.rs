@@ -289,6 +289,52 @@ pub enum Corners {
     AsSetUp,
 }
 
+/// Modes in which a control starts a program: `true` where it is sure that the mode is the one which is named here.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StartModes {
+    /// The plane of arcs, cycles and compensation is `G17`.
+    pub plane_xy: bool,
+    /// Positions are absolute (`G90`).
+    pub absolute: bool,
+    /// F counts a minute (`G94`).
+    pub feed_per_minute: bool,
+    /// I, J and K of an arc count from its start (`G91.1`).
+    pub centers_from_start: bool,
+    /// Lengths are millimetres (`G71` of SINUMERIK; other controls are asked for their units in any case).
+    pub metric: bool,
+}
+
+impl StartModes {
+    /// All of them are sure.
+    pub const SURE: StartModes = StartModes {
+        plane_xy: true,
+        absolute: true,
+        feed_per_minute: true,
+        centers_from_start: true,
+        metric: true,
+    };
+
+    /// None of them is.
+    pub(crate) const NONE: StartModes = StartModes {
+        plane_xy: false,
+        absolute: false,
+        feed_per_minute: false,
+        centers_from_start: false,
+        metric: false,
+    };
+
+    /// Those that are sure here or there.
+    pub(crate) fn or(self, other: StartModes) -> StartModes {
+        StartModes {
+            plane_xy: self.plane_xy || other.plane_xy,
+            absolute: self.absolute || other.absolute,
+            feed_per_minute: self.feed_per_minute || other.feed_per_minute,
+            centers_from_start: self.centers_from_start || other.centers_from_start,
+            metric: self.metric || other.metric,
+        }
+    }
+}
+
 /// What a virtual control has to know of its machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -301,6 +347,9 @@ pub struct Settings {
     /// Whether the tool length counts along Z in every plane, where that is known (SINUMERIK SD42940, FANUC parameter
     /// 5001).
     pub length_along_z: Option<bool>,
+    /// Modes that this control is set up to start a program in. Of those that are neither set up so nor fixed by the control each
+    /// program has to say its own.
+    pub start_modes: StartModes,
     /// The edge of the tool that counts behind a change where the program says none, 0 for none, where that is known (SINUMERIK
     /// MD20270).
     pub edge_at_change: Option<u32>,
@@ -478,6 +527,7 @@ impl Settings {
             modulo: [None; 3],
             length_along_z: None,
             edge_at_change: None,
+            start_modes: StartModes::default(),
             floating_holder: false,
             retract_above_r: None,
             length_moves_axis: None,

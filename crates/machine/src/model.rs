@@ -215,7 +215,7 @@ pub struct LoadedFrom {
 }
 
 /// Parameters of the control as the machine has them; `None` is not known.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ControlSettings {
     /// Whether taps are held in a chuck that floats along its axis, so that feed and spindle need not be coupled.
     pub floating_holder: bool,
@@ -223,6 +223,8 @@ pub struct ControlSettings {
     pub retract_above_r: Option<f64>,
     /// The feed of rapids near the part that are written as straight cuts, mm/min.
     pub high_feed: Option<f64>,
+    /// Modes that the control is set up to start a program in.
+    pub start_modes: Vec<StartMode>,
     /// The edge of the tool that counts behind a change where the program says none, 0 for none (SINUMERIK MD20270).
     pub edge_at_change: Option<u32>,
     /// Whether the tool length counts along Z in every plane (SINUMERIK SD42940, FANUC parameter 5001).
@@ -466,6 +468,22 @@ pub enum ToolRadius {
     Full,
     /// By how much the tool differs from the one of the toolpath: compensated programs are paths of the tool's centre.
     Wear,
+}
+
+/// A mode that a control is in before a program says it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum StartMode {
+    /// The plane XY.
+    G17,
+    /// Lengths in mm (SINUMERIK).
+    G71,
+    /// Absolute positions.
+    G90,
+    /// Centres of arcs from their start.
+    #[serde(rename = "G91.1")]
+    G91Dot1,
+    /// Feed a minute.
+    G94,
 }
 
 /// What a feed in mm/min counts where rotary axes turn in a cut and the control does not keep the tool tip.

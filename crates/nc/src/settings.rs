@@ -1,7 +1,7 @@
 //! The settings of the virtual control of a machine.
 
-use control::{Dialect, FeedPath, Settings, Setup, TableAxis, Wire};
-use machine::{Machine, Mount, RotaryFeed};
+use control::{Dialect, FeedPath, Settings, Setup, StartModes, TableAxis, Wire};
+use machine::{Machine, Mount, RotaryFeed, StartMode};
 use program::{Diagnostic, Outcome, Rule};
 
 /// The settings of the virtual control of `machine`, with what the operator has set up.
@@ -40,6 +40,16 @@ fn table_axes(machine: &Machine) -> Option<Vec<TableAxis>> {
     Some(axes)
 }
 
+fn start_modes(stated: &[StartMode]) -> StartModes {
+    StartModes {
+        plane_xy: stated.contains(&StartMode::G17),
+        absolute: stated.contains(&StartMode::G90),
+        feed_per_minute: stated.contains(&StartMode::G94),
+        centers_from_start: stated.contains(&StartMode::G91Dot1),
+        metric: stated.contains(&StartMode::G71),
+    }
+}
+
 /// The settings of a virtual control with the axes of `machine` that reads `dialect`, as [`settings`].
 pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Settings {
     let (mut rotary, mut table, mut modulo) = ([false; 3], [false; 3], [None; 3]);
@@ -56,6 +66,7 @@ pub fn settings_in(dialect: Dialect, machine: &Machine, setup: Setup) -> Setting
         modulo,
         floating_holder: machine.settings.floating_holder,
         retract_above_r: machine.settings.retract_above_r,
+        start_modes: start_modes(&machine.settings.start_modes),
         edge_at_change: machine.settings.edge_at_change,
         length_along_z: machine.settings.length_along_z,
         length_moves_axis: machine.settings.length_moves_axis,

@@ -21,7 +21,7 @@
 //! let (source, machine) = (slot.build(), machine::load("generic-3axis-linuxcnc")?);
 //! let proven = |depth: &str| {
 //!     let text = format!(
-//!         "G21 G17 G40 G49 G80 G90 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0\nZ5\nG1 Z{depth} F300\nG0 Z5\nM5\n\
+//!         "G21 G17 G40 G49 G80 G90 G91.1 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0\nZ5\nG1 Z{depth} F300\nG0 Z5\nM5\n\
 //!          G53 G0 Z0\nM2\n"
 //!     );
 //!     prove(&source, &machine, "slot.ngc", text.as_bytes(), &Tolerances::default())

@@ -5,7 +5,9 @@ use geom::Vec3;
 use program::{
     Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, PathMode, Spindle, WorkOffset,
 };
-use toolpost_control::{Action, ArcTo, Dialect, Orientation, Position, Settings, TiltChoice};
+use toolpost_control::{
+    Action, ArcTo, Dialect, Orientation, Position, Settings, StartModes, TiltChoice,
+};
 
 const FANUC: Dialect = Dialect::Fanuc;
 const LINUXCNC: Dialect = Dialect::LinuxCnc;
@@ -16,6 +18,8 @@ fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Action>, B
         auxiliary: vec![26],
         dwell_p_milliseconds: Some(true),
         rotary_by_sign: Some(false),
+        // They have tests of their own.
+        start_modes: StartModes::SURE,
         ..Settings::new(dialect, rotary)
     };
     // Most of these programs are in mm and do not say so.

@@ -2,10 +2,12 @@
 
 use geom::Vec3;
 use program::{Axes, Coolant, Cycle, CycleKind, Diagnostic, PathMode, Spindle};
-use toolpost_control::{Action, Dialect, Settings, read};
+use toolpost_control::{Action, Dialect, Settings, StartModes, read};
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
-    crate::common::ops(&Settings::new(dialect, [false; 3]), "p.nc", text)
+    let start_modes = StartModes::SURE;
+    let settings = Settings { start_modes, ..Settings::new(dialect, [false; 3]) };
+    crate::common::ops(&settings, "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Action> {

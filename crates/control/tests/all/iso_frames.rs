@@ -3,10 +3,14 @@
 
 use geom::Vec3;
 use program::{Compensation, Cycle, CycleKind, Diagnostic, Feed, MachineMove, Spindle, WorkOffset};
-use toolpost_control::{Action, Dialect, Settings, Setup, ToolData, WholeNumbers};
+use toolpost_control::{Action, Dialect, Settings, Setup, StartModes, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
-    let known = Settings { dwell_p_milliseconds: Some(true), ..Settings::new(dialect, [false; 3]) };
+    let known = Settings {
+        start_modes: StartModes::SURE,
+        dwell_p_milliseconds: Some(true),
+        ..Settings::new(dialect, [false; 3])
+    };
     let settings = Settings { setup, ..known };
     crate::common::ops(&settings, "p.nc", text)
 }

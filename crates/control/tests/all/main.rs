@@ -45,6 +45,7 @@ mod sinumerik_geometry;
 mod sinumerik_judge;
 mod sinumerik_property;
 mod sinumerik_seeds;
+mod start;
 mod tools;
 mod urscript;
 mod wire_iso;

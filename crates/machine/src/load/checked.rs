@@ -504,6 +504,7 @@ impl CheckedSheet {
             settings: ControlSettings {
                 floating_holder: self.settings.floating_holder.unwrap_or(false),
                 high_feed: self.settings.high_feed.map(|feed| feed.0),
+                start_modes: self.settings.start_modes.unwrap_or_default(),
                 edge_at_change: self.settings.edge_at_change,
                 length_along_z: self.settings.length_along_z,
                 length_moves_axis: self.settings.length_moves_axis,

@@ -1687,6 +1687,10 @@ rules! {
         "A spline lacks words, or stands where the control does not take it."
         "give the words that the spline needs, in the plane that it works in"
         "linuxcnc: `G18`, `G5.1 X10 Y0 I1 J1`";
+    StartMode "start-mode" []
+        "The program leans on a mode that it does not say, and how the control starts is set up at the machine."
+        "write G17, G90, G94, G91.1 or G710 at the start, as the finding says, or state it in `start_modes` in [settings] of the machine file"
+        "mach3: `G2 X10 I5 J0` without G91.1";
     Step "step" []
         "A step down is smaller than can be."
         "give a larger step"

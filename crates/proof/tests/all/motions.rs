@@ -46,8 +46,7 @@ fn job(length: Option<f64>) -> Builder {
     job
 }
 
-const START: &str =
-    "G21 G17 G40 G49 G80 G90 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\n";
+const START: &str = "G21 G17 G40 G49 G80 G90 G91.1 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\n";
 const END: &str = "M5\nG53 G0 Z0\nM2\n";
 
 #[test]

@@ -340,7 +340,7 @@ fn the_blocks_of_loops_and_subprograms_are_those_that_linuxcnc_prints() {
     }
     job.rapid([0.0, 0.0, 5.0], None).unwrap();
     let text = "o10 sub\nG1 Z#1 F300\nG1 X10\nG3 X0 Y0 I-5 J0\no10 endsub\n\
-        G21 G17 G40 G49 G80 G90 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0\nZ5\n\
+        G21 G17 G40 G49 G80 G90 G91.1 G94 G54\nG64 P0.005 Q0.005\nG53 G0 Z0\nT1 M6\nS5000 M3\nG43 H1\nG0 X0 Y0\nZ5\n\
         #2=0\no20 repeat [3]\n#2=[#2-1]\n(a pass)\no10 call [#2]\no20 endrepeat\nG0 Z5\nM5\nG53 G0 Z0\nM2\n";
     let machine = machine::load("generic-3axis-linuxcnc").unwrap();
     let folder = tempfile::tempdir().unwrap();

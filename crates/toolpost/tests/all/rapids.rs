@@ -299,8 +299,10 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
     assert!(warnings[0].help.contains("high_feed") && warnings[0].count == 2, "{warnings:?}");
     // The machine file may say how fast the machine goes through the air there.
     assert_eq!(high_feed, Some(5000.0));
-    let fast =
-        Machine { settings: ControlSettings { high_feed, ..machine.settings }, ..machine.clone() };
+    let fast = Machine {
+        settings: ControlSettings { high_feed, ..machine.settings.clone() },
+        ..machine.clone()
+    };
     let output = written(&source, &fast);
     let text = plain(&text(&output));
     proven(&source, &fast, &text);
@@ -592,7 +594,7 @@ fn from_home_and_to_home_along_a_leaning_tool_the_way_is_straight() {
     let straight = Machine {
         settings: ControlSettings {
             rapid_path: Some(machine::RapidPath::Linear),
-            ..machine.settings
+            ..machine.settings.clone()
         },
         ..machine.clone()
     };

@@ -168,3 +168,40 @@ fn a_sinumerik_program_says_the_edge_behind_the_change() {
         assert_eq!(rule_of(&machine, &sample, &text), None);
     }
 }
+
+/// Mach3 General Config, "IJ Mode": whether I and J are places or count from the start of the arc is the operator's; so is "Distance
+/// Mode". FANUC 3402, SINUMERIK MD20150, RS274NGC_STARTUP_CODE of LinuxCNC, `$N0` of GRBL: the builder's or the operator's.
+#[test]
+fn a_program_says_the_modes_that_are_set_up_at_the_machine() {
+    let sample = three_axes();
+    for (name, words) in [
+        ("mach3-mill", &["G17", "G90", "G91.1", "G94"][..]),
+        ("linuxcnc-mill", &["G17", "G90", "G91.1", "G94"]),
+        ("generic-3axis-fanuc", &["G17", "G90", "G94"]),
+        ("generic-3axis-grbl", &["G17", "G90", "G94"]),
+        ("generic-3axis-sinumerik", &["G17", "G710", "G90", "G94"]),
+    ] {
+        let machine = machine::load(name).unwrap();
+        let text = String::from_utf8(written(&machine, &sample).unwrap().text).unwrap();
+        assert_eq!(rule_of(&machine, &sample, &text), None, "{name}");
+        for word in words {
+            // Everywhere, since a change of the tool may say it again.
+            let lines = text.lines().map(|line| {
+                let left: Vec<_> = line.split(' ').filter(|said| said != word).collect();
+                left.join(" ") + "\n"
+            });
+            let silent: String = lines.collect();
+            let found = rule_of(&machine, &sample, &silent);
+            if *word == "G90" {
+                // Behind `G91 G28` the moves are then increments, whatever holds at the start.
+                assert!(found.is_some(), "{name}:\n{silent}");
+                continue;
+            }
+            assert_eq!(found, Some("start-mode"), "{name} without {word}:\n{silent}");
+            let mode = word.replace("G710", "G71");
+            let file = format!("extends = \"{name}\"\n[settings]\nstart_modes = [\"{mode}\"]\n");
+            let stated = load_text("stated.toml", &file).unwrap();
+            assert_eq!(rule_of(&stated, &sample, &silent), None, "{name} states {word}");
+        }
+    }
+}

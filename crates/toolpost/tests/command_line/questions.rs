@@ -69,9 +69,9 @@ fn a_wire_needs_neither_the_feed_nor_the_spindle_of_its_source() {
     let folder = Folder::empty();
     let square = SQUARE.replace(" F100.", "");
     let sources = [
-        ("fanuc-31i", "G21\nG0 X0. Y0. Z0.\n"),
-        ("linuxcnc", "G21\nG0 X0. Y0. Z0.\n"),
-        ("sinumerik-840d", "G71\nG0 X0. Y0. Z0.\n"),
+        ("fanuc-31i", "G21\nG90 G0 X0. Y0. Z0.\n"),
+        ("linuxcnc", "G21\nG90 G0 X0. Y0. Z0.\n"),
+        ("sinumerik-840d", "G71\nG90 G0 X0. Y0. Z0.\n"),
     ];
     for (control, head) in sources {
         let said = points(&folder, control, &format!("{head}{square}M30\n"));

@@ -5,7 +5,7 @@
 //! followers do, where that is something else.
 
 use crate::iso::language::words::Dictionary;
-use crate::{Corners, Ending, FeedPath};
+use crate::{Corners, Ending, FeedPath, StartModes};
 use program::WorkOffset;
 
 /// A group of facts: `name: type = what RS274/NGC has, FANUC = what FANUC has`, where that is something else.
@@ -524,6 +524,8 @@ group! {
         keeps_work_offset: bool = false, FANUC = true;
         /// What becomes of it at the end of a program.
         at_end: AtEnd = AtEnd::Keeps;
+        /// The modes that are sure before a program says them; the others are set up at the machine.
+        modes: StartModes = StartModes::SURE;
     }
 }
 

@@ -3,10 +3,11 @@
 
 use super::facts::{
     Arcs, CornerWords, Cycles, DwellUnit, Facts, FeedMeaning, FeedRules, FrameRules, Functions,
-    Homes, Language, MotionRules, Numbers, Offsets, Rollover, Syntax, Tools, further,
+    Homes, Language, MotionRules, Numbers, Offsets, Reset, Rollover, Syntax, Tools, further,
     within_a_hundredth,
 };
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::StartModes;
 use crate::iso::language::words::{
     Canned, Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused,
 };
@@ -95,5 +96,15 @@ pub(crate) static FACTS: Facts = Facts {
     },
     homes: Homes { leaves_tilt: true, names_axes: true, ..Homes::FANUC },
     tools: Tools { remembers_registers: true, length_as_set_up: true, ..Tools::FANUC },
+    reset: Reset {
+        // Parameter 3402#1 to #4.
+        modes: StartModes {
+            plane_xy: false,
+            absolute: false,
+            feed_per_minute: false,
+            ..StartModes::SURE
+        },
+        ..Reset::FANUC
+    },
     ..Facts::fanuc(WORDS, Language::MacroB)
 };

@@ -5,8 +5,8 @@ use super::facts::{
     OuterCenter, Reset, Syntax, Tools, six,
 };
 use super::{END_M, MILL_G, mill};
-use crate::FeedPath;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Motion, Refused};
+use crate::{FeedPath, StartModes};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -70,6 +70,8 @@ pub(crate) static FACTS: Facts = Facts {
         three_axes: true,
         // `gcode.c`, step 21.
         at_end: AtEnd::Resets,
+        // The blocks of the start, $N0 and $N1; I, J and K always count from the start of the arc.
+        modes: StartModes { metric: true, centers_from_start: true, ..StartModes::NONE },
         ..Reset::ISO
     },
     ..Facts::iso(WORDS, Language::Plain)

@@ -9,7 +9,7 @@ use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 use crate::iso::language::words::{
     Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
 };
-use crate::{Corners, Ending, FeedPath};
+use crate::{Corners, Ending, FeedPath, StartModes};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
@@ -146,6 +146,8 @@ pub(crate) static FACTS: Facts = Facts {
         feed_path: FeedPath::LinearAxes,
         // M codes, "M2, M30 Program End".
         at_end: AtEnd::Resets,
+        // RS274NGC_STARTUP_CODE.
+        modes: StartModes { metric: true, ..StartModes::NONE },
         ..Reset::ISO
     },
     ..Facts::iso(WORDS, Language::Ngc)

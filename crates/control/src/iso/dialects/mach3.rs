@@ -3,8 +3,8 @@
 
 use super::facts::{Facts, FrameRules, Functions, Language, Offsets, Reset, Syntax, Tools};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::Corners;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Path, Refused};
+use crate::{Corners, StartModes};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -65,6 +65,12 @@ pub(crate) static FACTS: Facts = Facts {
     },
     frames: FrameRules { scales_by_axis: true, turn_center: Some(*b"AB"), ..FrameRules::ISO },
     tools: Tools { rs274_data: true, ..Tools::ISO },
-    reset: Reset { corners: Corners::AsSetUp, keeps_work_offset: true, ..Reset::ISO },
+    reset: Reset {
+        corners: Corners::AsSetUp,
+        keeps_work_offset: true,
+        // General Config: "Active Plane of Movement", "Distance Mode", "IJ Mode"; its initialisation string.
+        modes: StartModes { metric: true, ..StartModes::NONE },
+        ..Reset::ISO
+    },
     ..Facts::iso(WORDS, Language::Rs274)
 };

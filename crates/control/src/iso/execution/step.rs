@@ -7,7 +7,7 @@ use crate::iso::language::Fault;
 use crate::iso::language::block::Block;
 use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
 use crate::kernel::coolant::{Coolants, Doubtful};
-use crate::{Settings, WholeNumbers};
+use crate::{Settings, StartModes, WholeNumbers};
 use program::Rule;
 use program::{Coolant, CoolantSwitch, PathMode, Spindle, WorkOffset};
 
@@ -83,6 +83,7 @@ impl Step<'_, '_, '_> {
     fn run(&mut self) -> Result<(), Fault> {
         // What is left out where it only moves acts on G and M words of other groups, and on other letters.
         let more = !self.block.only_moves();
+        let before = self.actions.len();
         self.one_command()?;
         self.inside_nurbs()?;
         self.wire()?;
@@ -105,10 +106,60 @@ impl Step<'_, '_, '_> {
         }
         self.motion()?;
         self.holds_suspended_length();
+        if self.state.sure != StartModes::SURE {
+            self.lean_on_start(before);
+        }
         if more {
             self.flow()?;
         }
         self.block.all_taken()
+    }
+
+    /// Reports, once each, modes that the events from `first` on lean on and nobody has said.
+    #[cold]
+    fn lean_on_start(&mut self, first: usize) {
+        let says = |group| self.block.g(group).is_some();
+        let said = StartModes {
+            plane_xy: says(Group::Plane),
+            absolute: says(Group::Distance),
+            feed_per_minute: says(Group::FeedMode),
+            centers_from_start: says(Group::ArcDistance),
+            metric: true,
+        };
+        self.state.sure = self.state.sure.or(said);
+        let sure = &mut self.state.sure;
+        let events = self.actions.get(first..).unwrap_or_default();
+        let any = |is: fn(&Action) -> bool| events.iter().any(is);
+        let moves = any(|event| event.position().is_some() || matches!(event, Action::Probe(_)));
+        let cuts = self.state.purpose.asks_technology()
+            && any(|event| {
+                matches!(
+                    event,
+                    Action::Line(_) | Action::Arc(_) | Action::Hole(_) | Action::Probe(_)
+                )
+            });
+        let turns = any(|event| {
+            matches!(
+                event,
+                Action::Arc(_)
+                    | Action::Hole(_)
+                    | Action::Compensation(
+                        program::Compensation::Left(_) | program::Compensation::Right(_)
+                    )
+            )
+        });
+        let by_center = b"IJK".iter().any(|letter| self.block.gives(*letter))
+            && any(|event| matches!(event, Action::Arc(_)));
+        for (leans, sure, risk) in [
+            (by_center, &mut sure.centers_from_start, Risk::START_CENTERS),
+            (moves, &mut sure.absolute, Risk::START_DISTANCE),
+            (cuts, &mut sure.feed_per_minute, Risk::START_FEED),
+            (turns, &mut sure.plane_xy, Risk::START_PLANE),
+        ] {
+            if leans && !std::mem::replace(sure, true) {
+                self.actions.push(Action::Risk(risk.into()));
+            }
+        }
     }
 
     /// Marlin takes the first command of a line and what follows as its parameters; a line without one

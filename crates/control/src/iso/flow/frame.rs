@@ -1,6 +1,7 @@
 //! A program that is under way, and what it keeps: a call begins one, its end goes back to the one before.
 
 use super::source::SourceLocation;
+use crate::StartModes;
 use crate::iso::execution::state::{Length, State};
 use crate::iso::language::parameters::Locals;
 use crate::iso::language::words::{FeedMode, Plane};
@@ -85,6 +86,7 @@ pub(crate) struct Modes {
     pub(super) plane: Plane,
     pub(super) incremental: bool,
     pub(super) centers_absolute: bool,
+    pub(super) sure: StartModes,
     pub(super) feed_mode: FeedMode,
     pub(super) return_to_r: Option<bool>,
     pub(super) work_offset: u32,
@@ -105,6 +107,7 @@ impl Modes {
             plane: state.plane,
             incremental: state.incremental,
             centers_absolute: state.centers_absolute,
+            sure: state.sure,
             feed_mode: state.feed_mode,
             return_to_r: state.return_to_r,
             work_offset: state.frames.active(),

@@ -70,6 +70,8 @@ impl Run<'_, '_> {
             block.put_g(Group::Length, G::CancelLength);
         }
         self.control.execute(&mut self.block, &mut self.actions)?;
+        // What had not been said then is not said by coming back.
+        self.control.state.sure = kept.sure;
         self.block.clear(line, text);
         let block = &mut self.block;
         if let Some(f) = kept.f {

@@ -6,7 +6,6 @@
 
 use super::state::State;
 use super::state::modal::{Drilling, Modal, Pause};
-use crate::Settings;
 use crate::event::{Action, Event, FeedPath, Risk};
 use crate::kernel::Channel;
 use crate::kernel::Outcome;
@@ -21,6 +20,7 @@ use crate::sinumerik::language::commands::{self, Code, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, ELEMENTS_IN_A_TURN};
 use crate::sinumerik::models::Facts;
+use crate::{Settings, StartModes};
 use program::{
     Auxiliary, Compensation, Coolant, CoolantSwitch, Cycle, Diagnostic, Feed, Rule, Spindle, Tool,
 };
@@ -110,8 +110,38 @@ impl<'a, 's> Interpreter<'a, 's> {
     /// Reports what happens.
     #[inline]
     pub fn emit(&mut self, source: &Source, action: Action) -> Outcome {
+        if self.state.sure != StartModes::SURE {
+            self.lean_on_start(source, &action)?;
+        }
         let event = Event { line: self.line.unwrap_or(source.line), action };
         if self.held.is_some() { self.keep(source, event) } else { self.send(event) }
+    }
+
+    /// Reports, once each, modes that `action` leans on and no block has said.
+    #[cold]
+    fn lean_on_start(&mut self, source: &Source, action: &Action) -> Outcome {
+        let moves = action.position().is_some();
+        let asks = self.settings.setup.purpose.asks_technology();
+        let cuts = asks && moves && !matches!(action, Action::Rapid(_));
+        let turns = matches!(action, Action::Arc(_) | Action::Hole(_));
+        let compensates = self.state.compensation != Compensation::Off;
+        let sure = &mut self.state.sure;
+        let found = [
+            (moves, 14, &mut sure.absolute, Risk::START_DISTANCE),
+            (moves, 13, &mut sure.metric, Risk::START_UNITS),
+            (cuts, 15, &mut sure.feed_per_minute, Risk::START_FEED),
+            (turns || moves && compensates, 6, &mut sure.plane_xy, Risk::START_PLANE),
+        ];
+        let mut risks = [None; 4];
+        for (place, (leans, group, sure, risk)) in risks.iter_mut().zip(found) {
+            if leans && !std::mem::replace(sure, true) && self.state.said[group] == 0 {
+                *place = Some(risk);
+            }
+        }
+        risks
+            .into_iter()
+            .flatten()
+            .try_for_each(|risk| self.emit(source, Action::Risk(risk.into())))
     }
 
     #[inline]

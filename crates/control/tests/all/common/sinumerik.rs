@@ -3,7 +3,9 @@
 use super::records;
 use geom::Vec3;
 use program::{Cycle, Diagnostic};
-use toolpost_control::{Action, ArcTo, Dialect, Event, Orientation, Position, Settings};
+use toolpost_control::{
+    Action, ArcTo, Dialect, Event, Orientation, Position, Settings, StartModes,
+};
 
 /// A machine with A and C and clamps.
 pub fn settings() -> Settings {
@@ -13,6 +15,8 @@ pub fn settings() -> Settings {
         auxiliary,
         operator_parameters: vec![24],
         path_tolerance: 0.1,
+        // Start modes have tests of their own.
+        start_modes: StartModes::SURE,
         ..Settings::new(Dialect::Sinumerik, rotary)
     }
 }

@@ -11,7 +11,7 @@ use crate::event::{Orientation, Position};
 use crate::iso::dialects::facts::Facts;
 use crate::iso::language::words::{FeedMode, Motion, Plane, Side};
 use crate::kernel::compensation::Terms;
-use crate::{Settings, TableAxis, Units};
+use crate::{Settings, StartModes, TableAxis, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Purpose, Spindle, WorkOffset};
 
@@ -31,6 +31,8 @@ pub(crate) struct State {
     pub plane: Plane,
     pub incremental: bool,
     pub centers_absolute: bool,
+    /// Which modes of a start are sure: by the control, its machine's file, or since the program has said them.
+    pub sure: StartModes,
     /// `G20` or `G21`; none before the program has said it: controls keep the unit of the program before.
     pub inches: Option<bool>,
     pub feed_mode: FeedMode,
@@ -215,6 +217,7 @@ impl State {
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
+            sure: facts.reset.modes.or(settings.start_modes),
             inches: match facts.source.is_some() {
                 true => Some(false),
                 false => settings.setup.units.map(|units| units == Units::Inches),
@@ -353,6 +356,8 @@ impl State {
             // They change how arcs, cycles, splines and words of other letters are read, ...
             plane: _,
             centers_absolute: _,
+            // A cut has leaned on them before.
+            sure: _,
             feed_mode: _,
             f: _,
             modulo: _,

@@ -5,7 +5,6 @@ mod offsets;
 mod smoothed;
 
 use super::frames::Frames;
-use crate::Settings;
 use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, GROUPS, Motion};
@@ -14,6 +13,7 @@ use crate::sinumerik::language::variables::{
     AssignmentTarget, Locals, Parameter, Parameters, Readable,
 };
 use crate::sinumerik::models::Facts;
+use crate::{Settings, StartModes};
 use geom::{Frame, Vec3};
 use modal::Modal;
 use offsets::{WORK_OFFSET_AT_RESET, WorkOffsets};
@@ -85,6 +85,9 @@ pub(crate) struct State {
     pub turning: Turning,
     /// What the program has said of each G group.
     pub said: Said,
+    /// Which modes of a start are sure: by the machine's file, or since a motion has leaned on what the program has said. The others
+    /// are as MD20150 has them.
+    pub sure: StartModes,
     /// G groups 10 and 30.
     pub smoothed: Smoothed,
     /// G group 55: whether the axes of a rapid go together, where the program says it.
@@ -274,6 +277,9 @@ impl State {
             vectors_in_work_frame: true,
             turning: Turning::default(),
             said: [0; GROUPS],
+            sure: settings
+                .start_modes
+                .or(StartModes { centers_from_start: true, ..StartModes::NONE }),
             smoothed: Smoothed::default(),
             rapids_together: None,
             reported_rapids: None,
