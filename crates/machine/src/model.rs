@@ -419,6 +419,8 @@ pub struct Capabilities {
     pub inverse_time_arcs: bool,
     /// How the tool length offset is called.
     pub length_offset: LengthOffset,
+    /// Whether rapids go straight while the control keeps the tool tip, however the axes go otherwise (SINUMERIK).
+    pub straight_tip_rapids: bool,
     /// Largest number of characters in a line, its end not counted.
     pub line_length: usize,
     /// Chord error of arcs and curves that are split into lines, mm.

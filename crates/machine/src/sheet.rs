@@ -113,6 +113,7 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     inverse_time: bool, "", "Whether it has inverse-time feed.";
     inverse_time_arcs: bool, "", "Whether inverse-time feed counts the time of an arc as that of a line; FANUC divides by the radius.";
     length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
+    straight_tip_rapids: bool, "", "Whether rapids go straight while the control keeps the tool tip, whatever `rapid_path` says: SINUMERIK with TRAORI.";
     line_length: usize, "", "Most characters of a line, its end not counted.";
     lowering_tolerance: Tolerance, "mm", "How far arcs and curves that are split into lines may leave the path.";
     rapid_corridor: Tolerance, "mm", "How far a rapid may be from the straight line of the source where it is not beyond all cuts; 0.1 where it is missing.";

@@ -135,7 +135,7 @@ impl Walk<'_> {
     /// Whether a straight rapid to a hole stays on its line, however the axes go, or leaves it beyond all cuts alone.
     pub(crate) fn keeps_to_hole(&mut self, from: &Pose, to: &Pose, stop: &Stop) -> bool {
         let machine = self.machine;
-        if machine.has_straight_rapids() {
+        if self.has_straight_rapids() {
             return true;
         }
         let (a, b, axis) = (from.point(), to.point(), to.axis());
@@ -194,14 +194,15 @@ impl Walk<'_> {
             }
             return self.in_groups(pose, stop, in_order);
         }
-        let Entry { above, beyond } = self.entry(pose, &ups, is_level)?;
+        let entry = self.entry(pose, &ups, is_level)?;
+        let Entry { above, beyond } = self.entry_as_written(entry, stop)?;
         if is_level {
             self.in_groups(&beyond, stop, in_order)?;
         } else {
             self.in_groups(&above, stop, ["XYZ"])?;
             self.in_groups(&beyond, stop, ["XYZ"])?;
         }
-        match self.machine.has_straight_rapids() || is_along(axis) || beyond == *pose {
+        match self.has_straight_rapids() || is_along(axis) || beyond == *pose {
             true => self.in_groups(pose, stop, ["XYZ"]),
             false => self.by_feed(pose, stop),
         }
@@ -276,7 +277,7 @@ impl Walk<'_> {
             return Ok(());
         }
         let outside = here.at(here.point() + axis * out)?;
-        match self.machine.has_straight_rapids() {
+        match self.has_straight_rapids() {
             true => self.rapid_out(&outside),
             false => self.by_feed(&outside, &stop),
         }
@@ -406,6 +407,22 @@ impl Walk<'_> {
         Ok(entry)
     }
 
+    /// The places of `entry`, farther out where the words of the rotary axes lean the tool so that it is lower along itself than where it
+    /// may come from home: the rounding of an angle, far from the highest place of the source, is more than that of a length.
+    fn entry_as_written(&mut self, entry: Entry, stop: &Stop) -> Result<Entry, Box<Diagnostic>> {
+        let machine = self.machine;
+        let tables = machine.rotary.iter().all(|rotary| rotary.on == Mount::Table);
+        let Some(step) = stop.step.filter(|_| tables) else { return Ok(entry) };
+        let written = machine.axis_at(self.written(step.degrees));
+        let resolution = machine.resolution();
+        let tip = (entry.above.point() / resolution).round() * resolution;
+        if self.free_from(written) - tip.dot(written) <= USED * resolution {
+            return Ok(entry);
+        }
+        let out = |pose: Pose| pose.at(pose.point() + pose.axis() * ROUNDING);
+        Ok(Entry { above: out(entry.above)?, beyond: out(entry.beyond)? })
+    }
+
     /// Writes the rapid that has been aimed.
     fn rapid_block(&mut self) -> Outcome {
         if !self.writer.changes(POSITION | ORIENTATION) {
@@ -480,6 +497,13 @@ impl Walk<'_> {
         self.approach(pose, stop)
     }
 
+    /// Whether the axes go together in a rapid as the control stands.
+    fn has_straight_rapids(&self) -> bool {
+        let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
+        let machine = self.machine;
+        machine.has_straight_rapids() || keeps_tip && machine.capabilities.straight_tip_rapids
+    }
+
     /// Whether rotary axes turn that the program names.
     fn turns(&self, stop: &Stop) -> bool {
         let (Kind::ToolCenter | Kind::Machine, Some(step)) = (&self.place.kind, stop.step) else {
@@ -511,7 +535,7 @@ impl Walk<'_> {
         is_straight: bool,
     ) -> Result<RapidMoves, Box<Diagnostic>> {
         let machine = self.machine;
-        let linear = machine.has_straight_rapids() || machine.wire.is_some();
+        let linear = self.has_straight_rapids() || machine.wire.is_some();
         match (self.turns(stop), linear) {
             (true, false) => return Ok(RapidMoves::Home),
             (false, true) => return Ok(RapidMoves::AtOnce),

@@ -1148,7 +1148,8 @@ fn no_program_sets_a_parameter_of_the_operator() {
     assert!(risks("R25=0\nG0 C=30+R24").is_empty());
 }
 
-/// PM19 p. 181: RTLIOF, each axis by itself; not with a transformation. With RTLION all arrive together, whatever MD20730 is.
+/// PM19 p. 181: RTLIOF, each axis by itself; not with a transformation, with which rapids are straight whatever MD20730 is. With RTLION
+/// all arrive together.
 #[test]
 fn rtlion_and_rtliof_say_how_the_axes_go_in_a_rapid() {
     let settings = Settings::new(Dialect::Sinumerik, [true, false, true]);
@@ -1165,7 +1166,7 @@ fn rtlion_and_rtliof_say_how_the_axes_go_in_a_rapid() {
     assert_eq!(said("G0 X1"), []);
     assert_eq!(said("RTLIOF\nRTLIOF\nG0 X1\nRTLION"), [Some(false), Some(true)]);
     assert_eq!(said("RTLIOF\nTRAORI\nTRAFOOF"), [Some(false), Some(true), Some(false)]);
-    assert_eq!(said("TRAORI\nTRAFOOF\nRTLION\nTRAORI"), [Some(true)]);
+    assert_eq!(said("TRAORI\nTRAFOOF\nRTLION\nTRAORI"), [Some(true), None, Some(true)]);
     let called = "N1 GOTOF BEHIND\nBEHIND:\nUP\nM30\n%_N_UP_SPF\nPROC UP SAVE\nRTLIOF\nRET\n";
     let text = format!("%_N_P_MPF\n{called}");
     let found =

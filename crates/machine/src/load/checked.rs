@@ -491,6 +491,7 @@ impl CheckedSheet {
                 inverse_time: capabilities.inverse_time.unwrap_or(false),
                 inverse_time_arcs: capabilities.inverse_time_arcs.unwrap_or(true),
                 length_offset: capabilities.length_offset.unwrap_or(LengthOffset::Implicit),
+                straight_tip_rapids: capabilities.straight_tip_rapids.unwrap_or(false),
                 line_length,
                 lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),
                 rapid_corridor: capabilities.rapid_corridor.map_or(0.1, |mm| mm.0),

@@ -600,3 +600,41 @@ fn from_home_and_to_home_along_a_leaning_tool_the_way_is_straight() {
     };
     assert!(!found(&source, &straight, &good).is_empty());
 }
+
+/// A rotary word that is rounded leans the tool by up to 0.0005°, which is more than the rounding of a length where the highest place of
+/// the source is far away: 50 mm to the side, the height at which the tool may come from home differs by 0.0004 mm.
+#[test]
+fn the_tool_comes_from_home_as_high_as_its_rounded_angles_ask_for() {
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,60\nRAPID\nGOTO/46.4701,-39.5908,55.9488,-0.1846029,-0.1531830,0.9708021\n\
+         SPINDL/3000,RPM,CLW\nFEDRAT/200,MMPM\nRAPID\nGOTO/29.6725,33.4741,53.3834,-0.1502332,0.0688155,0.9862527\n\
+         GOTO/30.8694,38.1385,8.5573,-0.2155986,0.0272328,0.9761023\nRAPID\n\
+         GOTO/-34.0924,26.8618,3.0623,0.4274968,0.0268617,0.9036177\nFINI\n",
+    );
+    for name in ["linuxcnc-xyzac", "linuxcnc-xyzbc", "haas-umc-750", "dmu50-heidenhain"] {
+        let machine = load(name).unwrap();
+        let output = written(&source, &machine);
+        proven(&source, &machine, &text(&output));
+    }
+}
+
+/// PM19 p. 181: with TRAORI rapids are straight, also where MD20730 is 0. So the tool is drawn back and brought in again by rapid where
+/// the travel of an axis ends in a cut, and rapids near the part are rapids.
+#[test]
+fn under_traori_a_rapid_is_straight_whatever_the_axes_do_without() {
+    let apart = "extends = \"sinumerik-840d-traori\"\n[settings]\nrapid_path = \"independent\"\n";
+    let apart = load_text("apart.toml", apart).unwrap();
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,60\nSPINDL/1000,RPM,CLW\nFEDRAT/200,MMPM\n\
+         RAPID\nGOTO/-24.7027,18.7882,71.4794,-0.0852832,-0.0066342,0.9963347\n\
+         GOTO/-19.5857,19.1863,11.6993\nGOTO/-56.4949,7.2801,12.3344,0.0912560,-0.0730376,0.9931454\n\
+         GOTO/-68.7291,-3.5677,12.2351,-0.0288811,-0.0618227,0.9976692\n\
+         GOTO/-66.0328,9.1400,12.1846,-0.2314535,-0.0691443,0.9703857\nRAPID\nGOTO/-79.9200,4.9913,70.4077\nFINI\n",
+    );
+    let together = load("sinumerik-840d-traori").unwrap();
+    let (output, other) = (written(&source, &apart), written(&source, &together));
+    let program = text(&output);
+    proven(&source, &apart, &program);
+    assert!(output.warnings.iter().any(|found| found.rule.name() == "rewind"), "{program}");
+    assert_eq!(program, text(&other));
+}

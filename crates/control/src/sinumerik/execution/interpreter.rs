@@ -442,10 +442,13 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.emit(source, Action::Risk(Risk::FEED_OF_CENTRE.into()))
     }
 
-    /// Says how rapids go where that is news. `RTLIOF` does nothing with a transformation (PM19 p. 181; nor with G64, a
-    /// compressor or G41, which hang on more words than these).
+    /// Says how rapids go where that is news. With a transformation they are straight, whatever `RTLIOF` and MD20730 say (PM19 p. 181;
+    /// also with G64, a compressor or G41, which hang on more words than these).
     pub fn report_rapids(&mut self, source: &Source) -> Outcome {
-        let together = self.state.rapids_together.map(|said| said || self.state.tool_center);
+        let together = match self.state.tool_center {
+            true => Some(true),
+            false => self.state.rapids_together,
+        };
         if together == self.state.reported_rapids {
             return Ok(());
         }

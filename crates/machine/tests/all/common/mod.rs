@@ -34,6 +34,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             inverse_time: true,
             inverse_time_arcs: true,
             length_offset: LengthOffset::Implicit,
+            straight_tip_rapids: false,
             line_length: 120,
             lowering_tolerance: 0.01,
             rapid_corridor: 0.1,
