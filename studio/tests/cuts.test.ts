@@ -10,7 +10,7 @@ type Point = [x: number, y: number, z: number, kind: string];
 
 /** Chunks of vertices from an origin at X100; null: they have not come. */
 function given(...all: (Point[] | null)[]): Vertices {
-    const chunks = all.map((_, number): Chunk => ({ number, origin: [100, 0, 0], half: [7, 7, 7], first: number * 4096 }));
+    const chunks = all.map((_, number): Chunk => ({ number, origin: [100, 0, 0], half: [7, 7, 7], first: number * 4096, isCrowded: false }));
     const octets = all.map((points) => {
         if (points === null) return null;
         const made = new ArrayBuffer(points.length * 16);
@@ -20,7 +20,7 @@ function given(...all: (Point[] | null)[]): Vertices {
         });
         return made;
     });
-    return { chunks, begin: () => {}, best: () => null, exact: () => Promise.resolve(null), known: (chunk) => octets[chunk]! };
+    return { chunks, begin: () => {}, best: () => null, exact: () => Promise.resolve(null), sight: () => Promise.resolve([]), known: (chunk) => octets[chunk]! };
 }
 
 test("home, also in the midst for another tool, and the ways there are left out; rapids about the cuts are not", () => {

@@ -6,7 +6,7 @@ import { byDeviation, byFeed, byOperation, byOrder } from "../src/view/painted.t
 import type { Rows } from "../src/view/rows.ts";
 import { wordOf } from "../src/view/strip.ts";
 
-const chunk = (number: number): Chunk => ({ number, origin: [0, 0, 0], half: [1, 1, 1], first: number * 4096 });
+const chunk = (number: number): Chunk => ({ number, origin: [0, 0, 0], half: [1, 1, 1], first: number * 4096, isCrowded: false });
 const operation = (name: string, move: number) => ({ name, move, time_s: 0 });
 
 test("each move has its operation's colour, also in the chunks that it reaches into", () => {

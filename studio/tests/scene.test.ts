@@ -2,12 +2,13 @@ import { describe, expect, test, vi } from "vitest";
 import type { WalkAbout } from "../src/protocol/asks.ts";
 import { Blocks } from "../src/view/blocks.ts";
 import { project, VIEWS } from "../src/view/camera.ts";
-import { Chunks, FINE, inSight, levelFor, readIndex, type Vertices } from "../src/view/chunks.ts";
+import { Chunks, inSight, levelFor, readIndex, type Vertices } from "../src/view/chunks.ts";
 import { MARKED, theme } from "../src/view/colours.ts";
 import { Raster } from "../src/view/raster.ts";
 import { Painting } from "../src/view/renderer.ts";
 import type { Rows } from "../src/view/rows.ts";
 import { Scene, type Looks, type Marks } from "../src/view/scene.ts";
+import { Sights } from "../src/view/sight.ts";
 import { Style, wordOf } from "../src/view/strip.ts";
 
 /** Buffers are alike when their bytes are: vitest by itself compares nothing of them. */
@@ -23,44 +24,23 @@ test("the index of a chunk is read as the server writes it", () => {
     [1.5, -2.5, 3.5].forEach((value, i) => data.setFloat64(64 + i * 8, value, true));
     [10, 20, 30].forEach((value, i) => data.setFloat32(64 + 24 + i * 4, value, true));
     data.setUint32(64 + 36, 4096, true);
-    expect(readIndex(data.buffer)[1]).toEqual({ number: 1, origin: [1.5, -2.5, 3.5], half: [10, 20, 30], first: 4096 });
+    expect(readIndex(data.buffer)[1]).toEqual({ number: 1, origin: [1.5, -2.5, 3.5], half: [10, 20, 30], first: 4096, isCrowded: false });
 });
 
 test("a chunk is in sight as soon as a corner of its box is", () => {
-    const at = (x: number) => ({ number: 0, origin: [x, 0, 0] as [number, number, number], half: [10, 1, 1] as [number, number, number], first: 0 });
+    const at = (x: number) => ({ number: 0, origin: [x, 0, 0] as [number, number, number], half: [10, 1, 1] as [number, number, number], first: 0, isCrowded: false });
     // The window reaches 50 mm to each side; 4 pixels are left for wide lines.
     expect([0, 59, 65, -59, -65].map((x) => inSight(at(x), above, size))).toEqual([true, true, false, true, false]);
 });
 
 test("the coarsest level whose error is at most half a pixel", () => {
     const levels = [0.002, 0.008, 0.032].map((error) => ({ error, vertices: 1 }));
-    expect([1, 15, 16, 62, 63, 1000].map((scale) => levelFor({ levels, fine: null }, scale))).toEqual([2, 2, 1, 1, 0, 0]);
-});
-
-test("arcs are finer where the chords of the exact level would be seen", () => {
-    const levels = [0.002, 0.008].map((error) => ({ error, vertices: 1 }));
-    expect([62, 250, 251, 1e5].map((scale) => levelFor({ levels, fine: 0.000125 }, scale))).toEqual([1, 0, FINE, FINE]);
-});
-
-test("finer arcs are asked for by name, and the exact level is drawn until they have come", async () => {
-    const asked: string[] = [];
-    const finer = vertices([-40, 0, 0, 1], [0, 1, 0, 1], [40, 0, 0, 1]);
-    const octets = async (path: string) => {
-        asked.push(path);
-        return answer({ ...server, "fine/0": finer }, path);
-    };
-    const chunks = new Chunks(walk, octets, () => {});
-    await chunks.load();
-    await chunks.exact(0, 0);
-    expect(chunks.best(FINE, 0)).toEqual({ vertices: server["0/0"], level: 0 });
-    await settled();
-    expect(chunks.best(FINE, 0)).toEqual({ vertices: finer, level: FINE });
-    expect(asked).toEqual(["index", "0/0-1", "fine/0-1"]);
+    expect([1, 15, 16, 62, 63, 1000].map((scale) => levelFor({ levels }, scale))).toEqual([2, 2, 1, 1, 0, 0]);
 });
 
 const walk: WalkAbout = {
     moves: 4097, left_out: 0, chunks: 2, levels: [{ error: 0, vertices: 9 }, { error: 0.01, vertices: 4 }], box: null, time_s: 1,
-    tools: [], operations: [], kinds: ["rapid", "feed", "gap"], row: 16, mismatch: null, deviation: null, jumps: [], jumps_in_all: 0, excursions: [], excursions_in_all: 0, fine: null,
+    tools: [], operations: [], kinds: ["rapid", "feed", "gap"], row: 16, mismatch: null, deviation: null, jumps: [], jumps_in_all: 0, excursions: [], excursions_in_all: 0,
 };
 
 /** Points and words. */
@@ -76,6 +56,7 @@ function vertices(...points: [x: number, y: number, move: number, kind: number][
 /** What a server answers that has these: an index, or chunks of a level behind the numbers of their vertices. */
 function answer(has: Record<string, ArrayBuffer>, path: string): ArrayBuffer {
     if (path === "index") return has.index!;
+    if (path.startsWith("sight/")) return has.sight!;
     const [, level, from, to] = /^(\w+)\/(\d+)-(\d+)$/.exec(path)!;
     const parts = Array.from({ length: Number(to) - Number(from) }, (_, i) => new Uint8Array(has[`${level}/${Number(from) + i}`]!));
     const sizes = new Uint8Array(Uint32Array.from([parts.length, ...parts.map((part) => part.length / 16)]).buffer);
@@ -254,7 +235,87 @@ test("where more is in sight than can be kept, the next level is drawn, and the 
     const few = (await within(9e6)).picture(above, size, looks, marks);
     expect([few.strips[0]!.vertices, few.off]).toEqual([server["0/0"], 0]);
     const many = (await within(10e6)).picture(above, size, looks, marks);
-    expect([many.strips[0]!.vertices, many.off]).toEqual([server["1/0"], 3]);
+    expect(many.strips[0]!.vertices).toEqual(server["1/0"]);
+    // And what numbers of 32 bits lose 56 mm from the middle: 56 / 2²⁴.
+    expect(many.off).toBeCloseTo(3 + 56 / 2 ** 24, 6);
+});
+
+describe("where the levels are too coarse", () => {
+    const levels = [{ error: 0.01, vertices: 9 }, { error: 0.04, vertices: 4 }];
+    // A line of move 4097 across the window, and half of it as move 4096 below, in pixels.
+    const line = vertices([0, 10, 0, 0], [100, 10, 1, 1]);
+    const sight = Uint8Array.from([...new Uint8Array(Uint32Array.from([1, 1, 2]).buffer), ...new Uint8Array(line)]).buffer;
+    const near = project({ ...VIEWS[0]!, middle: [0, 0, 0], scale: 1000 }, size);
+
+    async function within(index: ArrayBuffer, asked: string[], fails = false): Promise<Scene> {
+        const octets = async (path: string) => {
+            asked.push(path);
+            if (fails && path.startsWith("sight/")) throw new Error("gone");
+            return answer({ ...server, index, sight }, path);
+        };
+        const chunks = new Chunks({ ...walk, levels }, octets, () => {});
+        await chunks.load();
+        for (const chunk of [0, 1]) await chunks.exact(0, chunk);
+        asked.length = 0;
+        return new Scene({ ...walk, levels }, chunks, {} as Rows);
+    }
+
+    test("what is seen is asked for when the view rests, once, and is drawn in its pixels and clicked", async () => {
+        const asked: string[] = [];
+        const one = await within(server.index!, asked);
+        let news = 0;
+        const sights = new Sights(() => news++);
+        // The view turns: only the last one is asked for.
+        one.picture({ ...near, at: [1, 2, 3] }, size, looks, marks, sights);
+        const before = one.picture(near, size, looks, marks, sights);
+        expect([before.strips[0]!.vertices, before.off > 10]).toEqual([server["0/0"], true]);
+        await expect.poll(() => news).toBe(1);
+        const rounded = asked.map((path) => path.replaceAll(/-?[\d.]+e-\d+/g, "0"));
+        expect(rounded).toEqual(["sight/100,50/1000,0,0,0,-1000,0,0,0,-1000,50,25,0/0/all"]);
+        const { strips, off } = one.picture(near, size, looks, marks, sights);
+        expect([strips.map(({ vertices }) => vertices), off]).toEqual([[line], 0]);
+        const raster = new Raster(size.width, size.height);
+        raster.clear(7);
+        for (const strip of strips) raster.strip(strip, near);
+        expect([9, 10, 11].map((row) => raster.seen.slice(row * 100, row * 100 + 100).filter((seen) => seen !== 7).length)).toEqual([0, 100, 0]);
+        expect(await one.pick(near, looks, 70, 12, sights)).toBe(4097);
+        expect(await one.pick(near, looks, 70, 40, sights)).toBe(null);
+        expect(asked.length).toBe(1);
+    });
+
+    test("a chunk whose arcs are coarser than its levels say is such a case at any scale, and its finer levels are not asked for", async () => {
+        const crowded = new DataView(server.index!.slice(0));
+        crowded.setUint32(60, 2, true);
+        const asked: string[] = [];
+        const one = await within(crowded.buffer, asked, true);
+        const sights = new Sights(() => {});
+        const there = project({ ...VIEWS[0]!, middle: [0, 0, 0], scale: 20 }, size);
+        expect(one.picture(there, size, looks, marks, sights).off).toBe(Number.POSITIVE_INFINITY);
+        await expect.poll(() => asked.toSorted()).toEqual(["1/0-1", expect.stringMatching(/^sight/)]);
+        // It cannot be had: nothing is asked for again, and the picture says so.
+        await settled();
+        expect(one.picture(there, size, looks, marks, sights).off).toBe(Number.POSITIVE_INFINITY);
+        await new Promise((resolve) => setTimeout(resolve, 150));
+        expect(asked.length).toBe(2);
+    });
+
+    test("a move that is picked out is drawn by its own lines, also where at a coarse level others stand for it", async () => {
+        const asked: string[] = [];
+        const chunks = new Chunks(walk, async (path) => {
+            asked.push(path);
+            return answer({ ...server, sight }, path);
+        }, () => {});
+        await chunks.load();
+        for (const chunk of [0, 1]) await chunks.exact(1, chunk);
+        const one = new Scene(walk, chunks, {} as Rows);
+        const sights = new Sights(() => {});
+        const marked = { ...marks, now: 1, ofBlock: [[1, 2], [4096, 4097]] as [number, number][] };
+        const over = () => one.picture(above, size, looks, marked, sights).over.map(({ vertices }) => vertices);
+        expect(over()).toEqual([server["1/0"], server["1/1"], server["1/0"]]);
+        await expect.poll(() => asked.filter((path) => path.startsWith("sight")).map((path) => path.split("/").at(-1))).toEqual(["1-2,4096-4097", "1-2"]);
+        await settled();
+        expect(over()).toEqual([line, line]);
+    });
 });
 
 describe("pulses in a block of glass", () => {

@@ -5,7 +5,7 @@ import { surfaceOf } from "../src/view/surface.ts";
 import { wordOf } from "../src/view/strip.ts";
 
 const [RAPID, FEED, ARC] = [1, 2, 3];
-const chunk: Chunk = { number: 0, origin: [100, 0, 0], half: [1, 1, 1], first: 0 };
+const chunk: Chunk = { number: 0, origin: [100, 0, 0], half: [1, 1, 1], first: 0, isCrowded: false };
 const cut = { height: 20, straight: FEED, round: ARC };
 
 function vertices(...points: [x: number, y: number, move: number, kind: number][]): ArrayBuffer {

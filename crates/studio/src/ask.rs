@@ -752,8 +752,6 @@ pub struct WalkAbout {
     pub excursions: Vec<Excursion>,
     /// How many there are.
     pub excursions_in_all: u32,
-    /// How far the lines of the level `fine` may be from the arcs, mm; null where there are no arcs.
-    pub fine: Option<f64>,
     /// The last move before the first mismatch.
     pub mismatch: Option<u32>,
 }

@@ -9,19 +9,19 @@
 //! ```text
 //! vertex  16 bytes  x y z f32 from the chunk's origin, mm; u32: move in the chunk (12 bits), kind (4), tool (8), marks (8)
 //! index   64 bytes  a chunk: origin 3 f64, half box 3 f32, first move u32, its begin f32 s, its block u32, vertices of levels 0 to 2
-//!                   3 u32, flags u32 (1: nothing of it is drawn)
+//!                   3 u32, flags u32 (1: nothing of it is drawn, 2: its arcs are coarser than the levels say)
 //! row     20 bytes  a move: its end f32 s from the chunk's begin, block u32, source line u32, feed f32 (NaN: not known);
 //!         40 bytes  where any tool leans: then the tool axis 3 f32, and the first two rotary axes 2 f32, degrees;
 //!                   at the end of both its deviation from the source f32 mm (NaN: not compared)
 //! several           chunks in one answer, from the first that is asked for: how many u32, the vertices of each u32, then all vertices
 //! ```
-//! A further level, `fine`, is as the exact one, with chords of arcs within [`FINE`].
 //! All little-endian.
 
 use crate::walk::{GAP, PULSE, Walk};
 use geom::Vec3;
 use program::Feed;
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// How many moves a chunk has.
@@ -29,9 +29,6 @@ pub const CHUNK: u32 = 4096;
 
 /// How far a chord may be from its arc at level 0, mm.
 pub const EXACT: f64 = 0.002;
-
-/// The same of the level that is shown where one looks close, mm.
-pub const FINE: f64 = EXACT / 16.0;
 
 /// How many vertices the coarsest level has, where it can be made of so few.
 pub const COARSEST: usize = 250_000;
@@ -50,11 +47,15 @@ const POLYGON: f64 = 12.0;
 /// So many vertices are thinned at a time: how long that takes grows with their square where a line winds.
 const STRETCH: usize = 64;
 
-/// How many vertices the arcs of a chunk are drawn with at most.
-const MOST_VERTICES: usize = 1 << 20;
+/// How many vertices the arcs of a chunk are drawn with at most. With more the chunk is crowded: its arcs are coarser than its levels say, and of turns on
+/// one another some are left out; exactly it is drawn by [`crate::sight`].
+const MOST_VERTICES: usize = 1 << 18;
+
+/// How many sides a turn has at the least.
+const LEAST_SIDES: usize = 32;
 
 /// The same of the moves in which the axes lead the tip, of which each vertex is worked out through the chain of the axes.
-const MOST_LED: usize = 1 << 17;
+pub const MOST_LED: usize = 1 << 17;
 
 /// A point of the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,6 +99,8 @@ pub struct Exact {
     /// The line of its first block.
     line: u32,
     vertices: Vec<Vertex>,
+    bounds: Option<[Vec3; 2]>,
+    is_crowded: bool,
 }
 
 impl Exact {
@@ -105,13 +108,25 @@ impl Exact {
     pub fn of(walk: &Walk, chunk: u32) -> Exact {
         let moves = moves(walk, chunk).unwrap_or_default();
         let line = if moves.is_empty() { 0 } else { walk.line(moves.start) };
+        let vertices = polyline(walk, chunk, EXACT);
+        let arcs = walk.arcs(moves.clone());
+        // Arcs go out beyond their chords.
+        let bounds = bounds_of(&vertices).map(|bounds| {
+            arcs.iter()
+                .map(|(_, arc)| arc.extents())
+                .filter(|(low, high)| low.is_finite() && high.is_finite())
+                .fold(bounds, |[low, high], (l, h)| [low.min(l), high.max(h)])
+        });
+        let most = most_chords(arcs.len());
         Exact {
             first: moves.start,
             moves: moves.len() as u32,
             begin: walk.end_before(moves.start),
             end: walk.end_before(moves.end),
             line,
-            vertices: polyline(walk, chunk, EXACT),
+            vertices,
+            bounds,
+            is_crowded: arcs.iter().any(|(_, arc)| arc.chords(EXACT) > most),
         }
     }
 }
@@ -123,6 +138,7 @@ pub struct Chunk {
     line: u32,
     origin: Vec3,
     half: Vec3,
+    is_crowded: bool,
     /// How many vertices each level has.
     counts: Vec<u32>,
     /// Those of the coarsest level.
@@ -131,11 +147,11 @@ pub struct Chunk {
 
 impl Chunk {
     fn of(exact: Exact) -> Chunk {
-        let Exact { begin, line, vertices, .. } = exact;
-        let [low, high] = bounds_of(&vertices).unwrap_or_default();
+        let Exact { begin, line, vertices, bounds, is_crowded, .. } = exact;
+        let [low, high] = bounds.unwrap_or_default();
         let counts = vec![vertices.len() as u32];
         let (origin, half) = ((low + high) / 2.0, (high - low) / 2.0);
-        Chunk { begin, line, origin, half, counts, coarsest: vertices }
+        Chunk { begin, line, origin, half, is_crowded, counts, coarsest: vertices }
     }
 
     /// Its box; none where nothing of it is drawn.
@@ -160,7 +176,8 @@ impl Chunk {
         bytes.extend(self.line.to_le_bytes());
         let counts = [0, 1, 2].map(|level| self.counts.get(level).copied().unwrap_or(0));
         bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
-        bytes.extend(u32::from(self.counts[0] == 0).to_le_bytes());
+        let flags = u32::from(self.counts[0] == 0) | u32::from(self.is_crowded) << 1;
+        bytes.extend(flags.to_le_bytes());
         bytes
     }
 
@@ -271,6 +288,11 @@ impl Geometry {
         self.bounds
     }
 
+    /// The box of each chunk: its middle, and half of its sides, mm.
+    pub fn boxes(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
+        self.chunks.iter().map(|chunk| (chunk.origin, chunk.half))
+    }
+
     /// How much memory it takes, bytes.
     pub fn bytes(&self) -> usize {
         let of = |chunk: &Chunk| size_of::<Chunk>() + chunk.coarsest.len() * size_of::<Vertex>();
@@ -283,20 +305,17 @@ impl Geometry {
         entries.flat_map(|(chunk, number)| chunk.entry(number * CHUNK)).collect()
     }
 
-    /// The vertices of a chunk at the level `fine`; `None` where there is no such chunk.
-    pub fn fine(&self, walk: &Walk, chunk: usize) -> Option<Vec<u8>> {
-        let kept = self.chunks.get(chunk)?;
-        Some(octets(&polyline(walk, chunk as u32, FINE), kept.origin))
-    }
-
     /// The vertices of a chunk at a level; `None` where there is no such chunk or level.
     pub fn vertices(&self, walk: &Walk, level: usize, chunk: usize) -> Option<Vec<u8>> {
         let kept = self.chunks.get(chunk).filter(|_| level < self.levels.len())?;
         if level + 1 == self.levels.len() {
             return Some(kept.octets());
         }
-        let exact = polyline(walk, chunk as u32, EXACT);
-        let made = (1..=level).fold(exact, |finer, level| simplified(&finer, level));
+        let made = match level.checked_sub(1) {
+            None => polyline(walk, chunk as u32, EXACT),
+            // Chords as coarse as the finer level, of which this one is made: all of that need not be made before.
+            Some(finer) => simplified(&polyline(walk, chunk as u32, error(finer)), level),
+        };
         Some(octets(&made, kept.origin))
     }
 }
@@ -365,7 +384,7 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
     let mut starts = walk.starts(moves.clone()).iter().peekable();
     let can_lead = walk.stride() > 3 || !walk.goes_together();
     let led = moves.clone().filter(|at| can_lead && walk.led(*at).is_some()).count();
-    let most_chords = (MOST_VERTICES / arcs.len().max(1)).max(16);
+    let most_chords = most_chords(arcs.len());
     let most_led = (MOST_LED / led.max(1)).max(16);
     let mut vertices = Vec::with_capacity(moves.len() + 1);
     let first = moves.start;
@@ -398,9 +417,25 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
         let kind = packed(if is_drawn { walk.kind(at) } else { GAP });
         if let Some((_, arc)) = arc.filter(|_| is_drawn) {
             let chords = arc.chords(near).min(most_chords);
-            let point = |i: usize| arc.at(i as f64 / chords as f64);
-            let points = (1..=chords).map(point).filter(|at| at.is_finite());
-            vertices.extend(points.map(|at| Vertex { at, packed: kind }));
+            let mut add = |t: f64, packed: u32| {
+                let at = arc.at(t);
+                vertices.extend(at.is_finite().then_some(Vertex { at, packed }));
+            };
+            let turns = arc.sweep / TAU;
+            if chords as f64 >= turns * LEAST_SIDES as f64 {
+                (1..=chords).for_each(|i| add(i as f64 / chords as f64, kind));
+            } else {
+                // Some of the turns, the first and the last one among them.
+                let last = (most_chords / (LEAST_SIDES + 1)).max(2) - 1;
+                for number in 0..=last {
+                    let turn = (turns - 1.0) * (number as f64 / last as f64);
+                    let side = |side: usize| (turn + side as f64 / LEAST_SIDES as f64) / turns;
+                    if number > 0 {
+                        add(side(0), packed(GAP));
+                    }
+                    (1..=LEAST_SIDES).for_each(|i| add(side(i), kind));
+                }
+            }
             continue;
         }
         if led > 0
@@ -420,6 +455,11 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
         vertices.push(Vertex { at: behind, packed: kind });
     }
     vertices
+}
+
+/// How many chords each of so many arcs of a chunk is drawn with at most.
+fn most_chords(arcs: usize) -> usize {
+    (MOST_VERTICES / arcs.max(1)).max(LEAST_SIDES)
 }
 
 fn bounds_of(vertices: &[Vertex]) -> Option<[Vec3; 2]> {
@@ -598,7 +638,6 @@ pub(crate) mod tests {
     use machine::Machine;
     use program::Program;
     use proof::{AxisPositions, Course, Motion, MotionKind, Observer, Report, ToolPose};
-    use std::f64::consts::TAU;
 
     /// Points by chance and in rows, in three chunks: each level has one within its error of each of them, and the coarsest has few.
     #[test]
@@ -744,12 +783,10 @@ pub(crate) mod tests {
             let at = crate::place::At { r#move: 1, part: 0.5, seconds: 0.0 };
             let stand = crate::place::stand(&walk, &machine, at);
             let geometry = made(&walk, || true).unwrap();
-            let fine = geometry.fine(&walk, 0).unwrap().len() / 16;
-            (points(&geometry, &walk, 0, 0), fine, stand)
+            (points(&geometry, &walk, 0, 0), stand)
         };
-        let (line, fine, stand) = on_the_way(Course::Axes);
+        let (line, stand) = on_the_way(Course::Axes);
         assert!((125..250).contains(&line.len()), "{}", line.len());
-        assert!((500..1000).contains(&fine), "{fine}");
         for pair in line[1..].windows(2) {
             let middle = (pair[0] + pair[1]) / 2.0;
             assert!((100.0 - middle.length()) < 0.0021, "{middle}");
@@ -758,8 +795,8 @@ pub(crate) mod tests {
         let half = Vec3::new(diagonal, diagonal, 0.0);
         assert!(stand.tip.distance(half) < 1e-9 && stand.positions == [100.0, 0.0, 0.0, 45.0]);
         // Where the control keeps the tip on its line, X and Y go with C: half way the tip is at 50, 50, which C 45 has turned there from X 70.7.
-        let (line, fine, stand) = on_the_way(Course::Tip);
-        assert_eq!((line.len(), fine), (3, 3));
+        let (line, stand) = on_the_way(Course::Tip);
+        assert_eq!(line.len(), 3);
         assert!(stand.tip.distance(Vec3::new(50.0, 50.0, 0.0)) < 1e-9, "{stand:?}");
         assert!((stand.positions[0] - diagonal).abs() < 1e-9 && stand.positions[1].abs() < 1e-9);
         assert_eq!(stand.positions[2..], [0.0, 45.0]);
@@ -777,9 +814,6 @@ pub(crate) mod tests {
         let exact: Vec<Vec3> = (0..=10_000).map(|i| arc.at(f64::from(i) / 1e4)).collect();
         assert!(furthest(&exact, &points) < EXACT + 1e-5);
         assert!(points.last().unwrap().distance(end) < 1e-5);
-        // Within 0.000125 mm it spans 2 acos(1 - 0.0000125) = 0.0100 rad.
-        let fine = geometry.fine(&walk, 0).unwrap();
-        assert_eq!(fine.len() / 16, 1 + (2.5 * TAU / 0.010_000_01_f64).ceil() as usize);
         assert_eq!(geometry.bounds().unwrap()[0].z, 0.0);
     }
 
@@ -807,12 +841,12 @@ pub(crate) mod tests {
         }
     }
 
-    /// Turns of 10 mm, each 0.001 mm below the one before: a level leaves out those that lie on one another, and shows no chord through the middle.
+    /// Turns of 6 mm, each 0.001 mm below the one before: a level leaves out those that lie on one another, and shows no chord through the middle.
     #[test]
     fn of_turns_on_one_another_a_level_has_those_that_are_apart() {
         let turn = |i: u32| {
             let z = -0.001 * f64::from(i / 2);
-            let at = Vec3::new(10.0, 0.0, z);
+            let at = Vec3::new(6.0, 0.0, z);
             let arc = Arc::new(at, at, Vec3::new(0.0, 0.0, z), Vec3::Z, 0, 1e-6).unwrap();
             match i % 2 {
                 0 => (MotionKind::Line, at),
@@ -822,10 +856,10 @@ pub(crate) mod tests {
         let walk = walk((0..10_000).map(turn));
         let geometry = made(&walk, || true).unwrap();
         let levels: Vec<(f64, usize)> = geometry.levels().collect();
-        // By hand: a chord within 0.002 mm spans 0.0400 rad, 158 for a turn.
-        assert_eq!(levels[0].1, 158 * 5_000 + 5_000 + geometry.chunks());
-        // Within 0.032 mm: of turns in cubes of 0.0128 mm / √3 = 7.4 of them one is drawn, within 0.008 mm by 79 chords.
-        assert!(levels.len() == 3 && (50_000..60_000).contains(&levels[2].1), "{levels:?}");
+        // By hand: a chord within 0.002 mm spans 2 acos(1 - 0.002 / 6) = 0.0516 rad, 122 for a turn.
+        assert_eq!(levels[0].1, 122 * 5_000 + 5_000 + geometry.chunks());
+        // Within 0.032 mm: of turns in cubes of 0.0128 mm / √3 = 7.4 of them one is drawn, within 0.008 mm by 61 chords.
+        assert!(levels.len() == 3 && (41_000..50_000).contains(&levels[2].1), "{levels:?}");
         let middles = |line: &[Vertex]| -> Vec<Vec3> {
             let drawn = line.windows(2).filter(|ends| ends[1].kind() != GAP);
             drawn.map(|ends| (ends[0].at + ends[1].at) / 2.0).collect()
@@ -838,8 +872,8 @@ pub(crate) mod tests {
             let drawn = middles(&made);
             let radius = |at: &Vec3| at.x.hypot(at.y);
             for at in &drawn {
-                assert!(10.0 - radius(at) <= error(level) + 1e-9, "{level}: {at}");
-                assert!(radius(at) > 7.0, "{level}: {at}");
+                assert!(6.0 - radius(at) <= error(level) + 1e-9, "{level}: {at}");
+                assert!(radius(at) > 4.2, "{level}: {at}");
             }
             let mut heights: Vec<f64> = drawn.iter().map(|at| at.z).collect();
             heights.sort_by(f64::total_cmp);
@@ -949,5 +983,9 @@ pub(crate) mod tests {
         let arc = MotionKind::Arc(Box::new(helix.unwrap()));
         let vertices = polyline(&walk([(arc.clone(), end), (arc, end)]), 0, EXACT);
         assert!(vertices.len() <= MOST_VERTICES + 3, "{}", vertices.len());
+        // Some of the turns, and each of them as one; the second move begins where the first one has begun.
+        let drawn = vertices.windows(2).filter(|ends| ends[1].kind() != GAP);
+        let long = drawn.filter(|ends| ends[0].at.distance(ends[1].at) > 2.0);
+        assert_eq!(long.count(), 1);
     }
 }

@@ -546,7 +546,6 @@ impl Job {
             jumps_in_all: walk.jumps().1,
             excursions: walk.excursions().0.to_vec(),
             excursions_in_all: walk.excursions().1,
-            fine: walk.has_arcs().then_some(geometry::FINE),
             mismatch: walk.mismatch(),
         }
     }

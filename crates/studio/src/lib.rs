@@ -17,7 +17,8 @@
 //! Frames of [`message`]: first the token, then asks and their answers, whose types are those of [`ask`]; while a proof runs, what it has walked so far
 //! ([`ask::Walked`]). What is large goes by HTTP, with the token in the header
 //! `x-toolpost-token`: `PUT /upload/NAME`, `GET /geometry/REVISION/index`, `GET /geometry/REVISION/LEVEL/CHUNK`
-//! (several chunks: `FROM-TO`, half open) and `GET /moves/REVISION/CHUNK`, whose octets [`geometry`] describes.
+//! (several chunks: `FROM-TO`, half open) and `GET /moves/REVISION/CHUNK`, whose octets [`geometry`] describes; `GET /geometry/REVISION/sight/...`, which
+//! [`sight`] describes.
 //!
 //! # What it never does
 //!
@@ -42,6 +43,7 @@ mod page;
 pub mod place;
 pub mod plots;
 pub mod server;
+pub mod sight;
 mod sketch;
 pub mod walk;
 

@@ -430,11 +430,6 @@ impl Walk {
         (&self.excursions, self.excursions_in_all)
     }
 
-    /// Whether there are arcs.
-    pub fn has_arcs(&self) -> bool {
-        !self.arcs.is_empty()
-    }
-
     /// What holds in it.
     pub fn state(&self, at: u32) -> Option<&MachineState> {
         holds(&self.states, at)

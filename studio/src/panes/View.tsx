@@ -97,7 +97,8 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             {
                 picked: (move) => void studio.cursor.toMove(move),
                 pointed: (at) => (screen.pointer.value = at),
-                drawn: (off) => screen.drawn(off),
+                off: (pixels) => screen.offBy(view, pixels),
+                drawn: () => screen.drawn(),
             },
             screen.drawing.peek(),
         );
@@ -119,6 +120,7 @@ function One({ screen, view, first }: { screen: Screen; view: number; first: boo
             stopDrawing();
             screen.viewers.splice(screen.viewers.indexOf(viewer), 1);
             viewer.close();
+            screen.offBy(view, 0);
         };
     }, []);
     return (

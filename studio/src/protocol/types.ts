@@ -866,10 +866,6 @@ excursions: Array<Excursion>,
  */
 excursions_in_all: number, 
 /**
- * How far the lines of the level `fine` may be from the arcs, mm; null where there are no arcs.
- */
-fine: number | null, 
-/**
  * The last move before the first mismatch.
  */
 mismatch: number | null, };

@@ -105,6 +105,7 @@ export class Screen {
     readonly isDrawn: Signal<boolean> = signal(false);
     /** How many pixels lines may be off; 0 where that is not seen. */
     readonly off: Signal<number> = signal(0);
+    private readonly offs = new Map<number, number>();
     /** The ends of the ramp of feeds, mm/min. */
     readonly feeds: Signal<[least: number, most: number] | null> = signal(null);
     /** The view that had the focus last. */
@@ -180,7 +181,7 @@ export class Screen {
             return;
         }
         const { walk, revision } = job;
-        const chunks = new Chunks(walk, (path) => this.studio.seam.octets(`/geometry/${revision}/${path}`), () => this.come(), walked);
+        const chunks = new Chunks(walk, (path, signal) => this.studio.seam.octets(`/geometry/${revision}/${path}`, signal), () => this.come(), walked);
         this.scene.value = new Scene(walk, chunks, new Rows(this.studio.seam, revision, walk.row / 4, () => this.news.value++), this.wireOf(job), this.blocksOf(job));
         this.lookForCuts();
         void chunks.load().catch(() => {});
@@ -270,10 +271,15 @@ export class Screen {
         return board.netAt(x, y);
     }
 
+    /** The lines of a view may be so many pixels off: what is said is the most of all views. */
+    offBy(view: number, pixels: number): void {
+        this.offs.set(view, Math.ceil(pixels));
+        this.off.value = Math.max(...this.offs.values());
+    }
+
     /** A view has drawn lines. */
-    drawn(off: number): void {
+    drawn(): void {
         this.isDrawn.value = true;
-        this.off.value = Math.ceil(off);
         const feeds = this.scene.value?.feeds ?? null;
         if (String(feeds) !== String(this.feeds.value)) this.feeds.value = feeds;
     }

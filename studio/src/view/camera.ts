@@ -123,3 +123,7 @@ export function alongTool(camera: Camera, axis: Vector): Camera {
     const height = Math.asin(Math.max(-1, Math.min(1, z))) / radians;
     return { ...camera, height, turn: Math.hypot(x, y) < 1e-9 ? 0 : Math.atan2(x, -y) / radians };
 }
+
+/** Whether two projections put everything at the same place. */
+export const isSame = (a: Projection, b: Projection): boolean =>
+    ([a.right, a.down, a.away, a.at] as const).every((way, i) => way.every((part, k) => part === [b.right, b.down, b.away, b.at][i]![k]));

@@ -2,10 +2,13 @@
 
 import type { WalkAbout } from "../protocol/asks.ts";
 import type { Projection, Size } from "./camera.ts";
+import { readSight, type Seen } from "./sight.ts";
 import { VERTEX_BYTES } from "./strip.ts";
 import type { Vector } from "./vector.ts";
 
 const INDEX_BYTES = 64;
+/** A bit of the flags. */
+const CROWDED = 2;
 
 /** Of the lines' error in pixels: more would be seen. */
 export const SEEN = 0.5;
@@ -25,6 +28,8 @@ export interface Chunk {
     origin: Vector;
     half: Vector;
     first: number;
+    /** Its arcs are coarser than the levels say. */
+    isCrowded: boolean;
 }
 
 export function readIndex(octets: ArrayBuffer): Chunk[] {
@@ -34,7 +39,8 @@ export function readIndex(octets: ArrayBuffer): Chunk[] {
         const double = (i: number): number => data.getFloat64(at + i * 8, true);
         const single = (i: number): number => data.getFloat32(at + 24 + i * 4, true);
         const origin: Vector = [double(0), double(1), double(2)];
-        return { number, origin, half: [single(0), single(1), single(2)], first: data.getUint32(at + 36, true) };
+        const isCrowded = (data.getUint32(at + 60, true) & CROWDED) !== 0;
+        return { number, origin, half: [single(0), single(1), single(2)], first: data.getUint32(at + 36, true), isCrowded };
     });
 }
 
@@ -48,13 +54,14 @@ export function inSight({ origin, half }: Chunk, { right, down, at }: Projection
     return within(right, at[0], width) && within(down, at[1], height);
 }
 
-/** The level in which arcs are finer than in the first, where they are near enough for its chords to be seen. */
-export const FINE = -1;
+/** The coarsest level whose error is not seen at this scale (pixels a millimetre), else the finest. */
+export function levelFor({ levels }: Pick<WalkAbout, "levels">, scale: number): number {
+    return Math.max(0, levels.findLastIndex(({ error }) => error * scale <= SEEN));
+}
 
-/** The coarsest level whose error is not seen at this scale (pixels a millimetre). */
-export function levelFor({ levels, fine }: Pick<WalkAbout, "levels" | "fine">, scale: number): number {
-    const level = levels.findLastIndex(({ error }) => error * scale <= SEEN);
-    return level < 0 && fine === null ? 0 : level;
+/** How far the lines of a chunk are off at a level, mm: numbers of 32 bits from its middle have 24 digits. */
+export function errorOf({ half, isCrowded }: Chunk, error: number): number {
+    return isCrowded ? Number.POSITIVE_INFINITY : error + Math.hypot(...half) * 2 ** -24;
 }
 
 /** Between two pictures while chunks come, ms: at the least, and for each chunk, since a picture of many takes longer. */
@@ -83,6 +90,8 @@ export interface Vertices {
     known(chunk: number): ArrayBuffer | null;
     /** At exactly this level; null where that cannot be had. */
     exact(level: number, chunk: number): Promise<ArrayBuffer | null>;
+    /** What is seen in a view, asked for as `pathOf` says. */
+    sight(path: string, signal: AbortSignal): Promise<Seen[]>;
 }
 
 export class Chunks implements Vertices {
@@ -100,7 +109,7 @@ export class Chunks implements Vertices {
 
     constructor(
         readonly walk: WalkAbout,
-        private readonly octets: (path: string) => Promise<ArrayBuffer>,
+        private readonly octets: (path: string, signal?: AbortSignal) => Promise<ArrayBuffer>,
         private readonly changed: () => void,
         /** Of the same walk while it was proven: drawn until something better has come. */
         private readonly before: Vertices | null = null,
@@ -128,7 +137,7 @@ export class Chunks implements Vertices {
     }
 
     private key(level: number, chunk: number): number {
-        return (level - FINE) * this.walk.chunks + chunk;
+        return level * this.walk.chunks + chunk;
     }
 
     /** A frame begins: what the one before wished for and did not get is forgotten. */
@@ -146,17 +155,21 @@ export class Chunks implements Vertices {
     }
 
     known(chunk: number): ArrayBuffer | null {
-        return this.nearest(FINE, chunk)?.vertices ?? this.before?.known(chunk) ?? null;
+        return this.nearest(0, chunk)?.vertices ?? this.before?.known(chunk) ?? null;
     }
 
     private nearest(level: number, chunk: number): Best | null {
-        const coarser = Array.from({ length: this.walk.levels.length - level - 1 }, (_, i) => level + 1 + i);
-        const finer = Array.from({ length: level - FINE }, (_, i) => level - 1 - i);
+        const coarser = Array.from({ length: this.walk.levels.length - level }, (_, i) => level + i);
+        const finer = Array.from({ length: level }, (_, i) => level - 1 - i);
         for (const other of [...coarser, ...finer]) {
             const vertices = this.take(other, chunk);
             if (vertices !== null) return { vertices, level: other };
         }
         return null;
+    }
+
+    async sight(path: string, signal: AbortSignal): Promise<Seen[]> {
+        return readSight(await this.octets(`sight/${path}`, signal));
     }
 
     /** The vertices at exactly this level. */
@@ -202,7 +215,7 @@ export class Chunks implements Vertices {
     private run(): { level: number; from: number; to: number } | null {
         const [first] = this.wanted;
         if (first === undefined) return null;
-        const level = Math.floor(first / this.walk.chunks) + FINE;
+        const level = Math.floor(first / this.walk.chunks);
         const from = first % this.walk.chunks;
         let to = from;
         while (to < this.walk.chunks && to - from < TOGETHER && this.wanted.delete(this.key(level, to))) to++;
@@ -224,7 +237,7 @@ export class Chunks implements Vertices {
 
     /** The vertices of chunks: the server may give fewer than were asked for. */
     private async get(level: number, from: number, to: number): Promise<ArrayBuffer[]> {
-        const octets = await this.octets(`${level === FINE ? "fine" : level}/${from}-${to}`);
+        const octets = await this.octets(`${level}/${from}-${to}`);
         const data = new DataView(octets);
         const count = data.getUint32(0, true);
         let at = 4 + 4 * count;

@@ -38,8 +38,9 @@ export class Raster {
         this.gone = 0;
     }
 
-    strip(strip: Strip, { right, down, away, at }: Projection): void {
+    strip(strip: Strip, projection: Projection): void {
         const { origin, paint, first } = strip;
+        const { right, down, away, at } = strip.frame ?? projection;
         const { palette, byMove, shift, mask, styles, dashed, width, tool, round, lift } = paint;
         const isMoves = this.planes.sees === "moves";
         const numbers = new Float32Array(strip.vertices);

@@ -1,5 +1,5 @@
 import type { Flat } from "./board.ts";
-import type { Projection, Size } from "./camera.ts";
+import { isSame, type Projection, type Size } from "./camera.ts";
 import type { Theme } from "./colours.ts";
 import { Raster, rgb } from "./raster.ts";
 import type { Picture } from "./scene.ts";
@@ -73,9 +73,6 @@ const areSame = (a: Strip[], b: Strip[]): boolean =>
     });
 
 const isAlike = (a: Paint, b: Paint): boolean => (Object.keys(a) as (keyof Paint)[]).every((key) => a[key] === b[key]);
-
-const isSame = (a: Projection, b: Projection): boolean =>
-    ([a.right, a.down, a.away, a.at] as const).every((way, i) => way.every((part, k) => part === [b.right, b.down, b.away, b.at][i]![k]));
 
 /** The renderer that needs nothing of the computer but its processor. */
 export class Plain implements Renderer {

@@ -4,8 +4,8 @@ import type { Range } from "../cursor.ts";
 import type { WalkAbout } from "../protocol/asks.ts";
 import type { Blocks } from "./blocks.ts";
 import type { Board, Flat } from "./board.ts";
-import { toScreen, type Projection, type Size } from "./camera.ts";
-import { inSight, KEPT, levelFor, SEEN, type Best, type Chunk, type Vertices } from "./chunks.ts";
+import { isSame, toScreen, type Projection, type Size } from "./camera.ts";
+import { errorOf, inSight, KEPT, levelFor, SEEN, type Best, type Chunk, type Vertices } from "./chunks.ts";
 import { MARKED, RAPID, UNKNOWN, WRONG, type Mode, type Theme } from "./colours.ts";
 import { GAP, NEEDLES, needlesOf } from "./needles.ts";
 import { painterOf, type Painter } from "./painted.ts";
@@ -13,6 +13,7 @@ import { Raster } from "./raster.ts";
 import type { Rows } from "./rows.ts";
 import { Mark, symbolsOf, type Symbol } from "./symbols.ts";
 import { CHUNK_MOVES, Style, VERTEX_BYTES, vertexOf, type Paint, type Strip, type Triangles } from "./strip.ts";
+import { frameOf, pathOf, type Seen, type Sight, type Sights } from "./sight.ts";
 import { surfaceOf } from "./surface.ts";
 import type { Vector } from "./vector.ts";
 
@@ -62,6 +63,26 @@ const SURFACE: Triangles["colour"] = [205, 218, 235];
 /** Pixels round the pointer in which a line is looked for. */
 const REACH = 6;
 
+/** Lines of a chunk: in their frame, or from its middle. */
+interface Lines {
+    chunk: Chunk;
+    vertices: ArrayBuffer;
+    frame?: Projection | undefined;
+}
+
+/** The same, of a level; null where that is not known. */
+interface There extends Lines, Best {}
+
+/** The most pixels beside the window in which cuts are looked for that reach into it. */
+const BESIDE = 600;
+
+/** How long a view rests before what is seen in it is asked for, ms: also where levels that are fine enough have not come until then. */
+const REST = 100;
+const LATE = 600;
+
+/** Of a block, so many ranges of moves are picked out exactly. */
+const RANGES = 200;
+
 export class Scene {
     private painter: { mode: Mode; paint: Painter | null } = { mode: "kind", paint: null };
 
@@ -99,38 +120,68 @@ export class Scene {
         surfaces.push(made);
     }
 
-    picture(projection: Projection, size: Size, looks: Looks, marks: Marks): Picture {
+    picture(projection: Projection, size: Size, looks: Looks, marks: Marks, sights: Sights | null = null): Picture {
         const strips: Strip[] = [];
-        const over: Strip[] = [];
         const symbols: Symbol[] = [];
         const surfaces: Triangles[] = [];
         const chunks = this.chunks.chunks.filter((chunk) => inSight(chunk, projection, size));
         const level = this.levelOf(projection.scale, chunks.length);
         this.last = { scale: projection.scale, level };
-        let coarsest = 0;
-        let isRough = false;
-        for (const chunk of chunks) {
-            const best = this.chunks.best(level, chunk.number);
-            if (best === null) continue;
-            const { vertices } = best;
-            coarsest = Math.max(coarsest, best.level ?? 0);
-            isRough ||= best.level === null && this.walk.levels.length > 1;
+        const there = chunks.flatMap((chunk): There[] => {
+            // Finer levels of a crowded chunk are no better.
+            const best = this.chunks.best(chunk.isCrowded ? this.walk.levels.length - 1 : level, chunk.number);
+            return best === null ? [] : [{ ...best, chunk }];
+        });
+        for (const { chunk, vertices } of there) {
             if (this.wire !== null) this.surface(surfaces, chunk, vertices, this.wire);
-            this.bands(strips, chunk, best, looks, marks, projection.scale);
-            this.lines(strips, chunk, best, looks, marks);
-            this.picked(over, chunk, best, looks, marks);
             if (looks.axes) this.needles(strips, chunk, vertices, looks, projection);
-            symbolsOf(symbols, chunk, vertices, projection, size);
         }
+        const off = Math.max(0, ...there.map(({ chunk, level }) => this.off(chunk, level, projection)));
+        const isSeen = chunks.some((chunk) => this.off(chunk, level, projection) > 0);
+        // Levels that are fine enough are on their way: they mostly come before the view is asked for.
+        const seen = sights !== null && (isSeen || off > 0) ? this.seen(projection, size, looks, sights, isSeen ? REST : LATE) : null;
+        if (seen === null && sights !== null) sights.drawn = null;
+        if (!isSeen && off === 0) sights?.lines.forget();
+        const lines = seen ?? there;
+        for (const one of lines) {
+            this.bands(strips, one, looks, marks, projection.scale);
+            this.lines(strips, one, looks, marks);
+            symbolsOf(symbols, one, one.frame ?? projection, size);
+        }
+        const over = this.picked(there, isSeen, projection, size, looks, marks, sights);
         const edges = this.blocks?.edges(looks.theme) ?? null;
         if (edges !== null) strips.push(edges);
         const tabs = this.board?.tabLines(looks.theme) ?? null;
         if (tabs !== null) strips.push(tabs);
         const flats = this.board?.flats(looks.theme) ?? [];
         this.places(symbols, projection, size);
-        const error = (this.walk.levels[coarsest]?.error ?? 0) * projection.scale;
-        const off = this.isPoints ? 0 : isRough ? Number.POSITIVE_INFINITY : coarsest > 0 && error > SEEN ? error : 0;
-        return { off, flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+        return { off: seen === null ? off : 0, flats, surfaces, strips, over, symbols, bodies: marks.tool === null ? marks.bodies : [...marks.bodies, marks.tool] };
+    }
+
+    /** How far the lines of a chunk are off at a level, pixels; 0 where that is not seen. */
+    private off(chunk: Chunk, level: number | null, { scale }: Projection): number {
+        if (this.isPoints || (level === null && this.walk.levels.length === 1 && !chunk.isCrowded)) return 0;
+        const off = level === null ? Number.POSITIVE_INFINITY : errorOf(chunk, this.walk.levels[level]!.error) * scale;
+        return off > SEEN ? off : 0;
+    }
+
+    /** What is seen in this view: null until it has come. */
+    private seen(projection: Projection, size: Size, looks: Looks, sights: Sights, rest: number): There[] | null {
+        const widest = Math.max(0, ...this.bandPaints(looks, projection.scale).map(({ width }) => width));
+        const beside = Math.min(BESIDE, Math.ceil(widest / 2));
+        const rapid = this.walk.kinds.indexOf("rapid");
+        const hidden = looks.rapids || rapid < 0 ? 0 : 1 << rapid;
+        const seen = sights.lines.of(this.chunks, pathOf(projection, size, beside, hidden, null), rest);
+        sights.drawn = seen === null ? null : { projection, seen, beside };
+        return seen === null ? null : this.framed(seen, projection, beside);
+    }
+
+    private framed(seen: Seen[], projection: Projection, beside: number): There[] {
+        const frame = frameOf(projection, beside);
+        return seen.flatMap(({ chunk: number, vertices }) => {
+            const chunk = this.chunks.chunks[number];
+            return chunk === undefined ? [] : [{ chunk: { ...chunk, origin: [0, 0, 0] }, vertices, level: 0, frame }];
+        });
     }
 
     /** The least and the greatest feed that is known, mm/min. */
@@ -163,12 +214,12 @@ export class Scene {
     }
 
     /** What has been cut, as wide as the tool: of what is ahead nothing, while that is pale. */
-    private bands(strips: Strip[], chunk: Chunk, { vertices }: Pick<Best, "vertices">, looks: Looks, { now, pale }: Pick<Marks, "now" | "pale">, scale: number): void {
-        const { first } = chunk;
+    private bands(strips: Strip[], there: Lines, looks: Looks, { now, pale }: Pick<Marks, "now" | "pale">, scale: number): void {
+        const { chunk: { first }, vertices } = there;
         const count = vertices.byteLength / 16;
         const isDone = !pale || now === null || now >= first + CHUNK_MOVES;
         const border = isDone ? count : now < first ? 1 : vertexOf(vertices, now - first + 1);
-        for (const paint of this.bandPaints(looks, scale)) add(strips, chunk, vertices, [1, border], paint);
+        for (const paint of this.bandPaints(looks, scale)) add(strips, there, [1, border], paint);
     }
 
     /** A paint for each tool whose width is known and is seen at this scale. */
@@ -194,31 +245,43 @@ export class Scene {
         if (needles !== null) strips.push(needles);
     }
 
-    private lines(strips: Strip[], chunk: Chunk, { vertices }: Pick<Best, "vertices">, looks: Looks, { now, pale }: Pick<Marks, "now" | "pale">): void {
-        const { first } = chunk;
+    private lines(strips: Strip[], there: Lines, looks: Looks, { now, pale }: Pick<Marks, "now" | "pale">): void {
+        const { chunk, chunk: { first }, vertices } = there;
         const count = vertices.byteLength / 16;
         const { done, ahead } = looks.theme;
         const isDone = !pale || now === null || now >= first + CHUNK_MOVES;
         const border = isDone ? count : now < first ? 1 : vertexOf(vertices, now - first + 1);
-        add(strips, chunk, vertices, [1, border], this.paint(chunk, looks, done));
-        add(strips, chunk, vertices, [border, count], this.paint(chunk, looks, ahead));
+        add(strips, there, [1, border], this.paint(chunk, looks, done));
+        add(strips, there, [border, count], this.paint(chunk, looks, ahead));
     }
 
     /** The first mismatch, the moves of the cursor's block, and the move that it is at. */
-    private picked(over: Strip[], chunk: Chunk, best: Best, looks: Looks, { now, ofBlock, mismatch }: Marks): void {
-        if (mismatch !== null) this.marked(over, chunk, best, [mismatch, mismatch + 1], () => this.plain(WRONG, looks, 4, 2));
-        for (const range of ofBlock) this.marked(over, chunk, best, range, () => this.plain(MARKED, looks, 2, 2));
-        if (now !== null) this.marked(over, chunk, best, [now, now + 1], () => this.plain(MARKED, looks, 3, 3));
+    private picked(there: There[], isSeen: boolean, projection: Projection, size: Size, looks: Looks, { now, ofBlock, mismatch }: Marks, sights: Sights | null): Strip[] {
+        const over: Strip[] = [];
+        const pick = (sight: Sight | undefined, ranges: Range[], paint: () => Paint): void => {
+            const [few, more] = [ranges.slice(0, RANGES), ranges.slice(RANGES)];
+            // At a coarse level others may be drawn for a move.
+            const isCoarse = there.some(({ chunk, level }) => (isSeen || level !== 0) && few.some((range) => within(range, chunk) !== null));
+            const seen = isCoarse ? (sight?.of(this.chunks, pathOf(projection, size, 0, 0, few), REST) ?? null) : null;
+            for (const one of this.framed(seen ?? [], projection, 0)) add(over, one, [1, one.vertices.byteLength / VERTEX_BYTES], paint());
+            for (const one of there) {
+                for (const range of seen === null ? ranges : more) this.marked(over, one, range, paint);
+            }
+        };
+        if (mismatch !== null) pick(sights?.mismatch, [[mismatch, mismatch + 1]], () => this.plain(WRONG, looks, 4, 2));
+        if (ofBlock.length > 0) pick(sights?.block, ofBlock, () => this.plain(MARKED, looks, 2, 2));
+        if (now !== null) pick(sights?.now, [[now, now + 1]], () => this.plain(MARKED, looks, 3, 3));
+        return over;
     }
 
-    private marked(over: Strip[], chunk: Chunk, { vertices, level }: Best, [from, to]: Range, paintOf: () => Paint): void {
-        const [low, high] = [Math.max(from - chunk.first, 0), Math.min(to - chunk.first, CHUNK_MOVES)];
-        if (low >= high) return;
-        const paint = paintOf();
-        const begin = vertexOf(vertices, low);
+    private marked(over: Strip[], there: There, range: Range, paintOf: () => Paint): void {
+        const { chunk, vertices, level } = there;
+        const own = within(range, chunk);
+        if (own === null) return;
+        const begin = vertexOf(vertices, own[0]);
         // At a coarse level a move may have no vertex of its own: the one that it is in is marked.
-        const least = level !== null && level <= 0 ? begin : Math.min(begin + 1, vertices.byteLength / 16);
-        add(over, chunk, vertices, [begin, Math.max(vertexOf(vertices, high), least)], paint);
+        const least = level === 0 ? begin : Math.min(begin + 1, vertices.byteLength / 16);
+        add(over, there, [begin, Math.max(vertexOf(vertices, own[1]), least)], paintOf());
     }
 
     private paint(chunk: Chunk, looks: Looks, palette: Uint32Array): Paint {
@@ -257,8 +320,14 @@ export class Scene {
         return rapids ? Style.dashed : Style.hidden;
     }
 
-    /** The move under the pixel: found in what is drawn, then among the exact lines of that chunk. */
-    async pick(camera: Projection, looks: Looks, x: number, y: number): Promise<number | null> {
+    /** The move under the pixel: found in what is drawn, then, where that is coarse, among the exact lines of that chunk. */
+    async pick(camera: Projection, looks: Looks, x: number, y: number, sights: Sights | null = null): Promise<number | null> {
+        const drawn = sights?.drawn ?? null;
+        if (drawn !== null && isSame(drawn.projection, camera)) {
+            const strips: Strip[] = [];
+            for (const one of this.framed(drawn.seen, camera, drawn.beside)) this.pickable(strips, one, looks, camera.scale);
+            return seen(strips, camera, x, y);
+        }
         const rough = seen(this.near(camera, looks, x, y), camera, x, y);
         if (rough === null) return null;
         const chunk = this.chunks.chunks[Math.floor(rough / CHUNK_MOVES)];
@@ -266,7 +335,7 @@ export class Scene {
         const vertices = await this.chunks.exact(0, chunk.number);
         if (vertices === null) return rough;
         const exact: Strip[] = [];
-        this.pickable(exact, chunk, { vertices }, looks, camera.scale);
+        this.pickable(exact, { chunk, vertices }, looks, camera.scale);
         return seen(exact, camera, x, y) ?? rough;
     }
 
@@ -279,15 +348,15 @@ export class Scene {
         for (const chunk of this.chunks.chunks) {
             if (!inSight(chunk, round, { width: reach * 2, height: reach * 2 })) continue;
             const best = this.chunks.best(level, chunk.number);
-            if (best !== null) this.pickable(strips, chunk, best, looks, camera.scale);
+            if (best !== null) this.pickable(strips, { ...best, chunk }, looks, camera.scale);
         }
         return strips;
     }
 
-    private pickable(strips: Strip[], chunk: Chunk, best: Pick<Best, "vertices">, looks: Looks, scale: number): void {
+    private pickable(strips: Strip[], there: Lines, looks: Looks, scale: number): void {
         const all = { now: null, pale: false };
-        this.bands(strips, chunk, best, looks, all, scale);
-        this.lines(strips, chunk, best, looks, all);
+        this.bands(strips, there, looks, all, scale);
+        this.lines(strips, there, looks, all);
     }
 }
 
@@ -297,8 +366,14 @@ function seen(strips: Strip[], projection: Projection, x: number, y: number): nu
     return nearest(lines, projection, x, y) ?? nearest(strips.filter(({ paint }) => paint.round), projection, x, y);
 }
 
-function add(strips: Strip[], { origin, first }: Chunk, vertices: ArrayBuffer, [from, to]: Range, paint: Paint): void {
-    if (from < to) strips.push({ vertices, origin, first, from, to, paint });
+function add(strips: Strip[], { chunk: { origin, first }, vertices, frame }: Lines, [from, to]: Range, paint: Paint): void {
+    if (from < to) strips.push({ vertices, origin, first, from, to, paint, frame });
+}
+
+/** The moves of a range that a chunk has, counted from its first one. */
+function within([from, to]: Range, { first }: Chunk): Range | null {
+    const [low, high] = [Math.max(from - first, 0), Math.min(to - first, CHUNK_MOVES)];
+    return low < high ? [low, high] : null;
 }
 
 /** The move whose line is nearest to the pixel, and of those the one that is seen. */
@@ -324,7 +399,8 @@ export function nearest(strips: Strip[], projection: Projection, x: number, y: n
 
 
 /** Of a strip, the lines that may come into a square of pixels: of millions there are few, and only these are drawn. */
-export function reaching({ vertices, origin, from, to, paint }: Strip, { right, down, at }: Projection, { left, top, side }: { left: number; top: number; side: number }): Range[] {
+export function reaching({ vertices, origin, from, to, paint, frame }: Strip, projection: Projection, { left, top, side }: { left: number; top: number; side: number }): Range[] {
+    const { right, down, at } = frame ?? projection;
     const numbers = new Float32Array(vertices);
     const [rx, ry, rz] = right;
     const [dx, dy, dz] = down;

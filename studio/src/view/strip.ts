@@ -1,5 +1,6 @@
 /** Lines of one chunk as both renderers draw them. A vertex is x, y, z (f32 from the origin) and a word of what it belongs to. */
 
+import type { Projection } from "./camera.ts";
 import type { Vector } from "./vector.ts";
 
 export const VERTEX_BYTES = 16;
@@ -45,6 +46,8 @@ export interface Strip {
     from: number;
     to: number;
     paint: Paint;
+    /** How the vertices are projected, where not as the picture is: those of a sight are in its pixels. */
+    frame?: Projection | undefined;
 }
 
 export interface Triangles {

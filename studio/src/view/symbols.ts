@@ -33,7 +33,7 @@ function marked(vertices: ArrayBuffer): Uint32Array {
     return made;
 }
 
-export function symbolsOf(symbols: Symbol[], chunk: Chunk, vertices: ArrayBuffer, projection: Projection, { width, height }: Size): void {
+export function symbolsOf(symbols: Symbol[], { chunk, vertices }: { chunk: Chunk; vertices: ArrayBuffer }, projection: Projection, { width, height }: Size): void {
     const numbers = new Float32Array(vertices);
     const words = new Uint32Array(vertices);
     const { origin } = chunk;

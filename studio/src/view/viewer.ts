@@ -4,6 +4,7 @@ import { fit, orbit, pan, project, VIEWS, zoom, zoomTo, alongTool, type Box, typ
 import { overlay, type Over } from "./overlay.ts";
 import { Plain, type Renderer } from "./renderer.ts";
 import type { Looks, Marks, Scene } from "./scene.ts";
+import { Sights } from "./sight.ts";
 import type { Vector } from "./vector.ts";
 import { Gl } from "./webgl.ts";
 
@@ -41,8 +42,10 @@ const STILL = 150;
 export interface Tell {
     picked(move: number): void;
     pointed(at: Vector | null): void;
-    /** A picture with lines is drawn; its lines may be so many pixels off. */
-    drawn(off: number): void;
+    /** The lines of the picture may be so many pixels off. */
+    off(pixels: number): void;
+    /** A picture with lines is drawn. */
+    drawn(): void;
 }
 
 export class Viewer {
@@ -56,6 +59,7 @@ export class Viewer {
     private isSought: boolean;
     private drag: Drag | null = null;
     private measured: Over["drag"] = null;
+    private readonly sights = new Sights(() => this.redraw());
     private frame = 0;
     /** The browser's first frame may be long in coming: a picture does not wait for it. */
     private hadFrame = false;
@@ -131,6 +135,7 @@ export class Viewer {
         cancelAnimationFrame(this.frame);
         this.frame = 0;
         this.sizes.disconnect();
+        this.sights.forget();
         this.host.replaceChildren();
     }
 
@@ -171,11 +176,12 @@ export class Viewer {
         const { size, projection } = this;
         const { scene, looks, marks, tip, box, isBoxShown } = this.shown();
         scene?.chunks.begin();
-        const picture = scene?.picture(projection, size, looks, marks) ?? { off: 0, flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
+        const picture = scene?.picture(projection, size, looks, marks, this.sights) ?? { off: 0, flats: [], surfaces: [], strips: [], over: [], bodies: [], symbols: [] };
         this.renderer.draw(picture, projection, size, looks.theme, this.moving !== undefined);
         if (this.over.width !== size.width || this.over.height !== size.height) Object.assign(this.over, size);
+        if (scene !== null) this.tell.off(picture.off / this.ratio);
         if (picture.strips.length > 0) {
-            this.tell.drawn(picture.off / this.ratio);
+            this.tell.drawn();
             if (this.isSought) setTimeout(() => this.seek());
         }
         overlay(this.context, { box: isBoxShown ? box : null, tip, symbols: picture.symbols, drag: this.measured }, projection, size, looks.theme, this.ratio);
@@ -311,7 +317,7 @@ export class Viewer {
 
     private async pick(x: number, y: number): Promise<number | null> {
         const { scene, looks } = this.shown();
-        return (await scene?.pick(this.projection, looks, x, y)) ?? null;
+        return (await scene?.pick(this.projection, looks, x, y, this.sights)) ?? null;
     }
 
     /** The point under the pixel, in the plane of the view through the camera's middle. */

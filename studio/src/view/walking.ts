@@ -49,11 +49,15 @@ export class Walking implements Vertices {
         return Promise.resolve(null);
     }
 
+    sight(): Promise<never> {
+        return Promise.reject(new Error("the proof runs"));
+    }
+
     /** A walk of which nothing more is known. */
     get walk(): WalkAbout {
         return {
             moves: this.moves, left_out: 0, chunks: this.chunks.length, levels: [{ error: 0, vertices: 0 }], box: null, time_s: 0,
-            tools: [], operations: [], kinds: this.kinds, row: 20, deviation: null, jumps: [], jumps_in_all: 0, excursions: [], excursions_in_all: 0, fine: null, mismatch: null,
+            tools: [], operations: [], kinds: this.kinds, row: 20, deviation: null, jumps: [], jumps_in_all: 0, excursions: [], excursions_in_all: 0, mismatch: null,
         };
     }
 

@@ -196,8 +196,12 @@ export class Gl implements Renderer {
         gl.uniform1f(at("reach"), reach);
     }
 
-    private strip({ vertices, origin, from, to, paint }: Strip, { right, down, away, at }: Projection): void {
+    private strip({ vertices, origin, from, to, paint, frame }: Strip, projection: Projection): void {
         const { gl, lines } = this;
+        const { right, down, away, at } = frame ?? projection;
+        gl.uniform3f(lines.at("right"), ...right);
+        gl.uniform3f(lines.at("down"), ...down);
+        gl.uniform3f(lines.at("away"), ...away);
         const offset = (way: readonly number[], plus: number): number => way[0]! * origin[0] + way[1]! * origin[1] + way[2]! * origin[2] + plus;
         gl.uniform3f(lines.at("at"), offset(right, at[0]), offset(down, at[1]), offset(away, at[2]));
         this.bind(0, vertices, () => this.vertexTexture(vertices));

@@ -4,6 +4,7 @@ use super::closed::say;
 use super::{Studio, UPLOAD};
 use crate::ask::Uploaded;
 use crate::geometry;
+use crate::sight::{self, View};
 use app::Source;
 use axum::body::{Body, to_bytes};
 use axum::extract::Request;
@@ -88,11 +89,16 @@ pub async fn upload(studio: &Studio, name: &str, request: Request) -> Response<B
     response
 }
 
-/// Answers the geometry or the rows of a job: `geometry/REVISION/index`, `geometry/REVISION/LEVEL/CHUNK` (or `fine` for
-/// LEVEL, or `FROM-TO` for CHUNK), `moves/REVISION/CHUNK`.
+/// Answers the geometry or the rows of a job: `geometry/REVISION/index`, `geometry/REVISION/LEVEL/CHUNK` (or `FROM-TO` for
+/// CHUNK), `geometry/REVISION/sight/...`, `moves/REVISION/CHUNK`.
 pub async fn drawn(studio: Arc<Studio>, path: String) -> Response<Body> {
+    // Whoever does not wait any longer has gone away: then this ends.
+    let waited = Arc::new(());
+    let waits = Arc::downgrade(&waited);
+    let goes_on = move || waits.strong_count() > 0;
     // Chunks are made when they are asked for.
-    let made = tokio::task::spawn_blocking(move || octets(&studio, &path)).await;
+    let made = tokio::task::spawn_blocking(move || octets(&studio, &path, &goes_on)).await;
+    drop(waited);
     match made.ok().flatten() {
         Some(bytes) => {
             let mut response = Response::new(Body::from(bytes));
@@ -109,21 +115,21 @@ pub async fn drawn(studio: Arc<Studio>, path: String) -> Response<Body> {
     }
 }
 
-fn octets(studio: &Studio, path: &str) -> Option<Vec<u8>> {
+fn octets(studio: &Studio, path: &str, goes_on: &dyn Fn() -> bool) -> Option<Vec<u8>> {
     let parts: Vec<&str> = path.split('/').collect();
     let job = studio.jobs.find(parts.get(1)?.parse().ok()?).ok()?;
     match parts[..] {
         ["geometry", _, "index"] => Some(job.geometry().index()),
+        ["geometry", _, "sight", size, place, hidden, moves] => {
+            let view = View::read(size, place, hidden, moves)?;
+            // One at a time: each takes a processor, and memory for its cells.
+            let _turn = studio.looking.lock().unwrap_or_else(PoisonError::into_inner);
+            sight::sight((job.walk(), job.geometry()), &view, goes_on)
+        }
         ["geometry", _, level, chunks] => {
             let (geometry, walk) = (job.geometry(), job.walk());
-            let level = match level {
-                "fine" => None,
-                level => Some(level.parse().ok()?),
-            };
-            let vertices = |chunk: usize| match level {
-                Some(level) => geometry.vertices(walk, level, chunk),
-                None => geometry.fine(walk, chunk),
-            };
+            let level = level.parse().ok()?;
+            let vertices = |chunk: usize| geometry.vertices(walk, level, chunk);
             match chunks.split_once('-') {
                 None => vertices(chunks.parse().ok()?),
                 Some((from, to)) => {

@@ -167,6 +167,8 @@ pub(crate) struct Studio {
     uploads: files::Uploads,
     /// Held by the one whose upload is being taken.
     uploading: tokio::sync::Mutex<()>,
+    /// Held by the one for whom a view is looked at.
+    looking: Mutex<()>,
     /// How many pages there were.
     pages: AtomicU64,
     /// Which page that is open keeps a draft, by the names of the drafts.
@@ -210,6 +212,7 @@ impl Studio {
             sockets: Arc::new(Semaphore::new(SOCKETS)),
             uploads: files::Uploads::default(),
             uploading: tokio::sync::Mutex::default(),
+            looking: Mutex::default(),
             pages: AtomicU64::default(),
             drafting: Mutex::default(),
             jobs: Jobs::new(own),

@@ -206,8 +206,11 @@ fn the_geometry_is_that_of_the_moves() {
         (walk["deviation"].as_f64().unwrap() - largest).abs() < 1e-7 && largest > 0.0,
         "{largest}"
     );
-    let fine = studio.get(&format!("/geometry/{revision}/fine/0"));
-    assert!(walk["fine"] == 0.000_125 && fine.len() > vertices.len(), "{}", walk["fine"]);
+    // From above, a pixel a millimetre, with the zero point in the middle of the window.
+    let view = "400,300/1,0,0,0,-1,0,0,0,-1,200,150,0/0/all";
+    let sight = studio.get(&format!("/geometry/{revision}/sight/{view}"));
+    assert_eq!((&sight[..4], &sight[4..8]), (&[1, 0, 0, 0][..], &[0; 4][..]));
+    assert!(sight.len() > 12 + 32, "{}", sight.len());
     for path in [
         "fine/1", "fine/x", "0/99", "9/0", "x/0", "0/-1", "0/0/0", "index/0", "0/1-9", "0/0-0",
         "0/1-0", "0/-1-1", "0/0-", "0/0-1-2", "9/0-1",
