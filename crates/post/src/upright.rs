@@ -18,16 +18,13 @@ pub(crate) fn check(program: &Program, machine: &Machine) -> Result<(), Box<Diag
     }
     let poses = program.records.iter().filter_map(|record| Some((record.line, record.op.pose()?)));
     let tilted = poses.filter(|(_, pose)| !same(pose.axis(), Vec3::Z));
-    let tilted = tilted.map(|(line, pose)| (line, pose.axis().angle_between(Vec3::Z).to_degrees()));
-    let (mut count, mut most, mut first) = (0u32, 0.0f64, 0);
+    let mut tilted =
+        tilted.map(|(line, pose)| (line, pose.axis().angle_between(Vec3::Z).to_degrees()));
+    let Some((first, mut most)) = tilted.next() else { return Ok(()) };
+    let mut found = Diagnostic::error(Rule::UnreachableOrientation, "").line(first);
     for (line, degrees) in tilted {
-        if count == 0 {
-            first = line;
-        }
-        (count, most) = (count.saturating_add(1), most.max(degrees));
-    }
-    if count == 0 {
-        return Ok(());
+        found.again(line);
+        most = most.max(degrees);
     }
     let message = format!(
         "five-axis toolpath, three-axis machine: the toolpath tilts the tool by up to {most:.3}° from Z, and \
@@ -37,8 +34,7 @@ pub(crate) fn check(program: &Program, machine: &Machine) -> Result<(), Box<Diag
         "choose a machine with rotary axes, such as {}; or post the operations alone whose tool stands upright",
         with_rotary_axes(machine)
     );
-    let found = Diagnostic::error(Rule::UnreachableOrientation, message).help(help).line(first);
-    Err(Box::new(Diagnostic { count, ..found }))
+    Err(Box::new(Diagnostic { message, ..found.help(help) }))
 }
 
 /// Some machines of the library that turn the tool or the part, those of the same control first.

@@ -28,6 +28,9 @@ export type Tab = "findings" | "verdict" | "plots";
 /** The lines of all that a finding stands for. */
 export const placesOf = ({ line, places }: Pick<Finding, "line" | "places">): number[] => (line === 0 ? [] : [line, ...places.filter((other) => other !== line)]);
 
+/** What tells it from others, also in the list of another posting. */
+const nameOf = ({ rule, message, file, line, column }: Finding): string => JSON.stringify([rule, message, file, line, column]);
+
 /** A point of which nobody knows a coordinate is none. */
 export function vector(coordinates: (number | null)[]): Vector | null {
     const known = coordinates.filter((coordinate) => coordinate !== null);
@@ -61,8 +64,14 @@ export class Screen {
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
     /** Of a program or a source in several files, the one that is shown; null: the first. */
     readonly files: Record<"program" | "source", Signal<string | null>> = { program: signal(null), source: signal(null) };
-    /** Number of the finding that was led to last, and of its place among those of that finding. */
-    readonly finding: Signal<number> = signal(-1);
+    /** The finding that was led to last. */
+    private readonly led: Signal<{ number: number; found: string }> = signal({ number: -1, found: "" });
+    /** Its number among those that there are now, -1 where it is gone, and that of its place among those of that finding. */
+    readonly finding = computed(() => {
+        const { number, found } = this.led.value;
+        const all = this.studio.findings.value.map(nameOf);
+        return all[number] === found ? number : all.indexOf(found);
+    });
     readonly findingPlace: Signal<number> = signal(0);
     readonly player: Player;
 
@@ -375,7 +384,7 @@ export class Screen {
         if (found === undefined) return;
         const places = placesOf(found);
         const at = (which + places.length) % Math.max(1, places.length);
-        this.finding.value = number;
+        this.led.value = { number, found: nameOf(found) };
         this.findingPlace.value = at;
         this.tab.value = "findings";
         const line = places[at];

@@ -120,6 +120,9 @@ fn a_five_axis_toolpath_on_a_three_axis_machine_is_called_that() {
     assert_eq!(said.err.matches("error[").count(), 1, "{}", said.err);
     let way_out = "= choose a machine with rotary axes, such as `linuxcnc-xyzac`, `linuxcnc-xyzbc-head`, `linuxcnc-xyzbc`, ";
     assert!(said.err.contains(way_out), "{}", said.err);
+    let command = ["post", "part.cls", "-m", "generic-3axis-linuxcnc", "-o", "part.ngc", "--json"];
+    let answer: serde_json::Value = serde_json::from_str(&folder.run(&command).out).unwrap();
+    assert_eq!(answer["errors"][0]["places"], serde_json::json!([11]));
 }
 
 /// A line of `[words]` for each of them.
