@@ -302,7 +302,8 @@ mod tests {
         };
         let at = |degrees: f64| Op::Rapid(Pose::new(Vec3::ZERO, lean(degrees)).unwrap());
         let ways_in = |tops: &Tops, degrees: f64| tops.ways_in(lean(degrees)).collect::<Vec<_>>();
-        let tops = Tops::of(&program([at(0.0), at(40.0), Op::Home, at(90.0), Op::Home, at(0.0)]));
+        let comes_in = program([at(0.0), at(40.0), Op::Home, at(90.0), Op::Home, at(0.0)]);
+        let tops = Tops::of(&comes_in);
         assert_eq!(ways_in(&tops, 0.0), []);
         assert_eq!(ways_in(&tops, 20.0), [lean(0.0)]);
         assert_eq!(ways_in(&tops, 40.0), [lean(0.0), lean(90.0)]);
