@@ -2,7 +2,7 @@
 //!
 //! The moves are drawn as exactly as this view shows it into cells of a third of a pixel, the nearest over the others, and the lines that are seen in at least one
 //! cell are answered: as many as the window has cells at the most, however many moves there are. What is out of sight is not followed: chunks and moves by their
-//! boxes, arcs by halves. Of turns that lie within [`ALIKE`] of one another in the picture the nearest alone is drawn. Rapids, which are dashed, hide one another alone.
+//! boxes, arcs by halves. Of turns that lie within `ALIKE` of one another in the picture the nearest alone is drawn. Rapids, which are dashed, hide one another alone.
 //!
 //! ```text
 //! asked     SIZE/PLACE/HIDDEN/MOVES: width and height of the window, pixels (`686,345`); twelve numbers `rx,ry,rz,dx,dy,dz,ax,ay,az,x,y,z` by which

@@ -20,6 +20,9 @@ class LinuxCNC(Fanuc):
             if code in codes:
                 codes.remove(code)
                 words = {letter: v for letter, v in words.items() if letter not in "PQ"}
+        # I, J and K from the start of the arc, as they are read here; G90.1 is not known.
+        if 91.1 in codes:
+            codes.remove(91.1)
         for function in (428, 429):
             if function in functions:
                 functions.remove(function)

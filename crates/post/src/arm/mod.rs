@@ -479,7 +479,6 @@ impl<'a> Walk<'a> {
 
     fn change_tool(&mut self, tool: &Tool, line: u32) -> Outcome {
         self.limits.tool(tool, line)?;
-        (self.spindle, self.coolant) = (Spindle::Off, Coolant::Off);
         let by_hand = self.cell.tool_change.is_empty();
         let held = self.held.replace(tool.number);
         if by_hand && !self.changes && held.is_none() {

@@ -184,7 +184,6 @@ impl Walk<'_> {
                 self.push(line, Step::Tool(tool.clone()));
                 self.state.tool_length = tool.length;
                 self.radius = tool.cutting_radius();
-                (self.state.spindle, self.state.coolant) = (Spindle::Off, Coolant::Off);
                 self.here = None;
             }
             Op::Dwell(seconds) => self.push(line, Step::Dwell(*seconds)),

@@ -1,11 +1,11 @@
 //! Robots: a toolpath posted on a KUKA, proven, and what the proof finds of damages to the program.
 
 use crate::files::root;
-use crate::robot::{JOB, proof_of, proven, refused, source};
+use crate::robot::{JOB, proof_of, proven, refused, source, written};
 use control::{Action, ArmAction, ArmPath, Dialect, Event};
 use geom::Vec3;
 use machine::Machine;
-use program::{CompensatedPath, Program};
+use program::{CompensatedPath, Op, Program};
 
 fn kuka() -> Machine {
     machine::load("kuka-kr6-r900").unwrap()
@@ -639,5 +639,43 @@ fn a_dwell_in_turns_is_as_long_as_its_word_says_it() {
         let report = proof_of(&source, &machine, &text.replacen(dwell, longer, 1));
         let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{text}"));
         assert_eq!(found.rule.name(), "dwell", "{found}");
+    }
+}
+
+/// What the source switches on before a tool is called, or where it calls none, is on in the cuts, as on mills: a tool change stops spindle and coolant, and they start again.
+#[test]
+fn spindle_and_coolant_that_stand_before_the_tool_are_on_in_its_cuts() {
+    let on = "SPINDL/RPM,9000,CLW\nCOOLNT/FLOOD\n";
+    let cut = |x: u32| {
+        format!(
+            "RAPID\nGOTO/{x},50,65\nRAPID\nGOTO/{x},50,5\nFEDRAT/MMPM,300\nGOTO/{x},50,0\nGOTO/{x},60,0\nRAPID\nGOTO/{x},60,65\n"
+        )
+    };
+    let [first, second] = [1, 2].map(|tool| format!("LOADTL/{tool},LENGTH,50\n"));
+    let job = |parts: &[&str]| {
+        source(&format!("PARTNO/JOB\nUNITS/MM\n{}SPINDL/OFF\nCOOLNT/OFF\nFINI\n", parts.concat()))
+    };
+    for name in ["universal-ur10e", "kuka-kr6-r900", "abb-irb120-mill", "fanuc-lrmate-200id-mill"] {
+        let machine = machine::load(name).unwrap();
+        let behind = job(&[&first, on, &cut(100), &second, on, &cut(120)]);
+        let before = job(&[on, &first, &cut(100), &second, &cut(120)]);
+        let text = proven(&behind, &machine);
+        assert_eq!(proven(&before, &machine), text, "{name}");
+        let none = job(&[on, &cut(100)]);
+        proven(&none, &machine);
+        // The programs that were written before: the cuts with the spindle, or the coolant, off.
+        let is_spindle = |op: &Op| matches!(op, Op::Spindle(_));
+        let is_coolant = |op: &Op| matches!(op, Op::Coolant(_));
+        for (job, switches, rule) in [
+            (&before, &is_spindle as &dyn Fn(&Op) -> bool, "spindle"),
+            (&before, &is_coolant, "coolant"),
+            (&none, &is_spindle, "spindle"),
+        ] {
+            let mut left = job.clone();
+            left.records.retain(|record| !switches(&record.op));
+            let without = written(&left, &machine).unwrap();
+            let report = proof_of(job, &machine, &without);
+            assert_eq!(report.mismatches[0].rule.name(), rule, "{name}");
+        }
     }
 }
