@@ -212,8 +212,21 @@ fn the_geometry_is_that_of_the_moves() {
     assert_eq!((&sight[..4], &sight[4..8]), (&[1, 0, 0, 0][..], &[0; 4][..]));
     assert!(sight.len() > 12 + 32, "{}", sight.len());
     for path in [
-        "fine/1", "fine/x", "0/99", "9/0", "x/0", "0/-1", "0/0/0", "index/0", "0/1-9", "0/0-0",
-        "0/1-0", "0/-1-1", "0/0-", "0/0-1-2", "9/0-1",
+        "fine/0",
+        "sight/400,300",
+        "0/99",
+        "9/0",
+        "x/0",
+        "0/-1",
+        "0/0/0",
+        "index/0",
+        "0/1-9",
+        "0/0-0",
+        "0/1-0",
+        "0/-1-1",
+        "0/0-",
+        "0/0-1-2",
+        "9/0-1",
     ] {
         let (status, ..) = studio.request(&format!("GET /geometry/{revision}/{path}"), "", b"");
         assert_eq!(status, 404, "{path}");
@@ -782,7 +795,7 @@ fn a_source_that_the_machine_cannot_cut_is_shown_without_a_program() {
             job["machine"]["axes"].as_array().unwrap().len(),
             "{machine}: {place}"
         );
-        for chunk in ["index", "0/0", "fine/0"] {
+        for chunk in ["index", "0/0", "sight/400,300/1,0,0,0,-1,0,0,0,-1,200,150,0/0/all"] {
             assert!(!studio.get(&format!("/geometry/{}/{chunk}", job["revision"])).is_empty());
         }
         studio.get(&format!("/moves/{}/0", job["revision"]));
