@@ -416,7 +416,8 @@ export class Studio {
         this.edited.value = null;
         await this.keeping.rest();
         await this.dropOwn();
-        await this.post(work);
+        // Something else may have been opened meanwhile, and stays.
+        if (this.work.value === work) await this.post(work);
     }
 
     /** Goes on with an edit that was kept. */

@@ -13,8 +13,10 @@ export function Machines({ screen, close }: { screen: Screen; close(): void }) {
     useEffect(() => {
         // A machine file may have come into the folder.
         void studio.seam.ask("machines", {}).then(({ done }) => (studio.machines.value = done));
-        // What cannot be read says so when it is posted.
-        if (source !== undefined) void studio.seam.ask("command", { source, machine: null }).then(({ done }) => (command.value = done), () => {});
+        if (source === undefined) return;
+        const ask = () => studio.seam.ask("command", { source, machine: null }).then(({ done }) => void (command.value = done));
+        // The form may ask the same meanwhile, which ends this one. What cannot be read says so when it is posted.
+        void ask().catch(ask).catch(() => {});
     }, []);
     const rank = ({ kind }: MachineEntry): number => (fits(kind, command.value) ? 0 : 1);
     const machines = studio.machines.value.toSorted((a, b) => rank(a) - rank(b));

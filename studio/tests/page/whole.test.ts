@@ -415,6 +415,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
             await page.getByText(verdict).waitFor();
             expect(await page.getByTitle("Open a source (Ctrl O)").innerText()).toBe("theirs.cls");
             await page.getByRole("button", { name: "Discard" }).click();
+            await page.locator(".program h2", { hasText: "mine.nc" }).waitFor({ state: "detached" });
             await proven(page);
         }
     });
