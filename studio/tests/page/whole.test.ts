@@ -523,7 +523,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
             return data;
         }, readFileSync(example("plate.cls"), "utf8"));
         await page.dispatchEvent(".canvas", "drop", { dataTransfer: dropped });
-        await page.getByRole("button", { name: "dropped.cls" }).waitFor();
+        await page.getByRole("button", { name: "dropped.cls", exact: true }).waitFor();
         await proven(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
