@@ -36,6 +36,7 @@ use program::{
 use report::Report;
 use statement::{Joiner, Line, Lines, is_blank};
 use std::cell::Cell;
+use std::f64::consts::PI;
 use technology::FeedUnit;
 
 /// How to read.
@@ -177,6 +178,24 @@ struct Early {
     diameter: Option<f64>,
 }
 
+/// A surface speed, which holds for the tools to come as well.
+#[derive(Clone, Copy)]
+struct SurfaceSpeed {
+    /// Line that gives it.
+    line: u32,
+    /// mm/min.
+    speed: f64,
+    /// `MAXRPM`, 1/min.
+    max: f64,
+}
+
+impl SurfaceSpeed {
+    /// The spindle speed in 1/min on `diameter` mm.
+    fn on(self, diameter: f64) -> f64 {
+        (self.speed / (PI * diameter)).min(self.max)
+    }
+}
+
 /// What has been read, and what holds.
 struct Reader {
     report: Report,
@@ -223,6 +242,10 @@ struct Reader {
     spindle: Spindle,
     /// The last that turned, for `SPINDL/ON`.
     last_spindle: Option<Spindle>,
+    /// The surface speed that it was resolved from, where it was.
+    surface: Option<SurfaceSpeed>,
+    /// The record of the tool whose speed is still to be found from it.
+    speed_due: Option<usize>,
     /// The last kind, for `COOLNT/ON`.
     last_coolant: Coolant,
     /// Which path the coordinates behind `CUTCOM` are, where the options say it.
@@ -294,6 +317,8 @@ impl Reader {
             feed_unit: FeedUnit::PerMinute,
             spindle: Spindle::Off,
             last_spindle: None,
+            surface: None,
+            speed_due: None,
             // Coolant as such is flood.
             last_coolant: Coolant::Flood,
             cutcom: options.cutcom,

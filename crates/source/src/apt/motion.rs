@@ -263,6 +263,8 @@ impl Reader {
             self.report.warn(statement, Rule::ToolNumber, message, help);
             self.change_tool(line, tool);
         }
+        self.settle_surface_speed()?;
+        self.speed_due = None;
         self.tool_record = None;
         let wanted = std::mem::take(&mut self.next_tool.name);
         let both_named = !wanted.is_empty() && !self.tool.name.is_empty();

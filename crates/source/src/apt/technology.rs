@@ -3,10 +3,9 @@
 use super::report::{Fault, Outcome};
 use super::statement::{Field, Statement};
 use super::text::decode;
-use super::{Reader, Ready};
+use super::{Reader, Ready, SurfaceSpeed};
 use geom::INCH;
 use program::{Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record, Rule, Spindle, Tool};
-use std::f64::consts::PI;
 
 /// The largest number of a tool or an offset.
 const MAX_NUMBER: f64 = 99_999_999.0;
@@ -171,14 +170,24 @@ impl Reader {
         let rpm = match (speed, self.last_spindle) {
             (Some((field, value)), _) => {
                 let max = max.map_or(f64::INFINITY, |(_, max)| max);
-                let rpm = self.speed(value, surface).map_err(|fault| fault.fields(field, 1))?;
-                if rpm > max && surface.is_none() {
-                    let message = format!("a speed of {rpm} 1/min above its MAXRPM of {max}");
-                    return Err(Fault::new(Rule::Spindle, message)
-                        .help("give the lower of the two as speed")
-                        .fields(field, 1));
+                if !(0.0..=1e7).contains(&value) {
+                    let message = format!("{value:e} is no spindle speed");
+                    return Err(Fault::new(Rule::Spindle, message).fields(field, 1));
                 }
-                rpm.min(max)
+                let line = statement.line;
+                self.surface = surface.map(|mm| SurfaceSpeed { line, speed: value * mm, max });
+                match self.surface {
+                    Some(surface) => {
+                        self.on_the_tool(surface).map_err(|fault| fault.fields(field, 1))?
+                    }
+                    None if value > max => {
+                        let message = format!("a speed of {value} 1/min above its MAXRPM of {max}");
+                        return Err(Fault::new(Rule::Spindle, message)
+                            .help("give the lower of the two as speed")
+                            .fields(field, 1));
+                    }
+                    None => value,
+                }
             }
             (None, Some(last)) => speed_of(last),
             (None, None) => return Err(Fault::new(Rule::Malformed, "a speed is missing")),
@@ -191,22 +200,64 @@ impl Reader {
         self.turn(statement, spindle)
     }
 
-    /// A speed in 1/min; with `surface`, a surface speed of so many mm a unit.
-    fn speed(&self, value: f64, surface: Option<f64>) -> Result<f64, Box<Fault>> {
-        if !(0.0..=1e7).contains(&value) {
-            return Err(Fault::new(Rule::Spindle, format!("{value:e} is no spindle speed")));
-        }
-        let Some(mm) = surface else { return Ok(value) };
+    /// `surface` in 1/min, on the tool that is meant.
+    fn on_the_tool(&self, surface: SurfaceSpeed) -> Result<f64, Box<Fault>> {
         // A description that no LOAD has taken yet is of the tool to come.
         let diameter = match self.tool_record {
             Some(_) => self.tool.diameter,
             None => self.next_tool.diameter.or(self.tool.diameter),
         };
         match diameter {
-            Some(diameter) if diameter > 0.0 => Ok(value * mm / (PI * diameter)),
+            Some(diameter) if diameter > 0.0 => Ok(surface.on(diameter)),
             _ => Err(Fault::new(Rule::Spindle, "a surface speed needs the diameter of the tool")
                 .help("add CUTTER/ or TLDATA/ before it, or give the speed in RPM")),
         }
+    }
+
+    /// Before the first motion with a tool: a surface speed that an earlier statement gave means another speed of the
+    /// spindle on it.
+    pub(super) fn settle_surface_speed(&mut self) -> Outcome {
+        let (Some(surface), Some(index), Some(last)) =
+            (self.surface, self.speed_due, self.last_spindle)
+        else {
+            return Ok(());
+        };
+        let Some(diameter) = self.tool.diameter.filter(|diameter| *diameter > 0.0) else {
+            if self.spindle == Spindle::Off {
+                // `SPINDL/ON` has no speed to go on with.
+                self.last_spindle = None;
+                return Ok(());
+            }
+            let message = format!(
+                "the surface speed of line {} needs the diameter of tool {}",
+                surface.line, self.tool.number
+            );
+            return Err(Fault::new(Rule::Spindle, message)
+                .help("add CUTTER/ behind its LOAD, or give its speed in RPM"));
+        };
+        let (rpm, old) = (surface.on(diameter), speed_of(last));
+        if rpm == old {
+            return Ok(());
+        }
+        let turning = |spindle| match spindle {
+            Spindle::Off => Spindle::Off,
+            Spindle::Clockwise(_) => Spindle::Clockwise(rpm),
+            Spindle::CounterClockwise(_) => Spindle::CounterClockwise(rpm),
+        };
+        (self.last_spindle, self.spindle) = (Some(turning(last)), turning(self.spindle));
+        let mut said = false;
+        for record in &mut self.program.records[index..] {
+            if let Op::Spindle(spindle) = &mut record.op
+                && speed_of(*spindle) == old
+            {
+                (*spindle, said) = (turning(*spindle), true);
+            }
+        }
+        if !said && self.spindle != Spindle::Off {
+            let record = Record { line: surface.line, op: Op::Spindle(self.spindle) };
+            self.program.records.insert(index + 1, record);
+        }
+        Ok(())
     }
 
     fn turn(&mut self, statement: &Statement, spindle: Spindle) -> Outcome {
@@ -380,7 +431,7 @@ impl Reader {
     /// As [`Reader::change_tool`], before the record with number `index`.
     fn change_tool_at(&mut self, index: usize, line: u32, tool: Tool) {
         self.tool = tool.clone();
-        self.tool_record = Some(index);
+        (self.tool_record, self.speed_due) = (Some(index), Some(index));
         self.ready = Ready::No;
         self.program.records.insert(index, Record { line, op: Op::Tool(Box::new(tool)) });
     }
@@ -544,6 +595,9 @@ impl Reader {
                 .fields(1 - number, 1));
         }
         let value = statement.number(number, "the dwell")?;
+        if turns {
+            self.settle_surface_speed()?;
+        }
         let seconds = self.dwell(value, turns).map_err(|fault| fault.fields(number, 1))?;
         self.push(statement.line, Op::Dwell(seconds));
         Ok(())

@@ -79,6 +79,53 @@ fn spindles_come_in_every_order_and_by_surface_speed() {
     assert_eq!(error("SPINDL/100,FAST"), "malformed");
 }
 
+/// 150 m/min are 11937 1/min on 4 mm, 3979 on 12 mm and 955 on 50 mm.
+#[test]
+fn a_surface_speed_means_another_speed_on_each_tool() {
+    let speeds = |text: &str| {
+        let text = format!("CUTTER/4\nSPINDL/SMM,150,CCLW{text}\nRAPID\nGOTO/1,2,9");
+        let ops = ops(&text);
+        let rpm = |op: &Op| match op {
+            Op::Tool(tool) => Some(-f64::from(tool.number)),
+            Op::Spindle(Spindle::CounterClockwise(rpm)) => Some(rpm.round()),
+            Op::Spindle(Spindle::Off) => Some(0.0),
+            _ => None,
+        };
+        ops.iter().filter_map(rpm).collect::<Vec<f64>>()
+    };
+    let next = "\nRAPID\nGOTO/0,0,9";
+    let cases: [(String, &[f64]); 10] = [
+        (format!("{next}\nCUTTER/12\nLOAD/TOOL,2"), &[11937., -2., 3979.]),
+        (format!("{next}\nLOAD/TOOL,2\nCUTTER/12"), &[11937., -2., 3979.]),
+        (format!("{next}\nLOAD/TOOL,2\nCUTTER/4"), &[11937., -2.]),
+        (format!("{next}\nCUTTER/12\nSPINDL/CCLW\nLOAD/TOOL,2"), &[11937., 11937., -2., 3979.]),
+        (format!("{next}\nLOAD/TOOL,2\nCUTTER/12\nSPINDL/ON"), &[11937., -2., 3979.]),
+        (format!("{next}\nSPINDL/OFF\nLOAD/TOOL,2\nCUTTER/12"), &[11937., 0., -2.]),
+        (
+            format!("{next}\nSPINDL/OFF\nLOAD/TOOL,2\nCUTTER/12{next}\nSPINDL/ON"),
+            &[11937., 0., -2., 3979.],
+        ),
+        (
+            format!("{next}\nCUTTER/12\nLOAD/TOOL,2{next}\nCUTTER/50\nLOAD/TOOL,3"),
+            &[11937., -2., 3979., -3., 955.],
+        ),
+        (format!(",MAXRPM,5000{next}\nCUTTER/12\nLOAD/TOOL,2"), &[5000., -2., 3979.]),
+        (
+            format!("{next}\nSPINDL/700,RPM,CCLW{next}\nCUTTER/12\nLOAD/TOOL,2"),
+            &[11937., 700., -2.],
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(speeds(&text), expected, "{text}");
+    }
+    let head = "CUTTER/4\nSPINDL/SMM,150,CLW\nRAPID\nGOTO/0,0,9\n";
+    assert_eq!(error(&format!("{head}LOAD/TOOL,2\nRAPID\nGOTO/0,0,9")), "spindle");
+    assert_eq!(
+        error(&format!("{head}SPINDL/OFF\nLOAD/TOOL,2\nRAPID\nGOTO/0,0,9\nSPINDL/ON")),
+        "malformed"
+    );
+}
+
 #[test]
 fn maxrpm_caps_a_surface_speed_and_the_gear_range_is_named() {
     let speed = |text: &str| {
