@@ -203,8 +203,8 @@ struct Walk<'a> {
     last_line: u32,
     /// Whether the source calls tools of more than one number.
     changes: bool,
-    /// Number of the tool that is in the spindle.
-    held: Option<u32>,
+    /// The tool that is in the spindle.
+    held: Option<&'a Tool>,
     /// The name of the program.
     name: String,
     /// Lines of the files before this one.
@@ -297,7 +297,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The whole program in one file; how large it is.
-    fn all(&mut self, steps: &[Step], progress: &dyn Progress) -> Outcome<Size> {
+    fn all(&mut self, steps: &[Step<'a>], progress: &dyn Progress) -> Outcome<Size> {
         let mut pulse = Pulse::new(progress, steps.len(), STEPS_AT_ONCE);
         self.start(BlockName::ProgramStart)?;
         let is_bounded = !parts::bounds(self.machine).hold(&Size::MOST);
@@ -313,7 +313,7 @@ impl<'a> Walk<'a> {
     }
 
     /// One step of it.
-    fn step(&mut self, steps: &[Step], index: usize) -> Outcome {
+    fn step(&mut self, steps: &[Step<'a>], index: usize) -> Outcome {
         let (line, done) = match &steps[index] {
             Step::Act(act, line, record) => {
                 self.writer.is_for(Some(*record));
@@ -381,7 +381,7 @@ impl<'a> Walk<'a> {
         Ok(self.size())
     }
 
-    fn act(&mut self, act: Act, line: u32) -> Outcome {
+    fn act(&mut self, act: Act<'a>, line: u32) -> Outcome {
         match act {
             Act::Tool(tool) => self.change_tool(tool, line),
             Act::Home => self.home(),
@@ -477,22 +477,37 @@ impl<'a> Walk<'a> {
         self.set_each(words, load.center.to_array());
     }
 
-    fn change_tool(&mut self, tool: &Tool, line: u32) -> Outcome {
+    fn change_tool(&mut self, tool: &'a Tool, line: u32) -> Outcome {
         self.limits.tool(tool, line)?;
         let by_hand = self.cell.tool_change.is_empty();
-        let held = self.held.replace(tool.number);
+        let held = self.held.replace(tool);
+        let stays = by_hand && held.is_some_and(|held| held.number == tool.number);
         if by_hand && !self.changes && held.is_none() {
             return self.load(tool);
+        }
+        if stays && self.tool != self.cell.tool(tool.length) {
+            let [before, now] = [held.and_then(|held| held.length), tool.length].map(|length| {
+                match length.or(self.cell.tool_length) {
+                    Some(mm) => format!("{mm} mm"),
+                    None => String::from("a length that nothing states"),
+                }
+            });
+            let message = format!(
+                "tool {} is called with {now}, and has been called with {before}: it is in the spindle still",
+                tool.number
+            );
+            let help = "the same LENGTH in each call of this tool (a call without it counts as `tool_length` below [cell]), or another number for another tool";
+            return Err(Diagnostic::error(Rule::ToolTwice, message).help(help).into());
         }
         self.begin()?;
         self.home()?;
         self.switch_off()?;
-        if !by_hand || held != Some(tool.number) {
+        if !stays {
             self.writer.set(WordName::T, f64::from(tool.number));
             self.scope.tool = crate::template::tool_value(self.machine, tool, held.is_none(), None);
             self.required(if by_hand { BlockName::ToolByHand } else { BlockName::ToolChange })?;
         }
-        if by_hand && held != Some(tool.number) {
+        if by_hand && !stays {
             let message = "the program stops at home for each tool, which is put into the spindle by hand: the machine file names no program \
                            that changes it";
             let help = "`tool_change` below [cell], where a program changes tools";

@@ -56,7 +56,7 @@ impl Size {
     }
 }
 
-impl Walk<'_> {
+impl<'a> Walk<'a> {
     /// What the file has that is being written.
     pub(super) fn size(&self) -> Size {
         let lines = match self.writer.has(&[WordName::N]) {
@@ -81,7 +81,7 @@ impl Walk<'_> {
     /// Between two places where it may be divided it has more than a file takes; the control has no call.
     pub(super) fn divided(
         &mut self,
-        steps: &[Step],
+        steps: &[Step<'a>],
         borders: &[Border],
         whole: Size,
         progress: &dyn Progress,

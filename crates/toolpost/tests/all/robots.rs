@@ -439,6 +439,34 @@ fn two_tools() -> String {
     JOB.replace("FINI", "LOADTL/2,LENGTH,60\nSPINDL/RPM,6000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI")
 }
 
+/// The tool stays in the spindle, so it cannot be longer from a call of the same number on; a program of the operator's may have put another one in.
+#[test]
+fn a_tool_that_stays_in_the_spindle_and_is_called_with_another_length_is_refused() {
+    let again = |first: &str, second: &str| {
+        let call =
+            format!("LOADTL/1{second}\nRAPID\nGOTO/0,0,50\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI");
+        source(&JOB.replace("LOADTL/1", &format!("LOADTL/1{first}")).replace("FINI", &call))
+    };
+    // The cell says 50 mm where the source states nothing.
+    for (first, second, lengths) in [
+        ("", ",LENGTH,46", Some(["46 mm", "50 mm"])),
+        (",LENGTH,46", "", Some(["50 mm", "46 mm"])),
+        ("", ",LENGTH,50", None),
+        (",LENGTH,46", ",LENGTH,46", None),
+    ] {
+        let source = again(first, second);
+        let Some([now, before]) = lengths else {
+            proven(&source, &kuka());
+            continue;
+        };
+        let found = &post::write(&source, &kuka()).unwrap_err()[0];
+        assert_eq!((found.rule.name(), found.line), ("tool-twice", 15), "{found}");
+        let says = format!("is called with {now}, and has been called with {before}");
+        assert!(found.message.contains(&says), "{found}");
+        proven(&source, &kuka_with_tool_change());
+    }
+}
+
 #[test]
 fn tools_are_put_in_by_hand_at_a_stop_where_no_program_changes_them() {
     let robots = [
