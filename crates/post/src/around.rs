@@ -1,7 +1,28 @@
 //! What the source says before and behind the record at hand. Records come in their order, and each answer is kept for as long as it
 //! holds: however often somebody asks, each record is looked at a few times altogether.
 
-use program::{Op, Pose, Record, Spindle, Tool};
+use geom::Vec3;
+use program::{Diagnostic, Op, Pose, Record, Rule, Spindle, Tool};
+
+/// How far off the tool axis a cut may end that has drawn the tool back along it, mm.
+const ALONG: f64 = 1e-3;
+
+/// The source `ends`, or changes the tool, in the cut: the tool is drawn back along its axis, which nobody has asked for.
+pub(crate) fn ends_in_cut(ends: &str) -> Diagnostic {
+    let message = format!(
+        "the tool is in the cut where the source {ends}: it goes out along its axis from there"
+    );
+    let help = "retract in the toolpath; a file that ends in a cut may be cut off";
+    Diagnostic::warning(Rule::EndsInCut, message).help(help)
+}
+
+/// The source stops the program in the cut.
+pub(crate) fn stops_in_cut() -> Diagnostic {
+    let message = "the program stops for somebody while the tool is in the cut: the spindle would have to stop there, too";
+    let help =
+        "draw the tool back in the toolpath before STOP or OPSTOP, by rapid or along the tool axis";
+    Diagnostic::error(Rule::StopInCut, message).help(help)
+}
 
 /// What is known of the records around the one at hand, whose index never becomes less.
 #[derive(Debug, Default)]
@@ -67,7 +88,7 @@ impl Around {
     }
 
     /// The last motion, tool change, home position or change of the work offset before the record at hand, and the pose before it.
-    pub(crate) fn last_motion<'r>(
+    fn last_motion<'r>(
         &mut self,
         records: &'r [Record],
         index: usize,
@@ -82,6 +103,17 @@ impl Around {
         }
         self.seen = self.seen.max(index);
         Some((records.get(self.last?)?, self.before.and_then(pose)))
+    }
+
+    /// Whether the last motion of the source is a cut that has not drawn the tool back along its axis.
+    pub(crate) fn stands_in_cut(&mut self, records: &[Record], index: usize) -> bool {
+        let Some((last, from)) = self.last_motion(records, index) else { return false };
+        let cut = matches!(last.op, Op::Line(_) | Op::Arc(_) | Op::Thread(_));
+        let (true, Op::Line(to)) = (cut, &last.op) else { return cut };
+        let Some(from) = from else { return true };
+        let way: Vec3 = to.point() - from.point();
+        let out = way.dot(to.axis());
+        out <= 0.0 || (way - to.axis() * out).length() > ALONG
     }
 
     /// The tool that is called before anything moves.

@@ -1,17 +1,14 @@
 //! Away from the part: for a stop of the program, for a tool change and at the end; and back to it.
 
+use crate::around::{ends_in_cut, stops_in_cut};
 use crate::catalogue::{BlockName, WordName};
 use crate::coordinate_mode::{Kind, Stop, rotary_word};
 use crate::template::LENGTH_OFFSET;
-use crate::walk::{Outcome, Walk, motion, refuse};
+use crate::walk::{Outcome, Walk, motion};
 use crate::words::{Words, bit};
-use geom::Vec3;
 use machine::plan::Step;
 use machine::{Mount, RotaryAxis};
-use program::{Coolant, Diagnostic, Op, Pose, Rule, Spindle};
-
-/// How far off the tool axis a cut may end that has drawn the tool back along it, mm.
-const ALONG: f64 = 1e-3;
+use program::{Coolant, Diagnostic, Pose, Spindle};
 
 /// How far the tool is drawn back along its axis before the control stops keeping its tip, mm.
 pub(crate) const DRAWN_BACK: f64 = 5.0;
@@ -25,9 +22,7 @@ impl Walk<'_> {
             return self.required(name);
         }
         if self.stands_in_cut() {
-            let message = "the program stops for somebody while the tool is in the cut: the spindle would have to stop there, too";
-            let help = "draw the tool back in the toolpath before STOP or OPSTOP, by rapid or along the tool axis";
-            return Err(refuse(Rule::StopInCut, message).help(help).into());
+            return Err(stops_in_cut().into());
         }
         self.uncompensated("a stop")?;
         if let Some(back) = self.position.known() {
@@ -64,25 +59,12 @@ impl Walk<'_> {
 
     /// Whether the last motion of the source is a cut that has not drawn the tool back along its axis.
     fn stands_in_cut(&mut self) -> bool {
-        let records = &self.source().records;
-        let Some((last, from)) = self.around.last_motion(records, self.index) else { return false };
-        let cut = matches!(last.op, Op::Line(_) | Op::Arc(_) | Op::Thread(_));
-        let (true, Op::Line(to)) = (cut, &last.op) else { return cut };
-        let Some(from) = from else { return true };
-        let way: Vec3 = to.point() - from.point();
-        let out = way.dot(to.axis());
-        out <= 0.0 || (way - to.axis() * out).length() > ALONG
+        self.around.stands_in_cut(&self.source().records, self.index)
     }
 
-    /// The source ends, or changes the tool, in the cut: the tool is drawn back along its axis, which nobody has asked for.
-    pub(crate) fn warn_of_cut(&mut self, where_to: &str) {
+    pub(crate) fn warn_of_cut(&mut self, ends: &str) {
         if self.wire.is_none() && self.position.is_located() && self.stands_in_cut() {
-            let message = format!(
-                "the tool is in the cut where the source {where_to}: it goes out along its axis from there"
-            );
-            let help = "retract in the toolpath; a file that ends in a cut may be cut off";
-            let found = Diagnostic::warning(Rule::EndsInCut, message).help(help);
-            self.findings.warn(found.line(self.line));
+            self.findings.warn(ends_in_cut(ends).line(self.line));
         }
     }
 

@@ -9,6 +9,7 @@ mod rail;
 mod rapid;
 pub(crate) mod reach;
 
+use crate::around::{Around, ends_in_cut, stops_in_cut};
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::template::{Scope, Templates, file_name, map, program_value};
@@ -23,7 +24,8 @@ use minijinja::value::Value;
 use parts::{Border, Size};
 use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
 use program::{
-    Coolant, Diagnostic, Op, Outcome, OutputValue, Program, Progress, Pulse, Rule, Spindle, Tool,
+    Coolant, Diagnostic, Op, Outcome, OutputValue, Program, Progress, Pulse, Record, Rule, Spindle,
+    Tool,
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::f64::consts::TAU;
@@ -58,9 +60,6 @@ fn is_on_edge(shown: f64) -> bool {
 
 /// After so many steps whoever waits is asked: some milliseconds at the most.
 const STEPS_AT_ONCE: u32 = 32;
-
-/// How far off the tool axis a cut may end that has drawn the tool back along it, mm.
-const ALONG: f64 = 1e-3;
 
 /// A tool that rises along Z by no less than this part of its way along itself stands upright: it leans by 5 degrees at the most.
 const UPRIGHT: f64 = 0.996;
@@ -179,6 +178,10 @@ struct Walk<'a> {
     sent: Sent,
     /// Whether contours have been offset.
     offsets: bool,
+    records: &'a [Record],
+    /// Of the record at hand.
+    index: usize,
+    around: Around,
     /// What the source wants in cuts.
     spindle: Spindle,
     coolant: Coolant,
@@ -197,8 +200,6 @@ struct Walk<'a> {
     points: u32,
     /// Whether the last motion has cut.
     is_cutting: bool,
-    /// Whether it has, and has not drawn the tool back along its axis.
-    is_in_cut: bool,
     /// The line of the last motion of the source.
     last_line: u32,
     /// Whether the source calls tools of more than one number.
@@ -275,6 +276,9 @@ impl<'a> Walk<'a> {
             rapids: RapidPlanner::new(program, machine, (arm, cell)),
             sent: Sent { feed: None, corner: None, spindle: Spindle::Off, coolant: Coolant::Off },
             offsets: false,
+            records: &program.records,
+            index: 0,
+            around: Around::default(),
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             tool: None,
@@ -285,7 +289,6 @@ impl<'a> Walk<'a> {
             table: Cutting::default(),
             points: 0,
             is_cutting: false,
-            is_in_cut: false,
             last_line: 0,
             changes: program.calls_several_tools(),
             held: None,
@@ -316,6 +319,7 @@ impl<'a> Walk<'a> {
     fn step(&mut self, steps: &[Step<'a>], index: usize) -> Outcome {
         let (line, done) = match &steps[index] {
             Step::Act(act, line, record) => {
+                self.index = *record;
                 self.writer.is_for(Some(*record));
                 (*line, self.act(*act, *line))
             }
@@ -337,12 +341,14 @@ impl<'a> Walk<'a> {
         done.map_err(|found| Box::new(if found.line == 0 { found.line(line) } else { *found }))
     }
 
-    /// Whether a cut draws the tool back along its axis.
-    fn draws_back(&self, motion: &Motion) -> bool {
-        let way = motion.end.tool.translation - self.here.tool.translation;
-        let axis = -motion.end.tool.matrix3.z_axis;
-        let aside = way.reject_from_normalized(axis).length();
-        motion.kind == Kind::Line && way.dot(axis) > 0.0 && aside <= ALONG
+    fn stands_in_cut(&mut self) -> bool {
+        self.around.stands_in_cut(self.records, self.index)
+    }
+
+    fn warn_of_cut(&mut self, ends: &str, line: u32) {
+        if self.stands_in_cut() {
+            self.findings.warn(ends_in_cut(ends).line(line));
+        }
     }
 
     /// The arm goes home, and everything is switched off.
@@ -351,6 +357,8 @@ impl<'a> Walk<'a> {
     /// It cannot, with the line of the last motion.
     fn finish(&mut self) -> Outcome {
         self.writer.is_for(None);
+        self.index = self.records.len();
+        self.warn_of_cut("ends", self.records.last().map_or(0, |record| record.line));
         let done = self.begin().and_then(|()| self.home()).and_then(|()| self.switch_off());
         done.map_err(|found| Box::new(found.line(self.last_line)))
     }
@@ -395,11 +403,7 @@ impl<'a> Walk<'a> {
                 if coolant == Coolant::Off { self.stop_coolant() } else { Ok(()) }
             }
             Act::Dwell(seconds) => self.dwell(seconds),
-            Act::Stop if self.is_in_cut => {
-                let message = "the program stops for somebody while the tool is in the cut: the spindle would have to stop there, too";
-                let help = "draw the tool back in the toolpath before STOP, by rapid or along the tool axis";
-                Err(Diagnostic::error(Rule::StopInCut, message).help(help).into())
-            }
+            Act::Stop if self.stands_in_cut() => Err(stops_in_cut().into()),
             Act::Stop => {
                 self.begin()?;
                 self.switch_off()?;
@@ -479,6 +483,7 @@ impl<'a> Walk<'a> {
 
     fn change_tool(&mut self, tool: &'a Tool, line: u32) -> Outcome {
         self.limits.tool(tool, line)?;
+        self.warn_of_cut("changes the tool", line);
         let by_hand = self.cell.tool_change.is_empty();
         let held = self.held.replace(tool);
         let stays = by_hand && held.is_some_and(|held| held.number == tool.number);
@@ -533,7 +538,7 @@ impl<'a> Walk<'a> {
         let Some(route) = self.rapids.route(&tool, [&self.here, &home]) else {
             return Err(self.no_way([&self.here, &home]).into());
         };
-        (self.is_cutting, self.is_in_cut) = (false, false);
+        self.is_cutting = false;
         self.follow(&route)
     }
 
@@ -692,7 +697,7 @@ impl<'a> Walk<'a> {
         let Some(route) = self.rapids.route(&tool, [&self.here, &motion.end]) else {
             return Err(self.no_way([&self.here, &motion.end]).into());
         };
-        (self.is_cutting, self.is_in_cut) = (false, false);
+        self.is_cutting = false;
         self.follow(&route)
     }
 
@@ -744,7 +749,6 @@ impl<'a> Walk<'a> {
         self.limits.feed(program::Feed::PerMinute(feed), self.spindle, line)?;
         self.turns_in_time(motion)?;
         self.is_cutting = true;
-        self.is_in_cut = !self.draws_back(motion);
         self.start_spindle()?;
         self.start_coolant()?;
         self.correct()?;

@@ -2,7 +2,7 @@
 //! the tool is home and comes back from there. Where it is in the cut, the program is refused.
 
 use geom::Vec3;
-use machine::library::{MACHINES, names};
+use machine::library::{MACHINES, ROBOTS, names};
 use machine::{Machine, load};
 use program::{Coolant, Feed, Op, Pose, Program, Spindle, Tool};
 
@@ -113,17 +113,51 @@ fn a_stop_in_the_cut_is_refused_with_its_line_and_the_way_out() {
     }
 }
 
+/// The groove, of which the source calls the next tool in the middle, and ends, with the tool in the cut.
+fn left_in_cut(machine: &Machine) -> Program {
+    let next = Op::Tool(Box::new(Tool { number: 2, length: Some(40.0), ..Tool::default() }));
+    let mut source = groove(machine, &[next, Op::Rapid(at(30.0, 5.0, 20.0))]);
+    let records = source.records.len();
+    source.records.remove(records - 2);
+    source
+}
+
+/// What is warned of the program's cuts, with lines.
+fn warned(output: &post::Output) -> Vec<(u32, String)> {
+    let found = output.warnings.iter().filter(|found| found.rule.name() == "ends-in-cut");
+    found.map(|found| (found.line, found.message.clone())).collect()
+}
+
+/// One rule for all machines: an arm says of the same source what a mill says, goes up along the tool, and stops the spindle at home.
+#[test]
+fn a_robot_warns_of_a_source_that_ends_or_changes_the_tool_in_the_cut_as_a_mill_does() {
+    let mill = load("generic-3axis-fanuc").unwrap();
+    let expected = warned(&post::write(&left_in_cut(&mill), &mill).unwrap());
+    assert_eq!(expected.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [9, 13]);
+    for machine in names(ROBOTS).map(|name| load(name).unwrap()) {
+        let source = left_in_cut(&machine);
+        let output = post::write(&source, &machine).unwrap();
+        assert_eq!(warned(&output), expected, "{}", machine.name);
+        let text = String::from_utf8(output.text).unwrap();
+        proven(&source, &machine, &text)
+            .unwrap_or_else(|why| panic!("{}: {why:?}\n{text}", machine.name));
+        // Out by feed along the tool, or by rapid.
+        for out in [Op::Line(at(30.0, 8.0, 20.0)), Op::Rapid(at(30.0, 8.0, 20.0))] {
+            let mut source = groove(&machine, &[]);
+            let last = source.records.len() - 2;
+            source.records[last].op = out;
+            assert_eq!(warned(&post::write(&source, &machine).unwrap()), [], "{}", machine.name);
+        }
+    }
+}
+
 /// The source ends, or calls the next tool, with the tool in the cut: it is drawn back with the spindle turning, and that is said.
 #[test]
 fn the_spindle_turns_until_the_tool_is_out_of_the_cut() {
     for machine in mills() {
-        let next = Op::Tool(Box::new(Tool { number: 2, length: Some(40.0), ..Tool::default() }));
-        let mut source = groove(&machine, &[next, Op::Rapid(at(30.0, 5.0, 20.0))]);
-        let records = source.records.len();
-        source.records.remove(records - 2);
+        let source = left_in_cut(&machine);
         let output = post::write(&source, &machine).unwrap();
-        let warned = output.warnings.iter().filter(|found| found.rule.name() == "ends-in-cut");
-        assert_eq!(warned.count(), 2, "{}", machine.name);
+        assert_eq!(warned(&output).len(), 2, "{}", machine.name);
         let text = String::from_utf8(output.text).unwrap();
         proven(&source, &machine, &text)
             .unwrap_or_else(|why| panic!("{}: {why:?}\n{text}", machine.name));
