@@ -32,6 +32,7 @@ mod load;
 mod model;
 pub mod plan;
 mod sheet;
+pub mod starter;
 pub mod time;
 pub mod upgrade;
 

@@ -50,14 +50,25 @@ pub fn upgraded(text: &str, missing: &[Missing]) -> String {
     lines.concat()
 }
 
+/// Whether a line, outside of texts of several lines, begins a table.
+pub(crate) fn is_header(line: &str) -> bool {
+    line.trim_start().starts_with('[')
+}
+
+/// Whether a text of several lines begins or ends in a line.
+pub(crate) fn turns_text(line: &str) -> bool {
+    let count = |quotes| line.matches(quotes).count();
+    (count("\"\"\"") + count("'''")) % 2 == 1
+}
+
 /// Where a new key of a table stands: at the top of the file behind the last key there, in a table before its first.
-fn table(lines: &[String], table: &str) -> Option<usize> {
-    let begins_with = |line: &String, signs: &[char]| line.trim_start().starts_with(signs);
+pub(crate) fn table(lines: &[String], table: &str) -> Option<usize> {
     match table {
         "" => {
-            let first = lines.iter().position(|line| begins_with(line, &['[']));
+            let first = lines.iter().position(|line| is_header(line));
             let end = first.unwrap_or(lines.len());
-            let says = |line: &String| !line.trim().is_empty() && !begins_with(line, &['#']);
+            let says =
+                |line: &String| !line.trim().is_empty() && !line.trim_start().starts_with('#');
             Some(lines[..end].iter().rposition(says).map_or(end, |last| last + 1))
         }
         table => {

@@ -482,7 +482,21 @@ fn unknown<T>(span: Span) -> Checked<T> {
 }
 
 /// The way out where a statement is not one of these.
-pub(crate) const STATEMENTS: &str = "the statements are `if`, `for` and `set`";
+const STATEMENTS: &str = "the statements are `if`, `for` and `set`";
+
+/// The way out of what the engine does not understand: the text up to where that is, in which the last opened sign may lack its end.
+pub(crate) fn way_out(before: &str) -> String {
+    let opened = |sign: &str, end: &str| {
+        let at = before.rfind(sign)?;
+        (!before[at..].contains(end)).then_some((at, sign.to_owned(), end.to_owned()))
+    };
+    match opened("{%", "%}").max(opened("{{", "}}")) {
+        Some((_, sign, end)) => {
+            format!("what begins with `{sign}` ends with `{end}`; {STATEMENTS}")
+        }
+        None => STATEMENTS.into(),
+    }
+}
 
 fn no_members<T>(span: Span) -> Checked<T> {
     refuse(Rule::TemplateName, "this has no such member", "`toolpost explain` lists them", span)

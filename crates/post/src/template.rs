@@ -568,7 +568,8 @@ impl<'a> Templates<'a> {
         guard::check(&block.text, self.machine).map_err(|fault| match fault {
             Fault::Syntax(error) => {
                 let mut found = self::fault(block, &error);
-                found.help = guard::STATEMENTS.into();
+                let at = error.range().map_or(0, |range| range.start);
+                found.help = guard::way_out(block.text.get(..at).unwrap_or_default());
                 found
             }
             Fault::Refused(no) => {

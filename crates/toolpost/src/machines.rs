@@ -6,7 +6,7 @@ use crate::arms;
 use app::files::{self, Target};
 use app::toolpath::{self, describe};
 use app::{Stop, Verdict, summary};
-use machine::{Machine, library};
+use machine::{Machine, library, starter};
 use program::{Diagnostic, Rule, encoding};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -84,46 +84,6 @@ fn show(name: &str) -> Result<Answer, Stop> {
     Ok(Answer::product(text, json!({ "name": name, "text": text })))
 }
 
-/// What a shop states of its machine, below the copy of one of the library.
-const KEYS: &str = r#"
-# What else a shop states of its machine, with units: take the `#` away. Keys stand in the table that heads them, those of the first
-# group above all tables. `toolpost explain NAME` says more of each, docs/machines.md what is taken where one is missing.
-#
-# safe_height = 0         # mm: Z in machine coordinates where the tool is clear of the part
-# work_zero = [0, 0, 0]   # mm: the zero of the part in machine coordinates
-# feed_max = 5000         # mm/min
-# auxiliary = [88, 89]    # M functions of the builder that move no axis
-#
-# [axes]                  # min, max in mm; rapid in mm/min; acceleration in m/s²
-# X = { min = -500, max = 0, rapid = 20000, acceleration = 2 }
-# Y = { min = -400, max = 0, rapid = 20000, acceleration = 2 }
-# Z = { min = -450, max = 0, rapid = 20000, acceleration = 2 }
-#
-# [spindle]               # 1/min
-# min = 50
-# max = 12000
-#
-# [settings]
-# rapid_path = "linear"   # G0 goes straight; "independent" where each axis goes at its own speed
-# high_feed = 5000        # mm/min: rapids near the part that are written as G1
-#
-# [blocks]
-# coolant_flood = "{{N}} M8"
-"#;
-
-/// The same of the cell of a robot.
-const CELL_KEYS: &str = r#"
-# What else a shop states of its cell, with units: put these keys below [cell] above, without the `#`. `toolpost explain NAME` says more
-# of each, docs/machines.md what is taken where one is missing.
-#
-# reentry_feed = 400              # mm/min: a cut that no turn of the tool carries may be left and entered again
-# cable_joint_4 = [-180, 180]     # degrees: what cables and hoses leave to a joint
-# cable_joint_6 = [-180, 180]
-# load_mass = 4                   # kg: what hangs on the flange, with a tool in the spindle
-# load_center = [0, 0, 60]        # mm: its centre of gravity, from the flange
-# tool_change = "CHANGE"          # the operator's program that changes the tool; with a block `tool_change`
-"#;
-
 /// Copies a machine to a new file of this folder.
 fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
@@ -151,11 +111,18 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     };
     let file = path.display().to_string();
     let machine = machine::load_text(&file, &text)?;
-    let keys = if machine.arm.is_some() { CELL_KEYS } else { KEYS };
+    // A copy of a copy has one name before the title.
+    let stem = Path::new(from).file_stem().unwrap_or_default().to_string_lossy();
+    let title = machine.title.strip_prefix(&format!("{stem}: ")).unwrap_or(&machine.title);
+    let text = starter::titled(&text, &format!("{name}: {title}"));
+    let holds = |text: &str| {
+        machine::load_text(&file, text).is_ok_and(|machine| post::check(&machine).is_ok())
+    };
     let text = match machine.has_control() && !is_file {
-        true => format!("{text}{keys}"),
+        true => starter::offered(&text, &holds),
         false => text,
     };
+    let machine = machine::load_text(&file, &text)?;
     let target = Target::new(&path, &[])?;
     files::save(&[(&target, text.as_bytes())])?;
     let command = match machine.has_control() {

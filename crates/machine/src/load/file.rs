@@ -3,7 +3,8 @@
 use super::{Outcome, Reach, is_path};
 use crate::library;
 use crate::model::{Block, FileLocation};
-use crate::sheet::Sheet;
+use crate::sheet::{Sheet, keys};
+use crate::upgrade::{is_header, turns_text};
 use program::{Diagnostic, Rule, encoding, nearest};
 use std::fs::{self, File};
 use std::io::Read;
@@ -124,24 +125,95 @@ impl SheetFile {
     pub(super) fn parse(&self) -> Outcome<Sheet> {
         toml::from_str(&self.text).map_err(|e| {
             let span = e.span().unwrap_or(0..0);
-            let message = match self.quoted {
-                true => {
-                    let key = self.key_before(span.start);
-                    format!("{key}{}", e.message().trim().replace('\n', "; "))
-                }
-                false => String::from("this is no machine file"),
+            if !self.quoted {
+                return self
+                    .diagnostic(Rule::MachineFile, "this is no machine file".into(), span)
+                    .into();
+            }
+            let said = e.message().trim().replace('\n', "; ");
+            let key = self.key_before(span.start);
+            let message = if key.is_empty() { said.clone() } else { format!("{key}: {said}") };
+            let help = match said.as_str() {
+                "duplicate key" => self.first_of(span.start),
+                _ => self.meant(span.start, key, &said),
             };
-            self.diagnostic(Rule::MachineFile, message, span).into()
+            let found = self.diagnostic(Rule::MachineFile, message, span);
+            Box::new(match help {
+                Some(help) => found.help(help),
+                None => found,
+            })
         })
     }
 
-    /// The key whose value begins at a byte, as `key: `; nothing where none stands before it.
-    fn key_before(&self, value: usize) -> String {
+    /// The table whose header stands before a byte, as its header names it; empty at the top of the file.
+    fn table_before(&self, at: usize) -> &str {
+        let before = self.text.get(..at).unwrap_or_default();
+        let header = before.lines().scan(false, |in_text, line| {
+            let header = (!*in_text && is_header(line)).then(|| header_of(line));
+            *in_text ^= turns_text(line);
+            Some(header)
+        });
+        header.flatten().last().unwrap_or_default()
+    }
+
+    /// Where the key that comes a second time at a byte stands first.
+    fn first_of(&self, at: usize) -> Option<String> {
+        let start = self.text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+        let line = self.text[start..].lines().next()?;
+        let path = match is_header(line) {
+            true => String::from(header_of(line)),
+            false => format!("{}.{}", self.table_before(start), line.split('=').next()?.trim()),
+        };
+        let table = toml::de::DeTable::parse(&self.text[..start]).ok()?;
+        let (mut table, mut first) = (table.get_ref(), None);
+        for part in path.split('.').map(|part| part.trim().trim_matches(['"', '\''])) {
+            if part.is_empty() {
+                continue;
+            }
+            let (key, value) = table.get_key_value(part)?;
+            first = Some(key.span().start);
+            // Of tables in double brackets the last one is meant.
+            let last = || value.get_ref().as_array()?.last()?.get_ref().as_table();
+            table = value.get_ref().as_table().or_else(last).unwrap_or(table);
+        }
+        let first = self.line_of(first?);
+        Some(match is_header(line) {
+            true => format!("the table stands in line {first} already: put these keys into it"),
+            false => format!("the first one stands in line {first}: leave one of them"),
+        })
+    }
+
+    /// What is meant by `key`, or by the name that is refused at a byte: `said` is what is wrong there.
+    fn meant(&self, at: usize, key: &str, said: &str) -> Option<String> {
+        let mut names = said.split('`').skip(1).step_by(2);
+        let refused = said.starts_with("unknown ").then(|| names.next()).flatten();
+        let key = if said.starts_with("unknown field") { refused? } else { key };
+        let here = self.table_before(at);
+        let root = |table: &str| String::from(table.split('.').next().unwrap_or_default().trim());
+        let tables: Vec<&str> =
+            keys().filter(|known| known.name == key).map(|known| known.table).collect();
+        if !tables.is_empty() && tables.iter().all(|table| root(table) != root(here)) {
+            let named = |table: &str| match table {
+                "" => String::from("at the top of the file, above all tables"),
+                table => format!("below [{table}]"),
+            };
+            let belongs: Vec<String> = tables.into_iter().map(named).collect();
+            let stands = if here.is_empty() { String::from("at the top") } else { named(here) };
+            return Some(format!(
+                "`{key}` belongs {}, and stands {stands} here: move it",
+                belongs.join(", or ")
+            ));
+        }
+        let near = nearest(refused?, names);
+        (!near.is_empty()).then(|| format!("did you mean {near}?"))
+    }
+
+    /// The key whose value begins at a byte; empty where none stands before it.
+    fn key_before(&self, value: usize) -> &str {
         let before = self.text.get(..value).unwrap_or_default();
         let line = before.rsplit('\n').next().unwrap_or_default().trim_end();
         let key = line.strip_suffix('=').unwrap_or_default();
-        let key = key.rsplit(['{', ',']).next().unwrap_or_default().trim();
-        if key.is_empty() { String::new() } else { format!("{key}: ") }
+        key.rsplit(['{', ',']).next().unwrap_or_default().trim()
     }
 
     pub(super) fn at<T>(&self, what: &str, place: &Spanned<T>, message: &str) -> Diagnostic {
@@ -186,6 +258,12 @@ impl SheetFile {
         let column = u32::try_from(column).unwrap_or(u32::MAX);
         Block { text: value.into_inner(), file: self.name(), line, column }
     }
+}
+
+/// The table that a header names.
+fn header_of(line: &str) -> &str {
+    let name = line.split(']').next().unwrap_or_default();
+    name.trim_start().trim_start_matches('[').trim()
 }
 
 /// The machines of the library that build on a control, in however many steps.

@@ -241,6 +241,41 @@ max = 200.5
     }
 
     #[test]
+    fn a_key_in_the_wrong_place_or_misspelt_or_twice_says_where_it_belongs() {
+        let said = |text: &str, place: &str, help: &str| {
+            let found = load_text("mill.toml", text).unwrap_err();
+            assert!(found.to_string().starts_with(&format!("mill.toml:{place}: ")), "{found}");
+            assert!(found.help.contains(help), "{found}");
+        };
+        let top = "at the top of the file, above all tables";
+        said(
+            "reader = \"grbl\"\n[blocks]\nstop = \"\"\"\n[M0]\n\"\"\"\nsafe_height = 0\n",
+            "6:15",
+            top,
+        );
+        said("[blocks]\nsafe_height = 0\n", "2:15", "and stands below [blocks] here");
+        said("[spindle]\nfeed_max = 5000\n", "2:1", top);
+        said(
+            "rapid_path = \"linear\"\n",
+            "1:1",
+            "belongs below [settings], and stands at the top here",
+        );
+        said("safe_heigth = 0\n", "1:1", "did you mean `safe_height`?");
+        said("[settings]\nrapid_path = \"linaer\"\n", "2:14", "did you mean `linear`?");
+        said("[axes]\nX = { rapd = 3 }\n", "2:7", "did you mean `rapid`?");
+        said("feed_max = \"fast\"\n", "1:12", "correct the file at the mark");
+        // The first of two.
+        said("a = 1\nfeed_max = 3\nfeed_max = 4\n", "3:1", "the first one stands in line 2");
+        said(
+            "[axes]\nX.min = 3\n\n[spindle]\n[axes]\n",
+            "5:2",
+            "the table stands in line 1 already",
+        );
+        said("[words.X]\ndecimals = 3\n'decimals' = 4\n", "3:1", "the first one stands in line 2");
+        said("[[rotary]]\nmin = 3\n[[rotary]]\nmax = 1\nmax = 4\n", "5:1", "stands in line 4");
+    }
+
+    #[test]
     fn mistakes_that_only_a_machinist_sees_are_reported_at_their_place() {
         let rotary = |fields: &str| {
             refusal(&format!(

@@ -174,46 +174,65 @@ fn every_machine_of_the_library_is_listed_and_has_no_mistake() {
     }
 }
 
-#[test]
-fn a_robot_of_ones_own_is_told_the_keys_of_its_cell() {
-    let folder = Folder::new();
-    let robot = "kuka-kr120-rail";
-    assert_eq!(folder.run(&["machines", "new", "mine", "--from", robot]).code, 0);
-    let (copy, shown) = (folder.read("mine.toml"), folder.run(&["machines", "show", robot]).out);
-    let added = copy.strip_prefix(&shown).unwrap();
-    assert!(added.lines().all(|line| line.is_empty() || line.starts_with('#')), "{added}");
-    assert!(!added.contains("work_zero") && added.contains("below [cell]"), "{added}");
-    // Each of them is taken where it says.
-    let (_, keys) = added.split_once("#\n").unwrap();
-    let keys: Vec<&str> = keys.lines().map(|line| line.strip_prefix("# ").unwrap()).collect();
-    let block = "[blocks]\ntool_change = \"CHANGE ({{T}})\"\n";
-    let text =
-        format!("extends = \"{robot}\"\ntitle = \"A\"\n[cell]\n{}\n{block}", keys.join("\n"));
-    folder.write("keys.toml", text);
+/// The lines that a copy of a machine of the library has besides, but its title.
+fn offered(folder: &Folder, machine: &str) -> (String, Vec<String>) {
+    assert_eq!(folder.run(&["machines", "new", "mine", "--from", machine]).code, 0);
+    let (copy, shown) = (folder.read("mine.toml"), folder.run(&["machines", "show", machine]).out);
+    let title = |text: &str| {
+        text.lines().find_map(|line| line.strip_prefix("title = \"")).unwrap().to_owned()
+    };
+    assert_eq!(title(&copy), format!("mine: {}", title(&shown)));
+    let own: Vec<&str> = shown.lines().collect();
+    let is_added = |line: &&str| !own.contains(line) && !line.starts_with("title");
+    let added: Vec<String> = copy.lines().filter(is_added).map(String::from).collect();
+    // What it may state besides is there as comments, below headers of tables that it did not have.
+    let is_quiet = |line: &String| line.is_empty() || line.starts_with(['#', '[']);
+    assert!(added.iter().all(is_quiet), "{added:?}");
+    (copy, added)
+}
+
+/// The keys of a copy are taken where they stand: without each `#`.
+fn takes_all(folder: &Folder, copy: &str, added: &[String]) {
+    let bare = |line: &str| match line.strip_prefix("# ").filter(|_| line.contains(" = ")) {
+        Some(key) if added.iter().any(|added| added == line) => key.to_owned(),
+        _ => line.to_owned(),
+    };
+    let text: Vec<String> = copy.lines().map(bare).collect();
+    assert_ne!(text.join("\n"), copy.trim_end());
+    folder.write("keys.toml", text.join("\n"));
     let said = folder.run(&["machines", "check", "keys.toml"]);
     assert_eq!(said.code, 0, "{said:?}");
 }
 
 #[test]
+fn a_robot_of_ones_own_is_told_the_keys_of_its_cell() {
+    let folder = Folder::new();
+    let (copy, added) = offered(&folder, "kuka-kr120-rail");
+    let cell = &copy[copy.find("[cell]").unwrap()..copy.find("[cell.rail]").unwrap()];
+    for key in ["# reentry_feed = ", "# cable_joint_4 = ", "# load_mass = ", "# load_center = "] {
+        assert!(cell.contains(key), "{key}\n{copy}");
+    }
+    takes_all(&folder, &copy, &added);
+}
+
+#[test]
 fn a_machine_of_ones_own_starts_as_a_copy() {
     let folder = Folder::new();
-    assert_eq!(folder.run(&["machines", "new", "mine", "--from", MACHINE]).code, 0);
-    let (copy, shown) = (folder.read("mine.toml"), folder.run(&["machines", "show", MACHINE]).out);
-    let added = copy.strip_prefix(&shown).unwrap();
-    // What it may state besides is there as comments, and each group is what a machine file takes.
-    assert!(added.lines().all(|line| line.is_empty() || line.starts_with('#')), "{added}");
-    assert!(added.contains("work_zero") && added.contains("mm/min"), "{added}");
-    let (_, keys) = added.split_once("#\n").unwrap();
-    let keys = keys.replace("\n# ", "\n").replace("\n#\n", "\n\n");
-    let keys = keys.trim_start_matches("# ");
-    folder.write("keys.toml", format!("extends = \"generic-3axis-fanuc\"\ntitle = \"A\"\n{keys}"));
-    let said = folder.run(&["machines", "check", "keys.toml"]);
-    assert_eq!(said.code, 0, "{said:?}\n{keys}");
+    let (copy, added) = offered(&folder, MACHINE);
+    let top = &copy[..copy.find("\n[").unwrap()];
+    assert!(top.contains("# work_zero = ") && top.contains("mm/min"), "{copy}");
+    // A table that is there is not offered again.
+    assert!(["[axes]", "[spindle]"].iter().all(|table| copy.matches(table).count() == 1), "{copy}");
+    takes_all(&folder, &copy, &added);
     assert_eq!(folder.run(&["machines", "check", "mine.toml"]).code, 0);
     let said = folder.run(&["machines", "new", "mine", "--from", MACHINE]);
     assert_eq!(said.code, 2);
     assert!(said.err.contains("there is such a file already"), "{said:?}");
     assert_eq!(folder.run(&["machines", "new", "other", "--from", "mine.toml"]).code, 0);
+    let title = |file: &str| {
+        folder.read(file).lines().find(|line| line.starts_with("title")).map(String::from)
+    };
+    assert_eq!(title("other.toml"), title("mine.toml").map(|title| title.replace("mine", "other")));
     let said = folder.run(&["post", "part.cls", "-m", "other.toml", "-o", "out.mpf"]);
     assert_eq!(said.code, 0, "{said:?}");
     for name in ["../mine", "", "a/b", ".hidden", "/tmp/x"] {
