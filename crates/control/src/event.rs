@@ -447,8 +447,16 @@ impl Risk {
 
     /// FANUC 3402#1, #2; SINUMERIK MD20150; LinuxCNC RS274NGC_STARTUP_CODE; GRBL $N; Mach3 General Config.
     pub(crate) const START_PLANE: Risk = Risk::start_mode(
-        "has an arc, a hole or compensation and has not said in which plane: in which the control starts is set up at the machine",
+        "has an arc, a hole, compensation or coordinates that count in a plane, and has not said in which: in which the control starts is \
+         set up at the machine",
         "write G17 at the start; or state it in `start_modes` in [settings] of the machine file",
+    );
+
+    /// The plane at the start, and the axis of a length ([`Risk::LENGTH_PLANE`]).
+    pub(crate) const START_LENGTH_PLANE: Risk = Risk::start_mode(
+        "uses a tool length and has not said in which plane: along which axis a length counts, the plane may say (SD42940, 5001), and in \
+         which the control starts is set up at the machine",
+        "write G17 before the tool length; or state G17 in `start_modes`, or `length_along_z = true`, in [settings] of the machine file",
     );
 
     /// FANUC 3402#3, and the others as the plane.

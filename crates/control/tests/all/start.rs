@@ -104,3 +104,91 @@ fn a_sinumerik_program_says_plane_unit_distance_and_feed() {
     let stated = Settings { start_modes: StartModes::SURE, ..machine(Dialect::Sinumerik) };
     assert!(lacks(&stated, &format!("G54\n{CUT}M30\n")).is_empty());
 }
+
+/// FANUC parameter 5001 (length type B) and SINUMERIK SD42940 = 0 as delivered (*Tools*): a length counts along the axis that stands on
+/// the plane, so a program of lines alone leans on the plane at its start. Haas, LinuxCNC, Mach3 and GRBL: along Z.
+#[test]
+fn a_tool_length_leans_on_the_plane() {
+    let lacking = |dialect, length_along_z, text: &str| {
+        lacks(&Settings { length_along_z, ..Settings::new(dialect, [true, false, true]) }, text)
+    };
+    let fanuc =
+        "G21\nG90 G94 G54\nT1 M6\nG0 X0. Y0.\nG43 H1 Z5.\nG1 X5. F100.\nG91 G28 Z0\nG49\nM30\n";
+    for (length_along_z, expected) in
+        [(None, &["G17"][..]), (Some(false), &["G17"]), (Some(true), &[])]
+    {
+        assert_eq!(lacking(Dialect::Fanuc, length_along_z, fanuc), expected);
+    }
+    let with = |from: &str, to: &str| {
+        assert!(fanuc.contains(from));
+        lacking(Dialect::Fanuc, None, &fanuc.replace(from, to))
+    };
+    // The axis is that of the plane in which the length begins.
+    assert!(with("G90 G94", "G17 G90 G94").is_empty());
+    assert!(with("G43 H1", "G17 G43 H1").is_empty());
+    assert_eq!(with("G1 X5.", "G17 G1 X5."), ["G17"]);
+    assert_eq!(with("G43 H1", "A0 C0\nG43.4 H1"), ["G17"]);
+    // No length.
+    assert!(with("G43 H1 ", "G43 H0 ").is_empty());
+    assert!(with("G43 H1 ", "G49 ").is_empty());
+    let haas = fanuc.replace("G91 G28 Z0\nG49", "G49\nG53 G0 Z0");
+    assert!(lacking(Dialect::Haas, None, &haas).is_empty());
+    for dialect in [Dialect::LinuxCnc, Dialect::Mach3] {
+        let text = haas.replace("G90 G94", "G90 G94 G91.1");
+        assert!(lacking(dialect, None, &text).is_empty(), "{dialect:?}");
+    }
+
+    let sinumerik = "G710 G90 G94 G54\nT1\nM6\nD1\nG0 X0 Y0\nZ5\nG1 X5 F100\nG0 SUPA Z0 D0\nM30\n";
+    for (length_along_z, expected) in
+        [(None, &["G17"][..]), (Some(false), &["G17"]), (Some(true), &[])]
+    {
+        assert_eq!(lacking(Dialect::Sinumerik, length_along_z, sinumerik), expected);
+    }
+    let with = |from: &str, to: &str| {
+        assert!(sinumerik.contains(from));
+        lacking(Dialect::Sinumerik, None, &sinumerik.replace(from, to))
+    };
+    // It counts with each move, by the plane of the move.
+    assert!(with("\nG0 X0", "\nG17 G0 X0").is_empty());
+    assert_eq!(with("\nZ5", "\nG17 Z5"), ["G17"]);
+    assert!(with("D1", "D0").is_empty());
+    // The tool stands in its head as the plane says (W1 11/2006 p. 129), also where no edge counts.
+    let on = |words: &str| {
+        let text =
+            format!("G710 G90 G94 G54\nT1\nM6\nD0\n{words}\nG0 X0 Y0 Z5 A0 C0\nTRAFOOF\nM30\n");
+        lacking(Dialect::Sinumerik, None, &text)
+    };
+    assert_eq!(on("TRAORI"), ["G17"]);
+    assert!(on("G17\nTRAORI").is_empty());
+    assert!(on("").is_empty());
+}
+
+/// What counts in the plane without a length: turned and polar coordinates, corners.
+#[test]
+fn what_counts_in_the_plane_leans_on_it() {
+    let sinumerik = |text: &str| {
+        lacks(&machine(Dialect::Sinumerik), &format!("G71 G90 G94 G54\n{text}\nM30\n"))
+    };
+    assert_eq!(sinumerik("G0 X0 Y0 Z0\nG111 X0 Y0\nG1 AP=30 RP=10 F100"), ["G17"]);
+    assert_eq!(sinumerik("ROT RPL=30\nG0 X0 Y0 Z0\nROT"), ["G17"]);
+    assert!(sinumerik("ROT Z30\nG0 X0 Y0 Z0\nROT").is_empty());
+    assert_eq!(sinumerik("G0 X0 Y0 Z0\nG1 X10 CHF=1 F100\nY10"), ["G17"]);
+    let fanuc = |text: &str| {
+        lacks(&machine(Dialect::Fanuc), &format!("G21\nG90 G94 G54\nG0 X0. Y0. Z0.\n{text}\nM30\n"))
+    };
+    assert_eq!(fanuc("G1 X10. ,C1. F100.\nY10."), ["G17"]);
+    assert_eq!(fanuc("G16\nG1 X10. Y30. F100.\nG15"), ["G17"]);
+    assert_eq!(fanuc("G68 X0. Y0. R30.\nG69"), ["G17"]);
+    assert_eq!(
+        lacks(&machine(Dialect::LinuxCnc), "G21 G54 G90 G94\nG0 X1 Y0 Z0\nG1 @10 ^30 F100\nM2\n"),
+        ["G17"]
+    );
+}
+
+/// A program with `SAVE` gives back what its caller has not said.
+#[test]
+fn what_a_subprogram_gives_back_has_not_been_said() {
+    let text = "G71 G90 G94 G54\nT1\nM6\nD1\nINNER\nG0 X0 Y0 Z0\nM30\n\
+                %_N_INNER_SPF\nPROC INNER SAVE\nG17\nG0 X0 Y0 Z9\nRET\n";
+    assert_eq!(lacks(&machine(Dialect::Sinumerik), text), ["G17"]);
+}

@@ -205,3 +205,44 @@ fn a_program_says_the_modes_that_are_set_up_at_the_machine() {
         }
     }
 }
+
+/// SINUMERIK SD42940 = 0 as delivered, FANUC parameter 5001: a length counts along the axis that stands on the plane, and MD20150 and
+/// 3402 say in which plane the control starts. A program of lines alone leans on it, and one that says G17 with its first arc has gone
+/// down before that.
+#[test]
+fn a_tool_length_counts_from_where_the_plane_is_said() {
+    let text = "UNITS/MM\nLOADTL/3\nSPINDL/900,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,40\nRAPID\nGOTO/0,0,5\nGOTO/0,0,-2\nGOTO/50,0,-2\n\
+                RAPID\nGOTO/50,0,40\nFINI\n";
+    let lines = source::apt::read("job.apt", text.as_bytes(), &Default::default()).unwrap().program;
+    for (name, leans) in [
+        ("generic-3axis-sinumerik", true),
+        ("generic-3axis-sinumerik-828d", true),
+        ("generic-3axis-fanuc", true),
+        ("generic-3axis-haas", false),
+        ("generic-3axis-linuxcnc", false),
+        ("generic-3axis-mach3", false),
+    ] {
+        let machine = machine::load(name).unwrap();
+        let text = String::from_utf8(written(&machine, &lines).unwrap().text).unwrap();
+        assert_eq!(rule_of(&machine, &lines, &text), None, "{name}");
+        let silent = text.replace(" G17", "");
+        assert_ne!(silent, text, "{name}");
+        let expected = leans.then_some("start-mode");
+        assert_eq!(rule_of(&machine, &lines, &silent), expected, "{name}:\n{silent}");
+        if !leans {
+            continue;
+        }
+        let late: String =
+            silent
+                .split_inclusive('\n')
+                .map(|line| {
+                    if line.contains(" X50") { line.replacen(' ', " G17 ", 1) } else { line.into() }
+                })
+                .collect();
+        assert!(late.contains(" G17 "), "{late}");
+        assert_eq!(rule_of(&machine, &lines, &late), expected, "{name}:\n{late}");
+        let file = format!("extends = \"{name}\"\n[settings]\nlength_along_z = true\n");
+        let stated = load_text("stated.toml", &file).unwrap();
+        assert_eq!(rule_of(&stated, &lines, &silent), None, "{name}");
+    }
+}

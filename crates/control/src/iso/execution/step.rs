@@ -138,23 +138,32 @@ impl Step<'_, '_, '_> {
                     Action::Line(_) | Action::Arc(_) | Action::Hole(_) | Action::Probe(_)
                 )
             });
-        let turns = any(|event| {
-            matches!(
-                event,
-                Action::Arc(_)
-                    | Action::Hole(_)
-                    | Action::Compensation(
-                        program::Compensation::Left(_) | program::Compensation::Right(_)
-                    )
-            )
-        });
+        let polar = self.state.polar.is_some() || b"@^".iter().any(|sign| self.block.gives(*sign));
+        let turns = moves && polar
+            || self.block.corner.is_some()
+            || self.block.g(Group::Tilt) == Some(G::Turn)
+            || any(|event| {
+                matches!(
+                    event,
+                    Action::Arc(_)
+                        | Action::Hole(_)
+                        | Action::Compensation(
+                            program::Compensation::Left(_) | program::Compensation::Right(_)
+                        )
+                )
+            });
+        // A length counts along the axis that stood on the plane when it began.
+        let lengthens = self.facts.tools.length_as_set_up
+            && self.state.length_along_z != Some(true)
+            && any(|event| matches!(event, Action::LengthOffset(Some(_))));
         let by_center = b"IJK".iter().any(|letter| self.block.gives(*letter))
             && any(|event| matches!(event, Action::Arc(_)));
+        let plane = if turns { Risk::START_PLANE } else { Risk::START_LENGTH_PLANE };
         for (leans, sure, risk) in [
             (by_center, &mut sure.centers_from_start, Risk::START_CENTERS),
             (moves, &mut sure.absolute, Risk::START_DISTANCE),
             (cuts, &mut sure.feed_per_minute, Risk::START_FEED),
-            (turns, &mut sure.plane_xy, Risk::START_PLANE),
+            (turns || lengthens, &mut sure.plane_xy, plane),
         ] {
             if leans && !std::mem::replace(sure, true) {
                 self.actions.push(Action::Risk(risk.into()));

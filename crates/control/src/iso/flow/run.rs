@@ -296,7 +296,7 @@ impl<'a, 's> Run<'a, 's> {
         if flow == Some(M::End) && self.frames.iter().any(|frame| frame.modal.is_some()) {
             self.tell(Action::Risk(Risk::MODAL_MACRO.into()));
         }
-        let corner = self.block.corner.take();
+        let corner = self.block.corner;
         let state = &self.control.state;
         let start =
             (corner.is_some() || self.held.is_some()).then(|| state.place.point(state.position));

@@ -69,6 +69,7 @@ impl Interpreter<'_, '_> {
             Corner::Round(radius) if modal => Corner::Round(radius),
             Corner::Round(radius) => Corner::Round(radius * unit),
         };
+        self.lean_on_plane(source)?;
         let (Corner::Chamfer(size) | Corner::ChamferSide(size) | Corner::Round(size)) = corner;
         if size < 0.0 {
             return Err(source.block_error(Rule::Corner, "the size of a corner has no sign"));

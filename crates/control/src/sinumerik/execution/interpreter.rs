@@ -121,27 +121,50 @@ impl<'a, 's> Interpreter<'a, 's> {
     #[cold]
     fn lean_on_start(&mut self, source: &Source, action: &Action) -> Outcome {
         let moves = action.position().is_some();
-        let asks = self.settings.setup.purpose.asks_technology();
-        let cuts = asks && moves && !matches!(action, Action::Rapid(_));
-        let turns = matches!(action, Action::Arc(_) | Action::Hole(_));
-        let compensates = self.state.compensation != Compensation::Off;
-        let sure = &mut self.state.sure;
-        let found = [
-            (moves, 14, &mut sure.absolute, Risk::START_DISTANCE),
-            (moves, 13, &mut sure.metric, Risk::START_UNITS),
-            (cuts, 15, &mut sure.feed_per_minute, Risk::START_FEED),
-            (turns || moves && compensates, 6, &mut sure.plane_xy, Risk::START_PLANE),
-        ];
-        let mut risks = [None; 4];
-        for (place, (leans, group, sure, risk)) in risks.iter_mut().zip(found) {
-            if leans && !std::mem::replace(sure, true) && self.state.said[group] == 0 {
-                *place = Some(risk);
-            }
+        if moves {
+            self.lean_on(source, 14, |sure| &mut sure.absolute, Risk::START_DISTANCE)?;
+            self.lean_on(source, 13, |sure| &mut sure.metric, Risk::START_UNITS)?;
         }
-        risks
-            .into_iter()
-            .flatten()
-            .try_for_each(|risk| self.emit(source, Action::Risk(risk.into())))
+        let asks = self.settings.setup.purpose.asks_technology();
+        if asks && moves && !matches!(action, Action::Rapid(_)) {
+            self.lean_on(source, 15, |sure| &mut sure.feed_per_minute, Risk::START_FEED)?;
+        }
+        let turns = matches!(action, Action::Arc(_) | Action::Hole(_) | Action::Swivel(_));
+        let compensates = self.state.compensation != Compensation::Off;
+        if turns || moves && compensates {
+            self.lean_on_plane(source)?;
+        }
+        if moves && self.has_lengths_by_plane() {
+            self.lean_on(source, 6, |sure| &mut sure.plane_xy, Risk::START_LENGTH_PLANE)?;
+        }
+        Ok(())
+    }
+
+    /// Reports, once, that the plane counts and no block has said it.
+    pub fn lean_on_plane(&mut self, source: &Source) -> Outcome {
+        self.lean_on(source, 6, |sure| &mut sure.plane_xy, Risk::START_PLANE)
+    }
+
+    /// Reports `risk`, once, where no block has said a mode that counts: the one of this G group.
+    fn lean_on(
+        &mut self,
+        source: &Source,
+        group: usize,
+        mode: fn(&mut StartModes) -> &mut bool,
+        risk: Risk,
+    ) -> Outcome {
+        let was_sure = std::mem::replace(mode(&mut self.state.sure), true);
+        if was_sure || self.state.said[group] != 0 {
+            return Ok(());
+        }
+        self.emit(source, Action::Risk(risk.into()))
+    }
+
+    /// Whether the plane says along which axis the length of the tool counts, or, under `TRAORI`, how the tool stands in its head: its
+    /// basic orientation stands on the plane, and SD42940 keeps both along Z (W1 11/2006 p. 129, 130).
+    fn has_lengths_by_plane(&self) -> bool {
+        let counts = self.state.edge.is_some() || self.state.tool_center;
+        counts && self.settings.length_along_z != Some(true)
     }
 
     #[inline]
@@ -266,9 +289,8 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
             _ => {
                 self.technology(source, block)?;
-                let is_across = self.state.plane_normal != 2 && self.state.edge.is_some();
-                if is_across
-                    && self.settings.length_along_z != Some(true)
+                if self.state.plane_normal != 2
+                    && self.has_lengths_by_plane()
                     && block.axes[..3].iter().any(Option::is_some)
                 {
                     self.emit(source, Action::Risk(Risk::LENGTH_PLANE.into()))?;

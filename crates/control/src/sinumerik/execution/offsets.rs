@@ -67,7 +67,7 @@ impl Interpreter<'_, '_> {
         if modes.feed_type != state.feed_type || modes.units.1 != state.feed_unit {
             state.feed = None;
         }
-        state.said = modes.said;
+        (state.said, state.sure) = (modes.said, modes.sure);
         state.motion = modes.motion;
         state.select_plane(modes.plane_normal);
         (state.unit, state.feed_unit) = modes.units;

@@ -44,6 +44,7 @@ impl Interpreter<'_, '_> {
     pub fn polar_target(&mut self, source: &Source, block: &Block, position: &mut Vec3) -> Outcome {
         let error = |message: &str| Err(source.block_error(Rule::Polar, message));
         let Some(rare) = &block.rare else { return Ok(()) };
+        self.lean_on_plane(source)?;
         let (first, second) = axes_of_plane(self.state.plane_normal);
         if block.axes[first].is_some() || block.axes[second].is_some() {
             return error("polar coordinates and coordinates of the plane in one block");

@@ -50,7 +50,10 @@ impl Interpreter<'_, '_> {
                     Some(_) if block.has_linear() => {
                         return error(Rule::Frame, "RPL= and X, Y, Z in one rotation".into());
                     }
-                    Some(degrees) => about(self.state.plane_normal, degrees),
+                    Some(degrees) => {
+                        self.lean_on_plane(source)?;
+                        about(self.state.plane_normal, degrees)
+                    }
                     None => roll_pitch_yaw(vector(1.0, 0.0)),
                 };
                 (Frame::from_mat3(turned), on_top)

@@ -181,6 +181,7 @@ pub(crate) struct State {
 /// Modal commands and frame, as a program with `SAVE` finds them (Function Manual K2, 2.4.10).
 pub(crate) struct Modes {
     pub said: Said,
+    pub sure: StartModes,
     pub motion: Motion,
     pub plane_normal: usize,
     pub units: (f64, f64),
@@ -374,6 +375,7 @@ impl State {
     pub fn modes(&self) -> Modes {
         Modes {
             said: self.said,
+            sure: self.sure,
             motion: self.motion,
             plane_normal: self.plane_normal,
             units: (self.unit, self.feed_unit),
