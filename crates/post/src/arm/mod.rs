@@ -28,6 +28,7 @@ use program::{
     Tool,
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 /// Entries of the code word `corner`.
@@ -204,8 +205,10 @@ struct Walk<'a> {
     last_line: u32,
     /// Whether the source calls tools of more than one number.
     changes: bool,
-    /// The tool that is in the spindle.
-    held: Option<&'a Tool>,
+    /// Number of the tool that is in the spindle.
+    held: Option<u32>,
+    /// Length of each tool so far, as its first call states it, mm.
+    lengths: HashMap<u32, Option<f64>>,
     /// The name of the program.
     name: String,
     /// Lines of the files before this one.
@@ -292,6 +295,7 @@ impl<'a> Walk<'a> {
             last_line: 0,
             changes: program.calls_several_tools(),
             held: None,
+            lengths: HashMap::new(),
             name,
             earlier_lines: 0,
             borders: Vec::new(),
@@ -402,7 +406,12 @@ impl<'a> Walk<'a> {
                 self.coolant = coolant;
                 if coolant == Coolant::Off { self.stop_coolant() } else { Ok(()) }
             }
-            Act::Dwell(seconds) => self.dwell(seconds),
+            Act::Dwell(seconds) => {
+                self.begin()?;
+                // The source lets its spindle run up, or turn in the cut.
+                let has_waited = self.start_spindle(seconds)?;
+                if has_waited { Ok(()) } else { self.dwell(seconds) }
+            }
             Act::Stop if self.stands_in_cut() => Err(stops_in_cut().into()),
             Act::Stop => {
                 self.begin()?;
@@ -485,24 +494,24 @@ impl<'a> Walk<'a> {
         self.limits.tool(tool, line)?;
         self.warn_of_cut("changes the tool", line);
         let by_hand = self.cell.tool_change.is_empty();
-        let held = self.held.replace(tool);
-        let stays = by_hand && held.is_some_and(|held| held.number == tool.number);
-        if by_hand && !self.changes && held.is_none() {
-            return self.load(tool);
-        }
-        if stays && self.tool != self.cell.tool(tool.length) {
-            let [before, now] = [held.and_then(|held| held.length), tool.length].map(|length| {
-                match length.or(self.cell.tool_length) {
+        let held = self.held.replace(tool.number);
+        let stays = by_hand && held == Some(tool.number);
+        let first = *self.lengths.entry(tool.number).or_insert(tool.length);
+        if self.cell.tool(first) != self.cell.tool(tool.length) {
+            let [before, now] =
+                [first, tool.length].map(|length| match length.or(self.cell.tool_length) {
                     Some(mm) => format!("{mm} mm"),
                     None => String::from("a length that nothing states"),
-                }
-            });
+                });
             let message = format!(
-                "tool {} is called with {now}, and has been called with {before}: it is in the spindle still",
+                "tool {} is called with {now}, and has been called with {before}",
                 tool.number
             );
             let help = "the same LENGTH in each call of this tool (a call without it counts as `tool_length` below [cell]), or another number for another tool";
             return Err(Diagnostic::error(Rule::ToolTwice, message).help(help).into());
+        }
+        if by_hand && !self.changes && held.is_none() {
+            return self.load(tool);
         }
         self.begin()?;
         self.home()?;
@@ -749,7 +758,7 @@ impl<'a> Walk<'a> {
         self.limits.feed(program::Feed::PerMinute(feed), self.spindle, line)?;
         self.turns_in_time(motion)?;
         self.is_cutting = true;
-        self.start_spindle()?;
+        self.start_spindle(0.0)?;
         self.start_coolant()?;
         self.correct()?;
         self.feed(feed)?;
@@ -1033,12 +1042,14 @@ impl<'a> Walk<'a> {
         self.writer.set(WordName::JointRate, slowest.to_degrees() * self.cell.joint_speed / 100.0);
     }
 
-    fn start_spindle(&mut self) -> Outcome {
+    /// Starts the spindle, where it is not as the source has it, and waits until it has its speed: as long as the machine file
+    /// says, or `wanted` s, where the source wants more: whether it has done that.
+    fn start_spindle(&mut self, wanted: f64) -> Outcome<bool> {
         if self.spindle == self.sent.spindle {
-            return Ok(());
+            return Ok(false);
         }
         let (block, speed) = match self.spindle {
-            Spindle::Off => return self.stop_spindle(),
+            Spindle::Off => return self.stop_spindle().map(|()| false),
             Spindle::Clockwise(speed) => (BlockName::SpindleCw, speed),
             Spindle::CounterClockwise(speed) => (BlockName::SpindleCcw, speed),
         };
@@ -1056,8 +1067,9 @@ impl<'a> Walk<'a> {
         self.required(block)?;
         self.sent.spindle = self.spindle;
         match self.machine.spindle.dwell {
-            0.0 => Ok(()),
-            seconds => self.dwell(seconds),
+            0.0 => Ok(false),
+            own if wanted >= own => self.dwell(wanted).map(|()| true),
+            own => self.dwell(own).map(|()| false),
         }
     }
 

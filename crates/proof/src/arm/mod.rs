@@ -33,8 +33,28 @@ use comparison::Comparison;
 use control::{Dialect, Folders, Setup};
 use expected::Expected;
 use machine::{Cell, Machine};
-use program::{Diagnostic, Program};
-use std::collections::BTreeMap;
+use program::{Diagnostic, Op, Program, Rule};
+use std::collections::{BTreeMap, HashMap};
+
+/// A tool that is called with two lengths: as the source states it, or as the cell does where it states none. The operator puts the
+/// same tool into the spindle each time.
+fn lengths_of_one_tool(source: &Program, cell: &Cell) -> Option<Diagnostic> {
+    let mut lengths: HashMap<u32, Option<f64>> = HashMap::new();
+    for record in &source.records {
+        let Op::Tool(tool) = &record.op else { continue };
+        let length = tool.length.or(cell.tool_length);
+        if *lengths.entry(tool.number).or_insert(length) != length {
+            let message = format!(
+                "line {} calls tool {} with another length than before",
+                record.line, tool.number
+            );
+            let help =
+                "the same LENGTH in each call of this tool, or another number for another tool";
+            return Some(Diagnostic::error(Rule::ToolTwice, message).help(help).line(record.line));
+        }
+    }
+    None
+}
 
 /// Runs `text` on the virtual control of the robot and compares it with `source`, while `observer` says so.
 pub(crate) fn prove(
@@ -49,6 +69,10 @@ pub(crate) fn prove(
     let mut report = Report { tolerances: applied, ..Report::default() };
     if let Some(found) = crate::compensation::unsettled_for_arm(source) {
         report.mismatch(source.compensates().unwrap_or_default(), found);
+        return report;
+    }
+    if let Some(found) = lengths_of_one_tool(source, cell) {
+        report.mismatch(found.line, Diagnostic { line: 0, ..found });
         return report;
     }
     let expected = match Expected::of(source, machine) {

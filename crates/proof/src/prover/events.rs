@@ -139,6 +139,15 @@ impl Prover<'_> {
                 let message = "the spindle turns at a stop, but should be stopped";
                 self.differs(line, (Rule::Spindle, message.into()));
             }
+            // DELAY behind SPINDL is for the spindle to run up, or to turn.
+            let stands = self.running.spindle == Spindle::Off;
+            if matches!(event, Step::Dwell(_))
+                && self.cursor.wanted.spindle != Spindle::Off
+                && stands
+            {
+                let message = "the spindle stands in a dwell, but should turn";
+                self.differs(line, (Rule::Spindle, message.into()));
+            }
             self.advance();
         } else if let (Step::Dwell(a), Step::Dwell(b)) = (&self.cursor.step, &event) {
             let message = format!("dwells {} s, but should {} s", Number(*b), Number(*a));

@@ -439,31 +439,42 @@ fn two_tools() -> String {
     JOB.replace("FINI", "LOADTL/2,LENGTH,60\nSPINDL/RPM,6000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/MMPM,300\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI")
 }
 
-/// The tool stays in the spindle, so it cannot be longer from a call of the same number on; a program of the operator's may have put another one in.
+/// A number is one tool, whether it stays in the spindle or comes back into it: a program said that it stands 70 mm out, and then, of the same
+/// tool, 50.
 #[test]
-fn a_tool_that_stays_in_the_spindle_and_is_called_with_another_length_is_refused() {
-    let again = |first: &str, second: &str| {
-        let call =
-            format!("LOADTL/1{second}\nRAPID\nGOTO/0,0,50\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI");
+fn a_tool_that_is_called_with_another_length_is_refused() {
+    let again = |first: &str, between: &str, second: &str| {
+        let call = format!(
+            "{between}LOADTL/1{second}\nRAPID\nGOTO/0,0,50\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI"
+        );
         source(&JOB.replace("LOADTL/1", &format!("LOADTL/1{first}")).replace("FINI", &call))
     };
+    let other = "LOADTL/2\nRAPID\nGOTO/0,0,50\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\n";
     // The cell says 50 mm where the source states nothing.
-    for (first, second, lengths) in [
-        ("", ",LENGTH,46", Some(["46 mm", "50 mm"])),
-        (",LENGTH,46", "", Some(["50 mm", "46 mm"])),
-        ("", ",LENGTH,50", None),
-        (",LENGTH,46", ",LENGTH,46", None),
+    for (first, between, second, lengths) in [
+        ("", "", ",LENGTH,46", Some(["46 mm", "50 mm"])),
+        (",LENGTH,46", "", "", Some(["50 mm", "46 mm"])),
+        (",LENGTH,70", other, "", Some(["50 mm", "70 mm"])),
+        ("", "", ",LENGTH,50", None),
+        (",LENGTH,46", "", ",LENGTH,46", None),
+        (",LENGTH,46", other, ",LENGTH,46", None),
     ] {
-        let source = again(first, second);
-        let Some([now, before]) = lengths else {
-            proven(&source, &kuka());
-            continue;
-        };
-        let found = &post::write(&source, &kuka()).unwrap_err()[0];
-        assert_eq!((found.rule.name(), found.line), ("tool-twice", 15), "{found}");
-        let says = format!("is called with {now}, and has been called with {before}");
-        assert!(found.message.contains(&says), "{found}");
-        proven(&source, &kuka_with_tool_change());
+        let job = again(first, between, second);
+        for machine in [kuka(), kuka_with_tool_change()] {
+            let Some([now, before]) = lengths else {
+                proven(&job, &machine);
+                continue;
+            };
+            let found = &post::write(&job, &machine).unwrap_err()[0];
+            let line = if between.is_empty() { 15 } else { 21 };
+            assert_eq!((found.rule.name(), found.line), ("tool-twice", line), "{found}");
+            let says = format!("is called with {now}, and has been called with {before}");
+            assert!(found.message.contains(&says), "{found}");
+            // The program of the same job with one length.
+            let text = proven(&again("", between, ""), &machine);
+            let report = proof_of(&job, &machine, &text);
+            assert_eq!(report.mismatches[0].rule.name(), "tool-twice");
+        }
     }
 }
 
@@ -500,6 +511,13 @@ fn tools_are_put_in_by_hand_at_a_stop_where_no_program_changes_them() {
         assert_eq!(rule_of(&other), Some("tool-by-hand"), "{name}");
         let silent = text.replace(message, &message.replace("Tool 2", "Go on"));
         assert_eq!(rule_of(&silent), Some("tool-by-hand"), "{name}");
+        if name == "kuka-kr6-r900" {
+            // The control shows no text then.
+            for hidden in ["$LOOP_CONT=FALSE", "$BWDSTART=FALSE"] {
+                let hidden = text.replace("$LOOP_CONT=TRUE", hidden);
+                assert_eq!(rule_of(&hidden), Some("tool-by-hand"));
+            }
+        }
         // Behind the stop the frame of the tool is stated anew: it is a longer one.
         let at = text.rfind(frame).unwrap();
         let line = text[at..].find('\n').unwrap();
@@ -651,6 +669,41 @@ fn a_tool_leaves_a_cut_with_the_spindle_as_in_the_cut() {
     // Above the cuts it is stopped and started as the program likes.
     let free = behind(&text, &above, &format!("$OUT[1]=FALSE\r\n{on}"));
     assert!(proof_of(&source, &machine, &free).proven);
+}
+
+/// A dwell behind SPINDL is for the spindle to run up, or to turn: it has to turn then. The cell waits 3 s behind each start, which a
+/// longer dwell of the source holds already.
+#[test]
+fn the_spindle_turns_in_a_dwell_that_stands_behind_its_start() {
+    let dwell =
+        |seconds: u32| source(&JOB.replacen("CLW\n", &format!("CLW\nDELAY/{seconds}\n"), 1));
+    let on = |waits: &str| format!("$ANOUT[1]=0.50000\r\n$OUT[1]=TRUE\r\n{waits}");
+    for (seconds, waits) in [
+        (10, "WAIT SEC 10.00\r\n"),
+        (3, "WAIT SEC 3.00\r\n"),
+        (1, "WAIT SEC 3.00\r\nWAIT SEC 1.00\r\n"),
+    ] {
+        let text = proven(&dwell(seconds), &kuka());
+        assert_eq!(text.matches("WAIT SEC").count(), waits.matches("WAIT SEC").count(), "{text}");
+        assert!(text.contains(&on(waits)), "{text}");
+    }
+    // It was written so before: the dwell, then the start with the wait of the cell.
+    let text = proven(&dwell(10), &kuka());
+    let late = text.replace(
+        &on("WAIT SEC 10.00\r\n"),
+        &format!("WAIT SEC 10.00\r\n{}", on("WAIT SEC 3.00\r\n")),
+    );
+    let slow = text.replace("$ANOUT[1]=0.50000", "$ANOUT[1]=0.25000");
+    for damaged in [late, slow] {
+        assert_ne!(damaged, text);
+        let report = proof_of(&dwell(10), &kuka(), &damaged);
+        let found = report.mismatches.first().unwrap_or_else(|| panic!("proven\n{damaged}"));
+        assert_eq!(found.rule.name(), "spindle", "{found}");
+    }
+    // A cell without a wait of its own.
+    let machine = kuka_with(&[("dwell = 3\n", "")]);
+    let text = proven(&dwell(10), &machine);
+    assert!(text.contains(&on("WAIT SEC 10.00\r\n")), "{text}");
 }
 
 /// Ten turns at 9000 a minute are 0.0667 s, of which the words of robots say hundredths.

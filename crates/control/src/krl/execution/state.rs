@@ -44,6 +44,8 @@ pub(in crate::krl) struct State {
     pub(super) turn_speed: [Option<f64>; 2],
     /// `$VEL_AXIS`, percent.
     pub(super) joint_speeds: [Option<f64>; 6],
+    /// `$LOOP_CONT`: whether a text in `$LOOP_MSG[]` is shown to the operator.
+    pub(super) shows: bool,
     /// The name of the operator's program that changes tools.
     pub(super) tool_change: String,
 }
@@ -72,6 +74,7 @@ impl State {
             along_path: None,
             turn_speed: [None; 2],
             joint_speeds: [None; 6],
+            shows: false,
             tool_change: tool_change.to_ascii_uppercase(),
         }
     }

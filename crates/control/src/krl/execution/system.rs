@@ -90,7 +90,8 @@ fn assign(
             None => Err(unfit(scan, name, &value, "{M .., CM {X ..,Y ..,Z ..,..}}")),
         },
         ("$LOOP_MSG", None) => match value {
-            Value::Text(text) => channel.report(line, Action::Message(text)),
+            Value::Text(text) if state.shows => channel.report(line, Action::Message(text)),
+            Value::Text(_) => Ok(()),
             other => Err(unfit(scan, name, &other, "a text")),
         },
         ("$IPO_MODE", None) => {
@@ -134,7 +135,11 @@ fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: 
             let entries = [("BASE", false), ("PATH", true)];
             state.along_path = Some(chosen(scan, name, value, &entries)?);
         }
-        ("$LOOP_CONT" | "$BWDSTART", None) if matches!(value, Value::Flag(_)) => {}
+        ("$LOOP_CONT", None) => match value {
+            Value::Flag(shows) => state.shows = *shows,
+            other => return Err(unfit(scan, name, other, "TRUE or FALSE")),
+        },
+        ("$BWDSTART", None) if matches!(value, Value::Flag(_)) => {}
         _ => {
             let message = format!("what {name} does is not known here");
             return Err(scan.since(0, Rule::UnknownWord, message));

@@ -3,7 +3,7 @@
 use super::super::expected::Step;
 use super::{Comparison, refused};
 use geom::Vec3;
-use program::{Outcome, Output, OutputValue, Rule};
+use program::{Diagnostic, Outcome, Output, OutputValue, Rule};
 
 /// So much longer than the spindle needs to its speed a program may wait for it, s.
 const MOST_WAITING: f64 = 60.0;
@@ -83,22 +83,34 @@ impl Comparison<'_> {
         Ok(())
     }
 
+    /// A dwell: one of the source, or the wait for the speed of the spindle.
     pub(super) fn dwell(&mut self, seconds: f64) -> Outcome {
         self.exact()?;
+        // Its word rounds it: a few turns of the spindle are no whole hundredths of a second.
+        let rounds = self.machine.words.get("P").map_or(0.0, |word| 0.5 * word.resolution());
         let allowed = self.report.tolerances.dwell_s;
+        let sources = allowed.max(rounds * (1.0 + 1e-6));
+        let is_sources = |step: &Step| matches!(step, Step::Dwell(wanted) if (wanted - seconds).abs() <= sources);
+        self.leave_out();
         let runs_up = self.running.runs_up;
-        if runs_up > 0.0 && (runs_up - allowed..=runs_up + MOST_WAITING).contains(&seconds) {
+        if let Some(expected) = self.expected.get(self.next).filter(|next| is_sources(&next.step)) {
+            let wanted = expected.state.spindle;
+            if !self.turns_as(wanted) {
+                let message = format!(
+                    "the program dwells with the spindle {}, the source has {wanted:?} there",
+                    self.spindle()
+                );
+                let help = "the outputs that switch the spindle stand before the dwell, as SPINDL stands before DELAY";
+                return Err(Diagnostic::error(Rule::Spindle, message).help(help).into());
+            }
+            if seconds + allowed >= runs_up {
+                self.running.runs_up = 0.0;
+            }
+        } else if runs_up > 0.0 && (runs_up - allowed..=runs_up + MOST_WAITING).contains(&seconds) {
             self.running.runs_up = 0.0;
             return Ok(());
         }
-        // Its word rounds it: a few turns of the spindle are no whole hundredths of a second.
-        let rounds = self.machine.words.get("P").map_or(0.0, |word| 0.5 * word.resolution());
-        let allowed = allowed.max(rounds * (1.0 + 1e-6));
-        let done = self.happens(
-            Rule::Dwell,
-            "dwells",
-            |step| matches!(step, Step::Dwell(wanted) if (wanted - seconds).abs() <= allowed),
-        );
+        let done = self.happens(Rule::Dwell, "dwells", is_sources);
         done.map_err(|found| match self.running.is_on || self.machine.spindle.dwell == 0.0 {
             true => found,
             false => Box::new(found.help(

@@ -92,7 +92,7 @@ impl Comparison<'_> {
     }
 
     /// Whether the spindle is as the source has it.
-    fn turns_as(&self, wanted: Spindle) -> bool {
+    pub(super) fn turns_as(&self, wanted: Spindle) -> bool {
         let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
         let step = self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution);
         match wanted {
@@ -138,7 +138,7 @@ impl Comparison<'_> {
     }
 
     /// How the spindle turns, for a message.
-    fn spindle(&self) -> String {
+    pub(super) fn spindle(&self) -> String {
         match self.running.is_on {
             true => format!("on at {:.0} 1/min", self.running.speed.unwrap_or(0.0)),
             false => String::from("off"),
