@@ -210,8 +210,21 @@ impl Cell {
 pub struct LoadedFrom {
     /// The files of the user's own, the nearest first; those of the library are not among them.
     pub files: Vec<PathBuf>,
+    /// The keys that they and the nearest file state, which may be one of the library.
+    pub keys: Vec<StatedKey>,
     /// SHA-256 of the texts of all files and of the options that were set since, in hexadecimal digits.
     pub digest: String,
+}
+
+/// A key that a file states.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StatedKey {
+    /// The table that it stands in; empty for the top of the file.
+    pub table: String,
+    /// The key: of an entry of a table the first part of its name alone.
+    pub key: String,
+    /// Where it stands.
+    pub place: FileLocation,
 }
 
 /// Parameters of the control as the machine has them; `None` is not known.

@@ -54,8 +54,8 @@ load_center = [0, 0, 60]     # mm, with load_mass: its centre of gravity, from t
         table: "settings",
         about: "of the control",
         entries: &[
-            "rapid_path = \"linear\"   # G0 goes straight; \"independent\" where each axis goes at its own speed",
-            "high_feed = 5000        # mm/min: rapids near the part that are written as G1",
+            "rapid_path = \"independent\"  # G0: each axis goes at its own speed; \"linear\" where they go straight",
+            "high_feed = 5000             # mm/min: rapids near the part that are written as G1",
         ],
     },
     Offer {

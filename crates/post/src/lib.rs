@@ -52,6 +52,7 @@ mod findings;
 mod guard;
 mod leads;
 mod motion;
+mod no_effect;
 mod number;
 mod origins;
 mod position;
@@ -75,6 +76,7 @@ mod writer;
 
 pub use arm::reach::{ArmLooks, ArmMargins, ArmSample, arm_margins, arm_samples};
 pub use catalogue::{Kind, Parameter, catalogue};
+pub use no_effect::without_effect;
 pub use origins::{Origin, Origins, places};
 pub use template::number_of;
 
@@ -153,6 +155,9 @@ pub fn write_named(
     };
     let warnings: Vec<Diagnostic> = warnings;
     output.warnings.extend(warnings.into_iter().chain(of_leads));
+    if !machine.loaded_from.files.is_empty() {
+        output.warnings.extend(without_effect(machine));
+    }
     Ok(output)
 }
 

@@ -174,6 +174,8 @@ fn placeholder(word: WordName) -> char {
 pub(crate) struct Template<'a> {
     block: &'a Block,
     uses: Words,
+    /// The words and variables that it reads, where it has statements.
+    names: Vec<String>,
     /// Whether it may read which tools the program calls.
     tools: bool,
     /// Whether it may read that the cuts to come keep to the path.
@@ -563,7 +565,15 @@ impl<'a> Templates<'a> {
     fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {
         if let Some((text, uses)) = plain(&block.text) {
             let lines = Lines::of(text, &self.machine.format, self.words);
-            return Ok(Template { block, uses, tools: false, exact: false, lines: Some(lines) });
+            let names = Vec::new();
+            return Ok(Template {
+                block,
+                uses,
+                names,
+                tools: false,
+                exact: false,
+                lines: Some(lines),
+            });
         }
         guard::check(&block.text, self.machine).map_err(|fault| match fault {
             Fault::Syntax(error) => {
@@ -589,7 +599,7 @@ impl<'a> Templates<'a> {
         }
         let tools = names.iter().any(|name| name == "program" || name.starts_with("program.tools"));
         let exact = names.iter().any(|name| name == "cut" || name == "cut.exact");
-        Ok(Template { block, uses, tools, exact, lines: None })
+        Ok(Template { block, uses, names, tools, exact, lines: None })
     }
 
     fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
@@ -626,6 +636,11 @@ impl<'a> Templates<'a> {
     /// Whether some block may read which tools the program calls.
     pub(crate) fn read_tools(&self) -> bool {
         self.blocks.iter().flatten().any(|block| block.tools)
+    }
+
+    /// Whether some block reads the variable of this name, `options.blank` say.
+    pub(crate) fn reads(&self, name: &str) -> bool {
+        self.blocks.iter().flatten().any(|block| block.names.iter().any(|read| read == name))
     }
 
     /// Whether the machine has the block.

@@ -116,7 +116,9 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
     let title = machine.title.strip_prefix(&format!("{stem}: ")).unwrap_or(&machine.title);
     let text = starter::titled(&text, &format!("{name}: {title}"));
     let holds = |text: &str| {
-        machine::load_text(&file, text).is_ok_and(|machine| post::check(&machine).is_ok())
+        machine::load_text(&file, text).is_ok_and(|machine| {
+            post::check(&machine).is_ok() && post::without_effect(&machine).is_empty()
+        })
     };
     let text = match machine.has_control() && !is_file {
         true => starter::offered(&text, &holds),
@@ -257,7 +259,8 @@ fn check(file: &str) -> Result<Answer, Stop> {
         ("not checked", unchecked.join("; ")),
     ];
     let data = json!({ "machine": describe(&machine), "not_checked": unchecked });
-    Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+    let findings = post::without_effect(&machine);
+    Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data).findings(findings))
 }
 
 /// All mistakes of a file of which the first is known; of a name of the library that one.

@@ -2,7 +2,7 @@
 
 use super::{Outcome, Reach, is_path};
 use crate::library;
-use crate::model::{Block, FileLocation};
+use crate::model::{Block, FileLocation, StatedKey};
 use crate::sheet::{Sheet, keys};
 use crate::upgrade::{is_header, turns_text};
 use program::{Diagnostic, Rule, encoding, nearest};
@@ -143,6 +143,28 @@ impl SheetFile {
                 None => found,
             })
         })
+    }
+
+    /// The keys that it states, table by table.
+    pub(super) fn stated(&self) -> Vec<StatedKey> {
+        let Ok(file) = toml::de::DeTable::parse(&self.text) else { return Vec::new() };
+        let place = |at: usize| FileLocation { file: self.name(), line: self.line_of(at) };
+        let mut stated = Vec::new();
+        for (name, value) in file.get_ref() {
+            match value.get_ref().as_table() {
+                Some(table) => stated.extend(table.keys().map(|key| StatedKey {
+                    table: name.get_ref().to_string(),
+                    key: key.get_ref().to_string(),
+                    place: place(key.span().start),
+                })),
+                None => stated.push(StatedKey {
+                    table: String::new(),
+                    key: name.get_ref().to_string(),
+                    place: place(name.span().start),
+                }),
+            }
+        }
+        stated
     }
 
     /// The table whose header stands before a byte, as its header names it; empty at the top of the file.

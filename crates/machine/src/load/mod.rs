@@ -127,9 +127,12 @@ fn build(file: SheetFile, reach: &Reach) -> Outcome<Machine> {
     let shown = file.name();
     let mut control = None;
     let mut merged = CheckedSheet::new(file.parse()?, &file)?;
-    let (mut texts, mut files) = (Digest::default(), Vec::new());
+    let (mut texts, mut files, mut keys) = (Digest::default(), Vec::new(), Vec::new());
     let mut add = |file: &SheetFile| {
         texts.add(file.text.as_bytes());
+        if file.own || keys.is_empty() {
+            keys.extend(file.stated());
+        }
         files.extend(file.own.then(|| file.path.clone()));
     };
     add(&file);
@@ -161,7 +164,7 @@ fn build(file: SheetFile, reach: &Reach) -> Outcome<Machine> {
     }
     let control = control.unwrap_or_else(|| name.clone());
     let machine = merged.finish(name.clone(), shown.clone(), control, &missing)?;
-    Ok(Machine { loaded_from: LoadedFrom { files, digest: texts.finish() }, ..machine })
+    Ok(Machine { loaded_from: LoadedFrom { files, keys, digest: texts.finish() }, ..machine })
 }
 
 /// Whether it is the path of a file (with a `/`, or ending in `.toml`), not a name of the library.

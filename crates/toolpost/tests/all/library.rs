@@ -137,9 +137,106 @@ fn every_file_is_proven_on_every_machine_that_can_make_it() {
     }
 }
 
-/// Whether a machine file has no mistake.
+/// Whether a machine file has no mistake, and no key that does nothing.
 fn holds(text: &str) -> bool {
-    machine::load_text("mine.toml", text).is_ok_and(|machine| post::check(&machine).is_ok())
+    machine::load_text("mine.toml", text).is_ok_and(|machine| {
+        post::check(&machine).is_ok() && post::without_effect(&machine).is_empty()
+    })
+}
+
+/// The keys of a machine file that do nothing.
+fn idle(text: &str) -> Vec<(u32, String)> {
+    let found = post::without_effect(&machine::load_text("mine.toml", text).unwrap());
+    assert!(
+        found.iter().all(|found| found.rule.name() == "no-effect" && found.file == "mine.toml")
+    );
+    found
+        .into_iter()
+        .map(|found| (found.line, format!("{} = {}", found.message, found.help)))
+        .collect()
+}
+
+#[test]
+fn no_file_of_the_library_states_a_key_that_does_nothing() {
+    for name in machine::library::names(machine::library::CONTROLLED) {
+        let found = post::without_effect(&machine::load(name).unwrap());
+        assert!(found.is_empty(), "{name}: {found:?}");
+    }
+}
+
+/// Another safe height makes another program wherever no warning says that it does nothing.
+#[test]
+fn a_safe_height_moves_the_retracts_of_a_machine_or_is_warned_of() {
+    let samples = root().join("machines/samples");
+    let mut warned = Vec::new();
+    for machine in mills() {
+        let name = &machine.name;
+        let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
+        // A tool change that takes Z home by itself leaves a stop to retract before.
+        let text = std::fs::read_to_string(samples.join(axes).with_extension("cls")).unwrap();
+        let text = text.replacen("FINI", "STOP\nFINI", 1);
+        let program =
+            source::apt::read("job.cls", text.as_bytes(), &Default::default()).unwrap().program;
+        assert!(program.records.iter().any(|record| record.op == program::Op::Stop));
+        let top = if machine.linear[2].max.is_finite() { machine.linear[2].max } else { 400.0 };
+        let with = |height: f64| format!("extends = \"{name}\"\nsafe_height = {height}\n");
+        let written = |height: f64| {
+            let machine = machine::load_text("mine.toml", &with(height)).unwrap();
+            post::write(&program, &machine).unwrap().text
+        };
+        let differs = written(top) != written(top - 1.0);
+        let found = idle(&with(top));
+        assert_eq!(found.is_empty(), differs, "{name}: {found:?}");
+        warned.extend(found.first().map(|(line, said)| (name.clone(), *line, said.clone())));
+    }
+    let of = |name: &str| warned.iter().find(|(warned, ..)| warned == name).unwrap();
+    // Step 5 of docs/your-shop.md.
+    let (_, line, said) = of("generic-3axis-fanuc");
+    assert_eq!(*line, 2);
+    assert!(
+        said.ends_with("`retract_by_g53 = true` below [options]: retracts then go to it"),
+        "{said}"
+    );
+    assert!(of("grbl-3018").2.contains("retract"), "{warned:?}");
+}
+
+#[test]
+fn a_key_that_does_nothing_is_warned_of_with_its_line_where_it_is_checked_and_where_it_is_posted() {
+    for (extends, text, key) in [
+        ("generic-3axis-fanuc", "[settings]\nrotary_by_sign = true\n", "no rotary axis"),
+        ("fanuc-table-bc", "[settings]\nhigh_feed = 3000\n", "rapids go straight"),
+        ("generic-3axis-grbl", "[settings]\ndwell_p_milliseconds = true\n", "`reader` is grbl"),
+        ("generic-3axis-haas", "[capabilities]\nprogram_lines = 100\n", "for robots"),
+        ("generic-3axis-fanuc", "[options]\nprogram_numbr = 7\n", "no block of this machine reads"),
+        ("generic-3axis-grbl", "[words]\nRX = { decimals = 3 }\n", "places this word"),
+        ("kuka-kr6-r900", "[cell]\nown_frame = 3\n", "no block of this control"),
+        ("kuka-kr6-r900", "[settings]\nrapid_path = \"linear\"\n", "[settings] is for mills"),
+    ] {
+        let text = format!("extends = \"{extends}\"\n{text}");
+        let found = idle(&text);
+        assert_eq!((found.len(), found[0].0), (1, 3), "{text}{found:?}");
+        assert!(found[0].1.contains(key), "{text}{found:?}");
+        let machine = machine::load_text("mine.toml", &text).unwrap();
+        let sample = if machine.arm.is_some() { "robot" } else { "three-axes" };
+        let program = read(&root().join("machines/samples").join(sample).with_extension("cls"));
+        if machine.rotary.is_empty() {
+            let output = post::write(&program, &machine).unwrap();
+            let warned = output.warnings.iter().filter(|found| found.rule.name() == "no-effect");
+            assert_eq!(warned.count(), 1, "{text}");
+        }
+    }
+    // What does something is not warned of.
+    for (extends, text) in [
+        ("generic-3axis-fanuc", "safe_height = -5\n[options]\nretract_by_g53 = true\n"),
+        ("fanuc-lrmate-200id-mill", "[cell]\nown_frame = 3\nload_number = 2\n"),
+        ("kuka-kr6-r900", "[cell]\nload_mass = 3\nload_center = [0, 0, 50]\n"),
+        (
+            "generic-3axis-fanuc",
+            "[options]\nmine = 3\n[blocks]\nstop = \"{% if options.mine %}{{N}} M0{% endif %}\"\n",
+        ),
+    ] {
+        assert_eq!(idle(&format!("extends = \"{extends}\"\n{text}")), [], "{extends}");
+    }
 }
 
 /// What `machines new` offers as comments holds when the `#` before it is taken away: one key alone, those of a table, and all of them.
