@@ -397,7 +397,7 @@ rules! {
         "sinumerik: `CYCLE81(10,0,2,5)`";
     CycleExpanded "cycle-expanded" []
         "A cycle is written as moves: the control has no block for it, or what its words count is not stated."
-        "state what P of a dwell counts (`dwell_p_milliseconds`), if the control has the cycle; otherwise there is nothing to do"
+        "nothing to do where the control has no such cycle; on a FANUC, which has it, state what P of a dwell counts (`dwell_p_milliseconds` in [settings])"
         "A boring cycle for GRBL";
     CycleOn "cycle-on" []
         "A hole cycle is still on where the tool changes."

@@ -25,7 +25,7 @@ use wire::{Lead, LeadShape};
 #[command(
     name = "toolpost",
     version,
-    after_help = "Exit codes: 0 done; 1 the machine cannot do it, or the proof failed; 2 input or usage."
+    after_help = "Exit codes: 0 done; 1 the machine cannot do it, or the proof failed; 2 input or usage; 3 `pcb` left a program out; 130 interrupted."
 )]
 pub struct CommandLine {
     /// What to do.
