@@ -69,4 +69,4 @@ pub use record::*;
 pub use rule::Rule;
 pub use surface::Surface;
 pub use technology::*;
-pub use tops::Tops;
+pub use tops::{LYING, Tops};

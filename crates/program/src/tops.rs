@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 const ABOVE_ZERO: f64 = 1.0;
 
 /// A tool that rises along Z by less than this part of its way along itself lies rather than stands: it leans by more than 60 degrees.
-const LYING: f64 = 0.5;
+pub const LYING: f64 = 0.5;
 
 /// So many points are looked at one by one.
 const FEW: usize = 16;

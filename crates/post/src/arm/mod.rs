@@ -24,8 +24,8 @@ use minijinja::value::Value;
 use parts::{Border, Size};
 use plan::{Act, Kind, Motion, Position, Reentry, Step, plan};
 use program::{
-    Coolant, Diagnostic, Op, Outcome, OutputValue, Program, Progress, Pulse, Record, Rule, Spindle,
-    Tool,
+    Coolant, Diagnostic, LYING, Op, Outcome, OutputValue, Program, Progress, Pulse, Record, Rule,
+    Spindle, Tool,
 };
 use rapid::{RapidPath, RapidPlanner, RapidSegment};
 use std::collections::HashMap;
@@ -611,7 +611,7 @@ impl<'a> Walk<'a> {
         let is_aslant = |end: &Position| {
             let [_, up] = self.rapids.below(end);
             let rise = -end.tool.matrix3.z_axis.z;
-            up > slack && (rapid::LYING..UPRIGHT).contains(&rise)
+            up > slack && (LYING..UPRIGHT).contains(&rise)
         };
         let upright = match (from.0, to.0) {
             (false, true) if is_aslant(ends[0]) => {

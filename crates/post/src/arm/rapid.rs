@@ -5,7 +5,7 @@ use ::arm::{Arm, Joints, Posture};
 use geom::ending::go_on;
 use geom::{Frame, Mat3, Quat, Vec3, angle_between, nearest_on_segment, wrap};
 use machine::{Capabilities, Cell, Machine};
-use program::{CutBox, Program, Tops};
+use program::{CutBox, LYING, Program, Tops};
 use std::cell::OnceCell;
 
 /// Joints are looked at so near to each other that the tip moves by no more than this, mm.
@@ -75,10 +75,6 @@ impl WayOut {
 fn straight(end: Position, feed: f64) -> RapidSegment {
     RapidSegment { path: RapidPath::Straight(feed), end }
 }
-
-/// A tool that rises along Z by less than this part of its way along itself lies rather than stands (it leans by more than 60 degrees): it may go straight up
-/// along Z where it is free along itself.
-pub(super) const LYING: f64 = 0.5;
 
 /// How far the tool is retracted beyond what it has to be, mm: the first that gives a path is taken.
 pub(super) const RETRACTS: [f64; 6] = [0.0, 2.0, 10.0, 30.0, 80.0, 200.0];

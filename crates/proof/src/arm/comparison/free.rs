@@ -3,11 +3,8 @@
 use super::super::follow::Path;
 use super::{Comparison, STRIDE, Standing, refused};
 use geom::{Frame, Vec3, angle_between};
-use program::{Diagnostic, Outcome, Pose, Rule};
+use program::{Diagnostic, LYING, Outcome, Pose, Rule};
 use std::iter;
-
-/// The rise of a tool along Z for each mm along itself below which it lies: it leans by more than 60 degrees.
-const LYING: f64 = 0.5;
 
 /// From how high along an axis, mm, nothing is known that would be in the way: as high as the source ever goes, and beyond all cuts.
 #[derive(Clone, Copy, Debug)]
