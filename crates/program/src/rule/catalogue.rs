@@ -1127,14 +1127,14 @@ rules! {
         "There is no drill for a hole."
         "add the drill to `--drills`, allow more by `--drill-tolerance`, or mill the hole by `--hole-mill`"
         "A hole of 3.2 mm with drills up to 1 mm";
-    NoEnd "no-end" []
-        "The file or the program has no end."
-        "check that the file is not cut off"
-        "A Gerber file without `M02*`";
     NoEffect "no-effect" []
         "A key of the machine's file changes neither programs nor their proof."
         "take the key out, or state what gives it an effect"
         "`safe_height = -50` on a FANUC whose Z goes home by `G28` (`retract_by_g53` is false)";
+    NoEnd "no-end" []
+        "The file or the program has no end."
+        "check that the file is not cut off"
+        "A Gerber file without `M02*`";
     NoFeed "no-feed" ["missing-feed", "feed-missing"]
         "A cut comes before the first feed."
         "give F before the first cut"
