@@ -349,6 +349,14 @@ impl Risk {
         refused: true,
     };
 
+    /// Mach3 General Config, "G04 Dwell param in Milliseconds".
+    pub(crate) const DWELL_AS_SET_UP: Risk = Risk {
+        rule: Rule::DwellUnit,
+        what: "dwells by P, which counts seconds or milliseconds, as General Config says (\"G04 Dwell param in Milliseconds\")",
+        help: "say `dwell_p_milliseconds` in [settings] of the machine file: false where that is not ticked, true where it is",
+        refused: true,
+    };
+
     /// FANUC parameter 3405#1: under `G95` a dwell counts seconds or turns of the spindle.
     pub(crate) const DWELL_TURNS: Risk = Risk {
         rule: Rule::DwellUnit,
@@ -445,10 +453,11 @@ impl Risk {
         Risk { rule: Rule::StartMode, what, help, refused: true }
     }
 
-    /// FANUC 3402#1, #2; SINUMERIK MD20150; LinuxCNC RS274NGC_STARTUP_CODE; GRBL $N; Mach3 General Config.
+    /// FANUC 3402#1, #2; SINUMERIK MD20150; LinuxCNC RS274NGC_STARTUP_CODE; GRBL $N; Mach3 General Config. Haas with setting 56 off and
+    /// Marlin go on in what was run before.
     pub(crate) const START_PLANE: Risk = Risk::start_mode(
         "has an arc, a hole, compensation or coordinates that count in a plane, and has not said in which: in which the control starts is \
-         set up at the machine",
+         set up at the machine, or left by what was run before",
         "write G17 at the start; or state it in `start_modes` in [settings] of the machine file",
     );
 
@@ -461,14 +470,21 @@ impl Risk {
 
     /// FANUC 3402#3, and the others as the plane.
     pub(crate) const START_DISTANCE: Risk = Risk::start_mode(
-        "moves and has not said whether its positions are absolute: how the control starts is set up at the machine",
+        "moves and has not said whether its positions are absolute: how the control starts is set up at the machine, or left by what was run \
+         before",
         "write G90 at the start; or state it in `start_modes` in [settings] of the machine file",
     );
 
     /// FANUC 3402#4, and the others as the plane.
     pub(crate) const START_FEED: Risk = Risk::start_mode(
-        "cuts and has not said what F counts: how the control starts is set up at the machine",
+        "cuts and has not said what F counts: how the control starts is set up at the machine, or left by what was run before",
         "write G94 at the start; or state it in `start_modes` in [settings] of the machine file",
+    );
+
+    /// FANUC with 3402#6, Haas with setting 56 off.
+    pub(crate) const START_RETURN: Risk = Risk::start_mode(
+        "has a cycle and has not said whether it goes back to the initial level or to R: what was run before may have left either",
+        "write G98 or G99 with the cycle; or state G98 in `start_modes` in [settings] of the machine file",
     );
 
     /// Mach3 General Config, "IJ Mode"; LinuxCNC RS274NGC_STARTUP_CODE, and `G90.1` of a program before.
@@ -476,6 +492,25 @@ impl Risk {
         "has an arc by I, J or K and has not said whether these count from its start or are places: the operator has set that up",
         "write G91.1 at the start; or state it in `start_modes` in [settings] of the machine file",
     );
+
+    /// FANUC 3402#6 and 1202#3, Haas setting 56, Mach3's page "Logic": the program before. LinuxCNC: parameter 5220 of its file, so what
+    /// the operator has chosen last by MDI, and RS274NGC_STARTUP_CODE; GRBL: MDI and $N.
+    pub(crate) const START_OFFSET: Risk = Risk {
+        rule: Rule::WorkOffset,
+        what: "moves to a place of the work and has named no work offset: that of the program before or of the operator may be active",
+        help: "write G54, or the offset of the job, before the first move; or state G54 in `start_modes` in [settings] of the machine file",
+        refused: true,
+    };
+
+    /// Marlin 2 up to 2.1.2 (`gcode.cpp`: no offset after power on; `motion.cpp`, `set_axis_is_at_home`; `G53-G59.cpp`,
+    /// `select_coordinate_system`).
+    pub(crate) const MACHINE_ZERO: Risk = Risk {
+        rule: Rule::WorkOffset,
+        what: "moves an axis that may count from the zero of the machine: no work offset is active after power on, G28 takes it away, at the \
+               start too, and G54 said again does not bring it back",
+        help: "write G54 (or the offset of the job) and a move by G53 before the axis moves: at the start and behind each G28",
+        refused: true,
+    };
 
     /// SINUMERIK MD20150, G group 13, and MD10240.
     pub(crate) const START_UNITS: Risk = Risk::start_mode(

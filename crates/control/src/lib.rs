@@ -217,7 +217,7 @@ impl Dialect {
     }
 
     /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
-    /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
+    /// A FANUC and a Marlin may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
         match self.language() {
             Language::Iso(facts) => facts.reset.work_offset,
@@ -244,11 +244,6 @@ impl Dialect {
             | Language::Ls
             | Language::Rapid => false,
         }
-    }
-
-    /// Whether the work offset of the program before may be active when a program starts.
-    pub fn may_keep_work_offset(self) -> bool {
-        matches!(self.language(), Language::Iso(facts) if facts.reset.keeps_work_offset)
     }
 }
 
@@ -302,6 +297,10 @@ pub struct StartModes {
     pub centers_from_start: bool,
     /// Lengths are millimetres (`G71` of SINUMERIK; other controls are asked for their units in any case).
     pub metric: bool,
+    /// Cycles go back to the initial level (`G98` of FANUC and Haas; LinuxCNC and Mach3 are asked in any case).
+    pub returns_up: bool,
+    /// The first work offset is active (`G54`; a SINUMERIK starts in `G500`, with which the source's is compared).
+    pub first_offset: bool,
 }
 
 impl StartModes {
@@ -312,6 +311,8 @@ impl StartModes {
         feed_per_minute: true,
         centers_from_start: true,
         metric: true,
+        returns_up: true,
+        first_offset: true,
     };
 
     /// None of them is.
@@ -321,6 +322,8 @@ impl StartModes {
         feed_per_minute: false,
         centers_from_start: false,
         metric: false,
+        returns_up: false,
+        first_offset: false,
     };
 
     /// Those that are sure here or there.
@@ -331,6 +334,8 @@ impl StartModes {
             feed_per_minute: self.feed_per_minute || other.feed_per_minute,
             centers_from_start: self.centers_from_start || other.centers_from_start,
             metric: self.metric || other.metric,
+            returns_up: self.returns_up || other.returns_up,
+            first_offset: self.first_offset || other.first_offset,
         }
     }
 }

@@ -244,7 +244,7 @@ pub struct ControlSettings {
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes (FANUC parameter 5006#6).
     pub length_moves_axis: Option<bool>,
-    /// Whether P of a dwell counts milliseconds, or tenths of them (FANUC parameters 1013, 1015#7).
+    /// Whether P of a dwell counts milliseconds, or tenths of them (FANUC parameters 1013, 1015#7), or seconds (Mach3 General Config).
     pub dwell_p_milliseconds: Option<bool>,
     /// Whether the sign of a rotary word is the direction of an axis that rolls over (FANUC parameter 1008#1).
     pub rotary_by_sign: Option<bool>,
@@ -490,6 +490,8 @@ pub enum ToolRadius {
 pub enum StartMode {
     /// The plane XY.
     G17,
+    /// The first work offset (ISO code).
+    G54,
     /// Lengths in mm (SINUMERIK).
     G71,
     /// Absolute positions.
@@ -499,6 +501,8 @@ pub enum StartMode {
     G91Dot1,
     /// Feed a minute.
     G94,
+    /// Cycles go back to the initial level.
+    G98,
 }
 
 /// What a feed in mm/min counts where rotary axes turn in a cut and the control does not keep the tool tip.

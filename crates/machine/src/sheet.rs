@@ -126,8 +126,8 @@ sheet!(merged CapabilitiesSheet "capabilities" {
 });
 
 sheet!(merged SettingsSheet "settings" {
-    dwell_p_milliseconds: bool, "", "Whether P of a dwell counts milliseconds, or tenths of them: FANUC increment system B (parameter 1013), or 1015#7 is 1.";
-    start_modes: Vec<StartMode>, "", "Modes that the control is set up to start a program in, so that programs need not say them: G17, G71 (SINUMERIK), G90, G91.1, G94.";
+    dwell_p_milliseconds: bool, "", "Whether P of a dwell counts milliseconds, or tenths of them: FANUC increment system B (parameter 1013), or 1015#7 is 1; or milliseconds, or seconds: Mach3 General Config.";
+    start_modes: Vec<StartMode>, "", "Modes that the control is set up to start a program in, so that programs need not say them: G17, G54, G71 (SINUMERIK), G90, G91.1, G94, G98 (FANUC, Haas).";
     edge_at_change: u32, "", "The edge D of a tool that counts behind M6 where the program says none, 0 for none: SINUMERIK MD20270, where it is not negative.";
     floating_holder: bool, "", "Whether taps are held in a chuck that floats along its axis, so that a tapping cycle need not couple feed and spindle.";
     high_feed: Rate, "mm/min", "The feed of rapids near the part that are written as G1, since each axis goes at its own speed by rapid: as fast as the machine is to go through the air there.";

@@ -152,6 +152,13 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "MD20270: the edge that counts behind M6, since no block says D",
         );
     }
+    if machine.reader == "mach3" && machine.settings.dwell_p_milliseconds.is_none() {
+        lacks(
+            "[settings]".into(),
+            "dwell_p_milliseconds = false",
+            "General Config, \"G04 Dwell param in Milliseconds\": true where it is ticked, with `P = { scale = 1000, decimals = 0 }` in [words]",
+        );
+    }
     if machine.reader == "fanuc" {
         if machine.settings.dwell_p_milliseconds.is_none() {
             lacks(

@@ -47,6 +47,8 @@ fn start_modes(stated: &[StartMode]) -> StartModes {
         feed_per_minute: stated.contains(&StartMode::G94),
         centers_from_start: stated.contains(&StartMode::G91Dot1),
         metric: stated.contains(&StartMode::G71),
+        returns_up: stated.contains(&StartMode::G98),
+        first_offset: stated.contains(&StartMode::G54),
     }
 }
 

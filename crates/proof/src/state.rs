@@ -66,9 +66,7 @@ impl Running {
             compensation: Compensation::Off,
             taper: 0.0,
             length_offset: None,
-            work_offset: dialect
-                .filter(|dialect| !dialect.may_keep_work_offset())
-                .and_then(Dialect::work_offset_at_reset),
+            work_offset: dialect.and_then(Dialect::work_offset_at_reset),
             offset_changed: false,
             last_offsets: None,
             cycle: None,
@@ -174,7 +172,7 @@ pub(crate) fn set_up(
             format!("length offset {found} is active, not {wanted}"),
         ));
     }
-    work_offset(machine, wanted, running)
+    work_offset(wanted, running)
 }
 
 /// The same on the way of a rapid to a known height. The tool comes out of a cut with the offsets of that cut, whatever the source
@@ -193,7 +191,7 @@ pub(crate) fn on_the_way(
     }
     let called = running.tool.as_ref().map(|tool| tool.number).filter(|number| *number > 0);
     let own = match machine.capabilities.length_offset {
-        LengthOffset::Implicit => return work_offset(machine, wanted, running),
+        LengthOffset::Implicit => return work_offset(wanted, running),
         LengthOffset::One => Some(1),
         LengthOffset::ToolNumber => called,
     };
@@ -202,7 +200,7 @@ pub(crate) fn on_the_way(
         Some(is) if own.is_some_and(|own| own != is) => format!(
             "length offset {is} is active on the way to the tool change, which is not that of the tool in the spindle"
         ),
-        Some(_) => return work_offset(machine, wanted, running),
+        Some(_) => return work_offset(wanted, running),
     };
     Some((Rule::LengthOffset, message))
 }
@@ -227,7 +225,7 @@ pub(crate) fn offset_left(
     (difference.0 == "length-offset").then_some(difference.1)
 }
 
-fn work_offset(machine: &Machine, wanted: &ExpectedState, running: &Running) -> Option<Difference> {
+fn work_offset(wanted: &ExpectedState, running: &Running) -> Option<Difference> {
     let expected = wanted.work_offset.unwrap_or(WorkOffset::FIRST);
     match running.work_offset {
         Some(active) if active != expected => {
@@ -239,10 +237,6 @@ fn work_offset(machine: &Machine, wanted: &ExpectedState, running: &Running) -> 
             let expected = expected.number();
             let message = format!("no work offset is named, but should be {expected}");
             Some((Rule::WorkOffset, message))
-        }
-        None if Dialect::named(&machine.reader).is_some_and(Dialect::may_keep_work_offset) => {
-            let message = "no work offset is named: that of the last program may be active";
-            Some((Rule::WorkOffset, message.into()))
         }
         _ => None,
     }

@@ -51,7 +51,7 @@ fn rules(actions: &[Action]) -> Vec<&'static str> {
 /// moves nothing, while a length that begins at home does; where a block says Z its end is the same on both.
 #[test]
 fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
-    const START: &str = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\n";
+    const START: &str = "G21 G90 G94 G17 G54\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\n";
     for (block, harmless) in [
         ("G43 H1 Z50.\nG49", false),
         ("G43 H1 Z50.\nG43 H0", false),
@@ -98,7 +98,7 @@ fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
 /// On a machine whose file says that the coordinates move (5006#6 is 1) a length may begin wherever it likes.
 #[test]
 fn a_length_that_begins_alone_moves_nothing_where_the_coordinates_take_it() {
-    let text = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1\nZ50.\nG91 G28 Z0.\nG49\nM30\n";
+    let text = "G21 G90 G94 G17 G54\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1\nZ50.\nG91 G28 Z0.\nG49\nM30\n";
     for (moves_axis, expected) in
         [(Some(false), &[][..]), (Some(true), &["length-change"]), (None, &["length-change"])]
     {
@@ -118,7 +118,8 @@ fn a_length_that_begins_alone_moves_nothing_where_the_coordinates_take_it() {
 /// However, the previously specified modal G code remains displayed"; which block gives them back parameter 5001#6 says.
 #[test]
 fn behind_g28_of_a_fanuc_the_length_counts_again_where_g43_and_h_say_so() {
-    const START: &str = "G21 G90 G94 G17 G98\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1 Z50.\n";
+    const START: &str =
+        "G21 G90 G94 G17 G98 G54\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1 Z50.\n";
     for (blocks, harmless) in [
         ("G91 G28 Z0.\nG90 Z50.", false),
         ("G91 G30 Z0.\nG90 Z50.", false),
@@ -329,7 +330,7 @@ fn g254_of_haas_carries_the_work_zero_with_the_table() {
 /// work nobody knows.
 #[test]
 fn fanuc_goes_home_out_of_a_tilted_plane() {
-    const TILTED: &str = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\n\
+    const TILTED: &str = "G21 G90 G94 G17 G54\nT1 M6\nG91 G28 Z0.\nG90 G68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\n\
                           G0 X0. Y0.\nG43 H1 Z50.\n";
     assert!(
         risks(Dialect::Fanuc, &format!("{TILTED}G91 G28 Z0.\nG90\nG49\nG69\nM30\n")).is_empty()
@@ -947,13 +948,19 @@ fn lengths_switches_and_smoothing_that_nobody_states_are_reported() {
         let text = format!("G90\nG17\nG54\nG0 X0 Y0 Z50\n{block}\nG0 X5\n");
         let text =
             if dialect == Dialect::Sinumerik { text + "M30\n" } else { format!("G21\n{text}") };
+        // What its own zeros are, Marlin says behind a move by G53.
+        let text = match dialect {
+            Dialect::Marlin => text.replace("G54\n", "G54\nG53 G0 Z100\n"),
+            _ => text,
+        };
         rules(
             &crate::common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}")),
         )
     };
     assert_eq!(risks_within(Dialect::Grbl, 0.0, "G43.1 Z10"), ["operator-data"]);
     assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 Z"), ["stored-position"]);
-    assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 X Y"), [""; 0]);
+    assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 X Y"), ["work-offset"]);
+    assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 Y"), [""; 0]);
     // What the machine file allows is not what the machine data say.
     for word in ["G642", "G643", "G644", "G645", "COMPCAD", "COMPON", "CTOL=0\nCTOL=-1\nG645"] {
         for allowed in [0.0, 0.01] {

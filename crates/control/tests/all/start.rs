@@ -27,16 +27,17 @@ const CUT: &str = "G0 X0 Y0\nZ0\nG1 X10. F100.\nG2 X20. I5. J0\nG1 X30.\n";
 
 /// FANUC 3402#1 to #4 (plane, G91, G94), I J K fixed; Mach3 "Active Plane", "Distance Mode", "IJ Mode" of General Config and its
 /// initialisation string; LinuxCNC RS274NGC_STARTUP_CODE ("not a substitute for specifying modal g-codes at the top of each ngc
-/// file"); GRBL $N0, I J K fixed (`gcode.c`). Haas: power-on values of its list of G codes; Marlin: those of its firmware.
+/// file"); GRBL $N0, I J K fixed (`gcode.c`). Haas: power-on values of its list of G codes, to which a program's end goes back with setting
+/// 56 alone; Marlin: those of its firmware, which has no end of a program.
 #[test]
 fn a_mode_that_is_set_up_at_the_machine_is_said_by_the_program() {
     let table: [(Dialect, &str, &[&str]); 6] = [
         (Dialect::Fanuc, "M30\n", &["G17", "G90", "G94"]),
-        (Dialect::Haas, "M30\n", &[]),
+        (Dialect::Haas, "M30\n", &["G17", "G90", "G94"]),
         (Dialect::LinuxCnc, "M2\n", &["G17", "G90", "G91.1", "G94"]),
         (Dialect::Mach3, "M30\n", &["G17", "G90", "G91.1", "G94"]),
         (Dialect::Grbl, "M2\n", &["G17", "G90", "G94"]),
-        (Dialect::Marlin, "", &[]),
+        (Dialect::Marlin, "", &["G17", "G90"]),
     ];
     for (dialect, end, expected) in table {
         let cut = match dialect {
@@ -191,4 +192,107 @@ fn what_a_subprogram_gives_back_has_not_been_said() {
     let text = "G71 G90 G94 G54\nT1\nM6\nD1\nINNER\nG0 X0 Y0 Z0\nM30\n\
                 %_N_INNER_SPF\nPROC INNER SAVE\nG17\nG0 X0 Y0 Z9\nRET\n";
     assert_eq!(lacks(&machine(Dialect::Sinumerik), text), ["G17"]);
+}
+
+/// How often a program leans on a work offset of which nobody has said that it is active.
+fn leans_on_offset(settings: &Settings, text: &str) -> usize {
+    let found = crate::common::ops(settings, "p.nc", text)
+        .unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let risk = |action: &&Action| match action {
+        Action::Risk(risk) => risk.refused && risk.rule.name() == "work-offset",
+        _ => false,
+    };
+    found.iter().filter(risk).count()
+}
+
+/// FANUC 3402#6, 1202#3; Haas setting 56; Mach3 "Logic"; LinuxCNC parameter 5220, which `Interp::init` takes the number from, and
+/// RS274NGC_STARTUP_CODE; GRBL MDI and `$N`.
+#[test]
+fn a_program_names_its_work_offset_before_it_goes_to_a_place() {
+    for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl]
+    {
+        let leans =
+            |blocks: &str| leans_on_offset(&machine(dialect), &format!("G21 G90\n{blocks}\nM30\n"));
+        assert_eq!(leans("G0 X0. Y0.\nZ5.\nX9."), 1, "{dialect:?}");
+        assert_eq!(leans("G54 G0 X0. Y0.\nZ5."), 0, "{dialect:?}");
+        assert_eq!(leans("G55\nG0 X0. Y0.\nZ5."), 0, "{dialect:?}");
+        assert_eq!(leans("G0 X0.\nG54\nY0.\nZ5."), 1, "{dialect:?}");
+        // A place of the machine counts from its own zero, and G92 says the zero of its axes.
+        assert_eq!(leans("G53 G0 Z0"), 0, "{dialect:?}");
+        assert_eq!(leans("G92 X0. Y0.\nG0 X1. Y1."), 0, "{dialect:?}");
+        assert_eq!(leans("G92 X0. Y0.\nG0 X1. Y1.\nZ5."), 1, "{dialect:?}");
+        let stated = Settings { start_modes: StartModes::SURE, ..machine(dialect) };
+        assert_eq!(leans_on_offset(&stated, "G21 G90\nG0 X0. Y0.\nM30\n"), 0);
+    }
+    // What comes back has not been named.
+    let text = "G21 G90\nM70\nG55\nM72\nG0 X0 Y0 Z0\nM2\n";
+    assert_eq!(leans_on_offset(&machine(Dialect::LinuxCnc), text), 1);
+}
+
+/// Marlin 2.1.2: `active_coordinate_system` is -1 after power on (`gcode.cpp`); `set_axis_is_at_home` sets the shift of an axis to 0
+/// (`motion.cpp`), at the start of the day too; `select_coordinate_system` does nothing where its number is the active one, and `G53`
+/// goes through -1 and back (`G53-G59.cpp`).
+#[test]
+fn marlin_takes_the_work_offset_away_at_the_switches() {
+    let leans =
+        |lines: &str| leans_on_offset(&machine(Dialect::Marlin), &format!("G21\nG90\n{lines}\n"));
+    assert_eq!(leans("G0 X0 Y0"), 1);
+    assert_eq!(leans("G53 G0 Z9\nG0 X0 Y0"), 1);
+    // It may be active already, and taken away.
+    assert_eq!(leans("G54\nG0 X0 Y0"), 1);
+    assert_eq!(leans("G54\nG53 G0 Z9\nG0 X0 Y0\nG0 Z1"), 0);
+    assert_eq!(leans("G53 G0 Z9\nG54\nG0 X0 Y0"), 0);
+    assert_eq!(leans("G55\nG54\nG0 X0 Y0"), 0);
+    let homed = |lines: &str| leans(&format!("G54\nG53 G0 Z9\n{lines}"));
+    assert_eq!(homed("G28 X Y\nG0 X0 Y0"), 1);
+    assert_eq!(homed("G28 X Y\nG54\nG0 X0 Y0"), 1);
+    assert_eq!(homed("G28 X Y\nG53 G0 Z9\nG0 X0 Y0"), 0);
+    assert_eq!(homed("G28 X Y\nG55\nG0 X0 Y0"), 0);
+    assert_eq!(homed("G28 X Y\nG55\nG54\nG0 X0 Y0"), 0);
+    // Its own axes alone.
+    assert_eq!(homed("G28 X\nG0 Y0\nG0 Z1"), 0);
+    assert_eq!(homed("G28 X\nG0 Y0\nG1 X5 F100"), 1);
+    assert_eq!(homed("G1 X1 F100\nG1 X2\nG28 X\nG1 Y2\nG1 Y3\nG1 X2"), 1);
+    assert_eq!(homed("G28\nG0 Z1"), 1);
+    // G92 says where the axis stands.
+    assert_eq!(leans("G28 X Y\nG92 X0 Y0\nG0 X1 Y1"), 0);
+}
+
+/// G98 is what a FANUC and a Haas power on with; G99 of MDI, or of a program that was broken off, may be left.
+#[test]
+fn a_cycle_says_how_high_it_goes_back() {
+    for dialect in [Dialect::Fanuc, Dialect::Haas] {
+        let lacking = |cycle: &str| {
+            let text = format!(
+                "G21\nG17 G90 G94 G54\nG0 X0. Y0. Z9.\n{cycle} X5. Z-1. R2. F100.\nG80\nM30\n"
+            );
+            lacks(&machine(dialect), &text)
+        };
+        assert_eq!(lacking("G81"), ["G98"], "{dialect:?}");
+        assert!(lacking("G98 G81").is_empty(), "{dialect:?}");
+        assert!(lacking("G99 G81").is_empty(), "{dialect:?}");
+    }
+}
+
+/// Mach3 General Config, "G04 Dwell param in Milliseconds": the same P3 is 3 s or 3 ms.
+#[test]
+fn how_long_mach3_dwells_is_set_up() {
+    let dwell = |dwell_p_milliseconds, block: &str| {
+        let settings = Settings { dwell_p_milliseconds, ..machine(Dialect::Mach3) };
+        let found = crate::common::ops(&settings, "p.nc", &format!("G21\n{block}\nM30\n")).unwrap();
+        let seconds = found.iter().find_map(|action| match action {
+            Action::Dwell(dwell) => Some(*dwell),
+            _ => None,
+        });
+        let asked = found.iter().any(|action| match action {
+            Action::Risk(risk) => risk.refused && risk.rule.name() == "dwell-unit",
+            _ => false,
+        });
+        (seconds, asked)
+    };
+    assert_eq!(dwell(None, "G4 P3"), (Some(3.0), true));
+    assert_eq!(dwell(Some(false), "G4 P3"), (Some(3.0), false));
+    assert_eq!(dwell(Some(false), "G4 P0.5"), (Some(0.5), false));
+    assert_eq!(dwell(Some(true), "G4 P3000"), (Some(3.0), false));
+    assert!(!dwell(None, "G4 P0").1);
 }

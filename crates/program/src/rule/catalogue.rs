@@ -465,7 +465,7 @@ rules! {
         "fanuc: `G4`";
     DwellUnit "dwell-unit" []
         "What the dwell counts in depends on a setting that is not known."
-        "write G4 X with a decimal point, or state `dwell_p_milliseconds` in [settings] of the machine file"
+        "write G4 X with a decimal point (FANUC), or state `dwell_p_milliseconds` in [settings] of the machine file"
         "fanuc: `G4 P500`";
     DxfBinary "dxf-binary" []
         "The drawing is a binary DXF file."
@@ -1693,7 +1693,7 @@ rules! {
         "linuxcnc: `G18`, `G5.1 X10 Y0 I1 J1`";
     StartMode "start-mode" []
         "The program leans on a mode that it does not say, and how the control starts is set up at the machine."
-        "write G17, G90, G94, G91.1 or G710 at the start, as the finding says, or state it in `start_modes` in [settings] of the machine file"
+        "write G17, G90, G94, G91.1, G98 or G710 at the start, as the finding says, or state it in `start_modes` in [settings] of the machine file"
         "mach3: `G2 X10 I5 J0` without G91.1";
     Step "step" []
         "A step down is smaller than can be."
@@ -2144,8 +2144,8 @@ rules! {
         "lean less, or synchronise the contours by points (`--pair`)"
         "A short upper contour over a long lower one with 20°";
     WorkOffset "work-offset" ["nc-work-offset"]
-        "The work offset is not one of the control, or not that of the source."
-        "use the work offset of the toolpath, one that the control has"
+        "The work offset is not one of the control, not that of the source, or not sure to be active."
+        "use the work offset of the toolpath, one that the control has, and name it before the first move"
         "fanuc: `G54.1 P999`";
     ZeroVector "zero-vector" []
         "A direction has no length."

@@ -252,14 +252,20 @@ fn centres_may_be_absolute_and_a_radius_may_stand_for_them() {
     let post = [head, WORDS, places, MOVES].concat();
     let (_, machine) = imported("a.pp", &(post.clone() + &arcs("[X][Y][IA][JA]")), None);
     blocks(&machine, &[("arc_cw", "G2{{X}}{{Y}}{{CX}}{{CY}}{{F}}")]);
-    let program = sample(&machine).unwrap();
+    // The sample dwells, and what P counts on a Mach3 its operator has set up.
+    assert_eq!(sample(&machine), Err("dwell-unit"));
+    let counting_seconds = |mut machine: Machine| {
+        machine.settings.dwell_p_milliseconds = Some(false);
+        sample(&machine)
+    };
+    let program = counting_seconds(machine).unwrap();
     assert!(program.contains("G3Y30.000I40.000J20.000"), "{program}");
     let (_, machine) = imported("b.pp", &(post.clone() + &arcs("[X][Y][Radius]")), None);
-    let program = sample(&machine).unwrap();
+    let program = counting_seconds(machine).unwrap();
     assert!(program.contains("G3X50.000Y20.000R10.0000"), "{program}");
     // Without the code that says so the control counts from the start: the proof finds it.
     let wrong = post.replace("G90.1", "G98") + &arcs("[X][Y][IA][JA]");
-    assert_eq!(sample(&imported("c.pp", &wrong, None).1), Err("arc"));
+    assert_eq!(counting_seconds(imported("c.pp", &wrong, None).1), Err("arc"));
 }
 
 #[test]

@@ -246,3 +246,42 @@ fn a_tool_length_counts_from_where_the_plane_is_said() {
         assert_eq!(rule_of(&stated, &lines, &silent), None, "{name}");
     }
 }
+
+/// FANUC 3402#6, 1202#3; Haas setting 56; Mach3 "Logic"; LinuxCNC parameter 5220; GRBL MDI; Marlin in machine space after power on: which
+/// work offset is active before the program names one, no program sees.
+#[test]
+fn a_program_names_its_work_offset() {
+    let sample = three_axes();
+    for name in ["fanuc", "haas", "iso", "mach3", "linuxcnc", "grbl", "marlin"] {
+        let name = format!("generic-3axis-{name}");
+        let machine = machine::load(&name).unwrap();
+        let text = String::from_utf8(written(&machine, &sample).unwrap().text).unwrap();
+        assert_eq!(rule_of(&machine, &sample, &text), None, "{name}");
+        let silent = text.replace(" G54", "").replace("G54\n", "");
+        assert_ne!(silent, text, "{name}");
+        assert_eq!(rule_of(&machine, &sample, &silent), Some("work-offset"), "{name}");
+        let file = format!("extends = \"{name}\"\n[settings]\nstart_modes = [\"G54\"]\n");
+        let stated = load_text("stated.toml", &file).unwrap();
+        assert_eq!(rule_of(&stated, &sample, &silent), None, "{name}");
+    }
+}
+
+/// Marlin 2.1.2: `G28` takes the work offset of its axes away, and `G54` said again does not bring it back.
+#[test]
+fn behind_the_switches_of_a_marlin_a_move_by_g53_brings_the_work_offset_back() {
+    let sample = three_axes();
+    let machine = machine::load("generic-3axis-marlin").unwrap();
+    let text = String::from_utf8(written(&machine, &sample).unwrap().text).unwrap();
+    let retract = "G53 G0 Z200 F10000\n";
+    let (head, rest) = text.split_once(retract).unwrap_or_else(|| panic!("{text}"));
+    let with = |behind: &str| {
+        let text = format!("{head}{retract}{behind}{rest}");
+        rule_of(&machine, &sample, &text)
+    };
+    assert_eq!(with(""), None);
+    assert_eq!(with("G28 X Y\n"), Some("work-offset"));
+    assert_eq!(with("G28 X Y\nG54\n"), Some("work-offset"));
+    assert_eq!(with(&format!("G28 X Y\n{retract}")), None);
+    // Without the first move by G53 it may be away since the operator has homed the machine.
+    assert_eq!(rule_of(&machine, &sample, &format!("{head}{rest}")), Some("work-offset"));
+}

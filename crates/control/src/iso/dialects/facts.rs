@@ -243,6 +243,8 @@ pub(crate) enum DwellUnit {
     ByPoint,
     /// Least increments of time, as the machine is set up.
     AsSetUp,
+    /// Seconds or milliseconds, as the operator has set it up.
+    SecondsAsSetUp,
 }
 
 group! {
@@ -415,6 +417,8 @@ group! {
         adds: bool = false, FANUC = true;
         /// An offset may turn the coordinates (`G10 R`).
         turn: bool = false;
+        /// `G28` takes away that of its axes, and its word said again does not bring it back; `G53`, and another offset, do.
+        homing_takes_away: bool = false;
     }
 }
 
@@ -519,9 +523,6 @@ group! {
         feed_path: FeedPath = FeedPath::AsSetUp;
         /// The work offset that is active; none where it is that of the last program, or there is none.
         work_offset: Option<WorkOffset> = Some(WorkOffset::FIRST), FANUC = None;
-        /// That of the program before may be active: FANUC parameter 3402#6, Haas setting 56, the page "Logic" of Mach3's
-        /// configuration.
-        keeps_work_offset: bool = false, FANUC = true;
         /// What becomes of it at the end of a program.
         at_end: AtEnd = AtEnd::Keeps;
         /// The modes that are sure before a program says them; the others are set up at the machine.

@@ -97,13 +97,8 @@ pub(crate) static FACTS: Facts = Facts {
     homes: Homes { leaves_tilt: true, names_axes: true, ..Homes::FANUC },
     tools: Tools { remembers_registers: true, length_as_set_up: true, ..Tools::FANUC },
     reset: Reset {
-        // Parameter 3402#1 to #4.
-        modes: StartModes {
-            plane_xy: false,
-            absolute: false,
-            feed_per_minute: false,
-            ..StartModes::SURE
-        },
+        // Parameter 3402#1 to #4; G98 and the work offset, where 3402#6 keeps them.
+        modes: StartModes { centers_from_start: true, metric: true, ..StartModes::NONE },
         ..Reset::FANUC
     },
     ..Facts::fanuc(WORDS, Language::MacroB)

@@ -71,7 +71,12 @@ pub(crate) static FACTS: Facts = Facts {
         // `gcode.c`, step 21.
         at_end: AtEnd::Resets,
         // The blocks of the start, $N0 and $N1; I, J and K always count from the start of the arc.
-        modes: StartModes { metric: true, centers_from_start: true, ..StartModes::NONE },
+        modes: StartModes {
+            metric: true,
+            centers_from_start: true,
+            returns_up: true,
+            ..StartModes::NONE
+        },
         ..Reset::ISO
     },
     ..Facts::iso(WORDS, Language::Plain)

@@ -5,10 +5,10 @@ use super::facts::{
     Offsets, Reset, Syntax, Tools, further, within_a_hundredth,
 };
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::Corners;
 use crate::iso::language::words::{
     Canned, Dictionary, G, GRow, Group, M, MRow, Path, Pattern, Refused,
 };
+use crate::{Corners, StartModes};
 use program::WorkOffset;
 
 const G_WORDS: &[GRow] = &[
@@ -136,6 +136,8 @@ pub(crate) static FACTS: Facts = Facts {
         // By as much as setting 85 says, which no program sees.
         corners: Corners::Unbounded,
         work_offset: Some(WorkOffset::FIRST),
+        // Setting 56 may leave those of the program before.
+        modes: StartModes { centers_from_start: true, metric: true, ..StartModes::NONE },
         ..Reset::FANUC
     },
     ..Facts::fanuc(WORDS, Language::MacroB)

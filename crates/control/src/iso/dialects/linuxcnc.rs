@@ -146,8 +146,8 @@ pub(crate) static FACTS: Facts = Facts {
         feed_path: FeedPath::LinearAxes,
         // M codes, "M2, M30 Program End".
         at_end: AtEnd::Resets,
-        // RS274NGC_STARTUP_CODE.
-        modes: StartModes { metric: true, ..StartModes::NONE },
+        // RS274NGC_STARTUP_CODE; of the work offset parameter 5220 besides.
+        modes: StartModes { metric: true, returns_up: true, ..StartModes::NONE },
         ..Reset::ISO
     },
     ..Facts::iso(WORDS, Language::Ngc)

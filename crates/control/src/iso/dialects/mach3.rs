@@ -1,7 +1,9 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand in a block with `G0` to `G3`.
 
-use super::facts::{Facts, FrameRules, Functions, Language, Offsets, Reset, Syntax, Tools};
+use super::facts::{
+    DwellUnit, Facts, FrameRules, Functions, Language, Numbers, Offsets, Reset, Syntax, Tools,
+};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Path, Refused};
 use crate::{Corners, StartModes};
@@ -53,6 +55,8 @@ pub(crate) static FACTS: Facts = Facts {
         further_axes: "this control has six axes, X Y Z and A B C: write the move with them",
         ..Syntax::ISO
     },
+    // General Config, "G04 Dwell param in Milliseconds".
+    numbers: Numbers { dwell: DwellUnit::SecondsAsSetUp, ..Numbers::ISO },
     functions: Functions {
         // Its page "Logic", the choice of the operator.
         end_switches_off: false,
@@ -67,9 +71,8 @@ pub(crate) static FACTS: Facts = Facts {
     tools: Tools { rs274_data: true, ..Tools::ISO },
     reset: Reset {
         corners: Corners::AsSetUp,
-        keeps_work_offset: true,
-        // General Config: "Active Plane of Movement", "Distance Mode", "IJ Mode"; its initialisation string.
-        modes: StartModes { metric: true, ..StartModes::NONE },
+        // General Config: "Active Plane of Movement", "Distance Mode", "IJ Mode"; its initialisation string; the page "Logic".
+        modes: StartModes { metric: true, returns_up: true, ..StartModes::NONE },
         ..Reset::ISO
     },
     ..Facts::iso(WORDS, Language::Rs274)

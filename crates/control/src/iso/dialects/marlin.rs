@@ -2,11 +2,12 @@
 //! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
 
 use super::facts::{
-    BlockDelete, Brackets, DwellUnit, Facts, Homes, Language, Numbers, Reset, Syntax, Tools,
+    BlockDelete, Brackets, DwellUnit, Facts, Homes, Language, Numbers, Offsets, Reset, Syntax,
+    Tools,
 };
 use super::mill;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Refused};
-use crate::{Ending, FeedPath};
+use crate::{Ending, FeedPath, StartModes};
 
 const G_WORDS: &[GRow] = &[
     (591, Group::WorkOffset, G::WorkOffset(60)),
@@ -75,6 +76,18 @@ pub(crate) static FACTS: Facts = Facts {
     numbers: Numbers { dwell: DwellUnit::Milliseconds, dwell_letter: Some(b'S'), ..Numbers::ISO },
     homes: Homes { switches: true, ..Homes::ISO },
     tools: Tools { by_hand: true, ..Tools::ISO },
-    reset: Reset { feed_path: FeedPath::LinearAxes, work_offset: None, ..Reset::ISO },
+    offsets: Offsets { homing_takes_away: true, ..Offsets::ISO },
+    reset: Reset {
+        feed_path: FeedPath::LinearAxes,
+        work_offset: None,
+        // Nothing ends a program: what it, MDI or the host has said last goes on. A feed counts a minute always.
+        modes: StartModes {
+            plane_xy: false,
+            absolute: false,
+            first_offset: false,
+            ..StartModes::SURE
+        },
+        ..Reset::ISO
+    },
     ..Facts::iso(WORDS, Language::Plain)
 };

@@ -2,7 +2,7 @@
 //! (`docs/controls/wire-iso.md`). The M functions that thread and cut the wire stand in the machine's
 //! file.
 
-use super::facts::{Arcs, Facts, Language, Reset, Syntax, Tools, WireRules, within_a_hundredth};
+use super::facts::{Arcs, Facts, Language, Syntax, Tools, WireRules, within_a_hundredth};
 use super::{BASIC_G, BASIC_M, END_M, SUBPROGRAM_M, UNITS_20};
 use crate::iso::language::words::{Dictionary, G, GRow, Group, Refused, Side};
 
@@ -38,8 +38,6 @@ const fn wire(words: Dictionary) -> Facts {
         },
         // FANUC parameter 3410, which the machine sets; of the others no rule is known.
         arcs: Arcs { is_circle: within_a_hundredth, ..Arcs::ISO },
-        // Of a work offset that the program before has left nothing is known here.
-        reset: Reset { keeps_work_offset: false, ..Reset::FANUC },
         ..Facts::fanuc(words, Language::Plain)
     }
 }

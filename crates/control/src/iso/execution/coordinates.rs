@@ -164,7 +164,9 @@ impl Step<'_, '_, '_> {
             },
             _ => return Ok(()),
         };
-        if self.state.work_offset == Some(number) {
+        let before = self.state.work_offset;
+        self.state.frames.named(before.is_some_and(|before| before != number));
+        if before == Some(number) {
             return Ok(());
         }
         self.may_change_coordinates(Group::WorkOffset)?;

@@ -112,10 +112,20 @@ impl Step<'_, '_, '_> {
         if unit == DwellUnit::AsSetUp {
             return self.dwell_increments();
         }
-        Ok(self.block.take(b'P').map(|word| match unit {
+        let stated = self.state.dwell_p_milliseconds;
+        let word = self.block.take(b'P');
+        let lasts = word.is_some_and(|word| word.value > 0.0);
+        if unit == DwellUnit::SecondsAsSetUp && stated.is_none() && lasts {
+            self.actions.push(Action::Risk(Risk::DWELL_AS_SET_UP.into()));
+        }
+        Ok(word.map(|word| match unit {
             DwellUnit::ByPoint if !word.point => word.value / 1000.0,
             DwellUnit::Milliseconds => word.value / 1000.0,
-            DwellUnit::Seconds | DwellUnit::ByPoint | DwellUnit::AsSetUp => word.value,
+            DwellUnit::SecondsAsSetUp if stated == Some(true) => word.value / 1000.0,
+            DwellUnit::Seconds
+            | DwellUnit::ByPoint
+            | DwellUnit::AsSetUp
+            | DwellUnit::SecondsAsSetUp => word.value,
         }))
     }
 }

@@ -82,6 +82,9 @@ impl Step<'_, '_, '_> {
         if named & 4 != 0 {
             self.actions.push(Action::Risk(Risk::STORED_POSITION.into()));
         }
+        if self.facts.offsets.homing_takes_away {
+            self.state.frames.taken_away(named);
+        }
         self.leave_for(named);
         Ok(())
     }
@@ -264,6 +267,7 @@ impl Step<'_, '_, '_> {
             let message = "name the axes that G53 moves";
             return Err(self.block.at_group(Group::OneShot, Rule::MachinePosition, message));
         }
+        self.state.frames.taken_up(self.state.work_offset.is_some());
         let value = |axis: usize, value: f64| (named & 1 << axis != 0).then_some(value);
         let to = MachineMove {
             linear: [0, 1, 2].map(|axis| value(axis, place[axis])),

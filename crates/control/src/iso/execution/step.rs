@@ -109,6 +109,9 @@ impl Step<'_, '_, '_> {
         if self.state.sure != StartModes::SURE {
             self.lean_on_start(before);
         }
+        if self.state.frames.unsaid != 0 {
+            self.lean_on_offset(before);
+        }
         if more {
             self.flow()?;
         }
@@ -125,6 +128,8 @@ impl Step<'_, '_, '_> {
             feed_per_minute: says(Group::FeedMode),
             centers_from_start: says(Group::ArcDistance),
             metric: true,
+            returns_up: says(Group::Return),
+            first_offset: true,
         };
         self.state.sure = self.state.sure.or(said);
         let sure = &mut self.state.sure;
@@ -158,16 +163,38 @@ impl Step<'_, '_, '_> {
             && any(|event| matches!(event, Action::LengthOffset(Some(_))));
         let by_center = b"IJK".iter().any(|letter| self.block.gives(*letter))
             && any(|event| matches!(event, Action::Arc(_)));
+        let drills = any(|event| matches!(event, Action::Hole(_)));
         let plane = if turns { Risk::START_PLANE } else { Risk::START_LENGTH_PLANE };
         for (leans, sure, risk) in [
             (by_center, &mut sure.centers_from_start, Risk::START_CENTERS),
             (moves, &mut sure.absolute, Risk::START_DISTANCE),
             (cuts, &mut sure.feed_per_minute, Risk::START_FEED),
             (turns || lengthens, &mut sure.plane_xy, plane),
+            (drills, &mut sure.returns_up, Risk::START_RETURN),
         ] {
             if leans && !std::mem::replace(sure, true) {
                 self.actions.push(Action::Risk(risk.into()));
             }
+        }
+    }
+
+    /// Reports, once, that an event from `first` on goes to a place that counts from a zero of which nobody has said where it lies.
+    #[cold]
+    fn lean_on_offset(&mut self, first: usize) {
+        let mut events = self.actions.get(first..).unwrap_or_default().iter();
+        let goes =
+            events.any(|event| event.position().is_some() || matches!(event, Action::Probe(_)));
+        let named = (0..6).filter(|&axis| self.block.gives(b"XYZABC"[axis]));
+        let named = named.fold(0, |bits, axis| bits | 1 << axis);
+        // A place of the machine counts from its own zero.
+        let leans = goes
+            && self.block.g(Group::OneShot) != Some(G::Machine)
+            && self.state.frames.unsaid & named != 0;
+        if leans {
+            self.state.frames.unsaid = 0;
+            let homing = self.facts.offsets.homing_takes_away;
+            let risk = if homing { Risk::MACHINE_ZERO } else { Risk::START_OFFSET };
+            self.actions.push(Action::Risk(risk.into()));
         }
     }
 

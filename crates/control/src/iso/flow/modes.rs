@@ -72,6 +72,7 @@ impl Run<'_, '_> {
         self.control.execute(&mut self.block, &mut self.actions)?;
         // What had not been said then is not said by coming back.
         self.control.state.sure = kept.sure;
+        self.control.state.frames.unsaid = kept.unsaid;
         self.block.clear(line, text);
         let block = &mut self.block;
         if let Some(f) = kept.f {

@@ -3,10 +3,14 @@
 //!
 //! The work frame is that of the active work offset as it was when the program first moved in it.
 
+use crate::iso::dialects::facts::Offsets;
 use geom::{Frame, Mat3, Vec3};
 
 /// X, Y, Z in mm and A, B, C in degrees.
 pub(in crate::iso::execution) type Six = [f64; 6];
+
+/// X, Y, Z, A, B, C as bits.
+const ALL_AXES: u8 = 0b11_1111;
 
 /// Programmed coordinates in the work frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -234,6 +238,10 @@ pub(crate) struct Frames {
     /// What `G92.1` takes away beyond `shift`: NaN where a shift of the program before may stand in the
     /// control, or where `G92` has set the zero before any position was known.
     beyond: Six,
+    /// Axes (bit 0 is X) of which nobody has said where their zero lies: the program by a work offset or by `G92`, or the machine's file.
+    pub unsaid: u8,
+    /// The active work offset counts, whichever it is: no `G28` has taken it away.
+    counts: bool,
     /// `G92.1` has taken away what is not known.
     pub lost: Option<&'static str>,
     /// What `G92.3` brings back.
@@ -248,11 +256,12 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// Nothing shifted, in the work offset `number`.
+    /// Nothing shifted, in the work offset `number`, which is sure to be the one or not.
     pub(in crate::iso::execution) fn new(
         number: u32,
         all_zero: bool,
-        turns_offsets: bool,
+        rules: &Offsets,
+        is_sure: bool,
     ) -> Frames {
         let untouched = if all_zero { 0.0 } else { f64::NAN };
         let mut frames = Frames {
@@ -261,9 +270,11 @@ impl Frames {
             external: [untouched; 6],
             stepped: [false; 6],
             untouched,
-            turns_offsets,
+            turns_offsets: rules.turn,
             shift: [0.0; 6],
             beyond: [untouched; 6],
+            unsaid: if is_sure { 0 } else { ALL_AXES },
+            counts: is_sure || !rules.homing_takes_away,
             lost: None,
             stored: all_zero.then_some([0.0; 6]),
             local: [0.0; 6],
@@ -340,6 +351,28 @@ impl Frames {
         }
         let plane = axes[0] || axes[1];
         [plane, plane, axes[2]]
+    }
+
+    /// The program names a work offset; `changes` where it is another one than that of its last word.
+    pub(in crate::iso::execution) fn named(&mut self, changes: bool) {
+        self.counts |= changes;
+        if self.counts {
+            self.unsaid = 0;
+        }
+    }
+
+    /// `G53` leaves the work offset and takes it up again; `is_named` where the program has named it.
+    pub(in crate::iso::execution) fn taken_up(&mut self, is_named: bool) {
+        self.counts = true;
+        if is_named {
+            self.unsaid = 0;
+        }
+    }
+
+    /// These axes (bit 0 is X) count from the zero of the machine.
+    pub(in crate::iso::execution) fn taken_away(&mut self, axes: u8) {
+        self.counts = false;
+        self.unsaid |= axes;
     }
 
     /// Another work offset is active.
@@ -504,6 +537,7 @@ impl Frames {
                 (self.shift[axis], self.beyond[axis]) = (0.0, f64::NAN);
             }
             self.local[axis] = 0.0;
+            self.unsaid &= !(1 << axis);
         }
         self.stored = Some(self.shift);
         Ok(())

@@ -212,12 +212,14 @@ impl State {
         let all_zero = settings.setup.start.is_some();
         // A FANUC goes on in the work offset of the program before.
         let work_offset = facts.reset.work_offset.map_or(0, WorkOffset::number);
+        let sure = facts.reset.modes.or(settings.start_modes);
         State {
             motion: None,
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            sure: facts.reset.modes.or(settings.start_modes),
+            // The work offset has a state of its own: `Frames::unsaid`.
+            sure: StartModes { first_offset: true, ..sure },
             inches: match facts.source.is_some() {
                 true => Some(false),
                 false => settings.setup.units.map(|units| units == Units::Inches),
@@ -255,7 +257,7 @@ impl State {
             table_axes: settings.table_axes.clone(),
             table_frame_at_zero: settings.table_frame_at_zero,
             sets_work_offsets: settings.sets_work_offsets,
-            frames: Frames::new(work_offset, all_zero, facts.offsets.turn),
+            frames: Frames::new(work_offset, all_zero, &facts.offsets, sure.first_offset),
             place: ProgramFrame::SAME,
             tilt: Tilt::None,
             kinematics: Kinematics::at_start(facts, settings),
@@ -402,6 +404,7 @@ impl State {
             && *tilt == Tilt::None
             && *loose == 0
             && frames.lost.is_none()
+            && frames.unsaid == 0
             && compensation.active == compensation.asked
             && matches!(feed, Some(Feed::PerMinute(_)))
             && *cut

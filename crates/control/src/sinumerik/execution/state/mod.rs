@@ -278,9 +278,12 @@ impl State {
             vectors_in_work_frame: true,
             turning: Turning::default(),
             said: [0; GROUPS],
-            sure: settings
-                .start_modes
-                .or(StartModes { centers_from_start: true, ..StartModes::NONE }),
+            sure: settings.start_modes.or(StartModes {
+                centers_from_start: true,
+                returns_up: true,
+                first_offset: true,
+                ..StartModes::NONE
+            }),
             smoothed: Smoothed::default(),
             rapids_together: None,
             reported_rapids: None,
