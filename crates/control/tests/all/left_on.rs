@@ -330,3 +330,24 @@ fn the_spindle_of_a_sinumerik_starts_with_a_speed_of_the_program() {
         assert_eq!(found, rule, "{text}");
     }
 }
+
+/// Parameter 5006#6 is 0: `G49` at the head of the next program moves Z down by the length, unless Z is home (B-64484EN-2, "Tool length
+/// compensation"; B-63844EN p. 204: G28 has taken the length away). On Haas `G49` moves nothing.
+#[test]
+fn a_fanuc_ends_with_z_home_or_without_a_length() {
+    let found = |dialect, length_moves_axis, end: &str| {
+        let text = format!(
+            "G21\nG17 G40 G49 G80 G90 G94 G98 G54\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\nG43 H1 Z40.\n{end}\nM30\n"
+        );
+        left_on(&Settings { length_moves_axis, ..machine(dialect) }, &text).len()
+    };
+    let fanuc = |end: &str| found(Dialect::Fanuc, None, end);
+    assert_eq!(fanuc(""), 1);
+    assert_eq!(fanuc("G91 G28 Z0.\nG90"), 0);
+    assert_eq!(fanuc("G91 G28 Z0.\nG90 G0 X90. Y90."), 0);
+    assert_eq!(fanuc("G91 G28 X0. Y0.\nG90"), 1);
+    assert_eq!(fanuc("G49 Z90."), 0);
+    assert_eq!(found(Dialect::Fanuc, Some(true), ""), 1);
+    assert_eq!(found(Dialect::Fanuc, Some(false), ""), 0);
+    assert_eq!(found(Dialect::Haas, None, ""), 0);
+}

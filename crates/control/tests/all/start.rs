@@ -279,7 +279,7 @@ fn a_cycle_says_how_high_it_goes_back() {
 fn how_long_mach3_dwells_is_set_up() {
     let dwell = |dwell_p_milliseconds, block: &str| {
         let settings = Settings { dwell_p_milliseconds, ..machine(Dialect::Mach3) };
-        let found = crate::common::ops(&settings, "p.nc", &format!("G21\n{block}\nM30\n")).unwrap();
+        let found = crate::common::ops(&settings, "p.nc", format!("G21\n{block}\nM30\n")).unwrap();
         let seconds = found.iter().find_map(|action| match action {
             Action::Dwell(dwell) => Some(*dwell),
             _ => None,

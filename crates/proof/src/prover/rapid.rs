@@ -382,6 +382,11 @@ impl Prover<'_> {
             let message = "Z goes home together with other axes, not before them";
             self.report.warn(Diagnostic::warning(Rule::Home, message).line(line));
         }
+        let sideways = axes.contains(Axes::X) || axes.contains(Axes::Y);
+        if first && sideways && !z && !self.raised {
+            let message = "X or Y goes home before Z, as high as the tool stands";
+            self.report.warn(Diagnostic::warning(Rule::Home, message).line(line));
+        }
         if holding && !first && self.progress.left.is_none() {
             self.progress.left = Some(self.here);
         }

@@ -484,6 +484,22 @@ fn the_length_offset_holds_on_the_way_to_a_tool_change() {
     assert_eq!(report(vec![Action::WorkOffset(offset(55))]), ["work-offset"]);
 }
 
+/// At the start nobody knows how high the tool stands: X and Y go home at that height, where Z has not gone before.
+#[test]
+fn other_axes_that_go_home_first_of_all_get_a_warning() {
+    let warned = |before: Vec<Action>| {
+        let does = [before, nc_start(), cut_nc(), vec![Action::Home(Axes::Z)], end()].concat();
+        let report = run(&mill(), &source(cut()), does);
+        proven(&report);
+        report.warnings.iter().filter(|found| found.rule == Rule::Home).count()
+    };
+    let (xy, z) =
+        (Action::Home(Axes::of([true, true, false, false, false, false])), Action::Home(Axes::Z));
+    assert_eq!(warned(vec![]), 0);
+    assert_eq!(warned(vec![z.clone(), xy.clone()]), 0);
+    assert_eq!(warned(vec![xy, z]), 1);
+}
+
 #[test]
 fn other_axes_go_home_with_z_only_from_above_the_part() {
     let report = |above: f64| {

@@ -28,6 +28,11 @@ const LOCAL: Risk = Risk::left_on(
     "write G52 with 0 for each axis that is shifted before the end",
 );
 const TILT: Risk = Risk::left_on("ends in a tilted plane", "write G69 before the end");
+/// Parameter 5006#6: G49 at the head of the next program moves Z by the length where the axis moves.
+const LENGTH: Risk = Risk::left_on(
+    "ends with a tool length where Z is not home: G49 of the next one may move Z by it (parameter 5006#6)",
+    "send Z home before the end (G91 G28 Z0); or say `length_moves_axis = false` in [settings] of the machine file where 5006#6 is 1",
+);
 const TOOL_CENTER: Risk =
     Risk::left_on("ends while the control keeps the tool tip", "write G49 before the end");
 /// `M30` ends it, a stop by hand may not: the manual asks for `G255` right behind its use.
@@ -67,6 +72,7 @@ impl State {
     pub(in crate::iso) fn left_on(&self, facts: &Facts) -> impl Iterator<Item = Risk> {
         let is_read = facts.source.is_none();
         let keeps_modes = facts.reset.at_end == AtEnd::Keeps;
+        let length_moves_z = facts.tools.length_as_set_up && self.length_moves_axis != Some(false);
         let returns_up = facts.cycles.returns == Some(false);
         let found = [
             (keeps_modes && self.plane != Plane::Xy, PLANE),
@@ -78,6 +84,7 @@ impl State {
             (self.frames.transform != Transform::NONE, TRANSFORM),
             (self.frames.local != [0.0; 6], LOCAL),
             (self.tilt != Tilt::None, TILT),
+            (length_moves_z && self.length != Length::None && !self.z_is_home, LENGTH),
             (matches!(self.length, Length::Center(_)), TOOL_CENTER),
             (self.frames.carried.is_some(), DYNAMIC_OFFSET),
             (self.kinematics == Kinematics::Tip, KINEMATICS),
