@@ -81,6 +81,12 @@ export class Cursor {
         this.place.value = done;
     }
 
+    /** There is no job for a while: the next one begins where this one was left. */
+    keep(): void {
+        const source = this.place.value?.source;
+        if (source) this.first ??= { by: "source", value: source.line, file: source.file };
+    }
+
     /** After a new posting: the same record of the source, or the same time where there is none. */
     private again(job: Job | null): void {
         const place = this.place.value;

@@ -6,6 +6,7 @@ import { leave, rememberedWork, rememberWork, takeLeft } from "./protocol/sessio
 import { givenToken, keepToken, token } from "./protocol/token.ts";
 import { Screen } from "./screen/screen.ts";
 import { Studio } from "./studio.ts";
+import { Watch } from "./watch.ts";
 
 const { token: given, isNew } = token();
 const link = signal<State>("connecting");
@@ -43,4 +44,5 @@ addEventListener("unhandledrejection", (event) => {
     event.preventDefault();
     if (event.reason.verdict !== "cancelled") studio.stopped.value = event.reason.findings;
 });
+new Watch(studio).begin();
 render(<Page screen={screen} />, document.querySelector("#page")!);

@@ -30,6 +30,8 @@ export class Studio {
     /** Why there is no job, or why something else was not done. */
     readonly stopped: Signal<Finding[]> = signal([]);
     readonly said: Signal<string> = signal("");
+    /** Files that the work was made of and that are not there any more. */
+    readonly gone: Signal<string[]> = signal([]);
     /** The program as edited by hand; null while it is as posted. */
     readonly edited: Signal<Edit | null> = signal(null);
     /** Name of the program that was dropped in the place of the posted one. */
@@ -38,6 +40,8 @@ export class Studio {
     readonly posted = new Map<string | null, string>();
     /** Grows with each program that is no edit of the one before. */
     program = 0;
+    /** The file of the folder that was proven in the place of what is posted. */
+    private there: string | null = null;
     /** The job whose files those are that were not edited; null where no server has it. */
     private base: number | null = null;
     /** The job is of the program as it stands now. */
@@ -165,12 +169,18 @@ export class Studio {
             void this.askForm();
             return this.asksMachine();
         }
-        // The picture of another source says nothing of this one.
-        if (this.shown !== JSON.stringify(source)) this.job.value = this.board.value = null;
+        // The picture of another source says nothing of this one, nor does a place in it.
+        if (this.shown !== JSON.stringify(source)) {
+            if (this.shown !== "") this.cursor.first = null;
+            this.job.value = this.board.value = null;
+        }
         this.shown = JSON.stringify(source);
         const posting = this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done);
         void this.askForm();
         const job = await posting;
+        // Something newer is under way, and what is shown belongs to it.
+        if (this.work.value !== work) return;
+        if (job === undefined) this.cursor.keep();
         batch(() => {
             this.board.value = job?.board ?? null;
             if (this.edited.value === null) this.isNew(job ?? null);
@@ -182,9 +192,24 @@ export class Studio {
         if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
     }
 
+    /** Posts what is open as it lies in the folder now; a program that was proven instead is proven again. */
+    async again(): Promise<void> {
+        if (this.there !== null) return this.proveFile(this.there);
+        if (this.work.value !== null) await this.post(this.work.value);
+    }
+
+    /** The job whose files are watched; null: what gave none; undefined: nothing is. */
+    get watched(): number | null | undefined {
+        const { work, job, stop } = this;
+        if (this.link.value !== "open" || this.running.value !== null || work.value === null || work.value.machine === null) return undefined;
+        if (this.isCurrent.value || stop.value === null) return job.value?.revision;
+        return stop.value === "cancelled" ? undefined : null;
+    }
+
     /** The job of a program that is no edit of the one before. */
     private isNew(job: Job | null): void {
         this.given.value = null;
+        this.there = null;
         this.base = job?.revision ?? null;
         this.posted.clear();
         this.program++;
@@ -239,6 +264,7 @@ export class Studio {
         batch(() => {
             this.edited.value = null;
             this.isNew(job);
+            this.there = file;
             this.show(job);
             this.isCurrent.value = true;
         });

@@ -1117,7 +1117,39 @@ pub struct PlotParams {
     pub pixels: u32,
 }
 
-/// `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused. Of a board all programs
+/// `changes { revision }`: which files a job was made of are others now; without a revision, those that the last work of this page was made of
+/// that gave no job.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct ChangesParams {
+    /// Of the job.
+    pub revision: Option<u64>,
+}
+
+/// What has become of the files that a work was made of.
+#[derive(Debug, Default, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Changes {
+    /// Those that are others now.
+    pub files: Vec<ChangedFile>,
+    /// The same while they stay as they are now; empty where there are none.
+    pub state: String,
+}
+
+/// A file that is another one now, or a folder with other files.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ChangedFile {
+    /// Its path in the folder.
+    pub path: String,
+    /// What it was read as.
+    pub of: Of,
+    /// It is not there any more, or cannot be read.
+    pub is_gone: bool,
+}
+
+/// `save { revision, path, replace }`: saves program and report, both or neither; what is not proven, or whose files have changed since, is refused. Of a board all programs
 /// and their report are saved, all or none.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(test, derive(TS))]
@@ -1279,6 +1311,9 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             FeedAbout,
             SpindleAbout,
             PlotParams,
+            ChangesParams,
+            Changes,
+            ChangedFile,
             SaveParams,
             Saved,
             Field,

@@ -1,11 +1,12 @@
 //! Boards: several programs that are made of one source and saved together, and what a board is drawn with.
 
 use crate::ask::{
-    BoardAbout, BoardArea, BoardAreaKind, BoardPicture, BoardPlace, BoardProgram, LeftOut, Saved,
-    Turning,
+    BoardAbout, BoardArea, BoardAreaKind, BoardPicture, BoardPlace, BoardProgram, LeftOut, Of,
+    Saved, Turning,
 };
 use crate::edit::Existing;
 use crate::folder::Folder;
+use crate::inputs::Inputs;
 use crate::job::{Follows, Job, Made, Options, Sources, called, called_from, report_of, rows};
 use crate::lines::Lines;
 use crate::machines::Any;
@@ -63,8 +64,6 @@ struct Whole {
     left_out: Vec<(String, Vec<Diagnostic>)>,
     /// What is saved: the report, and the programs.
     contents: Vec<(String, Vec<u8>)>,
-    /// The files that it is made of, which nothing is saved over.
-    inputs: Vec<PathBuf>,
 }
 
 /// A program's place in its board.
@@ -86,7 +85,6 @@ pub(crate) fn make(
     source: Sources,
     options: &Options,
     (machine_name, machine): (&str, &Machine),
-    mut inputs: Vec<PathBuf>,
     follows: &Follows,
 ) -> Result<Vec<Job>, Stop> {
     let settings = options.board.as_deref().cloned().unwrap_or_default();
@@ -102,7 +100,6 @@ pub(crate) fn make(
     let contents = made.contents(&job, &report);
     let contents = contents.into_iter().map(|(name, bytes)| (name, bytes.to_vec())).collect();
     let left_out = made.left_out.iter().map(|left| (left.file.clone(), left.findings().collect()));
-    inputs.extend(made.files.iter().filter_map(Source::file).map(Path::to_owned));
     let named = |made: &pcb::Program| {
         (made.name.clone(), made.file.clone(), made.posted.account.findings.len())
     };
@@ -112,7 +109,6 @@ pub(crate) fn make(
         others: pcb::other_files(machine, &made.programs),
         left_out: left_out.collect(),
         contents,
-        inputs,
         account,
     });
     let texts = Arc::new(texts(made.name(), &made.files, made.layers()));
@@ -147,7 +143,7 @@ pub(crate) fn make(
             lines: Some(lines),
         };
         let machine = (machine_name, Any::Moves(machine.into()));
-        Job::of(made, Arc::clone(&texts), (file, machine), Vec::new(), follows)
+        Job::of(made, Arc::clone(&texts), (file, machine), follows)
     };
     programs.map(job).collect()
 }
@@ -181,7 +177,6 @@ pub(crate) fn prove(
     source: Sources,
     options: &Options,
     (machine_name, machine): (&str, &Machine),
-    inputs: Vec<PathBuf>,
     (file, given): (String, Existing),
     follows: &Follows,
 ) -> Result<Job, Stop> {
@@ -204,7 +199,7 @@ pub(crate) fn prove(
     let (origins, board) = (Origins::default(), None);
     let made = Made { toolpath, account, text, origins, parts, report, widths, board, lines };
     let machine = (machine_name, Any::Moves(machine.into()));
-    let job = Job::of(made, texts.into(), (file, machine), inputs, follows)?;
+    let job = Job::of(made, texts.into(), (file, machine), follows)?;
     Ok(job.keeping_its_name())
 }
 
@@ -235,11 +230,6 @@ impl Place {
         size_of_val(&self.areas.trapezoids[..])
             + size_of_val(&self.areas.holes[..])
             + contents / self.whole.programs.len().max(1)
-    }
-
-    /// The files that the board is made of.
-    pub fn inputs(&self) -> &[PathBuf] {
-        &self.whole.inputs
     }
 
     /// What is wrong with the board, or worth knowing.
@@ -315,13 +305,20 @@ impl Place {
     ///
     /// # Errors
     /// The path leads out of the folder, one of the files is there already, or cannot be saved; nothing is changed then.
-    pub fn save(&self, folder: &Folder, path: &str, replace: bool) -> Result<Saved, Stop> {
-        let Whole { contents, inputs, .. } = &*self.whole;
+    pub fn save(
+        &self,
+        folder: &Folder,
+        path: &str,
+        replace: bool,
+        inputs: &Inputs,
+    ) -> Result<Saved, Stop> {
+        let Whole { contents, .. } = &*self.whole;
         let target = folder.target(path)?;
         let refused = |message: String, help: &str| {
             Stop::from(Diagnostic::error(Rule::OutputFolder, message).help(help).file(path))
         };
-        if inputs.iter().any(|input| input.parent() == Some(&target)) {
+        let of_board = inputs.files(folder, Some(Of::Source));
+        if of_board.iter().any(|input| input.parent() == Some(&target)) {
             let message = String::from("the programs would be saved among the files of the board");
             return Err(refused(message, "give a folder of its own"));
         }
@@ -336,6 +333,7 @@ impl Place {
         }
         let contents: Vec<(String, &[u8])> =
             contents.iter().map(|(name, bytes)| (name.clone(), &bytes[..])).collect();
+        let inputs = inputs.files(folder, None);
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         files::save_in(&target, &contents, &inputs)?;
         // The programs first.

@@ -3,18 +3,23 @@
 //! Paths are those of the page: relative to the folder, with `/` between names. Every file is opened below a handle of the
 //! folder (`cap-std`), so a link that is put in place meanwhile leads nowhere else. Hidden names (`.toolpost`) are not listed.
 
-use crate::ask::{Draft, Entry, EntryKind};
+use crate::ask::{Draft, Entry, EntryKind, Finding};
 use app::files;
 use cap_std::ambient_authority;
-use cap_std::fs::{Dir, OpenOptions};
+use cap_std::fs::{Dir, Metadata, OpenOptions};
 use program::{Diagnostic, Rule};
+use std::collections::VecDeque;
 use std::io::{self, Read, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// The most entries of a folder that are listed.
 const MOST_ENTRIES: usize = 10_000;
+
+/// How deep below the folder, and among how many entries, files are looked for.
+const DEEPEST: usize = 4;
+const MOST_LOOKED_AT: usize = 5000;
 
 /// The largest file that is opened, bytes.
 const MOST_BYTES: u64 = 1 << 30;
@@ -38,6 +43,21 @@ pub const SECRET: &str = ".html";
 
 /// What the system answers where a path leads out.
 const ESCAPES: &str = "a path led outside of the filesystem";
+
+/// What tells without reading it that a file is another one now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stamp {
+    /// Whether it is a folder.
+    pub is_folder: bool,
+    /// Its size.
+    pub bytes: u64,
+    /// When it was written last; none where the system does not say.
+    written: Option<SystemTime>,
+    /// When it or its name was changed last.
+    pub changed: Option<SystemTime>,
+    /// Its number on the disk; 0 where there is none.
+    number: u64,
+}
 
 /// The folder in which the studio reads and writes.
 #[derive(Debug)]
@@ -114,6 +134,42 @@ impl Folder {
         Ok((entries, is_whole))
     }
 
+    /// Up to so many files, no larger than so many bytes, whose names end so: those of the folder and of the folders in it, the nearest first. Hidden names are
+    /// left out, and links are not followed further down.
+    pub fn files_below(&self, ending: &str, most: usize, largest: u64) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut folders = VecDeque::from([(PathBuf::new(), 0)]);
+        let mut looked_at = 0;
+        while let Some((folder, depth)) = folders.pop_front() {
+            let Ok(entries) = self.dir.read_dir(at(&folder)) else { continue };
+            let entries = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+            let left = MOST_LOOKED_AT - looked_at;
+            let names = entries.filter(|name| !name.starts_with('.')).take(left);
+            let mut names: Vec<String> = names.collect();
+            looked_at += names.len();
+            names.sort_unstable();
+            for path in names.into_iter().map(|name| folder.join(name)) {
+                let Ok(metadata) = self.dir.symlink_metadata(&path) else { continue };
+                let is_meant = |to: &Metadata| {
+                    path.to_string_lossy().ends_with(ending) && to.is_file() && to.len() <= largest
+                };
+                let is_linked = || {
+                    let is_link = depth == 0 && metadata.is_symlink();
+                    is_link && self.dir.metadata(&path).is_ok_and(|to| is_meant(&to))
+                };
+                if is_meant(&metadata) || is_linked() {
+                    found.push(spelled(&path));
+                    if found.len() == most {
+                        return found;
+                    }
+                } else if metadata.is_dir() && depth < DEEPEST {
+                    folders.push_back((path, depth + 1));
+                }
+            }
+        }
+        found
+    }
+
     /// The bytes of a file.
     ///
     /// # Errors
@@ -131,7 +187,7 @@ impl Folder {
         opened.map(drop).map_err(|error| unreadable(path, &error))
     }
 
-    /// The files of one of its folders, each with its path and its bytes: no more than so many files and bytes.
+    /// The files of one of its folders, each with its path and its bytes as `read` reads it: no more than so many files and bytes.
     ///
     /// # Errors
     /// It leads out, is no folder that may be read, has more, or one of its files may not be read.
@@ -140,6 +196,7 @@ impl Folder {
         path: &str,
         files: usize,
         bytes: u64,
+        read: impl Fn(&str) -> Result<Vec<u8>, Box<Diagnostic>>,
     ) -> Result<Vec<(String, Vec<u8>)>, Box<Diagnostic>> {
         let (entries, is_whole) = self.list(path)?;
         self.leads_nowhere(path)?;
@@ -152,11 +209,11 @@ impl Folder {
             let found = Diagnostic::error(Rule::Folder, message).file(path);
             return Err(found.help("give a folder with the files of one board alone").into());
         }
-        let read = own.into_iter().map(|Entry { path, .. }| {
-            let bytes = self.read(&path)?;
+        let each = own.into_iter().map(|Entry { path, .. }| {
+            let bytes = read(&path)?;
             Ok((path, bytes))
         });
-        read.collect()
+        each.collect()
     }
 
     /// Checks that no entry of one of its folders is a link that leads out: such a one is not listed.
@@ -181,6 +238,49 @@ impl Folder {
     /// Whether a path is one of its folders.
     pub fn is_folder(&self, path: &str) -> bool {
         inner(path).is_ok_and(|inner| self.dir.metadata(inner).is_ok_and(|at| at.is_dir()))
+    }
+
+    /// A path as it is from the folder on, where it is a whole one below it.
+    pub fn within<'p>(&self, path: &'p Path) -> &'p Path {
+        path.strip_prefix(&self.path).unwrap_or(path)
+    }
+
+    /// A finding as the page has it: a file of the folder by its path in it.
+    pub fn finding(&self, found: Diagnostic) -> Finding {
+        let mut found = Finding::from(found);
+        self.shorten(&mut found.file);
+        found
+    }
+
+    /// Makes of the whole path of a file of the folder its path in it.
+    pub fn shorten(&self, file: &mut String) {
+        if let Ok(path) = Path::new(file).strip_prefix(&self.path) {
+            *file = spelled(path);
+        }
+    }
+
+    /// What a file, or a folder, is known by; `None` where there is none that can be reached.
+    pub fn stamp(&self, path: &Path) -> Option<Stamp> {
+        let metadata = self.dir.metadata(at(path)).ok()?;
+        let written = metadata.modified().ok().map(cap_std::time::SystemTime::into_std);
+        #[cfg(unix)]
+        let (changed, number) = {
+            use cap_std::fs::MetadataExt;
+            let seconds = Duration::from_secs(u64::try_from(metadata.ctime()).ok()?);
+            let nanoseconds = Duration::from_nanos(u64::try_from(metadata.ctime_nsec()).ok()?);
+            (UNIX_EPOCH.checked_add(seconds + nanoseconds), metadata.ino())
+        };
+        #[cfg(not(unix))]
+        let (changed, number) = (written, 0);
+        let (is_folder, bytes) = (metadata.is_dir(), metadata.len());
+        Some(Stamp { is_folder, bytes, written, changed, number })
+    }
+
+    /// The names of the files in a folder, in their order; hidden ones left out.
+    pub(crate) fn names_of_files(&self, path: &Path) -> Option<Vec<String>> {
+        let (entries, _) = self.list(&spelled(path)).ok()?;
+        let files = entries.into_iter().filter(|entry| entry.kind == EntryKind::File);
+        Some(files.map(|entry| entry.name).collect())
     }
 
     /// Whether there is something of this name, also a link that leads nowhere or out.
@@ -360,7 +460,8 @@ impl Folder {
         }
     }
 
-    fn bytes(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    /// The bytes of a file that has no more than so many.
+    pub(crate) fn bytes(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
         let (file, length) = self.open_file(path, most)?;
         let mut bytes = Vec::new();
         bytes.try_reserve_exact(length as usize).map_err(io::Error::other)?;
@@ -394,6 +495,11 @@ impl Folder {
         }
         Ok((file, metadata.len()))
     }
+}
+
+/// The folder itself has no path in it.
+fn at(path: &Path) -> &Path {
+    if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
 /// A path of the page as one below the folder.
@@ -517,6 +623,34 @@ mod tests {
         assert!(folder.keep_draft("a", &json!({}), b"x").is_err());
         assert!(folder.drafts().is_empty());
         assert_eq!(fs::read_dir(all.path().join("elsewhere")).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_further_down_are_found_within_bounds() {
+        use std::os::unix::fs::symlink;
+        let (all, folder) = folder();
+        let own = all.path().join("own");
+        fs::create_dir_all(own.join("a/b/c/d/e")).unwrap();
+        fs::create_dir(own.join(".git")).unwrap();
+        let paths = ["z.toml", "a/y.toml", "a/b/c/d/x.toml", "a/b/c/d/e/deep.toml", ".git/w.toml"];
+        for path in paths.into_iter().chain(["a/.hidden.toml", "a/other.txt"]) {
+            fs::write(own.join(path), "x").unwrap();
+        }
+        fs::write(own.join("a/large.toml"), "xx").unwrap();
+        symlink("..", own.join("parts/up")).unwrap();
+        symlink("../z.toml", own.join("parts/link.toml")).unwrap();
+        symlink("a/y.toml", own.join("link.toml")).unwrap();
+        let found = folder.files_below(".toml", 100, 1);
+        assert_eq!(found, ["link.toml", "z.toml", "a/y.toml", "a/b/c/d/x.toml"]);
+        let found = folder.files_below(".toml", 3, 100);
+        assert_eq!(found, ["link.toml", "z.toml", "a/large.toml"]);
+        fs::create_dir(own.join("0")).unwrap();
+        for number in 0..MOST_LOOKED_AT {
+            fs::write(own.join(format!("0/{number}")), "").unwrap();
+        }
+        // All that is looked at further down is in the first folder.
+        assert_eq!(folder.files_below(".toml", 100, 1), ["link.toml", "z.toml"]);
     }
 
     #[cfg(unix)]

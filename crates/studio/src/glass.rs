@@ -1,7 +1,6 @@
 //! Jobs of a laser that fires inside glass: each pulse is a move, and the block is drawn round them.
 
-use crate::ask::{Axis, AxisKind, GlassBlock};
-use crate::folder::Folder;
+use crate::ask::{Axis, AxisKind, GlassBlock, Of};
 use crate::geometry::{CHUNK, Exact, Geometry};
 use crate::job::{Follows, Job, Made, Options, Sources};
 use crate::lines::Lines;
@@ -19,7 +18,6 @@ use program::{Diagnostic, Program, Rule};
 use std::borrow::{Borrow, Cow};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 /// The most pulses of a program: while it is made, each takes some 220 bytes.
 const MOST_PULSES: u64 = 12_000_000;
@@ -195,7 +193,6 @@ pub(crate) fn make(
     options: &Options,
     (machine_name, machine): (&str, Box<Machine>),
     (file, program): (Option<String>, Option<Vec<u8>>),
-    (mut inputs, folder): (Vec<PathBuf>, &Folder),
     follows: &Follows,
 ) -> Result<Job, Stop> {
     let bodies = match source {
@@ -210,17 +207,19 @@ pub(crate) fn make(
         let found = Diagnostic::error(Rule::StudioAsk, message);
         return Err(found.help("discard the edit, or take another --order").into());
     }
-    let mut read = Vec::new();
+    let (folder, inputs) = (follows.folder, follows.inputs);
+    let bodies_read = inputs.files(folder, Some(Of::Source));
     let mut beside = |body: &Source, name: &str| {
         let path = body.path().with_file_name("").join(name).to_string_lossy().into_owned();
         let own = folder.target(&body.path().to_string_lossy()).ok();
-        if !own.is_some_and(|own| inputs.contains(&own)) {
+        if !own.is_some_and(|own| bodies_read.contains(&own)) {
             return Err(format!(
                 "`{name:.80}` is not read for a dropped body: put both into the folder of the studio"
             ));
         }
-        read.extend(folder.target(&path).ok());
-        folder.read(&path).map_err(|found| format!("{name:.80}: {}", found.message))
+        inputs
+            .read(folder, &path, Of::Source)
+            .map_err(|found| format!("{name:.80}: {}", found.message))
     };
     let file = file.unwrap_or_else(|| {
         let name = bodies.first().map(Source::name).unwrap_or_default();
@@ -240,10 +239,6 @@ pub(crate) fn make(
         }
         None => job.make(follows)?,
     };
-    inputs.extend(read);
-    if machine::is_path(machine_name) {
-        inputs.push(folder.target(machine_name)?);
-    }
     follows.step("drawing");
     let focus = made.focus(settings)?;
     let line = |at: glass::Point| {
@@ -284,7 +279,7 @@ pub(crate) fn make(
     };
     let glass = Glass { machine: *machine, focus, focal: settings.job.focal, listing };
     let named = (file, (machine_name, Any::Fires(glass.into())));
-    Ok(Job::drawn(made, drawn, texts.into(), named, inputs))
+    Ok(Job::drawn(made, drawn, texts.into(), named, follows))
 }
 
 /// What is shown as the source: the text of a body, where it is one; of others what they are, and those of them that are lists of points.

@@ -10,6 +10,7 @@ use crate::edit::{Existing, Files, Text};
 use crate::folder::Folder;
 use crate::geometry::{self, Geometry};
 use crate::glass::{self, Glass};
+use crate::inputs::Inputs;
 use crate::lines::{Lines, readable};
 use crate::machines::{self, Any};
 use crate::message::{Array, Values};
@@ -61,19 +62,18 @@ pub struct Options {
 }
 
 impl Options {
-    /// The same, with every file that they name read in the folder, or lying in it; and those that were read.
+    /// The same, with every file that they name read in the folder, or lying in it.
     ///
     /// # Errors
     /// One leads out of the folder, or cannot be read.
-    fn within(mut self, folder: &Folder) -> Result<(Options, Vec<PathBuf>), Stop> {
+    fn within(mut self, folder: &Folder, inputs: &Inputs) -> Result<Options, Stop> {
         let origin = &mut self.origin;
         origin.reach = Reach::Folder(folder.path().to_owned());
-        let mut read = Vec::new();
-        let mut in_memory = |source: &mut Source| {
+        let in_memory = |source: &mut Source| {
             if let Source::File(path) = source {
                 let name = path.to_string_lossy();
-                read.push(folder.target(&name)?);
-                *source = Source::memory(&*path, folder.read(&name)?);
+                folder.target(&name)?;
+                *source = Source::memory(&*path, inputs.read(folder, &name, Of::Source)?);
             }
             Ok::<(), Stop>(())
         };
@@ -84,11 +84,13 @@ impl Options {
             in_memory(source)?;
         }
         if let Some(from) = origin.from.as_deref().filter(|from| machine::is_path(from)) {
-            origin.from = Some(folder.target(from)?.to_string_lossy().into_owned());
+            let path = folder.target(from)?.to_string_lossy().into_owned();
+            inputs.look_at_machine(folder, from);
+            origin.from = Some(path);
         }
         let own = |path: &PathBuf| folder.target(&path.to_string_lossy());
         origin.folders = origin.folders.iter().map(own).collect::<Result<_, _>>()?;
-        Ok((self, read))
+        Ok(self)
     }
 }
 
@@ -117,6 +119,9 @@ impl Waits for () {
 pub(crate) struct Follows<'a> {
     waits: &'a dyn Waits,
     ended: &'a Ended,
+    /// Where it reads, and what it has read.
+    pub(crate) folder: &'a Folder,
+    pub(crate) inputs: &'a Arc<Inputs>,
     /// The walks, by the files of their programs.
     walks: Mutex<Vec<(String, Slot)>>,
 }
@@ -183,8 +188,8 @@ pub struct Asked<'a> {
     pub file: Option<String>,
     /// The program, where it is there already.
     pub program: Option<Existing>,
-    /// The files that it is made of, which nothing is saved over.
-    pub inputs: Vec<PathBuf>,
+    /// The files that it is made of; those that are read for it are added.
+    pub inputs: &'a Arc<Inputs>,
 }
 
 /// What programs are made of, read.
@@ -245,7 +250,7 @@ pub struct Job {
     /// Files of that which it does not call any more: they are shown, and not saved.
     uncalled: BTreeSet<String>,
     /// The files that it is made of.
-    inputs: Vec<PathBuf>,
+    inputs: Arc<Inputs>,
     walk: Walk,
     geometry: Geometry,
     plots: Plots,
@@ -268,8 +273,10 @@ impl Job {
         waits: &dyn Waits,
         ended: &Ended,
     ) -> Result<Vec<Job>, Stop> {
-        let follows = Follows { waits, ended, walks: Mutex::default() };
+        let inputs = asked.inputs;
+        let follows = Follows { waits, ended, folder, inputs, walks: Mutex::default() };
         follows.step("reading");
+        inputs.look_at_machine(folder, asked.machine);
         let machine = machines::open(asked.machine, folder)?;
         let command = asked.source.command(Some(&machine));
         // What can never be is said before its options are asked for.
@@ -282,22 +289,12 @@ impl Job {
             }
             (Any::Moves(_), _) => {}
         }
-        let (options, read) = (asked.options)(command)?.within(folder)?;
-        let mut inputs = asked.inputs;
-        inputs.extend(read);
+        let options = (asked.options)(command)?.within(folder, inputs)?;
         let mut machine = match machine {
             Any::Fires(machine) => {
                 let text = asked.program.map(|program| program.text);
                 let (machine, program) = ((asked.machine, machine), (asked.file, text));
-                let files = (inputs, folder);
-                return Ok(vec![glass::make(
-                    asked.source,
-                    &options,
-                    machine,
-                    program,
-                    files,
-                    &follows,
-                )?]);
+                return Ok(vec![glass::make(asked.source, &options, machine, program, &follows)?]);
             }
             Any::Moves(machine) => *machine,
         };
@@ -309,7 +306,7 @@ impl Job {
             board => {
                 let machine = (asked.machine, &machine);
                 let Some(given) = asked.program else {
-                    return board::make(board, &options, machine, inputs, &follows);
+                    return board::make(board, &options, machine, &follows);
                 };
                 let file = asked.file.ok_or_else(|| {
                     let message = "the name of the file says which program of the board it is";
@@ -317,7 +314,7 @@ impl Job {
                 })?;
                 let of = given.of.clone();
                 let program = (file, given);
-                let job = board::prove(board, &options, machine, inputs, program, &follows)?;
+                let job = board::prove(board, &options, machine, program, &follows)?;
                 return Ok(vec![job.edit_of(of.as_deref())]);
             }
         };
@@ -338,7 +335,7 @@ impl Job {
         let machine = (asked.machine, Any::Moves(machine.into()));
         let text = source_lines(&made.toolpath, &source);
         let text = Texts::of(made.toolpath.file.clone(), text).into();
-        let job = Job::of(made, text, (file, machine), inputs, &follows)?;
+        let job = Job::of(made, text, (file, machine), &follows)?;
         Ok(vec![job.edit_of(of.as_deref())])
     }
 
@@ -350,14 +347,13 @@ impl Job {
         made: Made,
         source: Arc<Texts>,
         named: (String, (&str, Any<Glass>)),
-        inputs: Vec<PathBuf>,
         follows: &Follows,
     ) -> Result<Job, Stop> {
         let drawn = follows.drawn(&named.0);
         if follows.ended.is_ended() {
             return Err(Stop::cancelled());
         }
-        Ok(Job::drawn(made, drawn, source, named, inputs))
+        Ok(Job::drawn(made, drawn, source, named, follows))
     }
 
     /// The same with a walk that is at hand.
@@ -366,7 +362,7 @@ impl Job {
         Drawn { mut walk, geometry }: Drawn,
         source: Arc<Texts>,
         (file, (machine_name, machine)): (String, (&str, Any<Glass>)),
-        mut inputs: Vec<PathBuf>,
+        Follows { folder, inputs, .. }: &Follows,
     ) -> Job {
         walk.set_widths(&made.widths);
         let has_program = made.has_program();
@@ -374,11 +370,12 @@ impl Job {
         let record_lines = lines
             .unwrap_or_else(|| toolpath.program.records.iter().map(|record| record.line).collect());
         walk.set_source_lines(&record_lines);
-        inputs.extend(toolpath.files().into_iter().map(Path::to_owned));
+        toolpath.files().into_iter().for_each(|path| inputs.add_read(folder, path, Of::Source));
         let machine_files = match &machine {
             Any::Moves(machine) => {
-                inputs.extend(machine.loaded_from.files.iter().cloned());
-                texts_of(machine)
+                let files = machine.loaded_from.files.iter();
+                files.for_each(|path| inputs.add_read(folder, path, Of::Machine));
+                texts_of(machine, folder)
             }
             Any::Fires(_) => BTreeMap::new(),
         };
@@ -396,7 +393,7 @@ impl Job {
             files: Files { program: Text::of(text, origins), parts },
             posted: None,
             uncalled: BTreeSet::new(),
-            inputs,
+            inputs: Arc::clone(inputs),
             walk,
             geometry,
             plots: Plots::default(),
@@ -456,9 +453,8 @@ impl Job {
     }
 
     /// The files that it is made of.
-    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
-        let of_board = self.board.iter().flat_map(board::Place::inputs);
-        self.inputs.iter().chain(of_board).map(PathBuf::as_path)
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
     }
 
     /// The board that it is one of the programs of.
@@ -477,7 +473,7 @@ impl Job {
     }
 
     /// What is said of it.
-    pub fn about(&self, revision: u64) -> ask::Job {
+    pub fn about(&self, revision: u64, folder: &Folder) -> ask::Job {
         let mut findings = self.account.findings.clone();
         if self.walk.left_out() > 0 {
             let message = format!(
@@ -500,7 +496,7 @@ impl Job {
             revision,
             verdict: self.account.verdict.into(),
             rows: rows(&self.account),
-            findings: findings.into_iter().map(|found| self.finding(found)).collect(),
+            findings: findings.into_iter().map(|found| self.finding(found, folder)).collect(),
             program: self.has_program.then(|| text(&self.file, self.shown_program())),
             parts: self.files.parts.iter().map(|(file, part)| text(file, &part.lines)).collect(),
             source: sources.remove(0),
@@ -562,7 +558,7 @@ impl Job {
         })
     }
 
-    fn finding(&self, found: Diagnostic) -> Finding {
+    fn finding(&self, found: Diagnostic, folder: &Folder) -> Finding {
         let of = match &*found.file {
             "" => None,
             file if file == self.file || self.files.parts.contains_key(file) => Some(Of::Program),
@@ -570,7 +566,7 @@ impl Job {
             file if self.machine_files.contains_key(file) => Some(Of::Machine),
             _ => None,
         };
-        Finding { of, ..Finding::from(found) }
+        Finding { of, ..folder.finding(found) }
     }
 
     /// The program as it is shown: a binary one as its control reads it.
@@ -778,7 +774,7 @@ impl Job {
     /// Saves the program with what it calls and its report, all or none.
     ///
     /// # Errors
-    /// It is not proven, leads out of the folder, or cannot be saved; nothing is changed then.
+    /// It is not proven, or not of the files as they are now; it leads out of the folder, or cannot be saved. Nothing is changed then.
     pub fn save(&self, folder: &Folder, path: &str, replace: bool) -> Result<Saved, Stop> {
         let refused = |message: &str, help: &str| {
             Stop::from(Diagnostic::error(Rule::OutputFile, message).help(help).file(path))
@@ -787,8 +783,9 @@ impl Job {
             let message = "the program is not proven: it is not saved";
             return Err(refused(message, "correct what the findings name, and prove it again"));
         }
+        self.inputs.check(folder)?;
         if let Some(board) = &self.board {
-            return board.save(folder, path, replace);
+            return board.save(folder, path, replace, &self.inputs);
         }
         let target = folder.target(path)?;
         if target.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
@@ -826,7 +823,8 @@ impl Job {
             folder.target(&within(&name))?;
             saved.push(within(&name));
         }
-        let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
+        let inputs = self.inputs.files(folder, None);
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         let text = self.files.program.lines.text();
         let own: Vec<&str> = parts.iter().map(|(file, _)| *file).collect();
         let left = files::parts_left(&target, &own).map(|found| found.file(path).into());
@@ -1043,7 +1041,7 @@ fn source_lines(toolpath: &Toolpath, source: &Source) -> Lines {
 }
 
 /// The files in which the templates of a machine stand.
-fn texts_of(machine: &Machine) -> BTreeMap<String, Lines> {
+fn texts_of(machine: &Machine, folder: &Folder) -> BTreeMap<String, Lines> {
     let of_blocks = machine.blocks.values().map(|block| &block.file);
     let names = of_blocks.chain([&machine.file]);
     let mut texts: BTreeMap<String, Lines> = BTreeMap::new();
@@ -1051,7 +1049,8 @@ fn texts_of(machine: &Machine) -> BTreeMap<String, Lines> {
         if texts.contains_key(name) {
             continue;
         }
-        let own = machine.loaded_from.files.iter().find(|path| files::name(path) == *name);
+        let own =
+            machine.loaded_from.files.iter().find(|path| folder.within(path) == Path::new(name));
         let stem = name.strip_suffix(".toml").unwrap_or(name);
         let text = match own {
             Some(path) => files::read(path).ok(),

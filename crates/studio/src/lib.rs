@@ -22,7 +22,7 @@
 //!
 //! # What it never does
 //!
-//! It never listens on another address, never opens a file outside its folder, never saves a program that is not proven, and never sends
+//! It never listens on another address, never opens a file outside its folder, never saves a program that is not proven or whose files have changed since, and never sends
 //! what a file says as markup.
 
 pub mod ask;
@@ -33,6 +33,7 @@ pub mod folder;
 pub mod geometry;
 pub mod glass;
 mod index;
+pub mod inputs;
 pub mod job;
 pub mod jobs;
 pub mod lines;

@@ -1,6 +1,6 @@
 //! The machines that can be picked: those of the library, and the folder's own.
 
-use crate::ask::{Axis, AxisKind, Finding, MachineEntry, MachineKind};
+use crate::ask::{Axis, AxisKind, MachineEntry, MachineKind};
 use crate::folder::Folder;
 use app::{Stop, glass, toolpath};
 use machine::{Machine, Reach, is_path, library};
@@ -96,10 +96,18 @@ pub fn open(name: &str, folder: &Folder) -> Result<Any, Stop> {
         found.help("save it in UTF-8")
     })?;
     let path = folder.target(name)?;
-    Ok(Any::Moves(toolpath::machine_of(&path.to_string_lossy(), &text, &reach)?.into()))
+    let mut machine = toolpath::machine_of(&path.to_string_lossy(), &text, &reach)?;
+    // Its files are called as the page calls them.
+    let of_blocks = machine.blocks.values_mut().map(|block| &mut block.file);
+    of_blocks.chain([&mut machine.file]).for_each(|file| folder.shorten(file));
+    Ok(Any::Moves(machine.into()))
 }
 
-/// All that can be picked: the library's in the order of their names, then the folder's own.
+/// How many files of the folder are looked at for machines, and the largest of them, bytes.
+const MOST_OWN: usize = 200;
+const LARGEST_OWN: u64 = 1 << 20;
+
+/// All that can be picked: the library's in the order of their names, then those of the folder and of folders in it, the nearest first.
 pub fn list(folder: &Folder) -> Vec<MachineEntry> {
     static LIBRARY: OnceLock<Vec<MachineEntry>> = OnceLock::new();
     let library = LIBRARY.get_or_init(|| {
@@ -107,16 +115,14 @@ pub fn list(folder: &Folder) -> Vec<MachineEntry> {
         names.filter_map(|name| Some(open(name, folder).ok()?.entry(name))).collect()
     });
     let mut all = library.clone();
-    let (entries, _) = folder.list("").unwrap_or_default();
-    let own = entries.iter().map(|entry| entry.path.as_str());
-    for name in own.filter(|name| name.ends_with(".toml")) {
-        match open(name, folder) {
-            Ok(machine) => all.push(MachineEntry { is_own: true, ..machine.entry(name) }),
-            Err(stop) if is_meant(name, folder) => {
-                let findings = stop.findings.into_iter().map(Finding::from).collect();
+    for name in folder.files_below(".toml", MOST_OWN, LARGEST_OWN) {
+        match open(&name, folder) {
+            Ok(machine) => all.push(MachineEntry { is_own: true, ..machine.entry(&name) }),
+            Err(stop) if is_meant(&name, folder) => {
+                let findings =
+                    stop.findings.into_iter().map(|found| folder.finding(found)).collect();
                 let (title, control) = (String::new(), String::new());
                 let (kind, axes) = (MachineKind::Mill, Vec::new());
-                let name = name.to_owned();
                 all.push(MachineEntry { name, title, kind, control, axes, is_own: true, findings });
             }
             // Settings, boards and whatever else is written in TOML.
@@ -218,6 +224,8 @@ mod tests {
         fs::write(own.join("whole.toml"), format!("extends = {:?}\n", all.path().join("out.toml")))
             .unwrap();
         fs::write(own.join("board.toml"), "[board]\nsize = [1, 2]\n").unwrap();
+        fs::create_dir_all(own.join("shop/mills")).unwrap();
+        fs::write(own.join("shop/mills/far.toml"), "extends = \"../../good.toml\"\n").unwrap();
         let folder = Folder::open(&own).unwrap();
         assert_eq!(open("better.toml", &folder).unwrap().title(), "Better");
         for name in ["leads-out.toml", "whole.toml"] {
@@ -233,7 +241,11 @@ mod tests {
         let listed = list(&folder);
         let own: Vec<_> = listed.iter().filter(|entry| entry.is_own).collect();
         let names: Vec<_> = own.iter().map(|entry| entry.name.as_str()).collect();
-        assert_eq!(names, ["better.toml", "good.toml", "leads-out.toml", "whole.toml"]);
+        assert_eq!(
+            names,
+            ["better.toml", "good.toml", "leads-out.toml", "whole.toml", "shop/mills/far.toml"]
+        );
+        assert!(own[4].findings.is_empty(), "{:?}", own[4]);
         assert_eq!((own[0].findings.len(), own[2].findings.len()), (0, 1));
         let named = |name: &str| listed.iter().find(|entry| entry.name == name).unwrap();
         assert_eq!(named("fanuc-table-bc").axes, ["X", "Y", "Z", "B", "C"]);

@@ -1,7 +1,9 @@
 import { counted } from "../numbers.ts";
+import { MOVES } from "./Verdict.tsx";
 import type { Screen } from "../screen/screen.ts";
 import type { Job, Verdict, Work } from "../protocol/asks.ts";
 import type { Studio } from "../studio.ts";
+import { namesOf } from "../watch.ts";
 
 const verdicts: Record<Verdict, string> = {
     done: "✓ PROVEN",
@@ -39,7 +41,14 @@ export function Bar({ screen }: { screen: Screen }) {
             </output>
             {link.value !== "open" && <strong class="bad error">{links[link.value]}</strong>}
             {studio.isAlone.value && (link.value !== "open" || studio.notKept.value !== null) && <Alone studio={studio} />}
-            <span class="soft">{studio.said.value}</span>
+            {studio.gone.value.length > 0 && (
+                <strong class="warning" role="status">
+                    ▲ {namesOf(studio.gone.value)} {studio.gone.value.length === 1 ? "is" : "are"} not there any more: what was read before is shown
+                </strong>
+            )}
+            <span class="soft" role="status">
+                {studio.said.value}
+            </span>
             {studio.offers.value.slice(0, 1).map((draft) => (
                 <span key={draft.name}>
                     ▲ an edit of {nameOf(draft.of as Work)} is kept{studio.offers.value.length > 1 && ` (and ${studio.offers.value.length - 1} more)`}{" "}
@@ -113,7 +122,7 @@ function VerdictOf({ job, stop, isCurrent }: { job: Job | null; stop: Verdict | 
     const moves = `${counted(job.walk.moves)} ${job.machine.kind === "glass" ? "pulses" : "moves"}`;
     return (
         <>
-            <strong class={isPartly ? "partly" : job.verdict}>{isPartly ? "◐ PROVEN, PARTLY MADE" : verdicts[job.verdict]}</strong> {moves}
+            <strong class={isPartly ? "partly" : job.verdict}>{isPartly ? "◐ PROVEN, PARTLY MADE" : verdicts[job.verdict]}</strong> <span title={MOVES}>{moves}</span>
         </>
     );
 }

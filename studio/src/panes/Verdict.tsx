@@ -9,6 +9,9 @@ import { Moves } from "./Moves.tsx";
 /** The most places that are listed. */
 const SHOWN = 400;
 
+/** What is counted where moves are shown. */
+export const MOVES = "as the control makes them: with ways home and to a tool change, retracts that it needs, and each stroke of a cycle. The proof counts moves of the toolpath";
+
 /** The rows of the command's summary, and where a failed proof first differs. */
 export function Verdict({ screen }: { screen: Screen }) {
     const job = screen.studio.job.value;
@@ -24,6 +27,14 @@ export function Verdict({ screen }: { screen: Screen }) {
                             <td>{text}</td>
                         </tr>
                     ))}
+                    {job.program !== null && job.machine.kind !== "glass" && (
+                        <tr>
+                            <th scope="row">in the view</th>
+                            <td>
+                                {counted(job.walk.moves)} moves, {MOVES}
+                            </td>
+                        </tr>
+                    )}
                 </tbody>
             </table>
             <Excursions screen={screen} job={job} />

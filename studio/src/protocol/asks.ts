@@ -2,6 +2,8 @@
 
 import type {
     BoardPicture,
+    Changes,
+    ChangesParams,
     Command,
     CommandParams,
     Draft,
@@ -68,6 +70,7 @@ export interface Asks {
     place: [Asked<PlaceParams>, Place | null];
     moves: [Asked<MovesParams>, Moves];
     plot: [PlotParams, Nothing];
+    changes: [Asked<ChangesParams>, Changes];
     save: [SaveParams, Saved];
     drafts: [NoParams, Draft[]];
     draft: [DraftParams, Nothing];

@@ -1319,7 +1319,47 @@ to: number,
 pixels: number, };
 
 /**
- * `save { revision, path, replace }`: saves program and report, both or neither; what is not proven is refused. Of a board all programs
+ * `changes { revision }`: which files a job was made of are others now; without a revision, those that the last work of this page was made of
+ * that gave no job.
+ */
+export type ChangesParams = { 
+/**
+ * Of the job.
+ */
+revision: number | null, };
+
+/**
+ * What has become of the files that a work was made of.
+ */
+export type Changes = { 
+/**
+ * Those that are others now.
+ */
+files: Array<ChangedFile>, 
+/**
+ * The same while they stay as they are now; empty where there are none.
+ */
+state: string, };
+
+/**
+ * A file that is another one now, or a folder with other files.
+ */
+export type ChangedFile = { 
+/**
+ * Its path in the folder.
+ */
+path: string, 
+/**
+ * What it was read as.
+ */
+of: Of, 
+/**
+ * It is not there any more, or cannot be read.
+ */
+is_gone: boolean, };
+
+/**
+ * `save { revision, path, replace }`: saves program and report, both or neither; what is not proven, or whose files have changed since, is refused. Of a board all programs
  * and their report are saved, all or none.
  */
 export type SaveParams = { 

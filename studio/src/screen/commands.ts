@@ -24,6 +24,7 @@ function general(screen: Screen): Command[] {
         { name: "source", title: "Open a source", keys: ["Ctrl+o"], run: show("source") },
         { name: "program", title: "Prove a program from a file against this toolpath", run: show("program") },
         { name: "machine", title: "Choose the machine", keys: ["Ctrl+m"], run: show("machine") },
+        { name: "again", title: "Post again", run: () => void studio.again() },
         { name: "options", title: "Options of posting", run: () => screen.toOption("") },
         { name: "save", title: "Save the program", keys: ["Ctrl+s"], run: () => screen.save() },
         { name: "next-program", title: "Next program of the board", run: () => screen.nextProgram(1) },

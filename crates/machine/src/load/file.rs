@@ -100,10 +100,15 @@ impl SheetFile {
         found.map_err(|d| self.at("extends", parent, &d.message).help(d.help).into())
     }
 
+    /// Where the file of that path lies, from the folder of this one.
+    pub(super) fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
+    }
+
     /// The file of that path, from the folder of this one.
     fn parent_file(&self, name: &str, reach: &Reach) -> Outcome<SheetFile> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
-        let path = folder.join(name);
+        let path = self.beside(name);
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let is_inside = match (fs::canonicalize(&path), fs::canonicalize(folder)) {
             (Ok(file), Ok(folder)) => file.starts_with(folder),

@@ -67,6 +67,22 @@ impl Reach {
         build(SheetFile::new(PathBuf::from(file_name), text.to_string(), true), self)
     }
 
+    /// The files that the machine in the file `path` is made of, the nearest first, as far as they can be read: the last one may have a
+    /// mistake, or not be there. Those of the library are left out.
+    pub fn chain(&self, path: &Path) -> Vec<PathBuf> {
+        let mut files = vec![path.to_owned()];
+        while files.len() < LONGEST_CHAIN {
+            let parent = || {
+                let file = SheetFile::read(files.last()?, self).ok()?;
+                let extends = file.parse().ok()?.extends?.into_inner();
+                is_path(&extends).then(|| file.beside(&extends))
+            };
+            let Some(parent) = parent() else { break };
+            files.push(parent);
+        }
+        files
+    }
+
     /// # Errors
     /// The file `path` lies elsewhere.
     fn check(&self, path: &Path) -> Outcome {

@@ -1735,6 +1735,10 @@ rules! {
         "The studio is asked for something that it does not know, or with values that it does not take."
         "reload the page: it may be of another version than the command"
         "a message of the page that names no ask";
+    StudioChanged "studio-changed" []
+        "A file that the program was made of is another one now, or is gone: the program is not saved."
+        "post again, and save what is proven then; put back a file that is gone"
+        "a machine file that was edited after the program was proven";
     StudioDraft "studio-draft" []
         "Another page that is open keeps its edit under the name of this draft."
         "close one of the pages, or edit another program in it"

@@ -4,9 +4,9 @@ use super::run::{self, Order, Program};
 use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
-    CommandParams, DraftName, DraftParams, FolderParams, FormParams, JobParams, Listing,
-    MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams, ProveParams, SaveParams,
-    SearchParams, TextParams,
+    ChangesParams, CommandParams, DraftName, DraftParams, FolderParams, FormParams, JobParams,
+    Listing, MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams, ProveParams,
+    SaveParams, SearchParams, TextParams,
 };
 use crate::job::Waits;
 use crate::machines;
@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, MutexGuard};
 
 /// All asks there are.
-const ASKS: &str = "open, folder, machines, command, form, post, prove, job, board, text, search, place, moves, plot, save, drafts, draft, draft_text, drop_draft";
+const ASKS: &str = "open, folder, machines, command, form, post, prove, job, board, text, search, place, moves, plot, changes, save, drafts, draft, draft_text, drop_draft";
 
 /// What an ask is answered: a head and arrays.
 pub struct Answer {
@@ -94,7 +94,7 @@ pub fn answer(
         "post" => {
             let PostParams { source, machine, options, file } = read(params)?;
             let order = Order { source, machine, options, file, program: Program::Posted };
-            made(studio, order, work)
+            made(studio, order, page, work)
         }
         "prove" => {
             let ProveParams { source, machine, options, file, program, revision, files } =
@@ -113,11 +113,11 @@ pub fn answer(
                 }
             };
             let order = Order { source, machine, options, file, program };
-            made(studio, order, work)
+            made(studio, order, page, work)
         }
         "job" => {
             let JobParams { revision } = read(params)?;
-            Answer::of(studio.jobs.find(revision)?.about(revision))
+            Answer::of(studio.jobs.find(revision)?.about(revision, folder))
         }
         "board" => {
             let JobParams { revision } = read(params)?;
@@ -148,6 +148,17 @@ pub fn answer(
             let PlotParams { revision, what, from, to, pixels } = read(params)?;
             let job = studio.jobs.find(revision)?;
             Answer::with(Nothing {}, job.plot(&what, [from, to], pixels)?)
+        }
+        "changes" => {
+            let ChangesParams { revision } = read(params)?;
+            let inputs = match revision {
+                Some(revision) => Some(studio.jobs.find(revision)?.inputs().changes(folder)),
+                None => {
+                    let stopped = studio.stopped().get(&page).map(Arc::clone);
+                    stopped.map(|inputs| inputs.changes(folder))
+                }
+            };
+            Answer::of(inputs.unwrap_or_default())
         }
         "save" => {
             let SaveParams { revision, path, replace } = read(params)?;
@@ -185,10 +196,11 @@ pub fn answer(
 fn made(
     studio: &Arc<Studio>,
     order: Order,
+    page: u64,
     (waits, ended): (&dyn Waits, &Ended),
 ) -> Result<Answer, Stop> {
-    let revision = run::made(studio, order, waits, ended)?;
-    Answer::of(studio.jobs.find(revision)?.about(revision))
+    let revision = run::made(studio, order, page, waits, ended)?;
+    Answer::of(studio.jobs.find(revision)?.about(revision, &studio.folder))
 }
 
 /// Checks that no other page that is open keeps a draft of this name, and holds that until it is kept or dropped.

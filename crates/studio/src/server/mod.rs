@@ -8,8 +8,9 @@ mod metered;
 mod run;
 mod socket;
 
-use crate::ask::{Command, Field, FileOrUpload, Given, Limits};
+use crate::ask::{Command, Field, FileOrUpload, Given, Limits, Of};
 use crate::folder::{Folder, SECRET};
+use crate::inputs::Inputs;
 use crate::job::{Options, Sources};
 use crate::jobs::{Jobs, MOST_JOBS};
 use crate::machines::Any;
@@ -177,6 +178,8 @@ pub(crate) struct Studio {
     /// The work that the command line names, until somebody asks for it or for another.
     first: Mutex<Option<First>>,
     left: Left,
+    /// Of each page that is open, what its last work was made of that gave no job.
+    stopped: Mutex<BTreeMap<u64, Arc<Inputs>>>,
     runs: memory::Runs,
     /// The file that leads the browser here, until a page has come.
     leads: Mutex<Option<String>>,
@@ -218,6 +221,7 @@ impl Studio {
             jobs: Jobs::new(own),
             first: Mutex::default(),
             left: Left::default(),
+            stopped: Mutex::default(),
             runs: memory::Runs::default(),
             leads: Mutex::default(),
             form: settings.form,
@@ -234,6 +238,11 @@ impl Studio {
     /// The work that the command line names, where nobody has asked for it or for another yet.
     fn first(&self) -> MutexGuard<'_, Option<First>> {
         self.first.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Of each page that is open, what its last work was made of that gave no job.
+    fn stopped(&self) -> MutexGuard<'_, BTreeMap<u64, Arc<Inputs>>> {
+        self.stopped.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn leads(&self) -> MutexGuard<'_, Option<String>> {
@@ -261,13 +270,12 @@ impl Studio {
         }
     }
 
-    /// What programs are made of, read, and the files of the folder that it is.
-    fn sources(&self, given: &Given) -> Result<(Sources, Vec<PathBuf>), Stop> {
-        let mut inputs = Vec::new();
-        let sources = match given {
+    /// What programs are made of, read.
+    fn sources(&self, given: &Given, inputs: &Inputs) -> Result<Sources, Stop> {
+        Ok(match given {
             Given::File(path) => {
-                inputs.extend(self.folder.target(path).ok());
-                Sources::One(self.source(&FileOrUpload::File(path.clone()))?)
+                let bytes = inputs.read(&self.folder, path, Of::Source)?;
+                Sources::One(Source::memory(path, bytes))
             }
             Given::Upload(id) => Sources::One(self.uploads.find(id)?),
             Given::Uploads(ids) => {
@@ -278,21 +286,29 @@ impl Studio {
                 Sources::Several(files)
             }
             Given::Folder(path) => {
-                let files = self.folder.read_all(path, BOARD_FILES, BOARD_BYTES)?;
-                inputs.extend(files.iter().filter_map(|(path, _)| self.folder.target(path).ok()));
+                inputs.look(&self.folder, Path::new(path.trim_matches('/')), Of::Source);
+                let read = |path: &str| inputs.read(&self.folder, path, Of::Source);
+                let files = self.folder.read_all(path, BOARD_FILES, BOARD_BYTES, read)?;
                 let name =
                     path.trim_matches('/').rsplit('/').next().filter(|name| !name.is_empty());
                 let name = name.map_or_else(|| self.folder.name(), str::to_owned);
                 let files = files.into_iter().map(|(path, bytes)| Source::memory(path, bytes));
                 Sources::Folder(name, files.collect())
             }
-        };
-        Ok((sources, inputs))
+        })
     }
 
     /// The file with options of a board: the one that its options name, or one that lies beside it or is one of its files.
-    fn more(&self, given: &Given, options: &[(String, String)]) -> Result<Option<More>, Stop> {
-        let read = |path: String| self.source(&FileOrUpload::File(path));
+    fn more(
+        &self,
+        given: &Given,
+        options: &[(String, String)],
+        inputs: &Inputs,
+    ) -> Result<Option<More>, Stop> {
+        let read = |path: String| {
+            let bytes = inputs.read(&self.folder, &path, Of::Source)?;
+            Ok::<Source, Stop>(Source::memory(path, bytes))
+        };
         if let Some((_, path)) = options.iter().find(|(name, _)| name == SETTINGS) {
             return Ok(Some(More { file: read(path.clone())?, is_asked: true }));
         }
@@ -313,7 +329,14 @@ impl Studio {
             folder => format!("{folder}/{name}"),
         };
         let mut paths = app::pcb::SETTINGS.into_iter().map(path);
-        let found = paths.find(|path| self.folder.has(path));
+        let found = paths.find(|path| {
+            let is_there = self.folder.has(path);
+            if !is_there {
+                // When it comes, it counts.
+                inputs.look(&self.folder, Path::new(path), Of::Source);
+            }
+            is_there
+        });
         Ok(found.map(read).transpose()?.map(beside))
     }
 
@@ -329,7 +352,7 @@ impl Studio {
                 Ok(Sources::One(Source::File(path.into())).command(machine))
             }
             Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
-                Ok(self.sources(given)?.0.command(machine))
+                Ok(self.sources(given, &Inputs::default())?.command(machine))
             }
         }
     }

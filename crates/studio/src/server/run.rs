@@ -4,16 +4,17 @@ use super::Studio;
 use crate::ask::{Command, FileOrUpload, Given};
 use crate::drawing::Piece;
 use crate::edit::Existing;
+use crate::inputs::Inputs;
 use crate::job::{Asked, Job, Waits};
 use crate::jobs::Jobs;
-use app::Stop;
+use app::{Stop, Verdict};
 use geom::ending::Ended;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// How often who waits looks whether the work was ended.
 const LOOK: Duration = Duration::from_millis(4);
@@ -56,12 +57,15 @@ pub enum Program {
     },
 }
 
+/// What a run has made, or why it has made nothing.
+type Made = Result<Vec<Job>, Stop>;
+
 /// What a run tells.
 enum Told {
     Step(&'static str),
     Reached(f64),
     Walked(String, Piece),
-    Over(Result<Vec<Job>, Stop>),
+    Over(Made),
 }
 
 /// Tells whoever will wait for it.
@@ -121,6 +125,8 @@ struct Run {
     told: Receiver<Told>,
     thread: JoinHandle<()>,
     ended: Ended,
+    /// The files that it has read so far.
+    inputs: Arc<Inputs>,
 }
 
 impl Run {
@@ -128,13 +134,15 @@ impl Run {
         let (tells, told) = channel();
         let (tells, studio) = (Tells(tells), Arc::clone(studio));
         let own = ended.with_helper(studio.helper.clone());
+        let inputs = Arc::<Inputs>::default();
+        let read = Arc::clone(&inputs);
         studio.runs.begin();
         let thread = thread::spawn(move || {
             let _over = Over(&studio);
-            let made = own.run(|| make(&studio, order, &tells, &own));
+            let made = own.run(|| make(&studio, order, &read, &tells, &own));
             tells.tell(Told::Over(made.unwrap_or_else(|| Err(Stop::cancelled()))));
         });
-        Run { told, thread, ended: ended.clone() }
+        Run { told, thread, ended: ended.clone(), inputs }
     }
 
     /// Ends it, and does not wait for that.
@@ -144,7 +152,7 @@ impl Run {
     }
 
     /// Waits until it is over or `ended`.
-    fn wait(self, studio: &Studio, waits: &dyn Waits, ended: &Ended) -> Result<Vec<Job>, Stop> {
+    fn wait(self, studio: &Studio, waits: &dyn Waits, ended: &Ended) -> Made {
         loop {
             match self.told.recv_timeout(LOOK) {
                 Ok(Told::Step(what)) => waits.step(what),
@@ -210,8 +218,6 @@ impl Left {
 pub struct First {
     order: Order,
     run: Run,
-    /// When it began.
-    since: SystemTime,
 }
 
 impl First {
@@ -222,95 +228,73 @@ impl First {
         };
         let (options, file, program) = (Vec::new(), None, Program::Posted);
         let order = Order { source, machine, options, file, program };
-        let since = SystemTime::now();
         let run = Run::begin(studio, order.clone(), &Ended::default());
-        *studio.first() = Some(First { order, run, since });
-    }
-
-    /// Whether nothing that the order names has changed since it began.
-    fn is_new(studio: &Studio, order: &Order, is_as_it_was: impl Fn(&Path) -> bool) -> bool {
-        let paths = match &order.source {
-            Given::File(path) | Given::Folder(path) => Some(path),
-            Given::Upload(_) | Given::Uploads(_) => None,
-        };
-        let machine = Some(&order.machine).filter(|name| machine::is_path(name));
-        let mut named = paths.into_iter().chain(machine);
-        named.all(|path| studio.folder.target(path).is_ok_and(|path| is_as_it_was(&path)))
+        *studio.first() = Some(First { order, run });
     }
 
     /// What it has made; `None` where that would be something else today.
-    fn made(
-        self,
-        studio: &Studio,
-        waits: &dyn Waits,
-        ended: &Ended,
-    ) -> Option<Result<Vec<Job>, Stop>> {
-        let First { order, run, since } = self;
-        let is_old = |path: &Path| changed(path).is_some_and(|changed| changed <= since);
-        if !First::is_new(studio, &order, is_old) {
-            run.leave(studio);
+    fn made(self, studio: &Studio, waits: &dyn Waits, ended: &Ended) -> Option<Made> {
+        let inputs = Arc::clone(&self.run.inputs);
+        let is_new = || inputs.changes(&studio.folder).files.is_empty();
+        if !is_new() {
+            self.run.leave(studio);
             return None;
         }
-        let made = run.wait(studio, waits, ended);
-        let mut jobs = made.iter().flatten();
-        // A board is made of what lies in its folder, and nobody knows what else would have been read of work that was stopped.
-        let counts_folder = made.is_err() || jobs.clone().any(|job| job.board().is_some());
-        let is_as_it_was = |path: &Path| {
-            is_old(path) && !(counts_folder && path.parent().is_some_and(|folder| !is_old(folder)))
-        };
-        let is_new = First::is_new(studio, &order, is_as_it_was)
-            && jobs.all(|job| job.inputs().all(is_as_it_was));
-        is_new.then_some(made)
+        let made = self.run.wait(studio, waits, ended);
+        is_new().then_some(made)
     }
 }
 
-/// When a file or its name was changed last.
-fn changed(path: &Path) -> Option<SystemTime> {
-    let metadata = path.metadata().ok()?;
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let seconds = Duration::from_secs(u64::try_from(metadata.ctime()).ok()?);
-        let nanoseconds = Duration::from_nanos(u64::try_from(metadata.ctime_nsec()).ok()?);
-        SystemTime::UNIX_EPOCH.checked_add(seconds + nanoseconds)
-    }
-    #[cfg(not(unix))]
-    metadata.modified().ok()
-}
-
-/// Makes what is ordered, and answers the revision of its first job. The first work of all is joined where it is this one; where it is
-/// another, it is ended.
+/// Makes what is ordered for a page, and answers the revision of its first job; where there is none, it is kept for the page what the work was
+/// made of. The first work of all is joined where it is this one; where it is another, it is ended.
 ///
 /// # Errors
 /// Why there is no job; or that the work was ended.
 pub fn made(
     studio: &Arc<Studio>,
     order: Order,
+    page: u64,
     waits: &dyn Waits,
     ended: &Ended,
 ) -> Result<u64, Stop> {
     let first = studio.first().take();
     let joined = match first {
-        Some(first) if first.order == order => first.made(studio, waits, ended),
+        Some(first) if first.order == order => {
+            let inputs = Arc::clone(&first.run.inputs);
+            first.made(studio, waits, ended).map(|made| (inputs, made))
+        }
         Some(first) => {
             first.run.leave(studio);
             None
         }
         None => None,
     };
-    let made = joined.unwrap_or_else(|| {
-        studio.left.wait(ended)?;
-        Run::begin(studio, order, ended).wait(studio, waits, ended)
-    })?;
-    Ok(studio.jobs.keep(made.into_iter().map(Arc::new).collect()))
+    let (inputs, made) = match joined {
+        Some(joined) => joined,
+        None => {
+            studio.left.wait(ended)?;
+            let run = Run::begin(studio, order, ended);
+            (Arc::clone(&run.inputs), run.wait(studio, waits, ended))
+        }
+    };
+    if made.as_ref().is_err_and(|stop| stop.verdict != Verdict::Cancelled) {
+        studio.stopped().insert(page, inputs);
+    }
+    Ok(studio.jobs.keep(made?.into_iter().map(Arc::new).collect()))
 }
 
 /// Does the work.
-fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Result<Vec<Job>, Stop> {
+fn make(
+    studio: &Studio,
+    order: Order,
+    inputs: &Arc<Inputs>,
+    waits: &dyn Waits,
+    ended: &Ended,
+) -> Made {
     let Order { source, machine, options, file, program } = order;
-    let (sources, mut inputs) = studio.sources(&source)?;
+    let sources = studio.sources(&source, inputs)?;
     let more = match sources.command(None) {
-        Command::Pcb => studio.more(&source, &options)?,
+        Command::Pcb => studio.more(&source, &options, inputs)?,
         Command::Post | Command::Wire | Command::Glass => None,
     };
     let text_bytes = match &program {
@@ -328,7 +312,6 @@ fn make(studio: &Studio, order: Order, waits: &dyn Waits, ended: &Ended) -> Resu
         Program::There(FileOrUpload::File(path), text) => {
             let within = studio.folder.target(&path).ok();
             let beside = within.as_deref().and_then(Path::parent).map(Path::to_owned);
-            inputs.extend(within);
             let name = path.rsplit('/').next().map(str::to_owned);
             (name, Some(Existing::new(text, beside.into_iter().collect())))
         }

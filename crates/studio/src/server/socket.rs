@@ -128,6 +128,7 @@ impl Drop for EndsAll<'_> {
     fn drop(&mut self) {
         self.0.running().values().for_each(|(_, ended)| ended.end());
         self.0.studio.drafting().retain(|_, page| *page != self.0.number);
+        self.0.studio.stopped().remove(&self.0.number);
     }
 }
 
@@ -293,7 +294,8 @@ impl Page {
 
     fn stop(&self, id: u32, stop: app::Stop) {
         let app::Stop { verdict, findings } = stop;
-        let findings = findings.into_iter().map(Into::into).collect();
+        let findings =
+            findings.into_iter().map(|found| self.studio.folder.finding(found)).collect();
         let stop = Stop { verdict: Verdict::from(verdict), findings };
         let _ = self.answers.send(message::write(&Stopped { id, stop }, &[]));
     }

@@ -424,6 +424,39 @@ fn what_comes_to_a_board_after_the_start_counts() {
     }
 }
 
+/// Options beside a board, and a file that they name, are files of it like those that it is drawn in.
+#[test]
+fn what_comes_to_a_board_while_it_is_open_is_noticed_and_what_it_made_before_is_not_saved() {
+    let settings = Settings { options: Some(options), ..Settings::default() };
+    let studio = Studio::started(settings, |own| {
+        fs::create_dir(own.join("lamp")).unwrap();
+        fs::copy(root().join("examples/lamp.toml"), own.join("lamp/lamp.toml")).unwrap();
+    });
+    let own = studio.own();
+    let mut page = studio.socket();
+    for (source, expected) in [
+        (json!({ "file": "lamp/lamp.toml" }), &["lamp/toolpost.toml"][..]),
+        (json!({ "folder": "lamp" }), &["lamp", "lamp/toolpost.toml"]),
+    ] {
+        let job = post(&mut page, source.clone());
+        let programs = job["board"]["programs"].as_array().unwrap();
+        fs::write(own.join("lamp/toolpost.toml"), "passes = 2\n").unwrap();
+        // All programs of a board are of the same files.
+        for program in programs {
+            let changes = page.done("changes", json!({ "revision": program["revision"] }));
+            let files = changes["files"].as_array().unwrap().iter();
+            let paths: Vec<&str> = files.map(|file| file["path"].as_str().unwrap()).collect();
+            assert_eq!(paths, expected, "{source}");
+        }
+        let save = json!({ "revision": job["revision"], "path": "out", "replace": true });
+        assert_eq!(page.refused("save", save.clone()), "studio-changed");
+        assert!(!own.join("out").exists());
+        fs::remove_file(own.join("lamp/toolpost.toml")).unwrap();
+        page.done("save", save);
+        fs::remove_dir_all(own.join("out")).unwrap();
+    }
+}
+
 /// What is said of options that stand in a file.
 fn told(of: &Value) -> Option<String> {
     let mut rows = of["rows"].as_array().unwrap().iter();

@@ -801,3 +801,66 @@ fn a_source_that_the_machine_cannot_cut_is_shown_without_a_program() {
         studio.get(&format!("/moves/{}/0", job["revision"]));
     }
 }
+
+/// A file of a job, in each of the ways in which it is read.
+#[test]
+fn what_a_job_was_made_of_is_watched_and_no_program_of_other_files_is_saved() {
+    let studio = Studio::started(Settings::default(), |own| {
+        std::fs::create_dir(own.join("shop")).unwrap();
+        std::fs::write(own.join("shop/base.toml"), "extends = \"generic-3axis-linuxcnc\"\n")
+            .unwrap();
+        std::fs::write(own.join("mill.toml"), "extends = \"shop/base.toml\"\n").unwrap();
+        std::fs::copy(root().join("examples/plate.cls"), own.join("plate.cls")).unwrap();
+    });
+    let own = studio.own();
+    let mut page = studio.socket();
+    let listed = page.done("machines", json!({}));
+    let names: Vec<&str> =
+        listed.as_array().unwrap().iter().filter_map(|entry| entry["name"].as_str()).collect();
+    assert!(names.ends_with(&["mill.toml", "shop/base.toml"]), "{names:?}");
+    let none = json!({ "files": [], "state": "" });
+    assert_eq!(page.done("changes", json!({ "revision": null })), none);
+    for (path, of, more) in [
+        ("plate.cls", "source", "$$ another\n"),
+        ("mill.toml", "machine", "title = \"Other\"\n"),
+        ("shop/base.toml", "machine", "title = \"Base\"\n"),
+    ] {
+        let job = page.post("plate.cls", "mill.toml");
+        assert_eq!(job["machine"]["files"][2]["file"], "mill.toml");
+        let revision = job["revision"].clone();
+        let asked = json!({ "revision": revision });
+        assert_eq!(page.done("changes", asked.clone()), none, "{path}");
+        let before = std::fs::read(own.join(path)).unwrap();
+        let after = [more.as_bytes(), &before].concat();
+        let save = json!({ "revision": revision, "path": "out.ngc", "replace": true });
+        std::fs::write(own.join(path), &after).unwrap();
+        let changes = page.done("changes", asked.clone());
+        let files = json!([{ "path": path, "of": of, "is_gone": false }]);
+        assert_eq!(changes["files"], files);
+        // As long as it stays so, it is the same; and no program of what it was is saved.
+        assert_eq!(page.done("changes", asked.clone()), changes);
+        assert_eq!(page.refused("save", save.clone()), "studio-changed");
+        std::fs::remove_file(own.join(path)).unwrap();
+        let gone = page.done("changes", asked.clone());
+        assert_eq!(gone["files"][0]["is_gone"], true);
+        assert_ne!(gone["state"], changes["state"]);
+        assert_eq!(page.refused("save", save.clone()), "studio-changed");
+        assert!(!own.join("out.ngc").exists());
+        std::fs::write(own.join(path), &before).unwrap();
+        assert_eq!(page.done("changes", asked), none, "{path}");
+        page.done("save", save);
+        std::fs::remove_file(own.join("out.ngc")).unwrap();
+    }
+    // What gave no job is watched too, by the page that has asked for it.
+    std::fs::write(own.join("shop/base.toml"), "extends = \"generic-3axis-linuxcnc\"\nspeed = 1\n")
+        .unwrap();
+    let params = json!({ "source": { "file": "plate.cls" }, "machine": "mill.toml" });
+    let stop = page.answer("post", params, &[]).unwrap_err();
+    // A file is called as the page calls it.
+    assert_eq!(stop["findings"][0]["file"], "shop/base.toml", "{stop}");
+    assert_eq!(page.done("changes", json!({ "revision": null })), none);
+    std::fs::write(own.join("shop/base.toml"), "extends = \"generic-3axis-linuxcnc\"\n").unwrap();
+    let changes = page.done("changes", json!({ "revision": null }));
+    assert_eq!(changes["files"][0]["path"], "shop/base.toml");
+    assert_eq!(studio.socket().done("changes", json!({ "revision": null })), none);
+}
