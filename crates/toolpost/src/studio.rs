@@ -142,6 +142,17 @@ fn missing(usage: &clap::Error) -> Option<String> {
     is_missing.then(|| names.iter().map(name).collect::<Vec<_>>().join(", "))
 }
 
+/// Whether this option is the one that was not understood, and its value a number with a decimal comma.
+fn has_comma(usage: &clap::Error, (name, value): &(String, String)) -> bool {
+    let Some(ContextValue::String(wrong)) = usage.get(ContextKind::InvalidArg) else {
+        return false;
+    };
+    let is_it = wrong.split(' ').next() == Some(&format!("--{name}"));
+    let is_whole = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let parts = value.trim().trim_start_matches('-').split_once(',');
+    is_it && parts.is_some_and(|(whole, behind)| is_whole(whole) && is_whole(behind))
+}
+
 /// What options of the form mean, with those of a file beside the board: they are read as the command line reads them.
 ///
 /// # Errors
@@ -186,6 +197,12 @@ fn options(
     };
     let parsed = CommandLine::try_parse_from(&words).map_err(|usage| {
         let missing = missing(&usage);
+        if let Some((name, value)) = given.iter().find(|given| has_comma(&usage, given)) {
+            let message = format!("--{name} is {value}, with a comma");
+            let found = Diagnostic::error(Rule::StudioAsk, message);
+            let point = value.replace(',', ".");
+            return found.help(format!("write the decimal point: {point}"));
+        }
         let found = crate::misused(usage, Rule::StudioAsk);
         match missing {
             Some(names) => found.help(format!("set {names}")),
@@ -285,6 +302,15 @@ mod tests {
             let stop = given(&[wrong]).unwrap_err();
             assert!(stop.findings[0].rule == "studio-ask", "{wrong:?}: {:?}", stop.findings);
         }
+        // A comma stands between values, also where a decimal point is meant.
+        for (name, value, point) in [("tool", "0,4", "0.4"), ("depth", "1,5", "1.5")] {
+            let given = [(name.to_owned(), value.to_owned())];
+            let stop = options(ask::Command::Pcb, &given, None).unwrap_err();
+            assert_eq!(stop.findings[0].message, format!("--{name} is {value}, with a comma"));
+            assert_eq!(stop.findings[0].help, format!("write the decimal point: {point}"));
+        }
+        let stop = options(ask::Command::Pcb, &[("at".into(), "0,x".into())], None).unwrap_err();
+        assert!(!stop.findings[0].message.contains("with a comma"), "{:?}", stop.findings);
         let list = [("tool", "8mil"), ("only", "front,drill"), ("drill", "b.drl"), ("strict", "")];
         let list: Vec<_> = list.iter().map(|(a, b)| (a.to_string(), b.to_string())).collect();
         let read = options(ask::Command::Pcb, &list, None).unwrap();

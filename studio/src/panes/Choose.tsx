@@ -51,7 +51,7 @@ export function Choose({ label, choices, close, typed }: Props) {
                 aria-label={label}
                 aria-expanded="true"
                 aria-controls="choices"
-                aria-activedescendant={`choice-${chosen}`}
+                {...(found.length === 0 ? {} : { "aria-activedescendant": `choice-${chosen}` })}
                 placeholder={label}
                 value={search.value}
                 onInput={(event) => {

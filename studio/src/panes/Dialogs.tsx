@@ -92,7 +92,12 @@ function Modal({ element, title, close, children }: ModalProps) {
             onClose={(event) => event.currentTarget.isConnected && close()}
             onClick={(event) => event.target === element.current && close()}
         >
-            <h2>{title}</h2>
+            <header>
+                <h2>{title}</h2>
+                <button type="button" class="small" title="Close (Escape); nothing is changed" aria-label="Close" onClick={close}>
+                    ✕
+                </button>
+            </header>
             {children}
         </dialog>
     );

@@ -1,8 +1,11 @@
+import type { ComponentChildren } from "preact";
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { matching } from "../commands.ts";
 import type { Field } from "../protocol/asks.ts";
 import type { Screen } from "../screen/screen.ts";
+import { isWholeBoard } from "../text/names.ts";
+import { optionsIn } from "./Findings.tsx";
 
 type Given = [name: string, value: string][];
 
@@ -15,9 +18,13 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
         given.value = [...given.value.filter(([one]) => one !== name), ...values.map((value): Given[number] => [name, value])];
     };
     const work = studio.work.value;
-    const found = matching(studio.form.value, search.value, ({ name, help }) => `${name} ${help}`);
+    const source = work?.source;
+    const isWhole = source !== undefined && "file" in source && isWholeBoard(source.file);
+    const form = studio.form.value.filter(({ group }) => !(isWhole && group === LAYERS));
+    const asked = new Set(studio.findings.value.flatMap(({ help }) => optionsIn(help, form)));
+    const found = matching(form, search.value, ({ name, help }) => `${name} ${help}`);
     const isLedTo = search.value !== "" && search.value === screen.option.value;
-    const also = isLedTo ? studio.form.value.filter((field) => screen.options.value.includes(field.name) && !found.includes(field)) : [];
+    const also = isLedTo ? form.filter((field) => screen.options.value.includes(field.name) && !found.includes(field)) : [];
     // The one that is named comes before those that its finding names too, and these before those that speak of it.
     const rank = ({ name }: Field): number => Number(name === search.value) * 2 + Number(isLedTo && screen.options.value.includes(name));
     const fields = [...found, ...also].toSorted((a, b) => rank(b) - rank(a));
@@ -48,13 +55,17 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
                 }}
             />
             <div class="choices" role="group" aria-label="Options" tabIndex={0}>
-                {fields.map((field) => (
-                    <Row
-                        key={field.name}
-                        field={field}
-                        values={given.value.filter(([name]) => name === field.name).map(([, value]) => value)}
-                        set={(values) => set(field.name, values)}
-                    />
+                {(search.value === "" ? grouped(fields, asked) : [{ name: null, fields }]).map(({ name, fields }) => (
+                    <Group key={name} name={name}>
+                        {fields.map((field) => (
+                            <Row
+                                key={field.name}
+                                field={field}
+                                values={given.value.filter(([name]) => name === field.name).map(([, value]) => value)}
+                                set={(values) => set(field.name, values)}
+                            />
+                        ))}
+                    </Group>
                 ))}
             </div>
             <p>
@@ -63,6 +74,32 @@ export function Options({ screen, close }: { screen: Screen; close(): void }) {
                 </button>
             </p>
         </form>
+    );
+}
+
+/** The head that files of single layers stand under. */
+const LAYERS = "Gerber and drill files";
+
+/** Those that the findings ask for come first, then each group in its order. */
+function grouped(fields: Field[], asked: Set<string>): { name: string | null; fields: Field[] }[] {
+    const groups = new Map<string, Field[]>();
+    for (const field of fields) {
+        const group = asked.has(field.name) ? ASKED : (field.group ?? "General");
+        groups.set(group, [...(groups.get(group) ?? []), field]);
+    }
+    const rank = (name: string): number => (name === ASKED ? 0 : name === LAYERS ? 2 : 1);
+    return [...groups].map(([name, fields]) => ({ name, fields })).toSorted((a, b) => rank(a.name) - rank(b.name));
+}
+
+const ASKED = "Named by the findings";
+
+function Group({ name, children }: { name: string | null; children: ComponentChildren }) {
+    if (name === null) return <>{children}</>;
+    return (
+        <fieldset class="fields">
+            <legend>{name}</legend>
+            {children}
+        </fieldset>
     );
 }
 

@@ -1,5 +1,19 @@
 import type { Screen } from "../screen/screen.ts";
 
+/** How many findings a program has; of an edit there is another mark. */
+function Count({ findings }: { findings: number }) {
+    const text = findings === 1 ? "1 finding" : `${findings} findings`;
+    return (
+        <>
+            {" "}
+            <span class="count" title={`${text}: choose the program, and look at Findings below`} aria-hidden="true">
+                {findings}
+            </span>
+            <span class="unseen">, {text}</span>
+        </>
+    );
+}
+
 /** The programs of a board: which one is shown, and those that could not be made. */
 export function Programs({ screen }: { screen: Screen }) {
     const { studio } = screen;
@@ -21,7 +35,7 @@ export function Programs({ screen }: { screen: Screen }) {
                     onClick={() => void studio.chooseProgram(revision)}
                 >
                     ✓ {name}
-                    {findings > 0 && <span title={`${findings} findings`}> ▲</span>}
+                    {findings > 0 && <Count findings={findings} />}
                 </button>
             ))}
             {board.left_out.map(({ file, findings }) => (

@@ -1,7 +1,7 @@
 import { effect, useSignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import type { Entry } from "../protocol/asks.ts";
-import { isReport } from "../text/names.ts";
+import { offered } from "../text/names.ts";
 import { counted } from "../numbers.ts";
 import { axisOf, vector, type Screen } from "../screen/screen.ts";
 import type { Studio } from "../studio.ts";
@@ -64,7 +64,7 @@ function MachineAbsent({ screen }: { screen: Screen }) {
     if (unknown.length === 0) return null;
     return (
         <p class="absent soft" title={UNKNOWN}>
-            machine not drawn here: where {unknown.join(", ")} {unknown.length === 1 ? "stands" : "stand"} is not known
+            machine not drawn here: where {unknown.join(", ")} {unknown.length === 1 ? "stands" : "stand"} is not known. So it is before the first moves, behind a way home, and by a tool whose length is not given: go on to another move
         </p>
     );
 }
@@ -171,13 +171,13 @@ function Near({ screen }: { screen: Screen }) {
     const entries = useSignal<Entry[]>([]);
     const isOpen = studio.opened.value !== null;
     useEffect(() => {
-        if (isOpen) void studio.seam.ask("folder", { path: "" }).then(({ done }) => (entries.value = done.entries.filter(({ kind, name }) => kind === "file" && !isReport(name))));
+        if (isOpen) void studio.seam.ask("folder", { path: "" }).then(({ done }) => (entries.value = done.entries));
     }, [isOpen]);
-    if (entries.value.length === 0) return null;
+    if (entries.value.every(({ kind }) => kind === "folder")) return null;
     return (
         <p class="near">
             In this folder, newest first:{" "}
-            {entries.value.toSorted((a, b) => b.written - a.written).slice(0, NEAR).map(({ name, path }) => (
+            {offered(entries.value).slice(0, NEAR).map(({ name, path }) => (
                 <button key={path} type="button" onClick={() => void studio.open({ file: path })}>
                     {name}
                 </button>

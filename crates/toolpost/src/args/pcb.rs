@@ -221,7 +221,7 @@ const TURNS: [Choice<Turn>; 2] = [
 
 /// Files of which nobody has to guess what they hold.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Files")]
+#[command(next_help_heading = "Gerber and drill files")]
 pub struct Files {
     /// The Gerber file of the copper of the front, whatever its name; others are still looked for in BOARD.
     #[arg(long, value_name = "FILE")]
@@ -261,7 +261,7 @@ pub struct Isolation {
     /// as it goes in, and the next one what is left.
     #[arg(long, value_name = "MM,...", value_parser = size, value_delimiter = ',', allow_negative_numbers = true)]
     pub tool: Vec<f64>,
-    /// Angle between the edges of a V-bit that does it; its width follows from --tip and --depth.
+    /// Angle between the edges of the V-bit that cuts around copper, in place of --tool; its width follows from --tip and --depth.
     #[arg(long, value_name = "DEGREES", value_parser = angle)]
     pub vee: Option<f64>,
     /// Width of the tip of the V-bit.
