@@ -95,7 +95,7 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
     test("what is saved are the bytes of the command, and an edit is proven or refused", async () => {
         const { server, page, complaints } = await opened();
         await page.keyboard.press("Control+s");
-        await page.getByLabel(/^File, in/).waitFor();
+        await page.getByLabel("Name of the program's file").waitFor();
         await page.getByRole("dialog").getByRole("button", { name: "Save" }).click();
         await page.getByText("saved ball.prg, ball.prg.report.json").waitFor();
         const words = Object.entries(OPTIONS).flatMap(([name, value]) => [`--${name}`, value]);
