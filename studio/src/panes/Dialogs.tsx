@@ -92,13 +92,12 @@ function Modal({ element, title, close, children }: ModalProps) {
             onClose={(event) => event.currentTarget.isConnected && close()}
             onClick={(event) => event.target === element.current && close()}
         >
-            <header>
-                <h2>{title}</h2>
-                <button type="button" class="small" title="Close (Escape); nothing is changed" aria-label="Close" onClick={close}>
-                    ✕
-                </button>
-            </header>
+            <h2>{title}</h2>
             {children}
+            {/* Behind all else: what is asked for has the focus first. */}
+            <button type="button" class="close" title="Close (Escape); nothing is changed" aria-label="Close" onClick={close}>
+                ✕
+            </button>
         </dialog>
     );
 }
