@@ -11,14 +11,8 @@ use std::f64::consts::TAU;
 /// other as their chords do.
 const CHORD_ERROR: f64 = 0.0009;
 
-/// The most edges of one boolean: some 5 GB.
-const MOST_EDGES: usize = 1 << 25;
-
-/// So many edges are taken however few elements they are of: some 1.2 GB.
-const MANY_EDGES: usize = 1 << 23;
-
-/// So many edges of each element are taken, as many as a circle of 5 mm has.
-const EDGES_OF_AN_ELEMENT: usize = 128;
+/// The most edges of one boolean: 15 times as many as the largest real one that is known, a copper layer of the A64-OLinuXino (286,136).
+const MOST_EDGES: usize = 1 << 22;
 
 /// So many crossings are taken however few elements there are: some 600 MB.
 const MANY_CROSSINGS: usize = 1 << 20;
@@ -38,18 +32,18 @@ pub(super) fn boolean<'a>(
 ) -> Result<Region, RegionError> {
     let chains = first.clone().chain(second.clone());
     let (edges, elements) = (count(chains.clone()), len(chains.clone()));
+    if edges > MOST_EDGES {
+        return Err(RegionError::TooLarge { edges, most: MOST_EDGES });
+    }
     if has_helper()
         && is_long(chains.clone(), edges, elements)
         && let Some(made) = step::helped(first.clone(), second.clone(), keep, fill)
     {
         return made;
     }
-    if edges > MOST_EDGES.min(MANY_EDGES.max(elements.saturating_mul(EDGES_OF_AN_ELEMENT))) {
-        return Err(RegionError::TooLarge);
-    }
     let crossings = MANY_CROSSINGS.max(elements.saturating_mul(4));
     if all_pairs(elements) > crossings && crossings::pairs(chains, crossings).is_none() {
-        return Err(RegionError::TooTangled);
+        return Err(RegionError::TooTangled { most: crossings });
     }
     let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::with_capacity(elements) };
     first.for_each(|chain| chords.add(chain, Operand::First));

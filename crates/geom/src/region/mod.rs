@@ -32,10 +32,8 @@
 //!   touch in points; what is connected by a point alone is not connected.
 //! - Outer rings run counter-clockwise, holes clockwise: the region is on the left of its boundary.
 //! - The same regions in the same order give the same result, bit for bit, on any number of threads.
-//! - Time and memory grow as n·log n of the elements, and with the number of places where they cross. An
-//!   operation of more than 33 million chords, or of more than 8 million and 128 of each element, is refused
-//!   ([`RegionError::TooLarge`]); so is one in which more than a million crossings are more than 4 of each
-//!   element ([`RegionError::TooTangled`]).
+//! - Time and memory grow as n·log n of the elements, and with the number of places where they cross. An operation of more than 4 million chords is refused
+//!   ([`RegionError::TooLarge`]); so is one in which more than a million crossings are more than 4 of each element ([`RegionError::TooTangled`]).
 //!
 //! The numbers behind this are constants: the chord's error in `chords`, the unit in `kernel`, what
 //! counts as one place, line, circle or crossing in `refit` and `crossings`.
@@ -110,10 +108,18 @@ pub enum RegionError {
         /// By how much, mm.
         off: f64,
     },
-    /// More than 33 million chords, or than 8 million and 128 of each element.
-    TooLarge,
+    /// More than 4 million chords.
+    TooLarge {
+        /// How many chords the lines and arcs become.
+        edges: usize,
+        /// How many are taken.
+        most: usize,
+    },
     /// More than a million crossings, and than 4 of each element.
-    TooTangled,
+    TooTangled {
+        /// How many are taken.
+        most: usize,
+    },
 }
 
 impl fmt::Display for RegionError {
@@ -133,8 +139,12 @@ impl fmt::Display for RegionError {
                 "the ends of element {}, an arc, are {off} mm from where centre and angle say",
                 element + 1
             ),
-            RegionError::TooLarge => write!(f, "more arcs and lines than fit into memory"),
-            RegionError::TooTangled => write!(f, "arcs and lines cross in too many places"),
+            RegionError::TooLarge { edges, most } => {
+                write!(f, "{edges} straight edges of lines and arcs; {most} are the most")
+            }
+            RegionError::TooTangled { most } => {
+                write!(f, "lines and arcs cross in more than {most} places")
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! All numbers are little-endian. An element is a byte that says whether it is an arc, its ends, and of an arc centre and angle; a chain is the
 //! count of its elements and these. Asked is by a byte each what is kept and how is filled, and of each operand the count of its chains and these. The
-//! answer is a byte that says why there is no region, or 0, the count of the islands, and of each the count of its rings and these, as chains.
+//! answer is 1 and the most crossings where there are more, or 0, the count of the islands, and of each the count of its rings and these, as chains.
 
 use super::chords::boolean;
 use super::kernel::Keep;
@@ -59,9 +59,13 @@ fn read(from: &mut dyn Read) -> io::Result<Does> {
         let [first, second] = [&first, &second].map(|chains| chains.iter().map(Vec::as_slice));
         let region = match boolean(first, second, keep, fill) {
             Ok(region) => region,
-            Err(RegionError::TooTangled) => return to.write_all(&[2]),
-            // No boolean has another reason.
-            Err(_) => return to.write_all(&[1]),
+            Err(RegionError::TooTangled { most }) => {
+                let mut bytes = vec![1];
+                put_count(&mut bytes, most);
+                return to.write_all(&bytes);
+            }
+            // What is too large is not asked for.
+            Err(_) => return Err(wrong()),
         };
         let mut bytes = vec![0];
         put_count(&mut bytes, region.islands.len());
@@ -79,8 +83,7 @@ fn read(from: &mut dyn Read) -> io::Result<Does> {
 fn answer(from: &mut dyn Read) -> io::Result<Result<Region, RegionError>> {
     match array(from)? {
         [0] => {}
-        [1] => return Ok(Err(RegionError::TooLarge)),
-        [2] => return Ok(Err(RegionError::TooTangled)),
+        [1] => return Ok(Err(RegionError::TooTangled { most: number(from)? })),
         _ => return Err(wrong()),
     }
     let islands = number(from)?;
@@ -294,6 +297,6 @@ mod tests {
             .collect();
         let star = [tangle.as_slice()];
         let made = work.run(|| helped(star.into_iter(), [].into_iter(), KEEPS[0], FILLS[0]));
-        assert_eq!(made.unwrap(), Some(Err(RegionError::TooTangled)));
+        assert_eq!(made.unwrap(), Some(Err(RegionError::TooTangled { most: 1 << 20 })));
     }
 }

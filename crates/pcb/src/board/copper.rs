@@ -94,8 +94,7 @@ impl Pattern {
         let placed = |found: Diagnostic| found.file(&self.file);
         let (copper, found) = named.map_err(|error| {
             let message = format!("the {face} copper cannot be taken: {error}");
-            let help = "look at positions and sizes, for what is far away or very many";
-            Box::new(placed(Diagnostic::error(Rule::Layer, message).help(help)))
+            Box::new(placed(Diagnostic::error(Rule::Layer, message).help(way_out(&error))))
         })?;
         Ok((copper, found.into_iter().map(placed).collect()))
     }
@@ -197,6 +196,16 @@ impl Copper {
         };
         let findings = joined.into_iter().map(finding).collect();
         (Copper { region, nets }, findings)
+    }
+}
+
+/// What to do where there is no region of a layer.
+pub(super) fn way_out(error: &RegionError) -> &'static str {
+    match error {
+        RegionError::TooLarge { .. } | RegionError::TooTangled { .. } => {
+            "look at the counts of step and repeat, and at areas that are filled with lines; or divide the layer"
+        }
+        _ => "look at the unit, and at the sizes of apertures",
     }
 }
 

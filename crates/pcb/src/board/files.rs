@@ -3,6 +3,7 @@
 //! Which file is which says the file itself (`.FileFunction`), or else its name; what is taken by its
 //! name, is left out or had to be mended is a warning. Two files of one layer are refused.
 
+use super::copper::way_out;
 use super::layer::{Face, Format, Layer};
 use super::outline::BrokenEdge;
 use super::{Artwork, Board, Drawn, Pattern, covered, holes, outline};
@@ -222,8 +223,8 @@ impl Known<'_> {
             Layer::Mask(face) => {
                 let mask = covered(&image).map_err(|error| {
                     let message = format!("this layer cannot be taken: {error}");
-                    let help = "look at the unit, and at the sizes of apertures";
-                    vec![placed(Diagnostic::error(Rule::Layer, message).help(help))]
+                    let found = Diagnostic::error(Rule::Layer, message);
+                    vec![placed(found.help(way_out(&error)))]
                 })?;
                 board.side_mut(face).mask = Some(mask);
             }

@@ -16,9 +16,8 @@ const FAR: f64 = 1e5;
 /// The most boards of a panel.
 const MOST_BOARDS: usize = 10_000;
 
-/// The most lines, arcs and holes of a panel: half as many as a boolean of regions takes, since the panel of each
-/// side of a board is made by itself, both at the same time.
-const MOST_ELEMENTS: usize = 1 << 24;
+/// The most lines, arcs and holes of a panel: a boolean of regions takes no more straight edges, of which each of them becomes one or more.
+const MOST_ELEMENTS: usize = 1 << 22;
 
 /// Copies are at least this far apart, mm: what is nearer may become one.
 const APART: f64 = 1e-3;
