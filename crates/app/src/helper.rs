@@ -22,6 +22,10 @@ const STEPS: [(&str, Step); 2] = [geom::region::STEP, glass::picture::STEP];
 /// How often who waits looks whether the work was ended.
 const LOOK: Duration = Duration::from_millis(2);
 
+/// Has the C library of Linux take memory in pages of 2 MB where the system has them: the system frees 1 GB of a process that is killed in 3 ms
+/// then, and in 80 ms in pages of 4 kB. Elsewhere it means nothing.
+const LARGE_PAGES: [(&str, &str); 1] = [("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1")];
+
 /// What a step is named with: another version may do it otherwise.
 fn name(step: &str) -> String {
     format!("{} {step}", env!("CARGO_PKG_VERSION"))
@@ -48,7 +52,7 @@ impl Launcher {
 
     fn start(&self) -> io::Result<Child> {
         let mut command = Command::new(&self.program);
-        command.args(&self.arguments).stderr(Stdio::null());
+        command.args(&self.arguments).envs(LARGE_PAGES).stderr(Stdio::null());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()
     }
 }
