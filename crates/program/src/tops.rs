@@ -1,7 +1,7 @@
 //! How high a program goes.
 
 use crate::{ArcTo, Cycle, Op, Pose, Program};
-use geom::{Vec3, angle_between, reach_of_box};
+use geom::{Mat3, Vec3, angle_between, reach_of_box};
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
@@ -23,18 +23,54 @@ pub struct Tops<'p> {
     below_zero: Option<f64>,
     /// Whether the tool stands anywhere.
     stands: bool,
-    /// The axes with which the tool comes to its first place, and to that behind each call of a tool or way home; each once. None where it stands anywhere.
-    ways_in: Vec<Vec3>,
     /// Its places, once they are looked at along another axis than Z.
-    tree: OnceLock<Tree>,
+    tree: OnceLock<Tree<Vec3>>,
+    /// The ways in, once they are asked for.
+    ways_in: OnceLock<WaysIn>,
 }
 
-/// Places, so arranged that the highest along any axis is found without a look at each.
+/// The ways in, so arranged that few of them are looked at.
 #[derive(Clone, Debug)]
-struct Tree {
-    points: Vec<Vec3>,
+struct WaysIn {
+    /// Their axes as points, by boxes.
+    tree: Tree<WayIn>,
+    /// Around the axes of each box a narrower one, flat as the unit sphere is there: its corners, and how high the program goes along these, multiplied by
+    /// their distance from the origin. That is convex (the highest of many products), so that within a box nothing is greater than at one of its corners.
+    corners: Vec<[WayIn; 8]>,
+}
+
+/// An axis with which the tool comes to its first place, or to that behind a call of a tool or way home.
+#[derive(Clone, Copy, Debug)]
+struct WayIn {
+    axis: Vec3,
+    /// How high the program goes along it, mm.
+    height: f64,
+}
+
+/// Points, so arranged that the highest along any axis is found without a look at each, and the like.
+#[derive(Clone, Debug)]
+struct Tree<P> {
+    points: Vec<P>,
     /// Boxes around halves of the points, halves of these and so on: each before those of its own halves.
     boxes: Vec<PointBox>,
+}
+
+/// What is in a tree.
+trait Point {
+    /// Where it is.
+    fn place(&self) -> Vec3;
+}
+
+impl Point for Vec3 {
+    fn place(&self) -> Vec3 {
+        *self
+    }
+}
+
+impl Point for WayIn {
+    fn place(&self) -> Vec3 {
+        self.axis
+    }
 }
 
 /// The box around some of the points.
@@ -60,8 +96,8 @@ impl Tops<'_> {
         });
         let below_zero = (highest < 0.0 && highest > f64::NEG_INFINITY).then_some(highest);
         let along_z = if below_zero.is_some() { ABOVE_ZERO } else { highest };
-        let ways_in = if stands { Vec::new() } else { ways_in(program) };
-        Tops { program, along_z, below_zero, stands, ways_in, tree: OnceLock::new() }
+        let (tree, ways_in) = (OnceLock::new(), OnceLock::new());
+        Tops { program, along_z, below_zero, stands, tree, ways_in }
     }
 
     /// How high the program goes along `axis`, a unit vector, mm from the origin, however its tool leans: from below that nobody knows what
@@ -80,7 +116,8 @@ impl Tops<'_> {
             }
             Tree::of(points)
         };
-        self.tree.get_or_init(tree).along(axis)
+        let most = |_, around: &PointBox| reach_of_box(around.low, around.high, axis);
+        self.tree.get_or_init(tree).most(f64::NEG_INFINITY, &most, &|point| point.dot(axis))
     }
 
     /// How high the program goes along Z, mm. −∞ where its tool lies wherever it goes, or points down: Z says nothing then of where the part ends, which may
@@ -89,11 +126,43 @@ impl Tops<'_> {
         if self.stands { self.along_z } else { f64::NEG_INFINITY }
     }
 
-    /// Where the tool stands nowhere, the axes from which one that leans so differs by no more than 60 degrees and with which it comes in from home: as high
-    /// along itself alone it would be deep in a pocket of a side wall, far from where it came in, on the side to which it leans.
-    pub fn ways_in(&self, axis: Vec3) -> impl Iterator<Item = Vec3> + '_ {
-        let is_near = move |way: &&Vec3| way.dot(axis) >= LYING && **way != axis;
-        self.ways_in.iter().filter(is_near).copied()
+    /// The greatest `measure`, or `least` if that is greater, of the ways in: where the tool stands nowhere, the other axes with which it comes in from home and
+    /// from which one that leans as `axis` differs by no more than 60 degrees. As high along itself alone, such a tool would be deep in a pocket of a side
+    /// wall, far from where it came in, on the side to which it leans.
+    ///
+    /// `measure` is told how far `tip` is along the way below the highest place of the program, mm, and the cosine between the way and `axis`. It may not
+    /// fall with the first, and rises or falls with the second. Among many ways few are looked at.
+    pub fn along_ways_in(
+        &self,
+        (tip, axis): (Vec3, Vec3),
+        least: f64,
+        measure: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
+        if self.stands {
+            return least;
+        }
+        let ways = self.ways_in.get_or_init(|| WaysIn::of(self));
+        let most = |number: usize, _: &PointBox| {
+            let (mut low, mut high, mut short) =
+                (f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
+            for corner in &ways.corners[number] {
+                let cosine = corner.axis.dot(axis);
+                (low, high) = (low.min(cosine), high.max(cosine));
+                short = short.max(corner.height - tip.dot(corner.axis));
+            }
+            match high >= LYING {
+                true => measure(short, low.max(LYING)).max(measure(short, high)),
+                false => f64::NEG_INFINITY,
+            }
+        };
+        let value = |way: &WayIn| {
+            let cosine = way.axis.dot(axis);
+            match cosine >= LYING && way.axis != axis {
+                true => measure(way.height - tip.dot(way.axis), cosine),
+                false => f64::NEG_INFINITY,
+            }
+        };
+        ways.tree.most(least, &most, &value)
     }
 
     /// How high a program goes that stays below its zero, Z in mm; `None` of one that does not.
@@ -137,8 +206,36 @@ fn ways_in(program: &Program) -> Vec<Vec3> {
     ways
 }
 
-impl Tree {
-    fn of(points: Vec<Vec3>) -> Tree {
+impl WaysIn {
+    fn of(tops: &Tops) -> WaysIn {
+        let ways = ways_in(tops.program).into_iter();
+        let tree = Tree::of(ways.map(|axis| WayIn { axis, height: tops.along(axis) }).collect());
+        let around = |points: [usize; 2]| {
+            corners(&tree.points[points[0]..points[1]])
+                .map(|axis| WayIn { axis, height: tops.along(axis) })
+        };
+        let corners = tree.boxes.iter().map(|of| around(of.points)).collect();
+        WaysIn { tree, corners }
+    }
+}
+
+/// The corners of a box around axes, one side of which is across their middle.
+fn corners(ways: &[WayIn]) -> [Vec3; 8] {
+    let middle: Vec3 = ways.iter().map(|way| way.axis).sum();
+    let out = middle.try_normalize().unwrap_or(Vec3::Z);
+    let (right, up) = out.any_orthonormal_pair();
+    let frame = Mat3::from_cols(right, up, out);
+    let places = ways.iter().map(|way| frame.transpose() * way.axis);
+    let low = places.clone().fold(Vec3::INFINITY, Vec3::min);
+    let high = places.fold(Vec3::NEG_INFINITY, Vec3::max);
+    std::array::from_fn(|i| {
+        let of = |bit: usize, low: f64, high: f64| if i & bit == 0 { low } else { high };
+        frame * Vec3::new(of(1, low.x, high.x), of(2, low.y, high.y), of(4, low.z, high.z))
+    })
+}
+
+impl<P: Point> Tree<P> {
+    fn of(points: Vec<P>) -> Tree<P> {
         let boxes = Vec::with_capacity(2 * points.len() / FEW + 1);
         let mut tree = Tree { boxes, points };
         if !tree.points.is_empty() {
@@ -147,20 +244,26 @@ impl Tree {
         tree
     }
 
-    /// The highest along `axis`; −∞ where there are none.
-    fn along(&self, axis: Vec3) -> f64 {
-        let mut highest = f64::NEG_INFINITY;
-        if !self.boxes.is_empty() {
-            self.look(0, axis, &mut highest);
+    /// The greatest `value` of a point, or `least` if that is greater. None in a box is greater than `most` says.
+    fn most(
+        &self,
+        least: f64,
+        most: &impl Fn(usize, &PointBox) -> f64,
+        value: &impl Fn(&P) -> f64,
+    ) -> f64 {
+        let mut greatest = least;
+        if let Some(all) = self.boxes.first() {
+            self.look((0, most(0, all)), most, value, &mut greatest);
         }
-        highest
+        greatest
     }
 
     /// Puts a box around points, and others around each half of them.
     fn divide(&mut self, [first, end]: [usize; 2]) {
         let points = &mut self.points[first..end];
-        let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-        let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let places = points.iter().map(P::place);
+        let low = places.clone().fold(Vec3::INFINITY, Vec3::min);
+        let high = places.fold(Vec3::NEG_INFINITY, Vec3::max);
         let number = self.boxes.len();
         self.boxes.push(PointBox { low, high, points: [first, end], second: 0 });
         if points.len() <= FEW {
@@ -170,35 +273,36 @@ impl Tree {
         let longest = if wide.x >= wide.y { 0 } else { 1 };
         let longest = if wide[longest] >= wide.z { longest } else { 2 };
         let half = points.len() / 2;
-        points.select_nth_unstable_by(half, |a, b| a[longest].total_cmp(&b[longest]));
+        points
+            .select_nth_unstable_by(half, |a, b| a.place()[longest].total_cmp(&b.place()[longest]));
         self.divide([first, first + half]);
         self.boxes[number].second = self.boxes.len();
         self.divide([first + half, end]);
     }
 
-    /// Looks for a point within a box that is higher than the highest so far.
-    fn look(&self, number: usize, axis: Vec3, highest: &mut f64) {
+    /// Looks for a point of greater value within a box, of which none is greater than its bound.
+    fn look(
+        &self,
+        (number, bound): (usize, f64),
+        most: &impl Fn(usize, &PointBox) -> f64,
+        value: &impl Fn(&P) -> f64,
+        greatest: &mut f64,
+    ) {
         let PointBox { points: [first, end], second, .. } = self.boxes[number];
-        if self.most(number, axis) <= *highest {
+        if bound <= *greatest {
             return;
         }
         if second == 0 {
-            let points = self.points[first..end].iter();
-            *highest = points.map(|point| point.dot(axis)).fold(*highest, f64::max);
+            *greatest = self.points[first..end].iter().map(value).fold(*greatest, f64::max);
             return;
         }
-        let mut halves = [number + 1, second];
-        if self.most(halves[1], axis) > self.most(halves[0], axis) {
+        let mut halves = [number + 1, second].map(|half| (half, most(half, &self.boxes[half])));
+        if halves[1].1 > halves[0].1 {
             halves.reverse();
         }
         for half in halves {
-            self.look(half, axis, highest);
+            self.look(half, most, value, greatest);
         }
-    }
-
-    /// How high the points of a box can be at the most.
-    fn most(&self, number: usize, axis: Vec3) -> f64 {
-        reach_of_box(self.boxes[number].low, self.boxes[number].high, axis)
     }
 }
 
@@ -301,16 +405,81 @@ mod tests {
             Vec3::new(cos, sin, 0.0)
         };
         let at = |degrees: f64| Op::Rapid(Pose::new(Vec3::ZERO, lean(degrees)).unwrap());
-        let ways_in = |tops: &Tops, degrees: f64| tops.ways_in(lean(degrees)).collect::<Vec<_>>();
+        // The cosines of the angles from the nearest and to the farthest way.
+        let ways_in = |tops: &Tops, degrees: f64| {
+            let of = (Vec3::ZERO, lean(degrees));
+            let nearest = tops.along_ways_in(of, f64::NEG_INFINITY, |_, cosine| cosine);
+            let farthest = -tops.along_ways_in(of, f64::NEG_INFINITY, |_, cosine| -cosine);
+            [nearest, farthest].map(|cosine| match cosine.is_finite() {
+                true => Some(cosine.acos().to_degrees().round()),
+                false => None,
+            })
+        };
         let comes_in = program([at(0.0), at(40.0), Op::Home, at(90.0), Op::Home, at(0.0)]);
         let tops = Tops::of(&comes_in);
-        assert_eq!(ways_in(&tops, 0.0), []);
-        assert_eq!(ways_in(&tops, 20.0), [lean(0.0)]);
-        assert_eq!(ways_in(&tops, 40.0), [lean(0.0), lean(90.0)]);
-        assert_eq!(ways_in(&tops, 70.0), [lean(90.0)]);
-        assert_eq!(ways_in(&tops, 151.0), []);
+        assert_eq!(ways_in(&tops, 0.0), [None; 2]);
+        assert_eq!(ways_in(&tops, 20.0), [Some(20.0); 2]);
+        assert_eq!(ways_in(&tops, 40.0), [Some(40.0), Some(50.0)]);
+        assert_eq!(ways_in(&tops, 70.0), [Some(20.0); 2]);
+        assert_eq!(ways_in(&tops, 151.0), [None; 2]);
         let upright = Op::Rapid(Pose::upright(Vec3::ZERO).unwrap());
-        assert_eq!(ways_in(&Tops::of(&program([at(0.0), upright])), 20.0), []);
+        assert_eq!(ways_in(&Tops::of(&program([at(0.0), upright])), 20.0), [None; 2]);
+    }
+
+    /// A program that comes in so often, by axes that lie or point down, at places 100 mm around the origin.
+    fn comes_in(count: usize) -> Program {
+        let mut number = numbers();
+        let ops = (0..count).flat_map(|_| {
+            let (z, turn) = (number() * 1.45 - 1.0, number() * std::f64::consts::TAU);
+            let across = (1.0 - z * z).sqrt();
+            let axis = Vec3::new(across * turn.cos(), across * turn.sin(), z);
+            let place = Vec3::new(number() - 0.5, number() - 0.5, number() - 0.5) * 200.0;
+            [Op::Home, Op::Rapid(Pose::new(place, axis).unwrap())]
+        });
+        program(ops.collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_tree_of_ways_in_finds_what_a_look_at_each_finds() {
+        let program = comes_in(500);
+        let tops = Tops::of(&program);
+        let ways = ways_in(&program);
+        assert_eq!(ways.len(), 500);
+        let measures: [fn(f64, f64) -> f64; 3] = [
+            |short, _| short,
+            |short, cosine| (short + 0.5) / cosine,
+            |short, cosine| short + cosine,
+        ];
+        let mut number = numbers();
+        for axis in &ways {
+            let tip = Vec3::new(number() - 0.5, number() - 0.5, number() - 0.5) * 500.0;
+            for measure in measures {
+                let near = ways.iter().filter(|way| way.dot(*axis) >= LYING && *way != axis);
+                let each =
+                    near.map(|way| measure(tops.along(*way) - tip.dot(*way), way.dot(*axis)));
+                let greatest = each.fold(-20.0, f64::max);
+                let found = tops.along_ways_in((tip, *axis), -20.0, measure);
+                assert!((found - greatest).abs() < 1e-9, "{found} {greatest}");
+            }
+        }
+    }
+
+    /// Each axis asks once, with its tip where the program comes in by it: all were looked at each time, 10^10 times in all.
+    #[test]
+    fn a_hundred_thousand_ways_in_are_not_all_looked_at_by_each() {
+        let count = 100_000;
+        let program = comes_in(count);
+        let tops = Tops::of(&program);
+        let looks = std::cell::Cell::new(0_usize);
+        for pose in program.records.iter().filter_map(|record| record.op.pose()) {
+            let measure = |short: f64, _: f64| {
+                looks.set(looks.get() + 1);
+                short
+            };
+            tops.along_ways_in((pose.point(), pose.axis()), 0.1, measure);
+        }
+        let most = 32.0 * count as f64 * (count as f64).log2();
+        assert!((looks.get() as f64) < most, "{} looks, {most} are the most", looks.get());
     }
 
     /// By hand: over a hole at Z 0 the tool goes 7 mm back, and half a circle of radius 10 that stands upright rises to Z 10.

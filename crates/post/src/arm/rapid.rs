@@ -192,16 +192,11 @@ impl<'a> RapidPlanner<'a> {
     pub(super) fn below(&self, at: &Position) -> [f64; 2] {
         let axis = -at.tool.matrix3.z_axis;
         let tip = at.tool.translation;
-        let ways = self.floors(axis).map(|(of, floor)| (floor - tip.dot(of)) / of.dot(axis));
-        [ways.fold(f64::NEG_INFINITY, f64::max), self.floor_along_z() - tip.z]
-    }
-
-    /// How high a tool that leans so has to be for joints to lead it: along itself, and, where the tool stands nowhere, along the ways in to which it leans
-    /// near.
-    fn floors(&self, axis: Vec3) -> impl Iterator<Item = (Vec3, f64)> + '_ {
-        let tops = self.tops();
-        let ways_in = tops.ways_in(axis).map(|way| (way, tops.along(way) + self.arm.unmeasured()));
-        [(axis, self.floor(axis))].into_iter().chain(ways_in)
+        let own = self.floor(axis) - tip.dot(axis);
+        // Along the tool, as far as the way in asks for.
+        let along_ways_in = |short: f64, cosine: f64| (short + self.arm.unmeasured()) / cosine;
+        let along_tool = self.tops().along_ways_in((tip, axis), own, along_ways_in);
+        [along_tool, self.floor_along_z() - tip.z]
     }
 
     fn floor_along_z(&self) -> f64 {
@@ -291,14 +286,14 @@ impl<'a> RapidPlanner<'a> {
     }
 
     /// Whether the tool is free of the part while the joints go, or near the line: beyond all cuts along its own axis, and as high as the source ever goes,
-    /// along the tool as it leans at the nearer end, and along Z.
+    /// along the tool as it leans at the nearer end, along the ways in to which it leans near there, and along Z.
     fn is_clear(&self, tool: &Frame, [from, to]: [&Position; 2], line: Option<[Vec3; 2]>) -> bool {
         let turns: f64 = from.joints.iter().zip(to.joints).map(|(a, b)| (b - a).abs()).sum();
         let lever = 1.5 * self.arm.reach() + tool.translation.length();
         let unmeasured = self.arm.unmeasured();
         let slack = self.can.rapid_corridor / 2.0;
         let ends = [from, to].map(|end| -end.tool.matrix3.z_axis);
-        let floors = ends.map(|axis| self.floors(axis).collect::<Vec<_>>());
+        let floors = ends.map(|axis| self.floor(axis));
         let lowest = self.floor_along_z() - slack;
         let along = (to.rail - from.rail).abs();
         let count = ((turns * lever + along) / STRIDE).ceil().clamp(1.0, 1e6);
@@ -317,8 +312,11 @@ impl<'a> RapidPlanner<'a> {
             let leans = ends.map(|axis| angle_between(axis, -at.matrix3.z_axis));
             let end = usize::from(leans[1] < leans[0]);
             let tip = at.translation;
-            let is_high = floors[end].iter().all(|(of, floor)| tip.dot(*of) >= floor - slack);
-            self.is_beyond_cuts(&at) && tip.z >= lowest && is_high
+            let lacks = |short: f64, _: f64| short + unmeasured;
+            self.is_beyond_cuts(&at)
+                && tip.z >= lowest
+                && tip.dot(ends[end]) >= floors[end] - slack
+                && self.tops().along_ways_in((tip, ends[end]), slack, lacks) <= slack
         })
     }
 

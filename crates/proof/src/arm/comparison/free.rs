@@ -4,7 +4,6 @@ use super::super::follow::Path;
 use super::{Comparison, STRIDE, Standing, refused};
 use geom::{Frame, Vec3, angle_between};
 use program::{Diagnostic, LYING, Outcome, Pose, Rule};
-use std::iter;
 
 /// From how high along an axis, mm, nothing is known that would be in the way: as high as the source ever goes, and beyond all cuts.
 #[derive(Clone, Copy, Debug)]
@@ -21,13 +20,10 @@ impl Top {
 }
 
 impl Comparison<'_> {
-    /// Those of a tool that leans so: along itself first; and, where the tool stands nowhere, along the ways in to which it leans near.
-    fn tops_of(&self, axis: Vec3) -> Vec<Top> {
+    /// That of a tool that leans so.
+    fn top_of(&self, axis: Vec3) -> Top {
         let beyond = self.cuts.reach(axis) + self.machine.capabilities.rapid_clearance;
-        let own = Top { axis, height: self.tops.along(axis).max(beyond) };
-        let ways_in = self.tops.ways_in(axis);
-        let ways_in = ways_in.map(|axis| Top { axis, height: self.tops.along(axis) });
-        [own].into_iter().chain(ways_in).collect()
+        Top { axis, height: self.tops.along(axis).max(beyond) }
     }
 
     /// Says what was taken for the top of the part where the source does not say how high that is.
@@ -53,17 +49,12 @@ impl Comparison<'_> {
     }
 
     /// Why the tool is not free of the part with its tip there, `unmeasured` mm off at the most. It is where it is `rapid_clearance` beyond all cuts along its
-    /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest, and along Z. A tool that
-    /// leans is as high along itself deep in a pocket, far on the side to which it leans.
-    fn blocked(
-        &self,
-        place: (Vec3, Vec3),
-        ends: &[Vec<Top>; 2],
-        unmeasured: f64,
-    ) -> Option<String> {
+    /// own axis, and as high as the source ever goes: along the tool, as it leans at that end of the motion to which it is nearest, along the ways in to which
+    /// it leans near there, and along Z. A tool that leans is as high along itself deep in a pocket, far on the side to which it leans.
+    fn blocked(&self, place: (Vec3, Vec3), ends: &[Top], unmeasured: f64) -> Option<String> {
         self.blocked_along_tool(place, ends, unmeasured).or_else(|| {
             let upward = Top { axis: Vec3::Z, height: self.tops.upward() };
-            self.too_low(&upward, place.0, ("Z", unmeasured))
+            self.too_low(upward.short(place.0) + unmeasured, ("Z", unmeasured))
         })
     }
 
@@ -71,7 +62,7 @@ impl Comparison<'_> {
     fn blocked_along_tool(
         &self,
         (tip, axis): (Vec3, Vec3),
-        ends: &[Vec<Top>; 2],
+        ends: &[Top],
         unmeasured: f64,
     ) -> Option<String> {
         let beyond = tip.dot(axis) - self.cuts.reach(axis);
@@ -81,15 +72,18 @@ impl Comparison<'_> {
                 "{beyond:.2} mm beyond the cuts along the tool: {clearance} mm are asked for"
             ));
         }
-        let leans = [&ends[0], &ends[1]]
-            .map(|end| end.first().map_or(f64::INFINITY, |own| angle_between(axis, own.axis)));
-        let names = ["the tool"].into_iter().chain(iter::repeat("the way in"));
-        let mut tops = ends[usize::from(leans[1] < leans[0])].iter().zip(names);
-        tops.find_map(|(top, along)| self.too_low(top, tip, (along, unmeasured)))
+        let leans = |end: &Top| angle_between(axis, end.axis);
+        let own = ends.iter().min_by(|a, b| leans(a).total_cmp(&leans(b)))?;
+        self.too_low(own.short(tip) + unmeasured, ("the tool", unmeasured)).or_else(|| {
+            let corridor = self.machine.capabilities.rapid_corridor;
+            let low = |short: f64, _: f64| short + unmeasured;
+            let low = self.tops.along_ways_in((tip, own.axis), corridor, low);
+            self.too_low(low, ("the way in", unmeasured))
+        })
     }
 
-    fn too_low(&self, top: &Top, tip: Vec3, (along, unmeasured): (&str, f64)) -> Option<String> {
-        let low = top.short(tip) + unmeasured;
+    /// Says so where the tool is so much lower than it has to be, mm, by what is unmeasured at the most.
+    fn too_low(&self, low: f64, (along, unmeasured): (&str, f64)) -> Option<String> {
         (low > self.machine.capabilities.rapid_corridor).then(|| {
             let besides = match unmeasured > 0.0 {
                 true => format!(" and the {unmeasured} mm that its joints may be off"),
@@ -111,7 +105,7 @@ impl Comparison<'_> {
         ends: [&Frame; 2],
         (what, unmeasured): (&str, f64),
     ) -> Outcome {
-        let tops = ends.map(|tool| self.tops_of(-self.in_part(tool).matrix3.z_axis));
+        let tops = ends.map(|tool| self.top_of(-self.in_part(tool).matrix3.z_axis));
         for tool in places {
             let at = self.in_part(&tool);
             let (tip, axis) = (at.translation, -at.matrix3.z_axis);
@@ -132,7 +126,7 @@ impl Comparison<'_> {
         let (way, axis) = (to.translation - from.translation, -from.matrix3.z_axis);
         let aside = way.reject_from_normalized(Vec3::Z).length();
         let is_along = aside <= self.tip(true) + 1e-4 * path.length && path.turn < 1e-4;
-        let tops = [self.tops_of(axis), Vec::new()];
+        let tops = [self.top_of(axis)];
         let mut tips = [from, to].into_iter().map(|end| (end.translation, axis));
         let is_free = is_along
             && lies(axis)
