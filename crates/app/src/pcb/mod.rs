@@ -256,6 +256,7 @@ impl<'a> Job<'a> {
         let source = source::read(board, &self.named, self.folder.as_deref(), settings)?;
         let parts = plan::parts(&source.artwork, settings)?;
         can_run(&parts, settings, machine)?;
+        let deep = plan::deep_cuts(&parts, settings)?;
         let surface = surface(&parts, settings, self.surface.as_ref())?;
         let running = &settings.running;
         if let Some(places) = running.probe.filter(|_| running.on_control) {
@@ -270,6 +271,7 @@ impl<'a> Job<'a> {
         planned.extend(more);
         planned.sort_by_key(|(part, _)| plan::order(*part, settings));
         let (works, left_out) = self.divided(planned)?;
+        warnings.extend(deep);
         warnings.extend(plan::late_pins(&parts, settings));
         let rack = Rack::of(&works);
         let is_turned = works.iter().any(|(part, _)| plan::face(*part, settings) == Face::Back);

@@ -95,6 +95,35 @@ pub fn face(part: Part, settings: &Settings) -> Face {
     part.face().unwrap_or(settings.drilling.from)
 }
 
+/// Tells of cuts into the surface that go deeper than half of the board: from both sides they would meet.
+///
+/// # Errors
+/// `deep-cut` where one goes through the board.
+pub fn deep_cuts(parts: &[Part], settings: &Settings) -> Result<Vec<Diagnostic>, Box<Diagnostic>> {
+    let thickness = settings.placing.thickness;
+    let is_cut =
+        |is_copper| parts.iter().any(|part| part.face().is_some() && part.is_copper() == is_copper);
+    let mut deep = Vec::new();
+    for (name, what, depth, is_copper) in [
+        ("depth", "copper", settings.isolation.depth, true),
+        ("engrave", "mask and legend", settings.clearing.engrave, false),
+    ] {
+        if !is_cut(is_copper) || depth <= thickness / 2.0 {
+            continue;
+        }
+        let into = format!("--{name} {depth} cuts into {what}");
+        let board = format!("the board, which is {thickness} mm thick");
+        let help = format!("a smaller --{name}, such as 0.1, or the --thickness of the board");
+        if depth >= thickness {
+            let message = format!("{into} and through {board}");
+            return Err(Box::new(Diagnostic::error(Rule::DeepCut, message).help(help)));
+        }
+        let message = format!("{into} deeper than half of {board}");
+        deep.push(Diagnostic::warning(Rule::DeepCut, message).help(help));
+    }
+    Ok(deep)
+}
+
 /// Tells of pins that are drilled when the board has been turned over already.
 pub fn late_pins(parts: &[Part], settings: &Settings) -> Option<Diagnostic> {
     let from_back = parts.contains(&Part::Drill) && face(Part::Drill, settings) == Face::Back;
@@ -129,6 +158,7 @@ pub fn is_about_settings(found: &Diagnostic) -> bool {
         Rule::Passes,
         Rule::Overlap,
         Rule::Cutter,
+        Rule::DeepCut,
         Rule::ToolWidth,
         Rule::TabHeight,
         Rule::TabCount,

@@ -427,6 +427,10 @@ rules! {
         "A number has no decimal point, and how the control counts it is not known."
         "write the decimal point, or say what numbers without it count: `--whole-numbers units` or `--whole-numbers increments`"
         "fanuc: `G1 X10` for a machine without `whole_numbers`";
+    DeepCut "deep-cut" []
+        "A cut that is meant for copper, mask or legend goes deep into the board, or through it."
+        "give the depth of the layer and a little more, such as 0.1, or the thickness of the board"
+        "`--depth 2` on a board of 1.6 mm";
     Definition "definition" []
         "The definition of a variable is wrong, or stands too late."
         "correct the definition: type, name and size, before the first block that uses it"

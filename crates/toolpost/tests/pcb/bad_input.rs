@@ -543,6 +543,26 @@ fn an_output_among_the_files_of_the_board() {
     assert!(said.err.contains("error[output-folder]"), "{}", said.err);
 }
 
+/// Copper is some hundredths of a millimetre thick: 2 mm are through a board of 1.6 mm, and cuts of 0.9 mm from both sides meet.
+#[test]
+fn an_isolation_through_the_board_is_refused_and_a_deep_one_is_warned_of() {
+    let folder = small();
+    let through = ["error[deep-cut]", "--depth 2", "1.6 mm thick", "--thickness"];
+    bad_call(&folder, &["--depth", "2"], &through);
+    bad_call(&folder, &["--depth", "1.6"], &["error[deep-cut]", "--depth 1.6"]);
+    let found = |more: &[&str]| {
+        let said = call(&folder, more);
+        assert_eq!(said.code, 0, "{said:?}");
+        fs::remove_dir_all(folder.path().join("out")).unwrap();
+        said.err.matches("warning[deep-cut]").count()
+    };
+    assert_eq!(found(&["--depth", "0.9"]), 1);
+    assert_eq!(found(&["--depth", "0.8"]), 0);
+    assert_eq!(found(&["--depth", "2", "--thickness", "5"]), 0);
+    // Nothing is isolated.
+    assert_eq!(found(&["--depth", "2", "--only", "outline"]), 0);
+}
+
 /// A tool of 10^300 mm took minutes and gigabytes; one of 10^-300 mm was written out with all its noughts.
 #[test]
 fn numbers_beyond_every_machine_are_refused_at_once() {
