@@ -127,7 +127,8 @@ pub fn read_for(
     let file = source.name();
     let text = encoding::without_mark(&bytes);
     if encoding::is_utf_16(&bytes) || !Job::begins(text) {
-        return read_by((source, bytes), strict, origin, purpose, |machine| machine, watch);
+        let set_up = |machine| machine;
+        return Reader { source, strict, origin, purpose, set_up, watch }.read(bytes);
     }
     origin.is_of_no_record(&file)?;
     if origin.set_up().is_some() {
@@ -194,7 +195,8 @@ pub(crate) fn read_wire(
     watch: &dyn Watch,
 ) -> Result<Toolpath, Stop> {
     let set_up = |own: Machine| Machine { wire: wire_of(&own, onto), ..own };
-    read_by((source, source.read()?), strict, origin, Purpose::Contour, set_up, watch)
+    let purpose = Purpose::Contour;
+    Reader { source, strict, origin, purpose, set_up, watch }.read(source.read()?)
 }
 
 /// The wire of the machine of a source that `onto` cuts: of the same machine it is set up as there.
@@ -207,85 +209,86 @@ fn stopped<T: Into<Stop>>(watch: &dyn Watch) -> impl FnOnce(T) -> Stop {
     move |found| if watch.is_cancelled() { Stop::cancelled() } else { found.into() }
 }
 
-fn read_by(
-    (source, bytes): (&Source, Cow<[u8]>),
+/// Reads an NC program or cutter-location data.
+struct Reader<'r, SetUp> {
+    source: &'r Source,
     strict: bool,
-    origin: &Origin,
+    origin: &'r Origin,
     purpose: Purpose,
-    set_up: impl Fn(Machine) -> Machine,
-    watch: &dyn Watch,
-) -> Result<Toolpath, Stop> {
-    origin.goes_with(&source.name())?;
-    let text = files::text_of(source.path(), Cow::Borrowed(&bytes))?;
-    let read = || read_text((source, &text), strict, origin, purpose, set_up, watch);
-    let (toolpath, digest) = parallel(read, || Digest::of([&bytes[..]]));
-    Ok(Toolpath { digest: Some(digest), ..toolpath? })
+    /// Sets up the machine that an NC program was written for.
+    set_up: SetUp,
+    watch: &'r dyn Watch,
 }
 
-/// The same of its text, without a digest.
-fn read_text(
-    (source, bytes): (&Source, &[u8]),
-    strict: bool,
-    origin: &Origin,
-    purpose: Purpose,
-    set_up: impl Fn(Machine) -> Machine,
-    watch: &dyn Watch,
-) -> Result<Toolpath, Stop> {
-    let progress = Waits(watch);
-    let file = source.name();
-    let mut read_with = Vec::new();
-    let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
-        Some(from) => {
-            let machine = set_up(origin.reach.load_origin(from)?);
-            let setup = origin.setup(from, purpose)?;
-            let folders = setup.folders.clone();
-            let asked = |found: &Diagnostic| is_unknown_position(found.rule);
-            let text = (&*file, bytes);
-            let reading = match nc::read_for(&machine, setup.clone(), text, &progress) {
-                Err(_) if watch.is_cancelled() => return Err(Stop::cancelled()),
-                Err(found) if purpose != Purpose::Program && asked(&found) => {
-                    flat(&machine, setup, &file, bytes)?.ok_or(found)?
-                }
-                read => read?,
-            };
-            read_with.extend(origin.tools.as_ref().and_then(Source::file).map(Path::to_owned));
-            read_with.extend(machine.loaded_from.files.clone());
-            read_with.extend(folders.files_read());
-            (machine.title, reading.program, reading.warnings, None, None)
-        }
-        None => {
-            let Origin { csys, cutcom, .. } = *origin;
-            let options = apt::Options { strict, csys, cutcom, purpose };
-            let reading = apt::read_for(&file, bytes, &options, &progress);
-            let reading = reading.map_err(|findings| match is_nc(source.path()) {
-                _ if watch.is_cancelled() => Stop::cancelled(),
-                _ if pcb::is_board(source) => of_other(&file, "a file of a circuit board", "pcb"),
-                _ if glass::is_body(source) => {
-                    of_other(&file, "a body, a picture or points", "glass")
-                }
-                true => without_origin(&file),
-                false => Stop { verdict: Verdict::Invalid, findings },
-            })?;
-            let matters = |set_ups: &SetUps| set_ups.is_given || set_ups.changes > 0;
-            let set_ups = reading.set_ups.filter(matters);
-            let apt::Reading { program, warnings, dialect, cutcom, .. } = reading;
-            (dialect.to_string(), program, warnings, set_ups, cutcom)
-        }
-    };
-    let warnings = held(warnings, strict)?;
-    let listing = None;
-    Ok(Toolpath {
-        source: Some(source.clone()),
-        read_with,
-        digest: None,
-        file,
-        dialect,
-        program,
-        warnings,
-        listing,
-        set_ups,
-        cutcom,
-    })
+impl<SetUp: Fn(Machine) -> Machine> Reader<'_, SetUp> {
+    fn read(self, bytes: Cow<[u8]>) -> Result<Toolpath, Stop> {
+        self.origin.goes_with(&self.source.name())?;
+        let text = files::text_of(self.source.path(), Cow::Borrowed(&bytes))?;
+        let (toolpath, digest) = parallel(|| self.text(&text), || Digest::of([&bytes[..]]));
+        Ok(Toolpath { digest: Some(digest), ..toolpath? })
+    }
+
+    /// The same of its text, without a digest.
+    fn text(self, bytes: &[u8]) -> Result<Toolpath, Stop> {
+        let Reader { source, strict, origin, purpose, set_up, watch } = self;
+        let progress = Waits(watch);
+        let file = source.name();
+        let mut read_with = Vec::new();
+        let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
+            Some(from) => {
+                let machine = set_up(origin.reach.load_origin(from)?);
+                let setup = origin.setup(from, purpose)?;
+                let folders = setup.folders.clone();
+                let asked = |found: &Diagnostic| is_unknown_position(found.rule);
+                let text = (&*file, bytes);
+                let reading = match nc::read_for(&machine, setup.clone(), text, &progress) {
+                    Err(_) if watch.is_cancelled() => return Err(Stop::cancelled()),
+                    Err(found) if purpose != Purpose::Program && asked(&found) => {
+                        flat(&machine, setup, &file, bytes)?.ok_or(found)?
+                    }
+                    read => read?,
+                };
+                read_with.extend(origin.tools.as_ref().and_then(Source::file).map(Path::to_owned));
+                read_with.extend(machine.loaded_from.files.clone());
+                read_with.extend(folders.files_read());
+                (machine.title, reading.program, reading.warnings, None, None)
+            }
+            None => {
+                let Origin { csys, cutcom, .. } = *origin;
+                let options = apt::Options { strict, csys, cutcom, purpose };
+                let reading = apt::read_for(&file, bytes, &options, &progress);
+                let reading = reading.map_err(|findings| match is_nc(source.path()) {
+                    _ if watch.is_cancelled() => Stop::cancelled(),
+                    _ if pcb::is_board(source) => {
+                        of_other(&file, "a file of a circuit board", "pcb")
+                    }
+                    _ if glass::is_body(source) => {
+                        of_other(&file, "a body, a picture or points", "glass")
+                    }
+                    true => without_origin(&file),
+                    false => Stop { verdict: Verdict::Invalid, findings },
+                })?;
+                let matters = |set_ups: &SetUps| set_ups.is_given || set_ups.changes > 0;
+                let set_ups = reading.set_ups.filter(matters);
+                let apt::Reading { program, warnings, dialect, cutcom, .. } = reading;
+                (dialect.to_string(), program, warnings, set_ups, cutcom)
+            }
+        };
+        let warnings = held(warnings, strict)?;
+        let listing = None;
+        Ok(Toolpath {
+            source: Some(source.clone()),
+            read_with,
+            digest: None,
+            file,
+            dialect,
+            program,
+            warnings,
+            listing,
+            set_ups,
+            cutcom,
+        })
+    }
 }
 
 /// The NC program of a machine with rotary axes as a picture shows it: the tip goes by rapid where the axes take it.
