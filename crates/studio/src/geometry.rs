@@ -17,6 +17,7 @@
 //! ```
 //! All little-endian.
 
+use crate::packed::Packed;
 use crate::walk::{GAP, PULSE, Walk};
 use geom::Vec3;
 use program::Feed;
@@ -61,19 +62,7 @@ pub const MOST_LED: usize = 1 << 17;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Vertex {
     at: Vec3,
-    /// Move in the chunk, kind, tool and marks.
-    packed: u32,
-}
-
-impl Vertex {
-    fn kind(self) -> u8 {
-        (self.packed >> 12 & 15) as u8
-    }
-
-    /// What segments must have in common to be drawn as one.
-    fn look(self) -> u32 {
-        self.packed >> 12
-    }
+    packed: Packed,
 }
 
 /// The levels of a walk.
@@ -192,7 +181,7 @@ fn octets(vertices: &[Vertex], origin: Vec3) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(vertices.len() * 16);
     for Vertex { at, packed } in vertices {
         let [x, y, z] = (*at - origin).to_array().map(|value| (value as f32).to_bits());
-        let words = [x, y, z, *packed].map(u32::to_le_bytes);
+        let words = [x, y, z, packed.word()].map(u32::to_le_bytes);
         bytes.extend_from_slice(words.as_flattened());
     }
     bytes
@@ -390,10 +379,7 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
     let first = moves.start;
     let mut before = walk.before(first).tip;
     for at in moves {
-        let packed = |kind: u8| {
-            let (tool, marks) = (u32::from(walk.tool(at)), u32::from(walk.marks(at)));
-            (at - first) | u32::from(kind) << 12 | tool << 16 | marks << 24
-        };
+        let packed = |kind: u8| Packed::of(walk, first, at).with_kind(kind);
         let behind = walk.behind(at).tip;
         let start = starts.next_if(|(of, _)| *of == at);
         let arc = arcs.next_if(|(of, _)| *of == at);
@@ -417,7 +403,7 @@ fn polyline(walk: &Walk, chunk: u32, near: f64) -> Vec<Vertex> {
         let kind = packed(if is_drawn { walk.kind(at) } else { GAP });
         if let Some((_, arc)) = arc.filter(|_| is_drawn) {
             let chords = arc.chords(near).min(most_chords);
-            let mut add = |t: f64, packed: u32| {
+            let mut add = |t: f64, packed: Packed| {
                 let at = arc.at(t);
                 vertices.extend(at.is_finite().then_some(Vertex { at, packed }));
             };
@@ -491,14 +477,16 @@ fn simplified(finer: &[Vertex], level: usize) -> Vec<Vertex> {
             }
             continue;
         }
-        if first.kind() == PULSE {
-            let points = finer[from..].iter().take_while(|vertex| vertex.kind() == PULSE);
+        if first.packed.kind() == PULSE {
+            let points = finer[from..].iter().take_while(|vertex| vertex.packed.kind() == PULSE);
             from += points.clone().count();
             sparse(points, most, &mut kept);
             continue;
         }
         // A stretch of segments that look alike, from the vertex before it.
-        let alike = |vertex: &&Vertex| vertex.look() == first.look() && vertex.kind() != GAP;
+        let alike = |vertex: &&Vertex| {
+            vertex.packed.look() == first.packed.look() && vertex.packed.kind() != GAP
+        };
         let end = turns.peek().map_or(finer.len(), |turn| turn.from);
         let to = from + finer[from..end].iter().take(STRETCH).take_while(alike).count().max(1);
         match from.checked_sub(1).filter(|_| to - from > 1) {
@@ -545,7 +533,7 @@ impl Round {
             let part = if step > 0.0 { ((wanted - behind) / step).min(1.0) } else { 0.0 };
             *place = cube(line[at].at.lerp(line[at + 1].at, part));
         }
-        (line[self.from].look(), (self.length / (8.0 * side)) as i64, places)
+        (line[self.from].packed.look(), (self.length / (8.0 * side)) as i64, places)
     }
 }
 
@@ -555,7 +543,7 @@ fn rounds(line: &[Vertex]) -> Vec<Round> {
     let mut from = 1;
     while from < line.len() {
         let own = line[from].packed;
-        let is_drawn = ![GAP, PULSE].contains(&line[from].kind());
+        let is_drawn = ![GAP, PULSE].contains(&line[from].packed.kind());
         let more = line[from + 1..].iter().take_while(|vertex| vertex.packed == own);
         let to = from + 1 + if is_drawn { more.count() } else { 0 };
         if to - from >= 3 {
@@ -584,8 +572,8 @@ fn apart(line: &[Vertex], rounds: &[Round], most: f64) -> Option<Vec<Vertex>> {
         let Vertex { at: end, packed } = line[to - 1];
         if kept.last().is_some_and(|last: &Vertex| last.at != end) {
             // What follows begins there.
-            kept.pop_if(|last| last.kind() == GAP && *from > 1);
-            kept.push(Vertex { at: end, packed: packed & !(15 << 12) | u32::from(GAP) << 12 });
+            kept.pop_if(|last| last.packed.kind() == GAP && *from > 1);
+            kept.push(Vertex { at: end, packed: packed.with_kind(GAP) });
         }
         at = *to;
     }
@@ -598,7 +586,7 @@ fn sparse<'v>(points: impl Iterator<Item = &'v Vertex>, most: f64, kept: &mut Ve
     let side = most / 3f64.sqrt();
     let mut taken = HashSet::new();
     let cube = |vertex: &Vertex| vertex.at.to_array().map(|value| (value / side).floor() as i64);
-    kept.extend(points.filter(|vertex| taken.insert((vertex.look(), cube(vertex)))));
+    kept.extend(points.filter(|vertex| taken.insert((vertex.packed.look(), cube(vertex)))));
 }
 
 /// Keeps of a line, without its first point, what no chord may leave out.
@@ -669,8 +657,8 @@ pub(crate) mod tests {
             levels = levels.iter().map(|finer| simplified(finer, level)).collect();
             counts.push(levels.iter().map(Vec::len).sum::<usize>());
             for (chunk, kept) in chunks.iter().zip(&levels) {
-                assert_eq!(kept[0].kind(), GAP);
-                assert!(kept.is_sorted_by_key(|vertex| vertex.packed & 4095));
+                assert_eq!(kept[0].packed.kind(), GAP);
+                assert!(kept.is_sorted_by_key(|vertex| vertex.packed.place()));
                 let far = |vertex: &Vertex| {
                     let own = kept[1..].iter().map(|kept| kept.at.distance_squared(vertex.at));
                     own.fold(f64::MAX, f64::min).sqrt()
@@ -861,7 +849,7 @@ pub(crate) mod tests {
         // Within 0.032 mm: of turns in cubes of 0.0128 mm / √3 = 7.4 of them one is drawn, within 0.008 mm by 61 chords.
         assert!(levels.len() == 3 && (41_000..50_000).contains(&levels[2].1), "{levels:?}");
         let middles = |line: &[Vertex]| -> Vec<Vec3> {
-            let drawn = line.windows(2).filter(|ends| ends[1].kind() != GAP);
+            let drawn = line.windows(2).filter(|ends| ends[1].packed.kind() != GAP);
             drawn.map(|ends| (ends[0].at + ends[1].at) / 2.0).collect()
         };
         let exact = polyline(&walk, 1, EXACT);
@@ -880,7 +868,7 @@ pub(crate) mod tests {
             let widest = heights.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
             assert!(widest <= 2.0 * error(level), "{level}: {widest}");
             for at in exact.iter().step_by(4999) {
-                let segments = made.windows(2).filter(|ends| ends[1].kind() != GAP);
+                let segments = made.windows(2).filter(|ends| ends[1].packed.kind() != GAP);
                 let off = segments.map(|ends| distance(at.at, ends[0].at, ends[1].at));
                 let off = off.fold(f64::INFINITY, f64::min);
                 assert!(off <= error(level) + 1e-9, "{level}: {off}");
@@ -909,8 +897,8 @@ pub(crate) mod tests {
         let made = (1..4).fold(polyline(&walk, 0, EXACT), |finer, level| simplified(&finer, level));
         let moves: std::collections::BTreeSet<u32> = made
             .iter()
-            .filter(|vertex| vertex.kind() == crate::walk::ARC)
-            .map(|vertex| vertex.packed & 4095)
+            .filter(|vertex| vertex.packed.kind() == crate::walk::ARC)
+            .map(|vertex| vertex.packed.place())
             .collect();
         assert_eq!(moves.into_iter().collect::<Vec<_>>(), [1, 3]);
     }
@@ -967,7 +955,7 @@ pub(crate) mod tests {
             (MotionKind::Line, Vec3::new(1e9, 1.0, 0.0)),
         ]);
         let vertices = polyline(&walk, 0, EXACT);
-        let kinds: Vec<u8> = vertices.iter().map(|vertex| vertex.kind()).collect();
+        let kinds: Vec<u8> = vertices.iter().map(|vertex| vertex.packed.kind()).collect();
         assert_eq!(kinds, [GAP, crate::walk::FEED, GAP, crate::walk::FEED]);
         let geometry = made(&walk, || true).unwrap();
         let flags = geometry.index();
@@ -984,7 +972,7 @@ pub(crate) mod tests {
         let vertices = polyline(&walk([(arc.clone(), end), (arc, end)]), 0, EXACT);
         assert!(vertices.len() <= MOST_VERTICES + 3, "{}", vertices.len());
         // Some of the turns, and each of them as one; the second move begins where the first one has begun.
-        let drawn = vertices.windows(2).filter(|ends| ends[1].kind() != GAP);
+        let drawn = vertices.windows(2).filter(|ends| ends[1].packed.kind() != GAP);
         let long = drawn.filter(|ends| ends[0].at.distance(ends[1].at) > 2.0);
         assert_eq!(long.count(), 1);
     }

@@ -40,6 +40,7 @@ pub mod lines;
 pub mod machines;
 pub mod message;
 mod origin;
+mod packed;
 mod page;
 pub mod place;
 pub mod plots;

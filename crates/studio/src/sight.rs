@@ -13,6 +13,7 @@
 //! ```
 
 use crate::geometry::{CHUNK, Geometry, MOST_LED};
+use crate::packed::Packed;
 use crate::walk::{GAP, PULSE, RAPID, Walk};
 use geom::{Arc, Vec3};
 use std::collections::HashMap;
@@ -176,22 +177,7 @@ pub fn sight(walk: (&Walk, &Geometry), view: &View, goes_on: &dyn Fn() -> bool) 
 #[derive(Clone, Copy)]
 struct Move {
     chunk: u32,
-    packed: u32,
-}
-
-impl Move {
-    fn kind(self) -> u8 {
-        (self.packed >> 12 & 15) as u8
-    }
-
-    /// What turns must have in common for one to stand for the other.
-    fn look(self) -> u32 {
-        self.packed >> 12
-    }
-
-    fn marks(self) -> u8 {
-        (self.packed >> 24) as u8
-    }
+    packed: Packed,
 }
 
 /// What may be in sight of a move, in pixels.
@@ -228,9 +214,7 @@ fn follow(
             let kind = walk.kind(at);
             let (arc, start) = (of_move(&mut arcs, at), of_move(&mut starts, at));
             let to = walk.behind(at).tip;
-            let (tool, marks) = (u32::from(walk.tool(at)), u32::from(walk.marks(at)));
-            let packed = (at - first) | u32::from(kind) << 12 | tool << 16 | marks << 24;
-            let of = Move { chunk, packed };
+            let of = Move { chunk, packed: Packed::of(walk, first, at) };
             let mut line = |a: Vec3, b: Vec3| match view.clipped([a, b]) {
                 Some(line) => tell(of, Piece::Line(line)),
                 None => Some(()),
@@ -464,7 +448,7 @@ impl Sorts {
             points.map(|at| [cell(at.x, side), cell(at.y, side), cell(at.z - points[0].z, 1.0)]);
         let key = [0_u8, 1].map(|number| {
             let mut hasher = DefaultHasher::new();
-            (number, of.look(), places).hash(&mut hasher);
+            (number, of.packed.look(), places).hash(&mut hasher);
             hasher.finish()
         });
         let is_full = self.nearest.len() >= MOST_SORTS;
@@ -527,7 +511,7 @@ impl Planes {
         self.lines = self.lines.checked_add(1)?;
         let Planes { fine, width, height, lines, .. } = *self;
         let cells = width * height;
-        let plane = match of.kind() {
+        let plane = match of.packed.kind() {
             RAPID => self.dashed.get_or_insert_with(|| Plane::new(cells)),
             _ => &mut self.solid,
         };
@@ -550,8 +534,8 @@ impl Planes {
         }
         if let Some(cell) = place(b) {
             plane.take(cell, b.z, lines);
-            if of.marks() != 0 && self.marked.len() < MOST_MARKED {
-                self.marked.entry((of.marks(), cell)).or_insert(lines);
+            if of.packed.marks() != 0 && self.marked.len() < MOST_MARKED {
+                self.marked.entry((of.packed.marks(), cell)).or_insert(lines);
             }
         }
         (self.work <= MOST_WORK).then_some(())
@@ -592,18 +576,18 @@ struct Answer {
 
 impl Answer {
     fn add(&mut self, of: Move, line: [Vec3; 2]) {
-        let vertex = |at: Vec3, packed: u32| {
+        let vertex = |at: Vec3, packed: Packed| {
             let [x, y, z] = at.to_array().map(|value| (value as f32).to_bits());
-            [x, y, z, packed]
+            [x, y, z, packed.word()]
         };
         let [a, b] = line;
-        let begin = vertex(a, of.packed & !(15 << 12) | u32::from(GAP) << 12);
+        let begin = vertex(a, of.packed.with_kind(GAP));
         let is_new = self.chunks.last().is_none_or(|[chunk, _]| *chunk != of.chunk);
         if is_new {
             self.chunks.push([of.chunk, 0]);
         }
-        let goes_on =
-            of.kind() == PULSE || self.vertices.last().is_some_and(|last| last[..3] == begin[..3]);
+        let goes_on = of.packed.kind() == PULSE
+            || self.vertices.last().is_some_and(|last| last[..3] == begin[..3]);
         let before = self.vertices.len();
         if is_new || !goes_on {
             self.vertices.push(begin);

@@ -3,7 +3,7 @@
 import type { WalkAbout } from "../protocol/asks.ts";
 import type { Projection, Size } from "./camera.ts";
 import { readSight, type Seen } from "./sight.ts";
-import { VERTEX_BYTES } from "./strip.ts";
+import { divided } from "./strip.ts";
 import type { Vector } from "./vector.ts";
 
 const INDEX_BYTES = 64;
@@ -239,13 +239,8 @@ export class Chunks implements Vertices {
     private async get(level: number, from: number, to: number): Promise<ArrayBuffer[]> {
         const octets = await this.octets(`${level}/${from}-${to}`);
         const data = new DataView(octets);
-        const count = data.getUint32(0, true);
-        let at = 4 + 4 * count;
-        return Array.from({ length: count }, (_, i) => {
-            const begin = at;
-            at += data.getUint32(4 + 4 * i, true) * VERTEX_BYTES;
-            return octets.slice(begin, at);
-        });
+        const counts = Array.from({ length: data.getUint32(0, true) }, (_, i) => data.getUint32(4 + 4 * i, true));
+        return divided(octets, 4 + 4 * counts.length, counts);
     }
 
     private keep(key: number, vertices: ArrayBuffer): void {

@@ -6,7 +6,7 @@
 import type { Projection, Size } from "./camera.ts";
 import type { Vertices } from "./chunks.ts";
 import type { Range } from "../cursor.ts";
-import { VERTEX_BYTES } from "./strip.ts";
+import { divided } from "./strip.ts";
 import type { Vector } from "./vector.ts";
 
 /** What is seen of a chunk. */
@@ -17,13 +17,10 @@ export interface Seen {
 
 export function readSight(octets: ArrayBuffer): Seen[] {
     const data = new DataView(octets);
-    const count = data.getUint32(0, true);
-    let at = 4 + 8 * count;
-    return Array.from({ length: count }, (_, i) => {
-        const begin = at;
-        at += data.getUint32(8 + 8 * i, true) * VERTEX_BYTES;
-        return { chunk: data.getUint32(4 + 8 * i, true), vertices: octets.slice(begin, at) };
-    });
+    const words = Array.from({ length: 2 * data.getUint32(0, true) }, (_, i) => data.getUint32(4 + 4 * i, true));
+    const chunks = words.filter((_, i) => i % 2 === 0);
+    const vertices = divided(octets, 4 + 4 * words.length, words.filter((_, i) => i % 2 === 1));
+    return vertices.map((vertices, i) => ({ chunk: chunks[i] ?? 0, vertices }));
 }
 
 /** How a view is asked for: with so many pixels more on each side, without the kinds of these bits; only some moves, or all. */

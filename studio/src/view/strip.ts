@@ -13,6 +13,16 @@ export const marksOf = (word: number): number => word >>> 24;
 export const wordOf = (move: number, kind: number, tool: number, marks = 0): number =>
     (move | (kind << 12) | (tool << 16) | (marks << 24)) >>> 0;
 
+/** The vertices of several chunks, which are one behind the other from a byte on, so many of each. */
+export function divided(octets: ArrayBuffer, from: number, counts: number[]): ArrayBuffer[] {
+    let at = from;
+    return counts.map((count) => {
+        const begin = at;
+        at += count * VERTEX_BYTES;
+        return octets.slice(begin, at);
+    });
+}
+
 /** How a kind of move is drawn. */
 export const Style = { line: 0, dashed: 1, hidden: 2, dot: 3 } as const;
 
