@@ -180,6 +180,58 @@ fn all_programs_of_a_board_are_saved_together_as_the_command_saves_them() {
     assert!(found["message"].as_str().unwrap().contains("front-mask.gcode"), "{found}");
 }
 
+/// All real boards: KiCad's own files, and what KiCad and others have plotted.
+#[test]
+fn the_programs_of_real_boards_are_those_of_the_command() {
+    let Some(data) = judge::data("gerber") else { return };
+    let listed = |folder: &str| fs::read_dir(data.join(folder)).unwrap();
+    let mut boards: Vec<_> = listed("kicad").map(|entry| entry.unwrap().path()).collect();
+    boards.push(data.join("a64"));
+    boards.sort();
+    assert!(boards.len() >= 12, "{boards:?}");
+    let studio = studio();
+    let mut page = studio.socket();
+    let machine = app::toolpath::machine(MACHINE).unwrap();
+    let (settings, tolerances) = (plan(), proof::Tolerances::default());
+    for board in boards {
+        let mut job = Job::new(&machine, &settings, &tolerances).unwrap();
+        // As `options` states it.
+        let beside = fs::metadata(board.join("millproject"));
+        job.options = beside.iter().map(|file| format!("millproject {}", file.len())).collect();
+        let name = board.file_name().unwrap().to_str().unwrap();
+        let own = studio.own().join(name);
+        let source = if board.is_dir() {
+            fs::create_dir(&own).unwrap();
+            for file in fs::read_dir(&board).unwrap() {
+                let file = file.unwrap();
+                fs::copy(file.path(), own.join(file.file_name())).unwrap();
+            }
+            json!({ "folder": name })
+        } else {
+            fs::copy(&board, &own).unwrap();
+            json!({ "file": name })
+        };
+        let made = job.make(&[app::Source::File(own)], &()).unwrap();
+        let report = format!("{:#}\n", made.account(&job, Vec::new()).data);
+        let posted = post(&mut page, source);
+        let revision = &posted["board"]["programs"][0]["revision"];
+        let out = format!("{name}-out");
+        page.done("save", json!({ "revision": revision, "path": out, "replace": false }));
+        let mut contents = made.contents(&job, &report);
+        let mut saved: Vec<_> = fs::read_dir(studio.own().join(&out))
+            .unwrap()
+            .map(|file| file.unwrap().file_name().into_string().unwrap())
+            .collect();
+        contents.sort();
+        saved.sort();
+        assert_eq!(saved, contents.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
+        for (file, bytes) in contents {
+            let saved = fs::read(studio.own().join(&out).join(&file)).unwrap();
+            assert!(saved == bytes, "{name}: {file}");
+        }
+    }
+}
+
 #[test]
 fn a_board_is_drawn_by_its_nets_as_it_lies_for_each_program() {
     let studio = studio();
