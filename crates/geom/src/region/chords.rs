@@ -11,7 +11,8 @@ use std::f64::consts::TAU;
 /// other as their chords do.
 const CHORD_ERROR: f64 = 0.0009;
 
-/// The most edges of one boolean: 15 times as many as the largest real one that is known, a copper layer of the A64-OLinuXino (286,136).
+/// The most edges of one boolean: 15 times as many as the largest real one that is known, a copper layer of the A64-OLinuXino (286,136). So many of discs that
+/// overlap nothing take a helper 890 MB, 212 bytes an edge, and 4 s of the processor.
 const MOST_EDGES: usize = 1 << 22;
 
 /// So many crossings are taken however few elements there are: some 600 MB.
