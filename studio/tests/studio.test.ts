@@ -182,3 +182,24 @@ test("while an edit is proven, the picture of the program before stays", async (
     walk(0);
     expect(studio.walking.value).toBe(null);
 });
+
+test("the end of an old run that comes behind the result of a newer one changes nothing", async () => {
+    const ends: (() => void)[] = [];
+    const seam = {
+        ask: (ask: string, params: { source?: { file: string } }) => {
+            if (ask !== "post") return Promise.resolve({ done: [], arrays: {} });
+            if (params.source!.file === "new.cls") {
+                return Promise.resolve({ done: { revision: 2, verdict: "done", findings: [], walk: { moves: 0, mismatch: null } }, arrays: {} });
+            }
+            return new Promise((_, reject) => ends.push(() => reject(new Stopped("cancelled", []))));
+        },
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    const old = studio.post({ ...work, source: { file: "old.cls" } } as never);
+    await settled();
+    await studio.post({ ...work, source: { file: "new.cls" } } as never);
+    expect(ends).toHaveLength(1);
+    ends[0]!();
+    await old;
+    expect([studio.job.value?.revision, studio.canSave.value, studio.stop.value]).toEqual([2, true, null]);
+});
