@@ -33,6 +33,10 @@ const ALIKE: f64 = 0.003;
 /// The sine of the angle up to which a cut runs along an edge.
 const ALONG: f64 = 0.05;
 
+/// The same of an arc: where an area is drawn round by chords, as KiCad does with 0.005 mm off the arc at the most, a cut that is one arc runs
+/// along them at up to half the angle between two of them.
+const ALONG_CHORDS: f64 = 0.26;
+
 /// A line of one of the files of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
@@ -262,7 +266,8 @@ fn edge_along(edges: &Index, cut: &Element) -> Option<Vec2> {
     let nearest = edges.nearest(at, f64::INFINITY)?;
     let edge = nearest.piece.element.at(nearest.t);
     let away = edge - at;
-    if away.dot(along).abs() > ALONG * away.length() + ALIKE {
+    let most = if cut.turn.is_some() { ALONG_CHORDS } else { ALONG };
+    if away.dot(along).abs() > most * away.length() + ALIKE {
         return None;
     }
     let reach = nearest.distance + ALIKE;
@@ -336,5 +341,33 @@ impl Elements {
         let over = near.filter(|(away, stroke)| *away <= stroke.radius + NEAR);
         let found = over.min_by(|a, b| a.0.total_cmp(&b.0));
         found.map(|(_, stroke)| stroke.line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geom::region::{Fill, Region, Ring};
+    use std::f64::consts::TAU;
+
+    /// A pad of radius 0.3 mm by 16 chords, each 0.0058 mm off the arc: cuts of 22.5° about it at 0.1 mm from its corners, wherever they begin.
+    #[test]
+    fn an_arc_runs_along_the_chords_of_a_round_edge_and_a_line_across_them_does_not() {
+        let corner = |k: i32| 0.3 * Vec2::from_angle(TAU * f64::from(k) / 16.0);
+        let corners: Vec<Vec2> = (0..16).map(corner).collect();
+        let region = Region::inside([&Ring::polygon(&corners).unwrap()], Fill::NonZero).unwrap();
+        let edges = Index::new(&region);
+        for k in 0..64 {
+            let start = 0.4 * Vec2::from_angle(TAU * f64::from(k) / 64.0);
+            let end = Vec2::from_angle(TAU / 16.0).rotate(start);
+            let cut = Element::arc(start, end, Vec2::ZERO, TAU / 16.0);
+            let edge = edge_along(&edges, &cut).unwrap_or_else(|| panic!("{k}"));
+            assert!(edge.distance(cut.at(0.5)) < 0.11, "{k}");
+            // A line at 30 degrees to it.
+            let aslant = Vec2::from_angle(0.5).rotate(end - start);
+            let middle = cut.at(0.5);
+            let cut = Element::line(middle - aslant / 2.0, middle + aslant / 2.0);
+            assert_eq!(edge_along(&edges, &cut), None, "{k}");
+        }
     }
 }

@@ -24,7 +24,7 @@ const READ_OPTIONS: [&str; 13] = [
 
 /// Parameters that are one family of controls' own, by the beginnings of `reader`.
 const SETTINGS_OF: [(&str, &[&str]); 9] = [
-    ("dwell_p_milliseconds", &["fanuc"]),
+    ("dwell_p_milliseconds", &["fanuc", "mach3"]),
     ("edge_at_change", &["sinumerik"]),
     ("length_along_z", &["fanuc", "sinumerik"]),
     ("length_moves_axis", &["fanuc"]),

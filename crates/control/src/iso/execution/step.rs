@@ -109,7 +109,8 @@ impl Step<'_, '_, '_> {
         if self.state.sure != StartModes::SURE {
             self.lean_on_start(before);
         }
-        if self.state.frames.unsaid != 0 {
+        // A contour that a wire cuts, or a picture, may lie anywhere.
+        if self.state.frames.unsaid != 0 && self.state.purpose.asks_technology() {
             self.lean_on_offset(before);
         }
         if more {
