@@ -7,6 +7,9 @@ import type { Screen } from "../screen/screen.ts";
 /** What nobody knows is a dash. */
 const number = (value: number | null | undefined, digits = 3): string => (value === null || value === undefined ? "–" : value.toFixed(digits));
 
+/** Feeds and speeds: a feed a turn may be 0.05 mm, and a robot's speed is that of a step of its output. */
+const rate = (value: number | null | undefined): string => (value === null || value === undefined ? "–" : String(Number(value.toFixed(3))));
+
 /** Why an axis or the tip is a dash. */
 export const UNKNOWN =
     "The program alone does not tell: it depends on what is set at the machine, behind a way home or a retract in machine coordinates, or while the control leads the tip of a tool whose length is not given";
@@ -37,8 +40,8 @@ export function Readout({ screen }: { screen: Screen }) {
         ["Pulse", `${counted(place.move + 1)} of ${counted(job.walk.moves)}`, ""],
     ] : [
         ...own,
-        ["Feed", number(place.feed?.value, 0), place.feed?.unit ?? ""],
-        ["Spindle", place.spindle === null ? "–" : `${place.spindle.turns} ${place.spindle.speed ?? ""}`, "1/min"],
+        ["Feed", rate(place.feed?.value), place.feed?.unit ?? ""],
+        ["Spindle", place.spindle === null ? "–" : `${place.spindle.turns} ${place.spindle.speed === null ? "" : rate(place.spindle.speed)}`, "1/min"],
         ["Coolant", place.coolant ?? "–", ""],
         ["Comp.", place.compensation ?? "–", ""],
         ["Cycle", place.cycle ?? "–", ""],
