@@ -4,8 +4,8 @@ import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
-import { describe, test } from "vitest";
-import { absent, example, goTo, launch, proven, Server, visit } from "./harness.ts";
+import { describe, expect, test } from "vitest";
+import { absent, example, goTo, launch, proven, readout, Server, visit } from "./harness.ts";
 
 const folder = process.env.TOOLPOST_IMAGES;
 
@@ -90,7 +90,7 @@ describe.skipIf(folder === undefined || absent() !== null)("pictures of the docu
         const { page } = await visit(browser, server.link);
         await proven(page);
         await goTo(page, "m40");
-        await page.waitForTimeout(300);
+        await expect.poll(async () => (await readout(page)).Move).toMatch(/^40\b/);
         await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");
         await page.keyboard.type(" Z-3.");
