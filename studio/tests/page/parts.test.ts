@@ -87,6 +87,8 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         // A second file, and what was typed can be undone in each.
         await choose(page, "job_4.src");
         await type(page, "LIN {X 100.", " ; yours");
+        // Its proof begins when the typing rests: PROVEN is said of the edit before until then.
+        await page.waitForTimeout(1000);
         await proven(page);
         await choose(page, "job_2.src");
         expect(await text(page)).toContain("; mine");
