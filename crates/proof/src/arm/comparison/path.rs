@@ -423,25 +423,30 @@ impl Comparison<'_> {
             let lean = angle_between(-tool.matrix3.z_axis, between(from.axis(), to.axis(), along))
                 .to_degrees();
             if aside.is_nan() || aside > allowed {
-                return refused(
-                    Rule::Path,
-                    format!("the tip is {aside:.4} mm off the line of the source"),
-                );
+                let message = format!("the tip is {aside:.4} mm off the line of the source");
+                return refused(Rule::Path, message);
             }
-            if lean > self.report.tolerances.sweep_degrees {
-                return refused(
-                    Rule::Path,
-                    format!("the axis is {lean:.3}° off that of the source on the way"),
-                );
-            }
-            let place = (self.file.as_deref(), line);
-            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
-            Deviation::widen(&mut self.deviation, (aside, lean));
+            self.note_between(aside, lean, line)?;
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
         }
         self.done = reached;
+        Ok(())
+    }
+
+    /// Takes down how far a place between the ends of a step is off it: the tip in mm, the axis in degrees.
+    ///
+    /// # Errors
+    /// The axis is off.
+    fn note_between(&mut self, aside: f64, lean: f64, line: u32) -> Outcome {
+        if lean.is_nan() || lean > self.report.tolerances.sweep_degrees {
+            let message = format!("the axis is {lean:.3}° off that of the source on the way");
+            return refused(Rule::Path, message);
+        }
+        let place = (self.file.as_deref(), line);
+        self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
+        Deviation::widen(&mut self.deviation, (aside, lean));
         Ok(())
     }
 
@@ -482,21 +487,11 @@ impl Comparison<'_> {
             let tool = self.in_part(&at(share));
             let aside = tool.translation.distance(wanted.at(before + share * (reached - before)));
             if aside.is_nan() || aside > allowed {
-                return refused(
-                    Rule::Arc,
-                    format!("the tip is {aside:.4} mm off the arc of the source"),
-                );
+                let message = format!("the tip is {aside:.4} mm off the arc of the source");
+                return refused(Rule::Arc, message);
             }
             let lean = angle_between(-tool.matrix3.z_axis, to.axis()).to_degrees();
-            if lean > self.report.tolerances.sweep_degrees {
-                return refused(
-                    Rule::Path,
-                    format!("the axis is {lean:.3}° off that of the source on the arc"),
-                );
-            }
-            let place = (self.file.as_deref(), line);
-            self.report.deviations.path_mm.note(aside, self.expected[self.next].line, place);
-            Deviation::widen(&mut self.deviation, (aside, lean));
+            self.note_between(aside, lean, line)?;
         }
         if reached == 1.0 {
             self.note_end(&at(1.0), to, line)?;
