@@ -46,7 +46,7 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
     let mut here: Option<Vec3> = None;
     let mut cycle: Option<Cycle> = None;
     let mut tool = 0;
-    for record in &program.records {
+    for record in program.each() {
         let before = here;
         let mut step = |cuts: bool, hole: bool, to: Vec3, axis: Vec3| {
             if let Some(from) = here {

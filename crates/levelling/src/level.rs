@@ -50,7 +50,7 @@ pub(crate) fn levelled<'a>(
     allowed: &'a Allowed,
 ) -> Outcome<Level<'a>> {
     let mut level = Level::new(ground, allowed)?;
-    for record in &program.records {
+    for record in program.each() {
         level.record(record).map_err(|found| Box::new(found.line(record.line)))?;
     }
     Ok(level)

@@ -54,7 +54,7 @@ pub(crate) fn centered(
         used: None,
         section: None,
     };
-    for record in &program.records {
+    for record in program.each() {
         walk.record(record).map_err(|found| {
             Box::new(if found.line == 0 { found.line(record.line) } else { *found })
         })?;

@@ -77,7 +77,7 @@ fn stretches(program: &Program) -> Vec<Stretch> {
     let mut done = Vec::new();
     let mut open: Option<Stretch> = None;
     let (mut here, mut radius): (Option<Pose>, Option<f64>) = (None, None);
-    for record in &program.records {
+    for record in program.each() {
         if let Op::Tool(tool) = &record.op {
             radius = tool.cutting_radius();
         }

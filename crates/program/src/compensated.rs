@@ -77,7 +77,7 @@ impl PathEvidence {
     /// `compensated-path` where one arc shows the one and another the other.
     pub fn of(program: &Program) -> Result<Option<PathEvidence>, Box<Diagnostic>> {
         let mut search = Search::default();
-        for record in &program.records {
+        for record in program.each() {
             search.take(record.line, &record.op);
         }
         match search.first {

@@ -46,7 +46,7 @@ impl CutBox {
         let mut all = CutBox { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY };
         let mut here: Option<Pose> = None;
         let mut cycle: Option<&Cycle> = None;
-        for record in &program.records {
+        for record in program.each() {
             let from = here;
             if let Some(pose) = record.op.pose() {
                 here = Some(*pose);

@@ -5,6 +5,7 @@ use crate::{
     JointMove, MachineMove, Oriented, Output, PathMode, Pose, Probe, Spindle, Surface, Thread,
     Tool, WorkOffset, WorkOffsetData,
 };
+use geom::ending::go_on;
 use geom::{Frame, Vec3};
 
 /// A program in the neutral vocabulary.
@@ -282,6 +283,11 @@ impl Program {
         Program { name: name.clone(), records, compensated_path, stock, sent_home }
     }
 
+    /// The records for a pass over all of them, which ends where the work that it belongs to is [ended](geom::ending).
+    pub fn each(&self) -> impl Iterator<Item = &Record> {
+        self.records.iter().inspect(|_| go_on())
+    }
+
     /// Adds a record that came from `line` of the source.
     pub fn push(&mut self, line: u32, op: Op) {
         self.records.push(Record { line, op });
@@ -291,6 +297,23 @@ impl Program {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Statistics;
+    use crate::{CutBox, PathEvidence};
+    use geom::ending::Ended;
+
+    #[test]
+    fn a_pass_over_all_records_ends_with_its_work() {
+        let mut program = Program::new("t");
+        program.push(1, Op::End);
+        let ended = Ended::default();
+        let is_ended = |answer: Option<()>| assert_eq!(answer, None);
+        assert_eq!(ended.run(|| program.each().count()), Some(1));
+        ended.end();
+        is_ended(ended.run(|| program.each().for_each(|_| ())));
+        is_ended(ended.run(|| _ = Statistics::of(&program)));
+        is_ended(ended.run(|| _ = CutBox::of(&program)));
+        is_ended(ended.run(|| _ = PathEvidence::of(&program)));
+    }
 
     #[test]
     fn a_move_takes_at_most_64_bytes() {

@@ -38,7 +38,7 @@ impl Statistics {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let mut here: Option<Vec3> = None;
         let mut cycle: Option<Cycle> = None;
-        for record in &program.records {
+        for record in program.each() {
             let from = here;
             if let Some(pose) = record.op.pose() {
                 low = low.min(pose.point());

@@ -175,7 +175,7 @@ impl Tops<'_> {
 fn places(program: &Program, mut tell: impl FnMut(Vec3, Vec3)) {
     let mut here: Option<Pose> = None;
     let mut cycle: Option<&Cycle> = None;
-    for record in &program.records {
+    for record in program.each() {
         if let Op::Cycle(new) = &record.op {
             cycle = Some(new);
         }
@@ -195,7 +195,7 @@ fn places(program: &Program, mut tell: impl FnMut(Vec3, Vec3)) {
 /// The axes with which the tool comes in, each once.
 fn ways_in(program: &Program) -> Vec<Vec3> {
     let (mut ways, mut known, mut comes) = (Vec::new(), HashSet::new(), true);
-    for record in &program.records {
+    for record in program.each() {
         comes |= matches!(record.op, Op::Tool(_) | Op::Home);
         let Some(pose) = record.op.pose() else { continue };
         let axis = pose.axis();

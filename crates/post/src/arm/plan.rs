@@ -217,7 +217,7 @@ pub(super) fn stretches<'a>(
         corner: machine.path_tolerance(),
         path: source.compensated_path,
     };
-    for (index, record) in source.records.iter().enumerate() {
+    for (index, record) in source.each().enumerate() {
         walk.index = index;
         walk.record(record).map_err(|found| Box::new(found.line(record.line)))?;
     }

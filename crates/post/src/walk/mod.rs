@@ -656,7 +656,7 @@ impl<'a> Walk<'a> {
 /// several work offsets, whose distance nobody knows.
 fn blank(program: &Program) -> Option<[f64; 6]> {
     let (mut active, mut moves) = (None, false);
-    for record in &program.records {
+    for record in program.each() {
         if let Op::WorkOffset(offset) = record.op {
             if moves && active != Some(offset) {
                 return None;

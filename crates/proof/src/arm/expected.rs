@@ -126,7 +126,7 @@ impl Expected {
                 tool_length: None,
             },
         };
-        for (at, record) in source.records.iter().enumerate() {
+        for (at, record) in source.each().enumerate() {
             walk.at = at;
             walk.record(record.line, &record.op)
                 .map_err(|found| Box::new(found.line(record.line)))?;
