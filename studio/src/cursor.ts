@@ -17,9 +17,11 @@ export class Cursor {
     readonly ofBlock = computed((): Range[] => this.place.value?.block_moves ?? []);
     /** What the place was asked by. */
     readonly by: Signal<Where["by"]> = signal("move");
-    /** The place is that of before, in a job that is new. */
-    isAgain = false;
-    private readonly asked: Newest<{ where: Where; isAgain: boolean }>;
+    /** How many places were asked for, those of before in a job that is new not counted. */
+    asks = 0;
+    /** By which of these asks the place came. */
+    answers = 0;
+    private readonly asked: Newest<{ where: Where; ask: number }>;
     private steps: Promise<void> = Promise.resolve();
     /** Of which job the place is. */
     private revision = 0;
@@ -30,21 +32,21 @@ export class Cursor {
         private readonly seam: Seam,
         private readonly job: Signal<Job | null>,
     ) {
-        this.asked = new Newest(({ where, isAgain }) => this.find(where, isAgain));
+        this.asked = new Newest(({ where, ask }) => this.find(where, ask));
         effect(() => {
             const now = this.job.value;
             untracked(() => this.again(now));
         });
     }
 
-    to(where: Where, isAgain = false): Promise<void> {
+    to(where: Where, ask = ++this.asks): Promise<void> {
         this.by.value = where.by;
-        return this.asked.ask({ where, isAgain });
+        return this.asked.ask({ where, ask });
     }
 
-    toMove(move: number, isAgain = false): Promise<void> {
+    toMove(move: number, ask?: number): Promise<void> {
         const moves = this.job.value?.walk.moves ?? 0;
-        return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) }, isAgain);
+        return this.to({ by: "move", value: Math.max(0, Math.min(moves - 1, move)) }, ask);
     }
 
     /** A step from the place that was asked for last, as soon as that is known: of two that come fast none is lost. */
@@ -63,7 +65,7 @@ export class Cursor {
         return this.step(({ block_moves, move }) => neighbour(block_moves, move, by));
     }
 
-    private async find(by: Where, isAgain: boolean): Promise<void> {
+    private async find(by: Where, ask: number): Promise<void> {
         const job = this.job.value;
         if (job === null || job.walk.moves === 0) return;
         const { done } = await this.seam.ask("place", { ...by, revision: job.revision });
@@ -73,11 +75,11 @@ export class Cursor {
             // Another program of a board makes nothing of that file: there the place is the move of this number.
             const isOther = by.by === "source" && (by.file ?? null) !== null;
             const move = isOther ? (this.place.value?.move ?? 0) : job.walk.moves - 1;
-            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? move, isAgain);
+            if (this.revision !== job.revision) void this.toMove(job.walk.mismatch ?? move, ask);
             return;
         }
         this.revision = job.revision;
-        this.isAgain = isAgain;
+        this.answers = ask;
         this.place.value = done;
     }
 
@@ -98,9 +100,9 @@ export class Cursor {
             this.first = null;
             void this.to(first);
         } else if (place?.source) {
-            void this.to({ by: "source", value: place.source.line, file: place.source.file }, true);
+            void this.to({ by: "source", value: place.source.line, file: place.source.file }, this.answers);
         } else {
-            void this.toMove(place?.move ?? walk.mismatch ?? 0, place !== null);
+            void this.toMove(place?.move ?? walk.mismatch ?? 0, place === null ? undefined : this.answers);
         }
     }
 }

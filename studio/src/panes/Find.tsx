@@ -55,7 +55,7 @@ export function Find({ screen, close }: { screen: Screen; close(): void }) {
                     const line = from.value - 1;
                     close();
                     if (line === 0) return;
-                    screen.files[searched.value].value = file.value;
+                    screen.choose(searched.value, file.value);
                     void screen.editors[searched.value]?.go(line);
                 }}
             >

@@ -34,7 +34,7 @@ export function TextPane({ screen, of }: { screen: Screen; of: Of }) {
                     {title} <span class="soft">{(of === "program" ? studio.given.value : null) ?? text?.file}</span>
                 </h2>
                 {parts.length > 0 && (
-                    <select aria-label={`File of the ${of}`} value={file.value ?? ""} onChange={(event) => (file.value = event.currentTarget.value || null)}>
+                    <select aria-label={`File of the ${of}`} value={file.value ?? ""} onChange={(event) => screen.choose(of, event.currentTarget.value || null)}>
                         {[null, ...parts.map((part) => part.file)].map((name) => (
                             <option key={name} value={name ?? ""}>
                                 {of === "program" && stateOf(screen, name)} {name ?? text?.file}

@@ -24,7 +24,10 @@ export function keepUp(screen: Screen, of: Of, host: HTMLElement, compared: Sign
             if (studio.edited.peek() !== null && !studio.isCurrent.peek()) return;
             void cursor.to({ by: of === "program" ? "block" : "source", value, file });
         },
-        edited: (text, file) => studio.typed(text, file),
+        edited: (text, file) => {
+            screen.choose(of, file);
+            studio.typed(text, file);
+        },
         whole: (text, file) => {
             if (of === "program" && !studio.edited.peek()?.has(file)) studio.posted.set(file, text);
         },
@@ -46,9 +49,7 @@ export function keepUp(screen: Screen, of: Of, host: HTMLElement, compared: Sign
         effect(() => {
             const place = cursor.place.value;
             const line = (of === "program" ? place?.block : place?.source) ?? null;
-            // What is being edited stays in sight when it is proven.
-            const stays = cursor.isAgain && studio.edited.peek() !== null;
-            if (line !== null && !stays) file.value = line.file;
+            if (line !== null && cursor.answers > screen.chosen[of]) file.value = line.file;
         }),
         effect(() => {
             const place = cursor.place.value;

@@ -64,6 +64,8 @@ export class Screen {
     readonly editors: Partial<Record<"program" | "source", Editor>> = {};
     /** Of a program or a source in several files, the one that is shown; null: the first. */
     readonly files: Record<"program" | "source", Signal<string | null>> = { program: signal(null), source: signal(null) };
+    /** How many places had been asked for when a file was chosen: none of them leads away from it, however late its answer comes. */
+    readonly chosen: Record<"program" | "source", number> = { program: 0, source: 0 };
     /** The finding that was led to last. */
     private readonly led: Signal<{ number: number; found: string }> = signal({ number: -1, found: "" });
     /** Its number among those that there are now, -1 where it is gone, and that of its place among those of that finding. */
@@ -430,11 +432,17 @@ export class Screen {
         this.dialog.value = "options";
     }
 
+    /** Shows a file of a text, or stays with it: it was chosen, or is typed in. */
+    choose(of: "program" | "source", file: string | null): void {
+        this.chosen[of] = this.studio.cursor.asks;
+        this.files[of].value = file;
+    }
+
     toText(of: "program" | "source"): void {
         const place = this.studio.cursor.place.value;
         const line = of === "program" ? place?.block : place?.source;
         if (!line) return;
-        this.files[of].value = line.file;
+        this.choose(of, line.file);
         void this.editors[of]?.go(line.line);
     }
 

@@ -16,6 +16,22 @@ const machine = 'extends = "kuka-kr6-r900"\n\n[capabilities]\nprogram_lines = 60
 /** As the command starts with a source and a machine that lie in its folder. */
 const start = (folder: string): Promise<Server> => Server.start([], [join(folder, "job.cls"), "-m", join(folder, "mine.toml")], folder);
 
+/** It runs in the page: what the server says comes so many milliseconds late as `late` says. */
+function answersLate(): void {
+    const global = globalThis as unknown as { late?: number };
+    globalThis.WebSocket = class extends WebSocket {
+        constructor(...given: ConstructorParameters<typeof WebSocket>) {
+            super(...given);
+            this.addEventListener("message", (event) => {
+                const { late = 0 } = global;
+                if (!event.isTrusted || late === 0) return;
+                event.stopImmediatePropagation();
+                setTimeout(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })), late);
+            });
+        }
+    };
+}
+
 describe.skipIf(absent() !== null)("the page with a program of several files", () => {
     const browser = browserOfTests();
     let server: Server;
@@ -69,6 +85,33 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         await goTo(page, "m1");
         await shows(page, "job_1.src");
         await accessible(page, "parts");
+    });
+
+    test("a file that is chosen stays, however late the click before is answered, and when all is posted anew", async () => {
+        open = await visit(browser(), server.link, {}, answersLate);
+        const { page } = open;
+        await proven(page);
+        await choose(page, "job_1.src");
+        /** The rows of the third file, wherever it is scrolled to. */
+        const third = async (): Promise<void> => {
+            expect(await page.getByLabel("File of the program").inputValue()).toBe("job_3.src");
+            await page.locator(".program .cm-line", { hasText: "Y 42." }).first().waitFor();
+        };
+        await page.evaluate(() => Object.assign(globalThis, { late: 700 }));
+        await page.locator(".program .cm-line", { hasText: "LIN {" }).nth(2).click();
+        await page.getByLabel("File of the program").selectOption("job_3.src");
+        await expect.poll(() => lit(page, "source")).toMatch(/^GOTO/);
+        await page.waitForTimeout(1000);
+        await third();
+        await page.evaluate(() => Object.assign(globalThis, { late: 0 }));
+        writeFileSync(join(server.folder, "mine.toml"), `title = "Ours"\n${machine}`);
+        await page.getByText("mine.toml changed: posted again").waitFor();
+        await proven(page);
+        await page.waitForTimeout(500);
+        await third();
+        // The next place leads away.
+        await goTo(page, "m1");
+        await shows(page, "job_1.src");
     });
 
     test("an edit of one file is proven with all others, named where it is wrong, and saved with them", async () => {
