@@ -52,6 +52,8 @@ export class Studio {
     private shown = "";
     /** Name of the draft that this page keeps its edit under. */
     private kept: string | null = null;
+    /** That of the edit which made room last. */
+    private aside: string | null = null;
     /** The edit that the server has said to have kept. */
     private readonly known: Signal<Studio["edited"]["value"]> = signal(null);
     private readonly keeping = new Newest<Work>((work) => this.keepEdit(work));
@@ -120,7 +122,7 @@ export class Studio {
     /** Another source: a machine of another kind, which cannot take it, is not kept. */
     private async begunWith(work: Work): Promise<void> {
         const kind = this.machines.value.find(({ name }) => name === work.machine)?.kind;
-        const posting = this.post(work);
+        const posting = this.post(work).then(() => {});
         if (kind === undefined) return posting;
         // What cannot be read says so when it is posted.
         const command = await this.seam.ask("command", { source: work.source, machine: null }).then(({ done }) => done, () => null);
@@ -149,14 +151,17 @@ export class Studio {
 
     async choose(machine: string): Promise<void> {
         const work = this.work.value;
-        if (work !== null) return this.post({ ...work, machine });
+        if (work !== null) {
+            await this.post({ ...work, machine });
+            return;
+        }
         this.machine.value = machine;
         await this.askForm();
     }
 
-    /** Posts and proves. An edit by hand is kept, and offered. */
-    async post(work: Work): Promise<void> {
-        if (!(await this.setAside())) return;
+    /** Posts and proves. An edit by hand is kept, and offered; nothing is done where it cannot be: false. */
+    async post(work: Work): Promise<boolean> {
+        if (!(await this.setAside())) return false;
         clearTimeout(this.typing);
         this.work.value = work;
         this.edited.value = null;
@@ -167,7 +172,8 @@ export class Studio {
         if (machine === null) {
             this.job.value = null;
             void this.askForm();
-            return this.asksMachine();
+            this.asksMachine();
+            return true;
         }
         // The picture of another source says nothing of this one, nor does a place in it.
         if (this.shown !== JSON.stringify(source)) {
@@ -179,7 +185,7 @@ export class Studio {
         void this.askForm();
         const job = await posting;
         // Something newer is under way, and what is shown belongs to it.
-        if (this.work.value !== work) return;
+        if (this.work.value !== work) return true;
         if (job === undefined) this.cursor.keep();
         batch(() => {
             this.board.value = job?.board ?? null;
@@ -190,12 +196,13 @@ export class Studio {
         if (this.edited.value === null) void this.askDrafts();
         const same = job?.board?.programs.find(({ file, revision }) => file === work.file && revision !== job.revision);
         if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
+        return true;
     }
 
-    /** Posts what is open as it lies in the folder now; a program that was proven instead is proven again. */
-    async again(): Promise<void> {
+    /** Posts what is open as it lies in the folder now; a program that was proven instead is proven again. False where an edit is in the way. */
+    async again(): Promise<boolean> {
         if (this.there !== null) return this.proveFile(this.there);
-        if (this.work.value !== null) await this.post(this.work.value);
+        return this.work.value === null || this.post(this.work.value);
     }
 
     /** The job whose files are watched; null: what gave none; undefined: nothing is. */
@@ -252,15 +259,15 @@ export class Studio {
         this.typing = setTimeout(() => void this.prove(edit), 400);
     }
 
-    /** Proves a program of the folder against the toolpath that is open. */
-    async proveFile(file: string): Promise<void> {
+    /** Proves a program of the folder against the toolpath that is open. False where an edit is in the way. */
+    async proveFile(file: string): Promise<boolean> {
         const work = this.work.value;
-        if (work === null || work.machine === null) return;
-        if (!(await this.setAside())) return;
+        if (work === null || work.machine === null) return true;
+        if (!(await this.setAside())) return false;
         const { source, machine, options } = work;
         const program = { file };
         const job = await this.told(async (asking) => (await this.seam.ask("prove", { source, machine, options, program }, asking)).done);
-        if (job === undefined) return;
+        if (job === undefined) return true;
         batch(() => {
             this.edited.value = null;
             this.isNew(job);
@@ -268,6 +275,7 @@ export class Studio {
             this.show(job);
             this.isCurrent.value = true;
         });
+        return true;
     }
 
     /** Proves a program that is in no folder here: of one of several files each stands for the one of its name. */
@@ -392,6 +400,7 @@ export class Studio {
             this.stopped.value = [said("edit-not-kept", `the edit on this page cannot be kept: ${this.notKept.value ?? "there is no server"}`, "save it, download it, or discard it; nothing else was done")];
             return false;
         }
+        this.aside = this.kept;
         this.kept = null;
         edited.value = null;
         await this.askDrafts();
@@ -404,11 +413,11 @@ export class Studio {
         if (drafts !== null) this.drafts.value = drafts.filter(({ name }) => name !== this.kept);
     }
 
-    /** Those of the program that is shown come first. */
+    /** Those of the program that is shown come first, and of them the one that made room last. */
     readonly offers = computed(() => {
         const work = this.work.value;
         const name = work === null ? null : draftName(work);
-        const rank = (draft: Draft): number => (name !== null && draft.name.replace(/-\d$/, "") === name ? 0 : 1);
+        const rank = (draft: Draft): number => (name === null || draft.name.replace(/-\d$/, "") !== name ? 2 : draft.name === this.aside ? 0 : 1);
         return this.drafts.value.toSorted((a, b) => rank(a) - rank(b));
     });
 

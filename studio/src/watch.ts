@@ -6,6 +6,9 @@ import type { Studio } from "./studio.ts";
 /** How often the server is asked, ms. */
 const EVERY = 1000;
 
+/** After so many looks that found something else each time it is said. */
+const RESTLESS = 3;
+
 /** What was found, and beside what. */
 interface Seen {
     state: string;
@@ -15,8 +18,10 @@ interface Seen {
 
 export class Watch {
     private seen: Seen | null = null;
-    /** For what the work was posted anew. */
-    private posted = "";
+    /** For what the work was posted anew; or was not, since an edit is in the way. */
+    private posted = { state: "", isDone: true };
+    /** How often in a row something else was found. */
+    private restless = 0;
 
     constructor(private readonly studio: Studio) {}
 
@@ -41,27 +46,33 @@ export class Watch {
         const now = { state: done.state, revision, edit: studio.edited.value };
         this.seen = now;
         if (done.files.length === 0) studio.gone.value = [];
-        if (done.files.length === 0 || seen === null || seen.state !== now.state || seen.revision !== revision || seen.edit !== now.edit) return;
-        await this.take(done);
+        const isSame = seen !== null && seen.state === now.state && seen.revision === revision && seen.edit === now.edit;
+        this.restless = done.files.length === 0 || isSame ? 0 : this.restless + 1;
+        if (this.restless === RESTLESS) studio.said.value = `${namesOf(pathsOf(done))} changes all the time: posted again when it rests`;
+        if (done.files.length > 0 && isSame) await this.take(done);
     }
 
-    private async take({ files, state }: Changes): Promise<void> {
-        const { studio } = this;
+    private async take(changes: Changes): Promise<void> {
+        const { files, state } = changes;
+        const { studio, posted } = this;
         const gone = files.filter(({ is_gone }) => is_gone).map(({ path }) => path);
         // What is shown stays until the file comes back, as it was or another one.
         studio.gone.value = gone;
         if (gone.length > 0) return;
-        const names = namesOf(files.map(({ path }) => path || "the folder"));
-        if (this.posted === state) {
+        const names = namesOf(pathsOf(changes));
+        if (posted.state === state) {
             // Its time is ahead of the clock of this computer: nobody knows what was read.
-            studio.said.value = `${names} changed while it was read: post again`;
+            if (posted.isDone) studio.said.value = `${names} changed while it was read: post again`;
             return;
         }
-        this.posted = state;
         studio.said.value = `${names} changed: posted again`;
-        await studio.again();
+        const isDone = await studio.again();
+        this.posted = { state, isDone };
+        if (!isDone) studio.said.value = `${names} changed, and is not posted again: the edit on this page cannot be kept`;
     }
 }
+
+const pathsOf = ({ files }: Changes): string[] => files.map(({ path }) => path || "the folder");
 
 /** A few names, and how many more. */
 export function namesOf(paths: string[]): string {

@@ -13,12 +13,13 @@ const work = { source: { file: "a.cls" }, machine: "mill.toml", options: [] };
 /** A server that says what has changed as it is told to. */
 function open() {
     const asked: string[] = [];
-    let [now, revision, posts]: [object, number, boolean] = [same, 0, true];
+    let [now, revision, posts, keeps]: [object, number, boolean, boolean] = [same, 0, true, true];
     const seam = {
         ask: (ask: string, params: { revision?: number | null; name?: string }) => {
             asked.push(ask === "changes" ? `changes ${params.revision}` : ask);
             if (ask === "changes") return Promise.resolve({ done: now, arrays: {} });
             if (ask === "post" && !posts) return Promise.reject(new Stopped("invalid", [said("machine-file", "it has a mistake", "")]));
+            if (ask === "draft" && !keeps) return Promise.reject(new Stopped("invalid", [said("studio-folder", "it is read-only", "")]));
             if (["post", "prove"].includes(ask)) revision++;
             const job = { revision, verdict: "done", findings: [], parts: [], walk: { moves: 0, mismatch: null } };
             return Promise.resolve({ done: ask === "drafts" ? [] : job, arrays: {} });
@@ -32,6 +33,7 @@ function open() {
         posted: () => asked.filter((ask) => ask === "post").length,
         becomes: (next: object) => (now = next),
         breaks: (is: boolean) => (posts = !is),
+        keeps: (is: boolean) => (keeps = is),
         look: async (times = 1) => {
             for (let time = 0; time < times; time++) await watch.look();
         },
@@ -105,6 +107,33 @@ test("an edit is kept when its program is posted anew, and nothing is while some
     const before = asked.filter((ask) => ask === "draft").length;
     await look(2);
     expect([posted(), studio.edited.value, asked.filter((ask) => ask === "draft").length > before]).toEqual([2, null, true]);
+});
+
+test("a file that changes all the time is said", async () => {
+    const { studio, posted, becomes, look } = open();
+    await studio.post(work as never);
+    for (const state of ["a", "b"]) {
+        becomes(changed(state));
+        await look();
+    }
+    expect(studio.said.value).not.toContain("mill.toml");
+    becomes(changed("c"));
+    await look();
+    expect([posted(), studio.said.value]).toEqual([1, "mill.toml changes all the time: posted again when it rests"]);
+    await look();
+    expect([posted(), studio.said.value]).toEqual([2, "mill.toml changed: posted again"]);
+});
+
+test("where the edit on the page cannot be kept nothing is posted, and it is not said to be", async () => {
+    const { studio, posted, becomes, keeps, look } = open();
+    await studio.post(work as never);
+    keeps(false);
+    await studio.prove(new Map([[null, "G0 X1\n"]]));
+    becomes(changed("new"));
+    await look(4);
+    expect([posted(), studio.edited.value?.size]).toEqual([1, 1]);
+    expect(studio.said.value).toBe("mill.toml changed, and is not posted again: the edit on this page cannot be kept");
+    expect(studio.stopped.value[0]?.rule).toBe("edit-not-kept");
 });
 
 test("of many names a few are said", () => {

@@ -241,7 +241,12 @@ impl<SetUp: Fn(Machine) -> Machine> Reader<'_, SetUp> {
                 let folders = setup.folders.clone();
                 let asked = |found: &Diagnostic| is_unknown_position(found.rule);
                 let text = (&*file, bytes);
-                let reading = match nc::read_for(&machine, setup.clone(), text, &progress) {
+                let reading = nc::read_for(&machine, setup.clone(), text, &progress);
+                // Where it failed, a called program may be what is to be mended, or is yet to come.
+                let looked = reading.is_err().then_some(&origin.folders);
+                let read = folders.files_read();
+                read.iter().chain(looked.into_iter().flatten()).for_each(|at| watch.has_read(at));
+                let reading = match reading {
                     Err(_) if watch.is_cancelled() => return Err(Stop::cancelled()),
                     Err(found) if purpose != Purpose::Program && asked(&found) => {
                         flat(&machine, setup, &file, bytes)?.ok_or(found)?

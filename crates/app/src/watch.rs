@@ -4,6 +4,7 @@ use crate::account::Stop;
 use machine::Machine;
 use program::{Program, Progress};
 use proof::{MachineState, Motion, Observer, Report};
+use std::path::Path;
 
 /// Who watches a piece of work. `()` watches nothing and never ends it.
 pub trait Watch: Sync {
@@ -13,6 +14,9 @@ pub trait Watch: Sync {
     /// So much of the step is done, 0 to 1: of what is read, of the records that are written, of the lines of the program that are
     /// proven, of a board of its programs that are made. Not every step tells it.
     fn reached(&self, _part: f64) {}
+
+    /// What lies there was read beside the source, or a file was looked for in this folder and not found; work that fails tells it too.
+    fn has_read(&self, _path: &Path) {}
 
     /// Whether the work shall end. It is asked before each step, and every few milliseconds while a source is read and a program is
     /// written and proven; work that ends so answers a [`Stop`] whose verdict is [`crate::Verdict::Cancelled`], and has saved nothing.

@@ -312,6 +312,19 @@ impl Folder {
         Ok(self.path.join(inner))
     }
 
+    /// The whole path of a folder in the folder, or of that itself, given by it or by its path in the folder.
+    ///
+    /// # Errors
+    /// It leads out.
+    pub fn inner_folder(&self, path: &Path) -> Result<PathBuf, Box<Diagnostic>> {
+        let path = self.within(path).to_string_lossy();
+        let inner = inner(&path)?;
+        match self.dir.metadata(&inner) {
+            Err(error) if is_escape(&error) => Err(leads_out(&path)),
+            _ => Ok(self.path.join(inner)),
+        }
+    }
+
     /// The drafts that are kept, by their names.
     pub fn drafts(&self) -> Vec<Draft> {
         let Ok(folder) = self.dir.open_dir(DRAFTS) else { return Vec::new() };

@@ -86,6 +86,13 @@ impl Inputs {
         self.all().entry(path.to_owned()).or_insert(Input { of, was, same: None });
     }
 
+    /// Takes over what `posted` is made of, as that was: what has changed since then has changed for an edit of it too, whatever is read for its proof.
+    pub fn begin_as(&self, posted: &Inputs) {
+        for (path, input) in posted.all().iter() {
+            self.add(path, input.of, input.was.clone());
+        }
+    }
+
     /// Looks at what is about to be read, given by its whole path or by that in the folder; it may not be there.
     pub fn look(&self, folder: &Folder, path: &Path, of: Of) {
         let path = folder.within(path);

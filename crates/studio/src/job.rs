@@ -88,7 +88,7 @@ impl Options {
             inputs.look_at_machine(folder, from);
             origin.from = Some(path);
         }
-        let own = |path: &PathBuf| folder.target(&path.to_string_lossy());
+        let own = |path: &PathBuf| folder.inner_folder(path);
         origin.folders = origin.folders.iter().map(own).collect::<Result<_, _>>()?;
         Ok(self)
     }
@@ -155,6 +155,10 @@ impl Watch for Follows<'_> {
 
     fn reached(&self, part: f64) {
         self.waits.reached(part);
+    }
+
+    fn has_read(&self, path: &Path) {
+        self.inputs.add_read(self.folder, path, Of::Source);
     }
 
     fn is_cancelled(&self) -> bool {

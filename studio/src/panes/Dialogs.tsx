@@ -29,6 +29,8 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
     // The browser's dialog ends at once and gives the focus back: what runs next may set it elsewhere.
     const close = (): void => {
         element.current?.close();
+        // What had it before may be gone, as the list of the start page behind a choice.
+        if (document.activeElement === document.body) document.querySelector<HTMLElement>(".bar button")?.focus();
         dialog.value = null;
     };
     const open = dialog.value;

@@ -79,7 +79,8 @@ const look = EditorView.theme({
     ".cm-cursor": { borderLeftColor: "var(--ink)" },
     "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground": { backgroundColor: "var(--selected)" },
     ".cm-selectionBackground": { backgroundColor: "var(--selected)" },
-    ".at": { backgroundColor: "var(--lit)", boxShadow: "inset 3px 0 var(--accent)" },
+    // The outline is seen where the system takes its own colours.
+    ".at": { backgroundColor: "var(--lit)", boxShadow: "inset 3px 0 var(--accent)", outline: "1px solid transparent", outlineOffset: "-1px" },
     ".also": { boxShadow: "inset 3px 0 var(--accent)" },
     ".found": { outline: "2px solid var(--accent)", borderRadius: "2px" },
     ".wrong": { textDecoration: "underline wavy var(--bad)" },

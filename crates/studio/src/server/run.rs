@@ -292,6 +292,9 @@ fn make(
     ended: &Ended,
 ) -> Made {
     let Order { source, machine, options, file, program } = order;
+    if let Program::Edited { revision, .. } = &program {
+        inputs.begin_as(studio.jobs.find(*revision)?.inputs());
+    }
     let sources = studio.sources(&source, inputs)?;
     let more = match sources.command(None) {
         Command::Pcb => studio.more(&source, &options, inputs)?,

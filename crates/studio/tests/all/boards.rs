@@ -63,7 +63,7 @@ fn names(list: &Value) -> Vec<&str> {
     list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap()).collect()
 }
 
-fn text_of(page: &mut Socket, job: &Value) -> String {
+pub(crate) fn text_of(page: &mut Socket, job: &Value) -> String {
     let params =
         json!({ "revision": job["revision"], "of": "program", "from": 1, "to": 1_000_000 });
     let mut frame = page.answer("text", params, &[]).unwrap();

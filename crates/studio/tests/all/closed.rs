@@ -268,7 +268,11 @@ fn no_more_sockets_and_no_more_asks_than_there_are_places() {
 }
 
 /// Options that name a tool table (`tools`) and folders of called programs (`folders`).
-fn naming(_: Command, given: &[(String, String)], _: Option<&More>) -> Result<Options, app::Stop> {
+pub(crate) fn naming(
+    _: Command,
+    given: &[(String, String)],
+    _: Option<&More>,
+) -> Result<Options, app::Stop> {
     let mut options = Options::default();
     options.origin.from = Some(String::from("linuxcnc-mill"));
     for (name, value) in given {

@@ -864,3 +864,64 @@ fn what_a_job_was_made_of_is_watched_and_no_program_of_other_files_is_saved() {
     assert_eq!(changes["files"][0]["path"], "shop/base.toml");
     assert_eq!(studio.socket().done("changes", json!({ "revision": null })), none);
 }
+
+/// The proof of an edit reads the new files: what has changed behind the posting was taken for seen.
+#[test]
+fn what_has_changed_behind_a_posting_has_changed_for_an_edit_of_it() {
+    let studio = Studio::started(Settings::default(), |own| {
+        std::fs::write(own.join("mill.toml"), "extends = \"generic-3axis-linuxcnc\"\n").unwrap();
+        std::fs::copy(root().join("examples/plate.cls"), own.join("plate.cls")).unwrap();
+    });
+    let mut page = studio.socket();
+    let posted = page.post("plate.cls", "mill.toml");
+    let text = crate::boards::text_of(&mut page, &posted) + "(by hand)\n";
+    let path = studio.own().join("mill.toml");
+    let before = std::fs::read(&path).unwrap();
+    std::fs::write(&path, [&before[..], b"title = \"Other\"\n"].concat()).unwrap();
+    let mut revision = posted["revision"].clone();
+    let changed = json!([{ "path": "mill.toml", "of": "machine", "is_gone": false }]);
+    // More keys do not make it old.
+    for _ in 0..2 {
+        let params = json!({
+            "source": { "file": "plate.cls" }, "machine": "mill.toml", "file": "plate.ngc", "revision": revision,
+        });
+        let frame = page.answer("prove", params, &[Array::text("text", &*text)]).unwrap();
+        revision = frame.head["done"]["revision"].clone();
+        assert_eq!(page.done("changes", json!({ "revision": revision }))["files"], changed);
+        let save = json!({ "revision": revision, "path": "out.ngc", "replace": true });
+        assert_eq!(page.refused("save", save), "studio-changed");
+    }
+    std::fs::write(&path, &before).unwrap();
+    assert_eq!(page.done("changes", json!({ "revision": revision }))["files"], json!([]));
+}
+
+/// LinuxCNC: a program of a file of its own, called by its name (`O<sub> CALL`), in the folder that is named.
+#[test]
+fn a_called_program_that_is_broken_or_yet_to_come_is_watched() {
+    let studio = Studio::with(Some(crate::closed::naming));
+    let own = studio.own();
+    let program = "G21 G90 G17 G94 G40\nT1 M6\nS900 M3\nG0 X0 Y0 Z10\no<sub> call\nG0 Z20\nM2\n";
+    std::fs::write(own.join("main.ngc"), program).unwrap();
+    std::fs::create_dir(own.join("subs")).unwrap();
+    let good = "o<sub> sub\nG1 X7 F100\no<sub> endsub\nM2\n";
+    let whole = own.join("subs").display().to_string();
+    // The folder of the studio itself is one, too.
+    for (folder, path) in [("subs", "subs/sub.ngc"), (&whole, "subs/sub.ngc"), (".", "sub.ngc")] {
+        for bad in [None, Some("o<sub> sub\nG1 X7 F100 G77.7\no<sub> endsub\nM2\n"), Some("")] {
+            match bad {
+                Some(text) => std::fs::write(own.join(path), text).unwrap(),
+                None => assert!(!own.join(path).exists()),
+            }
+            let mut page = studio.socket();
+            let params = json!({
+                "source": { "file": "main.ngc" }, "machine": "linuxcnc-mill", "options": [["folders", folder]],
+            });
+            page.answer("post", params.clone(), &[]).unwrap_err();
+            std::fs::write(own.join(path), good).unwrap();
+            let changes = page.done("changes", json!({ "revision": null }));
+            assert_ne!(changes["files"], json!([]), "{folder} {bad:?}");
+            assert_eq!(page.done("post", params)["verdict"], "done", "{folder} {bad:?}");
+        }
+        std::fs::remove_file(own.join(path)).unwrap();
+    }
+}
