@@ -171,6 +171,19 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
     assert!(deletes.help.contains("deletes"), "{}", deletes.help);
 }
 
+/// `GcodeSuite::M3_M4` of Marlin: without S at SPEED_POWER_STARTUP of the firmware, and not at the speed before.
+#[test]
+fn marlin_needs_s_with_each_start_of_the_spindle() {
+    for start in ["M3\n", "M4\n", "M3 S2000\nM5\nM3\n", "M3 S2000\nM4\n", "M3 S2000\nM3\n"] {
+        assert_eq!(rule(Dialect::Marlin, start), "spindle", "{start}");
+    }
+    let got = ops(Dialect::Marlin, "M3 S2000\nM5\nM4 S1000\n");
+    let [Action::Spindle(first), _, Action::Spindle(second), Action::End] = &got[..] else {
+        panic!("{got:?}")
+    };
+    assert_eq!((*first, *second), (Spindle::Clockwise(2000.0), Spindle::CounterClockwise(1000.0)));
+}
+
 #[test]
 fn marlin_keeps_its_axes_while_m84_only_says_how_long() {
     assert_eq!(ops(Dialect::Marlin, "M84 S0\nM18 S1800\n"), [Action::End]);

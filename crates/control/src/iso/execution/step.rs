@@ -249,8 +249,18 @@ impl Step<'_, '_, '_> {
 
     fn speed(&mut self) -> Result<(), Fault> {
         // On Marlin S belongs to the command of its line: the seconds of G4, and the like.
-        if self.facts.syntax.one_command && self.block.m(Group::Spindle).is_none() {
-            return Ok(());
+        if self.facts.syntax.one_command {
+            match self.block.m(Group::Spindle) {
+                None => return Ok(()),
+                // `M3-M5.cpp` of Marlin: at SPEED_POWER_STARTUP of the firmware, whatever turned before.
+                Some(M::Clockwise | M::CounterClockwise) if !self.block.has(b'S') => {
+                    let message =
+                        "the spindle starts without S, at a speed that the firmware was built with";
+                    let fault = self.block.at_group(Group::Spindle, Rule::Spindle, message);
+                    return Err(fault.help("write S with M3 or M4").into());
+                }
+                Some(_) => {}
+            }
         }
         self.surface_speed()?;
         let Some(word) = self.block.take(b'S') else { return Ok(()) };
