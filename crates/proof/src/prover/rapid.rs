@@ -374,17 +374,20 @@ impl Prover<'_> {
                 "sends axes home in the middle of the work",
             ));
         }
-        if !first && !retracted && axes != Axes::Z {
-            if !self.clear_of_part() {
-                let message = "sends axes home together with Z, not after it, next to the part";
-                return Err(self.lost_at(line, Rule::Home, message));
-            }
-            let message = "Z goes home together with other axes, not before them";
-            self.report.warn(Diagnostic::warning(Rule::Home, message).line(line));
+        let along = !first && !retracted && axes != Axes::Z;
+        if along && !self.clear_of_part() {
+            let message = "sends axes home together with Z, not after it, next to the part";
+            return Err(self.lost_at(line, Rule::Home, message));
         }
+        // At the start nobody knows how high the tool stands, nor what is between it and home.
+        let starts = !self.raised && !self.has_stood;
         let sideways = axes.contains(Axes::X) || axes.contains(Axes::Y);
-        if first && sideways && !z && !self.raised {
-            let message = "X or Y goes home before Z, as high as the tool stands";
+        if along || starts && sideways {
+            let message = if z {
+                "Z goes home together with other axes, not before them"
+            } else {
+                "X or Y goes home before Z, as high as the tool stands"
+            };
             self.report.warn(Diagnostic::warning(Rule::Home, message).line(line));
         }
         if holding && !first && self.progress.left.is_none() {

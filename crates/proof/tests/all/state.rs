@@ -484,20 +484,30 @@ fn the_length_offset_holds_on_the_way_to_a_tool_change() {
     assert_eq!(report(vec![Action::WorkOffset(offset(55))]), ["work-offset"]);
 }
 
-/// At the start nobody knows how high the tool stands: X and Y go home at that height, where Z has not gone before.
+/// At the start nobody knows how high the tool stands: X and Y go home at that height, or while Z goes up, where Z has not gone
+/// before.
 #[test]
 fn other_axes_that_go_home_first_of_all_get_a_warning() {
-    let warned = |before: Vec<Action>| {
-        let does = [before, nc_start(), cut_nc(), vec![Action::Home(Axes::Z)], end()].concat();
-        let report = run(&mill(), &source(cut()), does);
+    let warned = |own: Vec<Op>, before: &[&Action]| {
+        let ended = vec![Action::Home(Axes::Z)];
+        let before = before.iter().map(|action| (*action).clone()).collect();
+        let does = [before, nc_start(), cut_nc(), ended, end()].concat();
+        let report = run(&mill(), &source([own, cut()].concat()), does);
         proven(&report);
         report.warnings.iter().filter(|found| found.rule == Rule::Home).count()
     };
-    let (xy, z) =
-        (Action::Home(Axes::of([true, true, false, false, false, false])), Action::Home(Axes::Z));
-    assert_eq!(warned(vec![]), 0);
-    assert_eq!(warned(vec![z.clone(), xy.clone()]), 0);
-    assert_eq!(warned(vec![xy, z]), 1);
+    let of = |xyz: [bool; 3]| Action::Home(Axes::of([xyz[0], xyz[1], xyz[2], false, false, false]));
+    let (xy, z, xz) = (of([true, true, false]), of([false, false, true]), of([true, false, true]));
+    let all = Action::Home(Axes::LINEAR);
+    for own in [vec![], vec![Op::Home]] {
+        assert_eq!(warned(own.clone(), &[&z]), 0);
+        assert_eq!(warned(own.clone(), &[&z, &xy]), 0);
+        assert_eq!(warned(own.clone(), &[&z, &all]), 0);
+        assert_eq!(warned(own.clone(), &[&xy, &z]), 1);
+        assert_eq!(warned(own.clone(), &[&all]), 1);
+        assert_eq!(warned(own, &[&xz]), 1);
+    }
+    assert_eq!(warned(vec![], &[]), 0);
 }
 
 #[test]

@@ -158,6 +158,35 @@ fn a_block_that_leans_on_an_older_one_is_refused() {
     }
 }
 
+/// At the start the tool may stand beside a clamp: each control's own way to send X and Y home with Z, or before it, gets a warning.
+#[test]
+fn x_and_y_home_with_z_or_before_it_at_the_start_get_a_warning() {
+    let source = file("machines/samples/three-axes.cls");
+    for (name, z, others) in [
+        ("generic-3axis-haas", "G91 G28 Z0", &["G91 G28", "G91 G28 X0 Y0 Z0", "G91 G28 Y0 Z0"][..]),
+        ("generic-3axis-mach3", "G91 G28 Z0", &["G91 G28", "G91 G28 X0 Y0 Z0", "G91 G28 Y0 Z0"]),
+        ("generic-3axis-fanuc", "G91 G28 Z0", &["G91 G28 X0 Y0 Z0", "G91 G28 X0\nG28 Z0"]),
+        ("generic-3axis-iso", "G91 G28 Z0", &["G91 G28 X0 Y0 Z0", "G91 G28 X0\nG28 Z0"]),
+        (
+            "generic-3axis-sinumerik",
+            "G0 SUPA Z0 D0",
+            &["G74 X1=0 Y1=0 Z1=0\nD0", "G74 X1=0\nG74 Z1=0\nD0"],
+        ),
+    ] {
+        let machine = load(name).unwrap();
+        let text = proven(&source, &machine);
+        let warned = |text: &str| {
+            let report = proof::prove(&source, &machine, "p", text.as_bytes(), &Default::default());
+            assert!(report.proven, "{name}: {:?}\n{text}", report.mismatches);
+            report.warnings.iter().filter(|found| found.rule.name() == "home").count()
+        };
+        assert_eq!(warned(&text), 0, "{name}");
+        for other in others {
+            assert_eq!(warned(&text.replacen(z, other, 1)), 1, "{name}: {other}");
+        }
+    }
+}
+
 /// A control that has T1 in its spindle skips a change to T1: the second tool never comes.
 #[test]
 fn two_tools_under_one_number_are_refused_on_every_mill() {
