@@ -39,6 +39,33 @@ impl Account {
         report["warnings"] = json!(findings);
         format!("{report:#}\n")
     }
+
+    /// Names the file of the program, which was called `from`, `to`: so is what was found in it. What was found in a source that is called `from`
+    /// too keeps its name.
+    pub fn rename_program(&mut self, from: &str, to: &str) {
+        let source = self.data.pointer("/source/file").is_some_and(|file| file == from);
+        let lists = ["/proof/warnings", "/proof/accepted"];
+        let proof: Vec<Value> = lists
+            .iter()
+            .filter_map(|list| self.data.pointer(list)?.as_array())
+            .flatten()
+            .cloned()
+            .collect();
+        for found in self.findings.iter_mut().filter(|found| found.file == from) {
+            if !source || proof.contains(&json!(found)) {
+                to.clone_into(&mut found.file);
+            }
+        }
+        if let Some(file) = self.data.pointer_mut("/program/file") {
+            *file = json!(to);
+        }
+        for list in lists {
+            let found = self.data.pointer_mut(list).and_then(Value::as_array_mut);
+            for found in found.into_iter().flatten().filter(|found| found["file"] == from) {
+                found["file"] = json!(to);
+            }
+        }
+    }
 }
 
 impl From<Account> for Stop {

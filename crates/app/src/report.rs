@@ -70,19 +70,17 @@ pub(crate) fn set_parts<'a>(program: &mut Value, parts: impl Iterator<Item = (&'
     program["parts"] = json!(parts);
 }
 
-/// The report of a program that was proven and not written, as after an edit by hand: what its account says, the files that it calls, and
-/// what it was made of.
-pub fn of_proven<'a>(
-    account: &Account,
+/// Adds to the account of a program that was proven and not written, as after an edit by hand, what that of a written one has: the files that
+/// it calls, and what it was made of.
+pub fn complete<'a>(
+    account: &mut Account,
     parts: impl Iterator<Item = (&'a str, &'a [u8])>,
     digests: &Digests,
-) -> String {
-    let mut account = account.clone();
+) {
     set_parts(&mut account.data["program"], parts);
     account.data["schema"] = json!(SCHEMA);
     account.data["toolpost"] = json!(env!("CARGO_PKG_VERSION"));
     account.data["sha256"] = json!(digests);
-    account.report()
 }
 
 /// What a report holds, as far as it is read again.

@@ -166,7 +166,8 @@ fn a_wire_is_cut_without_a_command_line_from_memory_as_from_a_file() {
             wire::make(&source, false, &origin, machine, &settings, "p", &tolerances, &()).unwrap();
         assert_eq!(made.posted.account.verdict, Verdict::Done);
         assert!(made.picture().starts_with("<svg"));
-        (made.posted.text, made.report)
+        let report = made.report();
+        (made.posted.text, report)
     });
     assert_eq!(made[0], made[1]);
     let sample = include_bytes!("../../../machines/samples/bp-95d.pts");
@@ -458,7 +459,7 @@ fn cuts_of_points_take_the_time_of_the_feed_that_is_set_at_the_machine() {
         let made =
             wire::make(&source, false, &origin, machine, &settings, "w", &tolerances, &walks)
                 .unwrap();
-        let report: serde_json::Value = serde_json::from_str(&made.report).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&made.report()).unwrap();
         let walked = walks.0.into_inner().unwrap();
         let cuts = walked[0].1.iter().filter(|motion| motion.kind == proof::MotionKind::Line);
         let seconds: f64 = cuts.clone().map(|motion| motion.seconds).sum();

@@ -7,7 +7,9 @@ use crate::ask::{
 use crate::edit::Existing;
 use crate::folder::Folder;
 use crate::inputs::Inputs;
-use crate::job::{Follows, Job, Made, Options, Sources, called, called_from, report_of, rows};
+use crate::job::{
+    Follows, Job, Made, Options, Reported, Sources, called, called_from, complete, rows,
+};
 use crate::lines::Lines;
 use crate::machines::Any;
 use crate::message::{Array, Values};
@@ -191,12 +193,12 @@ pub(crate) fn prove(
         compared;
     account.rows.extend(settings.row());
     let (text, parts) = called(&account, given, &folders);
-    let report = report_of(&account, &text, &parts, &toolpath, &machine);
+    complete(&mut account, &text, &parts, &toolpath, &machine);
     let texts = texts(&board, &files, &layers);
     let lines = Some(numbered(&lines, &texts, &files));
     texts.name().clone_into(&mut toolpath.file);
     follows.step("drawing");
-    let (origins, board) = (Origins::default(), None);
+    let (origins, board, report) = (Origins::default(), None, Some(Reported::Account));
     let made = Made { toolpath, account, text, origins, parts, report, widths, board, lines };
     let machine = (machine_name, Any::Moves(machine.into()));
     let job = Job::of(made, texts.into(), (file, machine), follows)?;

@@ -2,7 +2,7 @@
 
 use crate::ask::{Axis, AxisKind, GlassBlock, Of};
 use crate::geometry::{CHUNK, Exact, Geometry};
-use crate::job::{Follows, Job, Made, Options, Sources};
+use crate::job::{Follows, Job, Made, Options, Reported, Sources};
 use crate::lines::Lines;
 use crate::machines::Any;
 use crate::origin::Texts;
@@ -11,7 +11,7 @@ use crate::walk::{Drawn, Pulse, Walk};
 use ::post::Origins;
 use app::glass::{Focus, Format, Machine, Moves, Run, Steps, Table, job};
 use app::toolpath::Toolpath;
-use app::{Source, Stop, Verdict, Watch, glass};
+use app::{Source, Stop, Watch, glass};
 use geom::{Vec2, Vec3};
 use machine::linkage::{self, Link, LinkBody, LinkKind, Linkage};
 use program::{Diagnostic, Program, Rule};
@@ -255,7 +255,7 @@ pub(crate) fn make(
     let is_in_order = made.made.report.planned_ticks.is_some() && made.made.report.moved.is_none();
     let drawn = drawn(&made, focus, (is_in_order, &line), follows)?;
     // As the command saves it: there findings of a program that it has made name no file.
-    let report = (made.account.verdict == Verdict::Done).then(|| made.account.report());
+    let report = Some(Reported::Own(made.account.clone().into()));
     let glass::Made { made: job::Made { text, run, .. }, mut account, .. } = made;
     let listing = (machine.program.format == Format::Binary).then(|| listing(&run));
     if listing.is_some() {

@@ -239,8 +239,8 @@ impl Sources {
 #[derive(Debug)]
 pub struct Job {
     account: Account,
-    /// What is saved next to the program, where it is proven.
-    report: Option<String>,
+    /// What is saved next to the program; `None` where one report is of all programs of a board.
+    report: Option<Reported>,
     machine_name: String,
     machine: Any<Glass>,
     machine_files: BTreeMap<String, Lines>,
@@ -822,7 +822,8 @@ impl Job {
             folder.target(&within(part))?;
             saved.push(within(part));
         }
-        if self.report.is_some() {
+        let report = self.report.as_ref().map(|report| self.report(report, &files::name(&target)));
+        if report.is_some() {
             let name = files::name(&files::report_of(&target));
             folder.target(&within(&name))?;
             saved.push(within(&name));
@@ -832,7 +833,7 @@ impl Job {
         let text = self.files.program.lines.text();
         let own: Vec<&str> = parts.iter().map(|(file, _)| *file).collect();
         let left = files::parts_left(&target, &own).map(|found| found.file(path).into());
-        files::save_program(&target, text, &parts, self.report.as_deref(), &inputs)?;
+        files::save_program(&target, text, &parts, report.as_deref(), &inputs)?;
         let of_board = target.with_file_name(board::REPORT);
         let stale = (self.keeps_name && of_board.exists()).then(|| {
             Diagnostic::warning(
@@ -844,6 +845,17 @@ impl Job {
             .into()
         });
         Ok(Saved { files: saved, findings: stale.into_iter().chain(left).collect() })
+    }
+
+    /// The text of a report of the program that is saved in a file of this name.
+    fn report(&self, report: &Reported, file: &str) -> String {
+        let of = if let Reported::Own(account) = report { account } else { &self.account };
+        let mut account = of.clone();
+        account.rename_program(&self.file, file);
+        match report {
+            Reported::Account | Reported::Own(_) => account.report(),
+            Reported::Wire(listing) => listing.report(&account),
+        }
     }
 }
 
@@ -862,6 +874,17 @@ pub(crate) fn rows(account: &Account) -> Vec<(String, String)> {
     account.rows.iter().map(|(head, text)| ((*head).to_owned(), text.clone())).collect()
 }
 
+/// What the report of a program has, which is written when the program is saved: it has the name that its file then has.
+#[derive(Debug)]
+pub(crate) enum Reported {
+    /// What its account says.
+    Account,
+    /// What this account says: that of the page has findings of its own.
+    Own(Box<Account>),
+    /// What its account says, and what a wire cuts.
+    Wire(wire::Listing),
+}
+
 /// What was made of a source.
 pub(crate) struct Made {
     pub toolpath: Toolpath,
@@ -869,7 +892,7 @@ pub(crate) struct Made {
     pub text: Vec<u8>,
     pub origins: Origins,
     pub parts: Vec<Part>,
-    pub report: Option<String>,
+    pub report: Option<Reported>,
     /// Numbers and names of tools, and how wide they cut, mm, where that is known.
     pub widths: Vec<(u32, String, f64)>,
     pub board: Option<board::Place>,
@@ -905,7 +928,7 @@ fn posted(
         }
         posted => posted?,
     };
-    let report = Some(account.report());
+    let report = Some(Reported::Account);
     Ok(Made {
         toolpath,
         account,
@@ -933,10 +956,10 @@ fn compared(
     let toolpath = toolpath_of(source, options, machine, watch)?;
     let folders = called_from(machine, &given);
     let program = (file, encoding::without_mark(&given.text), &folders);
-    let account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
+    let mut account = prove::compare(&toolpath, machine, program, &options.tolerances, watch)?;
     let (text, parts) = called(&account, given, &folders);
-    let report = report_of(&account, &text, &parts, &toolpath, machine);
-    let (origins, widths) = (Origins::default(), Vec::new());
+    complete(&mut account, &text, &parts, &toolpath, machine);
+    let (origins, widths, report) = (Origins::default(), Vec::new(), Some(Reported::Account));
     Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None, lines: None })
 }
 
@@ -964,21 +987,22 @@ pub(crate) fn called(
     (given.text, called.into_iter().map(part).collect())
 }
 
-/// The report that is saved with a program that was proven and not written, and the files that it calls, in the order of their names.
-pub(crate) fn report_of(
-    account: &Account,
+/// Adds to the account of a program that was proven and not written, and of the files that it calls, in the order of their names, what its
+/// report has besides.
+pub(crate) fn complete(
+    account: &mut Account,
     text: &[u8],
     parts: &[Part],
     toolpath: &Toolpath,
     machine: &Machine,
-) -> Option<String> {
+) {
     if account.verdict != Verdict::Done {
-        return None;
+        return;
     }
     let texts: Vec<&[u8]> = parts.iter().map(|part| &part.text[..]).collect();
     let digests = Digests::of(text, &texts, toolpath, machine);
     let parts = parts.iter().map(|part| (&*part.file, &part.text[..]));
-    Some(report::of_proven(account, parts, &digests))
+    report::complete(account, parts, &digests);
 }
 
 /// Proves a program of a wire that was edited.
@@ -996,10 +1020,11 @@ fn recut(
     let Options { strict, origin, tolerances, .. } = options;
     let read = (file, encoding::without_mark(&text));
     let (strict, owned) = (*strict, machine.clone());
-    let (toolpath, account) =
+    let (toolpath, mut account) =
         wire::prove(source, strict, origin, owned, settings, read, tolerances, watch)?;
-    let report = report_of(&account, &text, &[], &toolpath, machine);
+    complete(&mut account, &text, &[], &toolpath, machine);
     let (origins, parts, widths) = (Origins::default(), Vec::new(), Vec::new());
+    let report = Some(Reported::Account);
     Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None, lines: None })
 }
 
@@ -1015,9 +1040,9 @@ fn cut(
     let Options { strict, origin, tolerances, .. } = options;
     let machine = machine.clone();
     let made = wire::make(source, *strict, origin, machine, settings, file, tolerances, watch)?;
-    let wire::Made { posted, report, toolpath, .. } = made;
+    let wire::Made { posted, toolpath, listing } = made;
     let post::Posted { text, origins, parts, account } = posted;
-    let (report, widths) = (Some(report), Vec::new());
+    let (report, widths) = (Some(Reported::Wire(listing)), Vec::new());
     Ok(Made { toolpath, account, text, origins, parts, report, widths, board: None, lines: None })
 }
 

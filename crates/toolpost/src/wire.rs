@@ -47,7 +47,8 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     let targets: Vec<&Target> = picture_target.chain([&target, &report_target]).collect();
     spare(&targets, &made.toolpath, &machine)?;
     progress.step("saving");
-    let mut saved = vec![(&report_target, made.report.as_bytes())];
+    let report = made.report();
+    let mut saved = vec![(&report_target, report.as_bytes())];
     if let (Some((target, _)), Some(bytes)) = (&picture, &drawn) {
         saved.push((target, bytes));
     }

@@ -119,18 +119,36 @@ pub enum Sync {
 pub struct Made {
     /// The program, and what is reported of it.
     pub posted: Posted,
-    /// The report to save next to it, as JSON.
-    pub report: String,
     /// What it was read from.
     pub toolpath: Toolpath,
-    cut: Cut,
-    select: Option<u32>,
+    /// What the wire cuts.
+    pub listing: Listing,
 }
 
 impl Made {
     /// The contour, its points and the ruled surface as an SVG drawing.
     pub fn picture(&self) -> String {
-        drawing::wire_path(&self.toolpath.file, &self.cut.picture(self.select))
+        let Listing { cut, select } = &self.listing;
+        drawing::wire_path(&self.toolpath.file, &cut.picture(*select))
+    }
+
+    /// The report to save next to the program, as JSON.
+    pub fn report(&self) -> String {
+        self.listing.report(&self.posted.account)
+    }
+}
+
+/// The segments and points of a program, of which its account has the first alone.
+#[derive(Debug)]
+pub struct Listing {
+    cut: Cut,
+    select: Option<u32>,
+}
+
+impl Listing {
+    /// The report to save next to the program that `account` is of, as JSON.
+    pub fn report(&self, account: &Account) -> String {
+        Report { account, cut: &self.cut, selected: self.select }.text()
     }
 }
 
@@ -170,33 +188,27 @@ pub fn make(
     if !proof.proven {
         let mut account = prove::failed(&proof, &toolpath, file);
         account.findings.extend(warnings);
-        let report = account.report();
         let posted = Posted { text: output.text, origins, parts: Vec::new(), account };
-        return Ok(Made { posted, report, toolpath, cut, select });
+        return Ok(Made { posted, toolpath, listing: Listing { cut, select } });
     }
 
     warnings.extend(proof.warnings.iter().cloned());
-    let whole = Report {
-        schema: SCHEMA,
-        toolpost: env!("CARGO_PKG_VERSION"),
-        sha256: Digests::of(&output.text, &[], &toolpath, &machine),
-        source: json!({ "file": toolpath.file, "dialect": toolpath.dialect }),
-        machine: toolpath::describe(&machine),
-        program: json!({ "file": file, "blocks": output.blocks, "bytes": output.text.len() }),
-        wire: cut.summary(select, usize::MAX),
-        proof: &proof,
-        instructions: Some(cut.instructions()),
-        warnings: Some(&warnings),
-    };
-    let report = whole.text();
-    let wire = cut.summary(select, MOST_LISTED);
-    let data = json!(Report { wire, instructions: None, warnings: None, ..whole });
+    let data = json!({
+        "schema": SCHEMA,
+        "toolpost": env!("CARGO_PKG_VERSION"),
+        "sha256": Digests::of(&output.text, &[], &toolpath, &machine),
+        "source": { "file": toolpath.file, "dialect": toolpath.dialect },
+        "machine": toolpath::describe(&machine),
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "wire": cut.summary(select, MOST_LISTED),
+        "proof": proof,
+    });
     let mut rows = toolpath.rows(Some(&machine));
     rows.extend(cut.rows(select));
     rows.extend(prove::rows(&proof, &machine));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
     let posted = Posted { text: output.text, origins, parts: Vec::new(), account };
-    Ok(Made { posted, report, toolpath, cut, select })
+    Ok(Made { posted, toolpath, listing: Listing { cut, select } })
 }
 
 /// Proves a program that is called `file` and that somebody has edited, against the contours of `source` on `machine`, as [`make`]

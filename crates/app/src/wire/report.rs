@@ -1,13 +1,14 @@
 //! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
 
-use crate::report::Digests;
+use crate::account::Account;
 use crate::summary::{duration, length, number};
 use ::wire::points::Step;
 use ::wire::segment::{self, End, Segment};
 use ::wire::{Accuracy, Chords};
 use drawing::{WirePicture, WireSegment};
 use machine::Machine;
-use program::{Diagnostic, NoPose, Op, Program, Record};
+use program::{NoPose, Op, Program, Record};
+use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
@@ -15,6 +16,7 @@ use serde_json::{Value, json};
 const MOST_ROWS: usize = 12;
 
 /// What is cut.
+#[derive(Debug)]
 pub struct Cut {
     /// The segments of the wire path, in their order.
     pub segments: Vec<Segment>,
@@ -265,21 +267,12 @@ impl Cut {
     }
 }
 
-/// The report of a program. Its lists are written entry by entry: as JSON values 500,000 segments took 3.5 GB.
-#[derive(Serialize)]
+/// The report of a program: what its account says, with all segments, and points. Its lists are written entry by entry: as JSON values
+/// 500,000 segments took 3.5 GB.
 pub struct Report<'a> {
-    pub schema: u32,
-    pub toolpost: &'static str,
-    pub sha256: Digests,
-    pub source: Value,
-    pub machine: Value,
-    pub program: Value,
-    pub wire: Summary<'a>,
-    pub proof: &'a ::proof::Report,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub instructions: Option<Instructions<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub warnings: Option<&'a [Diagnostic]>,
+    pub account: &'a Account,
+    pub cut: &'a Cut,
+    pub selected: Option<u32>,
 }
 
 impl Report<'_> {
@@ -288,6 +281,23 @@ impl Report<'_> {
         let mut text = serde_json::to_string_pretty(self).expect("all keys are texts");
         text.push('\n');
         text
+    }
+}
+
+impl Serialize for Report<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Report { account, cut, selected } = self;
+        let mut report = serializer.serialize_map(None)?;
+        for (key, value) in account.data.as_object().into_iter().flatten() {
+            if key == "wire" {
+                report.serialize_entry(key, &cut.summary(*selected, usize::MAX))?;
+            } else {
+                report.serialize_entry(key, value)?;
+            }
+        }
+        report.serialize_entry("instructions", &cut.instructions())?;
+        report.serialize_entry("warnings", &account.findings)?;
+        report.end()
     }
 }
 

@@ -304,6 +304,60 @@ fn an_edit_is_proven_and_one_that_cuts_otherwise_is_refused_and_not_saved() {
     let own = program::Digest::of([spaced.as_bytes()]);
     assert_eq!(report["sha256"]["program"], json!(own));
     assert_eq!(report["proof"]["proven"], true);
+    assert_eq!(report["program"]["file"], "dome.nc");
+}
+
+/// The report says the name of the file that is saved, for what is found in the program too; of a source that was called as the program
+/// was before it keeps the name.
+#[test]
+fn a_report_names_the_file_that_is_saved() {
+    let studio = Studio::new();
+    let mut page = studio.socket();
+    let source = "UNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\nNOSUCHWORD/1\nGOTO/9,0,-1\nRAPID\nGOTO/9,0,10\n";
+    for name in ["part.cls", "part.nc"] {
+        std::fs::write(studio.own().join(name), source).unwrap();
+        let params = |file: &str| json!({ "source": { "file": name }, "machine": "generic-3axis-haas", "file": file });
+        let posted = page.done("post", params("part.nc"));
+        let text = json!({ "revision": posted["revision"], "of": "program", "from": 1, "to": 99 });
+        let mut frame = page.answer("text", text, &[]).unwrap();
+        let text = String::from_utf8(frame.take_text("text").unwrap()).unwrap();
+        // All axes go home together: a warning of the proof.
+        let edited = text.replacen("G91 G28 Z0", "G91 G28", 1);
+        let frame = page.answer("prove", params("part.nc"), &[Array::text("text", edited)]);
+        let edited = frame.unwrap().head["done"].clone();
+        for (job, homes) in [(&posted, 0), (&edited, 1)] {
+            assert_eq!(job["verdict"], "done", "{job}");
+            for saved in ["other.nc", "under/third.nc"] {
+                std::fs::create_dir_all(studio.own().join("under")).unwrap();
+                let save = json!({ "revision": job["revision"], "path": saved, "replace": true });
+                page.done("save", save);
+                let report =
+                    std::fs::read(studio.own().join(format!("{saved}.report.json"))).unwrap();
+                let report: Value = serde_json::from_slice(&report).unwrap();
+                let saved = saved.rsplit('/').next().unwrap();
+                assert_eq!(
+                    (&report["program"]["file"], &report["source"]["file"]),
+                    (&json!(saved), &json!(name))
+                );
+                let files = |list: &Value, rule: &str| -> Vec<Value> {
+                    let list = list.as_array().unwrap().iter();
+                    list.filter(|found| found["rule"] == rule)
+                        .map(|found| found["file"].clone())
+                        .collect()
+                };
+                assert_eq!(files(&report["warnings"], "home"), vec![json!(saved); homes]);
+                assert_eq!(files(&report["proof"]["warnings"], "home"), vec![json!(saved); homes]);
+                let of_source: Vec<Value> = report["warnings"]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .filter(|found| found["message"].as_str().unwrap().contains("NOSUCHWORD"))
+                    .map(|found| found["file"].clone())
+                    .collect();
+                assert_eq!(of_source, [name], "{report:#}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -539,6 +593,12 @@ fn a_wire_is_posted_by_the_options_of_its_own_command() {
     let saved =
         page.done("save", json!({ "revision": job["revision"], "path": "w.nc", "replace": false }));
     assert_eq!(saved["files"], json!(["w.nc", "w.nc.report.json"]));
+    let report = |name: &str| -> Value {
+        let report = studio.own().join(format!("{name}.report.json"));
+        serde_json::from_slice(&std::fs::read(report).unwrap()).unwrap()
+    };
+    assert_eq!(report("w.nc")["program"]["file"], "w.nc");
+    assert!(report("w.nc")["instructions"].is_array());
     // An edit is proven against the contour: a blank more is the same program, a place that is off by a tenth is not.
     let lines = job["program"]["lines"].as_u64().unwrap();
     let text = json!({ "revision": job["revision"], "of": "program", "from": 1, "to": lines + 1 });
@@ -566,6 +626,7 @@ fn a_wire_is_posted_by_the_options_of_its_own_command() {
     let save = json!({ "revision": spaced["revision"], "path": "edited.nc", "replace": false });
     let saved = page.done("save", save);
     assert_eq!(saved["files"], json!(["edited.nc", "edited.nc.report.json"]));
+    assert_eq!(report("edited.nc")["program"]["file"], "edited.nc");
 }
 
 #[test]
