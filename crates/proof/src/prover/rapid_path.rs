@@ -86,8 +86,11 @@ impl Prover<'_> {
             places.iter().partition(|place| way.holds(place));
         self.note_rapid(way, on_way.into_iter(), to.line);
         let slack = self.gauge.slack(here);
-        if let Some(what) = self.below_its_end([here, to], &elsewhere) {
-            self.note_rapid(way, elsewhere.into_iter(), to.line);
+        // Where axes may turn off the line, each may go at its own speed: so with a leaning tool Z comes down from home.
+        let confined: Vec<&PartialPose> =
+            elsewhere.iter().copied().filter(|place| self.short_of_free(place) > slack).collect();
+        if let Some(what) = self.below_its_end([here, to], &confined) {
+            self.note_rapid(way, confined.into_iter(), to.line);
             return Some(self.way_refused(to, &what));
         }
         let turns = here.position.orientation != to.position.orientation;
@@ -107,12 +110,13 @@ impl Prover<'_> {
     }
 
     /// What is wrong with the places to which axes that go each at its own speed lead the tool, where it does not turn: in a hole or a
-    /// pocket that was there before, or was drilled by moves, the tool is beyond all cuts everywhere but at its bottom. So they are not
-    /// below the higher end, and with the tool along Z not below the zero of the part, else not below where the source goes highest.
+    /// pocket that was there before, or was drilled by moves, the tool is beyond all cuts everywhere but at its bottom. So these places, at
+    /// which it may not turn off the line, are not below the higher end, and with the tool along Z not below the zero of the part, else not
+    /// below where the source goes highest.
     fn below_its_end(
         &mut self,
         ends: [&ResolvedPose; 2],
-        elsewhere: &[&PartialPose],
+        confined: &[&PartialPose],
     ) -> Option<String> {
         let axis = ends[1].place.axis;
         let turns = ends[0].position.orientation != ends[1].position.orientation;
@@ -120,7 +124,7 @@ impl Prover<'_> {
             return None;
         }
         let height = |place: &PartialPose| place.tip.dot(axis);
-        let lowest = elsewhere.iter().map(|place| height(place)).fold(f64::INFINITY, f64::min);
+        let lowest = confined.iter().map(|place| height(place)).fold(f64::INFINITY, f64::min);
         let higher = ends.iter().map(|end| height(&end.place)).fold(f64::NEG_INFINITY, f64::max);
         let allowed = self.gauge.machine.capabilities.rapid_corridor + self.gauge.slack(ends[0]);
         let is_upright =

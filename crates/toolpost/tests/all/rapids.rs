@@ -638,3 +638,30 @@ fn under_traori_a_rapid_is_straight_whatever_the_axes_do_without() {
     assert!(output.warnings.iter().any(|found| found.rule.name() == "rewind"), "{program}");
     assert_eq!(program, text(&other));
 }
+
+/// A tool that leans by more than 60° in a head comes from home beside all cuts: to over its place along Z of the machine, where all axes may go
+/// together, and by Z alone down to as far out along itself as the source ever goes. That is free where each axis goes at its own speed too.
+#[test]
+fn by_z_of_the_machine_a_leaning_tool_comes_down_where_it_is_free_along_itself() {
+    let apart = "extends = \"sinumerik-840d-traori\"\n[settings]\nrapid_path = \"independent\"\n";
+    let apart = load_text("apart.toml", apart).unwrap();
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,120\nSPINDL/1000,RPM,CLW\nFEDRAT/600,MMPM\nRAPID\n\
+         GOTO/-35.0043,-39.8946,-3.6492,-0.8527891,-0.3208662,0.4120626\n\
+         GOTO/-26.4764,-36.6859,-7.7698\nFINI\n",
+    );
+    for machine in [apart, load("sinumerik-840d-traori").unwrap()] {
+        let good = plain(&text(&written(&source, &machine)));
+        proven(&source, &machine, &good);
+        let way = "G0 X2.763 Y-31.348 Z44.655\nX0.166 Y-33.719 Z43.064\n";
+        none_is_proven(
+            &source,
+            &machine,
+            &good,
+            [
+                (way, "G0 X0.166 Y-33.719 Z43.064\n"),
+                (way, "G0 X2.763 Y-31.348 Z43.064\nX0.166 Y-33.719 Z43.064\n"),
+            ],
+        );
+    }
+}
