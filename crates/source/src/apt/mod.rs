@@ -33,7 +33,7 @@ use program::{
     CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
     Progress, Pulse, Purpose, Record, Rule, Spindle, Tool, encoding,
 };
-use report::Report;
+use report::{Fault, Report};
 use statement::{Joiner, Line, Lines, is_blank};
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -185,14 +185,39 @@ struct SurfaceSpeed {
     line: u32,
     /// mm/min.
     speed: f64,
-    /// `MAXRPM`, 1/min.
-    max: f64,
+    /// `MAXRPM` of its statement, or of the last one that has it.
+    max: Option<MaxRpm>,
+}
+
+/// `MAXRPM`: the highest speed of the spindle at a surface speed.
+#[derive(Clone, Copy)]
+struct MaxRpm {
+    /// Line that gives it.
+    line: u32,
+    /// 1/min.
+    speed: f64,
 }
 
 impl SurfaceSpeed {
     /// The spindle speed in 1/min on `diameter` mm.
-    fn on(self, diameter: f64) -> f64 {
-        (self.speed / (PI * diameter)).min(self.max)
+    ///
+    /// # Errors
+    /// It is above the `MAXRPM` of an older statement: whether that still counts, nothing says.
+    fn on(self, diameter: f64) -> Result<f64, Box<Fault>> {
+        let speed = self.speed / (PI * diameter);
+        match self.max.filter(|max| speed > max.speed) {
+            Some(max) if max.line != self.line => {
+                let message = format!(
+                    "the surface speed of line {} means {speed:.0} 1/min on a diameter of {diameter} mm, above the MAXRPM of {} in line {}: \
+                     whether that still counts, the data do not say",
+                    self.line, max.speed, max.line
+                );
+                Err(Fault::new(Rule::Spindle, message)
+                    .help("say MAXRPM in the statement of the surface speed too"))
+            }
+            Some(max) => Ok(max.speed),
+            None => Ok(speed),
+        }
     }
 }
 
@@ -244,6 +269,8 @@ struct Reader {
     last_spindle: Option<Spindle>,
     /// The surface speed that it was resolved from, where it was.
     surface: Option<SurfaceSpeed>,
+    /// The last `MAXRPM`.
+    max_rpm: Option<MaxRpm>,
     /// The record of the tool whose speed is still to be found from it.
     speed_due: Option<usize>,
     /// The last kind, for `COOLNT/ON`.
@@ -318,6 +345,7 @@ impl Reader {
             spindle: Spindle::Off,
             last_spindle: None,
             surface: None,
+            max_rpm: None,
             speed_due: None,
             // Coolant as such is flood.
             last_coolant: Coolant::Flood,

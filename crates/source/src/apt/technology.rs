@@ -3,7 +3,7 @@
 use super::report::{Fault, Outcome};
 use super::statement::{Field, Statement};
 use super::text::decode;
-use super::{Reader, Ready, SurfaceSpeed};
+use super::{MaxRpm, Reader, Ready, SurfaceSpeed};
 use geom::INCH;
 use program::{Auxiliary, Compensation, Coolant, Feed, Op, PathMode, Record, Rule, Spindle, Tool};
 
@@ -106,7 +106,9 @@ impl Reader {
 
     /// `SPINDL/` with, in any order, a speed, `RPM`, `SFM` or `SMM`, `CLW` or `CCLW`, `MAXRPM,n` and
     /// `RANGE,n`; or `ON`, `OFF`. Surface speeds are resolved with the diameter of the tool. `MAXRPM` is
-    /// "the maximum RPM to be reached during SFM motion" (Siemens NX, *SPINDL*).
+    /// "the maximum RPM to be reached during SFM motion" (Siemens NX, *SPINDL*); whether it holds for later surface speeds, which do not
+    /// say it (the dialog of NX writes it "if and only if" its switch is on: `maxrpm_flag` of `UF_PATH_spindle_on_t`), no manual says, so
+    /// that one which it would cap is refused.
     pub(super) fn spindl(&mut self, statement: &Statement) -> Outcome {
         let (mut speed, mut surface, mut left, mut max) = (None, None, None, None);
         let mut range = false;
@@ -169,24 +171,30 @@ impl Reader {
         let left = left.unwrap_or(was_left);
         let rpm = match (speed, self.last_spindle) {
             (Some((field, value)), _) => {
-                let max = max.map_or(f64::INFINITY, |(_, max)| max);
                 if !(0.0..=1e7).contains(&value) {
                     let message = format!("{value:e} is no spindle speed");
                     return Err(Fault::new(Rule::Spindle, message).fields(field, 1));
                 }
                 let line = statement.line;
-                self.surface = surface.map(|mm| SurfaceSpeed { line, speed: value * mm, max });
+                let max = max.map(|(_, speed)| MaxRpm { line, speed });
+                self.max_rpm = max.or(self.max_rpm);
+                let last = self.max_rpm;
+                self.surface =
+                    surface.map(|mm| SurfaceSpeed { line, speed: value * mm, max: last });
                 match self.surface {
                     Some(surface) => {
                         self.on_the_tool(surface).map_err(|fault| fault.fields(field, 1))?
                     }
-                    None if value > max => {
-                        let message = format!("a speed of {value} 1/min above its MAXRPM of {max}");
-                        return Err(Fault::new(Rule::Spindle, message)
-                            .help("give the lower of the two as speed")
-                            .fields(field, 1));
-                    }
-                    None => value,
+                    None => match max.filter(|max| value > max.speed) {
+                        Some(MaxRpm { speed, .. }) => {
+                            let message =
+                                format!("a speed of {value} 1/min above its MAXRPM of {speed}");
+                            return Err(Fault::new(Rule::Spindle, message)
+                                .help("give the lower of the two as speed")
+                                .fields(field, 1));
+                        }
+                        None => value,
+                    },
                 }
             }
             (None, Some(last)) => speed_of(last),
@@ -208,7 +216,7 @@ impl Reader {
             None => self.next_tool.diameter.or(self.tool.diameter),
         };
         match diameter {
-            Some(diameter) if diameter > 0.0 => Ok(surface.on(diameter)),
+            Some(diameter) if diameter > 0.0 => surface.on(diameter),
             _ => Err(Fault::new(Rule::Spindle, "a surface speed needs the diameter of the tool")
                 .help("add CUTTER/ or TLDATA/ before it, or give the speed in RPM")),
         }
@@ -235,7 +243,7 @@ impl Reader {
             return Err(Fault::new(Rule::Spindle, message)
                 .help("add CUTTER/ behind its LOAD, or give its speed in RPM"));
         };
-        let (rpm, old) = (surface.on(diameter), speed_of(last));
+        let (rpm, old) = (surface.on(diameter)?, speed_of(last));
         if rpm == old {
             return Ok(());
         }

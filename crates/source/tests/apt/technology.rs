@@ -160,6 +160,37 @@ fn maxrpm_caps_a_surface_speed_and_the_gear_range_is_named() {
     }
 }
 
+/// Whether an older MAXRPM caps a surface speed that does not say it, nothing says: one that it would cap is refused, in whatever statement or
+/// on whatever tool.
+#[test]
+fn a_surface_speed_above_an_older_maxrpm_is_refused() {
+    let speed = |text: &str| {
+        let reading = reading(&format!("{HEAD}CUTTER/10,0\n{text}\nRAPID\nGOTO/1,2,3\nFINI"));
+        let mut speeds = reading.program.records.iter().filter_map(|record| match record.op {
+            Op::Spindle(spindle) => Some(spindle),
+            _ => None,
+        });
+        let Some(Spindle::Clockwise(speed)) = speeds.next_back() else { panic!("{text}") };
+        speed.round()
+    };
+    // 100 m/min on a diameter of 10 mm are 3183 1/min, on 4 mm 7958; 60 m/min on 10 mm are 1910.
+    let older = "SPINDL/SMM,60,CLW,MAXRPM,2500";
+    assert_eq!(speed(&format!("{older}\nSPINDL/SMM,60,CLW")), 1910.0);
+    assert_eq!(speed(&format!("{older}\nSPINDL/SMM,100,CLW,MAXRPM,2600")), 2600.0);
+    assert_eq!(speed(&format!("{older}\nSPINDL/SMM,100,CLW,MAXRPM,9000")), 3183.0);
+    // It is for surface speeds alone.
+    assert_eq!(speed(&format!("{older}\nSPINDL/6000,RPM,CLW")), 6000.0);
+    for text in [
+        format!("CUTTER/10\n{older}\nSPINDL/SMM,100,CLW"),
+        format!("CUTTER/10\n{older}\nSPINDL/900,RPM\nSPINDL/SMM,100,CLW"),
+        format!(
+            "CUTTER/10\n{older}\nSPINDL/SMM,70,CLW\nRAPID\nGOTO/0,0,9\nCUTTER/4\nLOAD/TOOL,2\nRAPID\nGOTO/0,0,9"
+        ),
+    ] {
+        assert_eq!(error(&text), "spindle", "{text}");
+    }
+}
+
 #[test]
 fn coolants_compensations_dwells_and_stops() {
     let coolants = |kinds: &[Coolant]| kinds.iter().map(|kind| Op::Coolant(*kind)).collect();
