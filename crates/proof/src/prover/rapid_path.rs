@@ -14,6 +14,12 @@ use program::Rule;
 /// leaves the chord between two by less than 0.005 mm.
 const SAMPLE: f64 = 0.5;
 
+/// Halvings of a way between two places: a metre down to a thousandth of a millimetre.
+const HALVINGS: u32 = 20;
+
+/// Corners of the box in which axes go that go each at its own speed.
+const CORNERS: usize = 8;
+
 /// Positions at which an axis that is free in a singular pose may stand, as parts of half a turn.
 const FREE_POSITIONS: u32 = 16;
 
@@ -82,19 +88,20 @@ impl Prover<'_> {
         if along_axis(way.gauge, here, to, &places, end) {
             return None;
         }
-        let (on_way, elsewhere): (Vec<&PartialPose>, Vec<&PartialPose>) =
+        let turns = here.position.orientation != to.position.orientation;
+        let (on_way, mut elsewhere): (Vec<PartialPose>, Vec<PartialPose>) =
             places.iter().partition(|place| way.holds(place));
-        self.note_rapid(way, on_way.into_iter(), to.line);
+        elsewhere.extend(way.borders(&places, turns));
+        self.note_rapid(way, on_way.iter(), to.line);
         let slack = self.gauge.slack(here);
         // Where axes may turn off the line, each may go at its own speed: so with a leaning tool Z comes down from home.
         let confined: Vec<&PartialPose> =
-            elsewhere.iter().copied().filter(|place| self.short_of_free(place) > slack).collect();
+            elsewhere.iter().filter(|place| self.short_of_free(place) > slack).collect();
         if let Some(what) = self.below_its_end([here, to], &confined) {
             self.note_rapid(way, confined.into_iter(), to.line);
             return Some(self.way_refused(to, &what));
         }
-        let turns = here.position.orientation != to.position.orientation;
-        let shorts = elsewhere.into_iter().map(|place| {
+        let shorts = elsewhere.iter().map(|place| {
             let is_off = turns && !way.is_on_line(place);
             let short = match is_off {
                 true => self.short_of_free(place),
@@ -276,10 +283,47 @@ impl StraightPath<'_> {
         }
         let stances = if turns { Vec::new() } else { self.stances(to) };
         let wandering = |degrees| {
-            let tips = machine.wandering(here.place.tip, to.place.tip, degrees);
+            let tips: [Vec3; CORNERS] = machine.wandering(here.place.tip, to.place.tip, degrees);
             tips.map(|tip| PartialPose { tip, axis: to.place.axis })
         };
         (!stances.is_empty()).then(|| stances.into_iter().flat_map(wandering).collect())
+    }
+
+    /// The last places off it of ways that come onto it from elsewhere: between its two ends such a way may be lower than at either. Of places
+    /// at which the tool turns neighbours have a way between them, else any two corners of a box.
+    fn borders(&self, places: &[PartialPose], turns: bool) -> Vec<PartialPose> {
+        let mut borders = Vec::new();
+        let joined: Vec<&[PartialPose]> =
+            if turns { places.windows(2).collect() } else { places.chunks(CORNERS).collect() };
+        for joined in joined {
+            let (on_way, elsewhere): (Vec<&PartialPose>, Vec<&PartialPose>) =
+                joined.iter().partition(|place| self.holds(place));
+            for on in on_way {
+                // One that is no lower than the place off the line has nothing lower on the way to it.
+                let is_lower = |off: &&&PartialPose| {
+                    let rise = off.tip - on.tip;
+                    turns || rise.dot(on.axis) > SAME || rise.z > SAME
+                };
+                let lower = elsewhere.iter().filter(is_lower);
+                borders.extend(lower.map(|off| self.border(on, off)));
+            }
+        }
+        borders
+    }
+
+    /// The last place off it on the way to one that is on it.
+    fn border(&self, on: &PartialPose, off: &PartialPose) -> PartialPose {
+        let at = |part: f64| PartialPose {
+            tip: on.tip.lerp(off.tip, part),
+            axis: geom::between(on.axis, off.axis, part),
+        };
+        // Its corridor is convex.
+        let (mut inside, mut outside) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(inside, outside);
+            *(if self.holds(&at(middle)) { &mut inside } else { &mut outside }) = middle;
+        }
+        at(outside)
     }
 
     /// The positions of the rotary axes with the tool as it stands at `to`.

@@ -665,3 +665,19 @@ fn by_z_of_the_machine_a_leaning_tool_comes_down_where_it_is_free_along_itself()
         );
     }
 }
+
+/// From a stop above all cuts a rapid slants down to a place next to them, which is the end of the source's rapid: both ends are where they
+/// may be, and between them the tool is off the line and lower than the boss that is cut first (its top at Z 30).
+#[test]
+fn a_rapid_from_a_free_place_to_one_on_the_line_is_looked_at_between_them() {
+    let source = read(
+        "UNITS/MM\nLOADTL/1,LENGTH,60\nSPINDL/1000,RPM,CLW\nFEDRAT/600,MMPM\nRAPID\nGOTO/-100,0,50\nGOTO/-100,0,30\n\
+         RAPID\nGOTO/-100,0,80\nRAPID\nGOTO/0,0,80\nRAPID\nGOTO/50,100,0\nGOTO/50,100,-5\nRAPID\nGOTO/50,100,80\nFINI\n",
+    );
+    let straight = load("generic-3axis-linuxcnc").unwrap();
+    let good = text(&written(&source, &straight));
+    proven(&source, &straight, &good);
+    let way = "X50 Y100 Z0\n";
+    none_is_proven(&source, &straight, &good, [(way, "X50\nY100 Z0\n"), (way, "Y100\nX50 Z0\n")]);
+    proven(&source, &straight, &good.replacen(way, "X50 Y100\nZ0\n", 1));
+}
