@@ -4,7 +4,7 @@ use crate::foreign::{Line, Part, Piece};
 use crate::items::{Item, Role, code, codes, items};
 use crate::text::short;
 use crate::write::Writing;
-use machine::LengthOffset;
+use machine::{LengthOffset, OptionKey};
 use std::fmt::Write as _;
 
 /// What is left of a line after its words have been sorted into blocks.
@@ -230,7 +230,7 @@ impl Writing<'_> {
     /// path: the number of the post is in its own unit, and a bare `G64` bounds nothing.
     fn leave_path_mode(&mut self, items: &mut Vec<Item>, number: u32) {
         let is_mode = |item: &Item| matches!(code(&item.text), Some(('G', mode)) if mode.trunc() == 61.0 || mode == 64.0);
-        if !self.base.options.contains_key("path_tolerance") || !items.iter().any(is_mode) {
+        if self.base.option(OptionKey::PathTolerance).is_none() || !items.iter().any(is_mode) {
             return;
         }
         let bound = |item: &Item| matches!(code(&item.text), Some(('P' | 'Q', _)));

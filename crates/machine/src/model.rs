@@ -1,6 +1,6 @@
 //! What a machine is, after its files are merged.
 
-use crate::sheet::{TOUCH_TRAVEL, wrong_option};
+use crate::option::{OptionKey, wrong_option};
 use geom::{Euler, Frame, Vec2, Vec3};
 use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove, Rule};
 use serde::Deserialize;
@@ -733,7 +733,7 @@ pub(crate) fn no_touch_off(
     blocks: &BTreeMap<String, Block>,
     rotary: &[RotaryAxis],
 ) -> Option<&'static str> {
-    let writes = |block: &Block| block.text.contains(TOUCH_TRAVEL);
+    let writes = |block: &Block| block.text.contains(OptionKey::TouchTravel.name());
     match blocks.get("tool_change").is_some_and(writes) {
         false => Some("the block `tool_change` of this control writes no touch-off"),
         true => (!rotary.is_empty()).then_some("a machine with rotary axes has no touch-off"),
@@ -759,8 +759,8 @@ impl Machine {
         let refused = |message: String, help: String| {
             Box::new(Diagnostic::error(Rule::Option, message).help(help).file(file))
         };
-        let no_touch_off =
-            no_touch_off(&self.blocks, &self.rotary).filter(|_| name == TOUCH_TRAVEL);
+        let no_touch_off = no_touch_off(&self.blocks, &self.rotary)
+            .filter(|_| name == OptionKey::TouchTravel.name());
         let names = self.options.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
         let Some(option) = self.options.get_mut(name) else {
             let message = format!("the machine has no option `{name}`");
@@ -898,25 +898,25 @@ impl Machine {
     /// How fast the tool may turn, degrees/s, its axis and about it each: `turn_speed` of the options, which the templates of an
     /// arm write; `None` where they do not.
     pub fn turn_speed(&self) -> Option<f64> {
-        Some(self.number_of("turn_speed")).filter(|speed| *speed > 0.0)
+        Some(self.number_of(OptionKey::TurnSpeed)).filter(|speed| *speed > 0.0)
     }
 
     /// Z over the work zero to which tools retract, mm, where machine zero means nothing, since the machine has no switches to
     /// home to: `retract_height` of the options, which the templates write. Only on a machine without rotary axes.
     pub fn retract_height(&self) -> Option<f64> {
-        let height = self.number_of("retract_height");
+        let height = self.number_of(OptionKey::RetractHeight);
         Some(height).filter(|height| *height > 0.0 && self.rotary.is_empty())
     }
 
     /// What further tools are touched off on: the options `touch_...`, which the templates write. `None` where a tool change has no
     /// touch-off. Only on a machine without rotary axes.
     pub fn touch_plate(&self) -> Option<TouchPlate> {
-        let number = |name: &str| self.number_of(name);
+        let number = |option| self.number_of(option);
         let plate = TouchPlate {
-            at: Vec2::new(number("touch_x"), number("touch_y")),
-            height: number("touch_height"),
-            travel: number(TOUCH_TRAVEL),
-            feed: number("touch_feed"),
+            at: Vec2::new(number(OptionKey::TouchX), number(OptionKey::TouchY)),
+            height: number(OptionKey::TouchHeight),
+            travel: number(OptionKey::TouchTravel),
+            feed: number(OptionKey::TouchFeed),
         };
         Some(plate).filter(|plate| plate.travel > 0.0 && self.rotary.is_empty())
     }
@@ -924,32 +924,37 @@ impl Machine {
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,
     /// which the templates write. The proof does not see that deviation.
     pub fn path_tolerance(&self) -> f64 {
-        self.number_of("path_tolerance")
+        self.number_of(OptionKey::PathTolerance)
     }
 
     /// How far its control may leave the path in cuts for which the source itself says more than
     /// [`path_tolerance`](Machine::path_tolerance), mm: `roughing_tolerance` of the options. 0 where no cut gets more.
     pub fn roughing_tolerance(&self) -> f64 {
-        self.number_of("roughing_tolerance")
+        self.number_of(OptionKey::RoughingTolerance)
     }
 
     /// By how much its control may turn the tool out of its orientation while it smooths the path, degrees:
     /// `orientation_tolerance` of the options, which the templates write. The proof does not see that deviation.
     pub fn orientation_tolerance(&self) -> f64 {
-        self.number_of("orientation_tolerance")
+        self.number_of(OptionKey::OrientationTolerance)
     }
 
     /// The name of the swivel data set that describes the machine: `swivel_data` of the options; empty where none is named.
     pub fn swivel_data(&self) -> &str {
-        match self.options.get("swivel_data") {
+        match self.option(OptionKey::SwivelData) {
             Some(OptionValue::Text(name)) => name,
             _ => "",
         }
     }
 
+    /// The value of an option; `None` where no file of the machine states it.
+    pub fn option(&self, option: OptionKey) -> Option<&OptionValue> {
+        self.options.get(option.name())
+    }
+
     /// The number of an option; 0 where there is none.
-    fn number_of(&self, option: &str) -> f64 {
-        match self.options.get(option) {
+    fn number_of(&self, option: OptionKey) -> f64 {
+        match self.option(option) {
             Some(OptionValue::Number(number)) => *number,
             _ => 0.0,
         }

@@ -398,35 +398,6 @@ value! {
     Decimals(u8, "u8") |value| *value <= 9, "0 to 9";
 }
 
-/// The option that turns the touch-off of further tools on: how far below its plate a tool goes at most, mm.
-pub(crate) const TOUCH_TRAVEL: &str = "touch_travel";
-
-/// What the options that are no mere texts of the templates may be, where they are not 0: the name, the least, the most, the unit.
-/// From 100 mm/min a tool goes on for up to 0.05 mm after it has touched, at 30 mm/s².
-const MEASURED_OPTIONS: [(&str, f64, f64, &str); 7] = [
-    ("path_tolerance", 0.0, 10.0, "mm"),
-    ("retract_height", 0.0, 1000.0, "mm"),
-    ("roughing_tolerance", 0.0, 10.0, "mm"),
-    ("touch_feed", 1.0, 100.0, "mm/min"),
-    ("touch_height", 0.0, 1000.0, "mm"),
-    (TOUCH_TRAVEL, 0.5, 1000.0, "mm"),
-    ("orientation_tolerance", 0.0, 45.0, "degrees"),
-];
-
-/// Why a number cannot be the value of that option.
-pub(crate) fn wrong_option(name: &str, value: f64) -> Option<String> {
-    let known = MEASURED_OPTIONS.iter().find(|(option, ..)| *option == name);
-    let (good, need) = match known {
-        Some((_, least, most, unit)) => {
-            let none = if *least > 0.0 { "0, or " } else { "" };
-            let good = value == 0.0 || (*least..=*most).contains(&value);
-            (good, format!("{none}a number from {least} to {most} {unit}"))
-        }
-        None => (value.abs() <= 1e9, String::from("a number from -10^9 to 10^9")),
-    };
-    (!good).then(|| format!("{value:?} is given, and {need} is needed"))
-}
-
 /// `R24`.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(try_from = "String")]

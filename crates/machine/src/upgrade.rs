@@ -1,6 +1,7 @@
 //! Keys that a machine's programs depend on, and that its file does not state: files that are older than a key lack it.
 
 use crate::model::{Machine, Mount, OptionValue, OrientationMode};
+use crate::option::OptionKey;
 
 /// A key that a machine file lacks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -129,7 +130,7 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
     }
     let is_sinumerik = machine.reader.starts_with("sinumerik");
     let says_tolerance =
-        matches!(machine.options.get("path_tolerance"), Some(OptionValue::Number(_)));
+        matches!(machine.option(OptionKey::PathTolerance), Some(OptionValue::Number(_)));
     if is_sinumerik && !says_tolerance {
         lacks(
             "[options]".into(),

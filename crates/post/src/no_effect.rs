@@ -2,25 +2,8 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
-use machine::{Machine, OptionValue, OrientationMode, RapidPath, StatedKey};
+use machine::{Machine, OptionKey, OptionValue, OrientationMode, RapidPath, StatedKey};
 use program::{Diagnostic, Rule};
-
-/// Options that the code reads itself, beside what templates read of them.
-const READ_OPTIONS: [&str; 13] = [
-    "acceleration",
-    "default_tool",
-    "joint_acceleration",
-    "orientation_tolerance",
-    "path_tolerance",
-    "program_number",
-    "retract_height",
-    "roughing_tolerance",
-    "swivel_data",
-    "touch_feed",
-    "touch_height",
-    "touch_travel",
-    "turn_speed",
-];
 
 /// Parameters that are one family of controls' own, by the beginnings of `reader`.
 const SETTINGS_OF: [(&str, &[&str]); 9] = [
@@ -86,7 +69,7 @@ fn idle(machine: &Machine, templates: &Templates, stated: &StatedKey) -> Option<
         "" if key == "safe_height" && !places(WordName::SafeHeight) => Some(safe_height(machine)),
         "capabilities" if !is_robot && OF_ROBOTS.contains(&key) => says("it is for robots"),
         "options"
-            if !READ_OPTIONS.contains(&key) && !templates.reads(&format!("options.{key}")) =>
+            if OptionKey::named(key).is_none() && !templates.reads(&format!("options.{key}")) =>
         {
             says("no block of this machine reads this option")
         }

@@ -10,7 +10,7 @@ use crate::guard::{self, Fault};
 use crate::text::{clean, printed};
 use crate::words::{Words, bit};
 use deunicode::deunicode;
-use machine::{Block, Format, Machine, OptionValue, OrientationMode};
+use machine::{Block, Format, Machine, OptionKey, OptionValue, OrientationMode};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
 use program::{Diagnostic, Op, Program, Record, Rule, Tool, nearest};
@@ -447,7 +447,7 @@ pub(crate) fn program_number(
     machine: &Machine,
     name: &str,
 ) -> Result<Option<String>, Box<Diagnostic>> {
-    let said = match machine.options.get("program_number") {
+    let said = match machine.option(OptionKey::ProgramNumber) {
         Some(OptionValue::Text(text)) if !text.trim().is_empty() => text.trim().to_owned(),
         Some(OptionValue::Number(number)) => number.to_string(),
         Some(OptionValue::Text(_) | OptionValue::Flag(_)) | None => {

@@ -26,7 +26,7 @@ use drawing::{BoardPicture, BoardSheet, BoardSide, Format};
 use geom::Vec2;
 use levelling::{Allowed, Grid, Probing, follow, level};
 use machine::limits::Limits;
-use machine::{Machine, OptionValue};
+use machine::{Machine, OptionKey, OptionValue};
 use program::heights::HeightMap;
 use program::{Diagnostic, Feed, Op, Record, Rule, Spindle, not_both};
 use proof::{Observer, Tolerances};
@@ -942,7 +942,7 @@ fn robot_name(machine: &Machine, name: &str) -> Option<String> {
 /// (1 where it says none): programs of one number replace each other in the memory of a control. What says no number is left
 /// to the writer, which refuses it.
 fn numbered(machine: &Machine, place: usize) -> Cow<'_, Machine> {
-    let first = match machine.options.get(PROGRAM_NUMBER) {
+    let first = match machine.option(OptionKey::ProgramNumber) {
         Some(OptionValue::Number(number)) => ::post::number_of(&number.to_string()),
         Some(OptionValue::Text(text)) if text.trim().is_empty() => Some(1),
         Some(OptionValue::Text(text)) => ::post::number_of(text.trim()),
@@ -951,12 +951,9 @@ fn numbered(machine: &Machine, place: usize) -> Cow<'_, Machine> {
     let Some(first) = first else { return Cow::Borrowed(machine) };
     let mut machine = machine.clone();
     let number = OptionValue::Text((first as usize + place).to_string());
-    machine.options.insert(PROGRAM_NUMBER.into(), number);
+    machine.options.insert(OptionKey::ProgramNumber.name().into(), number);
     Cow::Owned(machine)
 }
-
-/// The option of machines whose control knows programs by numbers.
-const PROGRAM_NUMBER: &str = "program_number";
 
 /// How far the places of `probe.nc` stay from the rims of holes, mm: half the width of a probe.
 const PROBE_RIM: f64 = 0.5;

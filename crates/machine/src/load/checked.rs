@@ -5,6 +5,7 @@ use super::arm::{self, PlacedArm};
 use super::file::SheetFile;
 use crate::linkage::Linkage;
 use crate::model::*;
+use crate::option::{OptionKey, wrong_option};
 use crate::sheet::*;
 use geom::{Vec3, direction};
 use program::{CoolantFunctions, Diagnostic, Rule};
@@ -165,7 +166,7 @@ fn check_touch_off(
     blocks: &BTreeMap<String, Block>,
     rotary: &[RotaryAxis],
 ) -> Outcome {
-    match options.get(TOUCH_TRAVEL) {
+    match options.get(OptionKey::TouchTravel.name()) {
         Some(Placed { sheet: OptionSheet::Number(travel), place }) if *travel > 0.0 => {
             let lacks = |why| Box::new(wrong(place, why).help(NO_TOUCH_OFF_HELP));
             no_touch_off(blocks, rotary).map_or(Ok(()), |why| Err(lacks(why)))

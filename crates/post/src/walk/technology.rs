@@ -5,7 +5,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, cut_value, tool_value};
 use crate::words::bit;
 use geom::Vec3;
-use machine::{LengthOffset, Machine, OptionValue};
+use machine::{LengthOffset, Machine, OptionKey, OptionValue};
 use minijinja::Value;
 use program::{Compensation, Coolant, Diagnostic, Feed, PathMode, Rule, Spindle, Tool, lowering};
 
@@ -177,7 +177,7 @@ impl Walk<'_> {
 
     /// The source calls no tool: the machine file may say which one that means.
     pub(super) fn default_tool(&mut self) -> Outcome {
-        let number = match self.machine.options.get("default_tool") {
+        let number = match self.machine.option(OptionKey::DefaultTool) {
             Some(OptionValue::Number(number)) => *number as u32,
             _ => {
                 let help =

@@ -17,7 +17,7 @@ use ::arm::{Arm, Joints};
 use control::kernel::arc::through;
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
 use geom::{Arc, Frame, Vec3, angle_between};
-use machine::{Cell, Machine, OptionValue};
+use machine::{Cell, Machine, OptionKey, OptionValue};
 use program::{CutBox, Diagnostic, Feed, Outcome, Pose, Program, Rule, Tops};
 
 /// Points of a motion of joints are so near that the tip moves by no more than this between them, mm.
@@ -361,10 +361,14 @@ impl<'a> Comparison<'a> {
                     .into());
             }
             ArmAction::TipAcceleration(rate) => {
-                return self.acceleration("acceleration", 1e-3 * rate, "m/s2");
+                return self.acceleration(OptionKey::Acceleration, 1e-3 * rate, "m/s2");
             }
             ArmAction::JointAcceleration(rate) => {
-                return self.acceleration("joint_acceleration", rate.to_radians(), "rad/s2");
+                return self.acceleration(
+                    OptionKey::JointAcceleration,
+                    rate.to_radians(),
+                    "rad/s2",
+                );
             }
             ArmAction::LoadNumber(number) => return self.load_number(*number),
             ArmAction::Load(mass, center) => return self.load(*mass, *center),
@@ -383,14 +387,15 @@ impl<'a> Comparison<'a> {
 
     /// # Errors
     /// The arm is to accelerate faster than the options of the machine's files state.
-    fn acceleration(&self, option: &str, rate: f64, unit: &str) -> Outcome {
-        let most = match self.machine.options.get(option) {
+    fn acceleration(&self, option: OptionKey, rate: f64, unit: &str) -> Outcome {
+        let most = match self.machine.option(option) {
             Some(OptionValue::Number(most)) => *most,
             Some(OptionValue::Flag(_) | OptionValue::Text(_)) | None => f64::NAN,
         };
         if rate <= most * 1.001 {
             return Ok(());
         }
+        let option = option.name();
         let message = format!(
             "the arm accelerates by {rate:.2} {unit}, `{option}` of the machine's options is {most}"
         );

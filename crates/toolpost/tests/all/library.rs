@@ -2,8 +2,9 @@
 //! cutter-location data.
 
 use crate::files::{mills, root, sources};
-use machine::Machine;
+use machine::{Machine, OptionKey, OptionValue};
 use program::{Diagnostic, Program};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 fn read(path: &Path) -> Program {
@@ -162,6 +163,34 @@ fn no_file_of_the_library_states_a_key_that_does_nothing() {
         let found = post::without_effect(&machine::load(name).unwrap());
         assert!(found.is_empty(), "{name}: {found:?}");
     }
+}
+
+/// An option that is stated in the library is read by the code, or by a template of some machine that has it: a new one that neither does is found
+/// here, and one that the code alone reads has its name in `OptionKey`.
+#[test]
+fn every_option_of_the_library_does_something_somewhere() {
+    let mut all = BTreeSet::new();
+    let mut read = BTreeSet::new();
+    for name in machine::library::names(machine::library::CONTROLLED) {
+        for (option, value) in machine::load(name).unwrap().options {
+            let value = match value {
+                OptionValue::Flag(flag) => flag.to_string(),
+                OptionValue::Number(number) => number.to_string(),
+                OptionValue::Text(text) => format!("{text:?}"),
+            };
+            let text = format!("extends = \"{name}\"\n[options]\n{option} = {value}\n");
+            let lines = idle(&text);
+            all.insert(option.clone());
+            if lines.is_empty() {
+                read.insert(option);
+            }
+        }
+    }
+    assert_eq!(all.difference(&read).collect::<Vec<_>>(), [""; 0]);
+    let stated: BTreeSet<&str> =
+        machine::library::options().iter().map(|option| option.name).collect();
+    let unstated = OptionKey::ALL.iter().filter(|key| !stated.contains(key.name()));
+    assert_eq!(unstated.collect::<Vec<_>>(), Vec::<&OptionKey>::new());
 }
 
 /// Another safe height makes another program wherever no warning says that it does nothing.
