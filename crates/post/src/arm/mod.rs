@@ -304,7 +304,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The whole program in one file; how large it is.
-    fn all(&mut self, steps: &[Step<'a>], progress: &dyn Progress) -> Outcome<Size> {
+    fn all(&mut self, steps: &[Step<'_>], progress: &dyn Progress) -> Outcome<Size> {
         let mut pulse = Pulse::new(progress, steps.len(), STEPS_AT_ONCE);
         self.start(BlockName::ProgramStart)?;
         let is_bounded = !parts::bounds(self.machine).hold(&Size::MOST);
@@ -320,7 +320,7 @@ impl<'a> Walk<'a> {
     }
 
     /// One step of it.
-    fn step(&mut self, steps: &[Step<'a>], index: usize) -> Outcome {
+    fn step(&mut self, steps: &[Step<'_>], index: usize) -> Outcome {
         let (line, done) = match &steps[index] {
             Step::Act(act, line, record) => {
                 self.index = *record;
@@ -393,7 +393,7 @@ impl<'a> Walk<'a> {
         Ok(self.size())
     }
 
-    fn act(&mut self, act: Act<'a>, line: u32) -> Outcome {
+    fn act(&mut self, act: Act<'_>, line: u32) -> Outcome {
         match act {
             Act::Tool(tool) => self.change_tool(tool, line),
             Act::Home => self.home(),
@@ -490,7 +490,7 @@ impl<'a> Walk<'a> {
         self.set_each(words, load.center.to_array());
     }
 
-    fn change_tool(&mut self, tool: &'a Tool, line: u32) -> Outcome {
+    fn change_tool(&mut self, tool: &Tool, line: u32) -> Outcome {
         self.limits.tool(tool, line)?;
         self.warn_of_cut("changes the tool", line);
         let by_hand = self.cell.tool_change.is_empty();

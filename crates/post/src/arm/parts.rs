@@ -56,7 +56,7 @@ impl Size {
     }
 }
 
-impl<'a> Walk<'a> {
+impl Walk<'_> {
     /// What the file has that is being written.
     pub(super) fn size(&self) -> Size {
         let lines = match self.writer.has(&[WordName::N]) {
@@ -81,7 +81,7 @@ impl<'a> Walk<'a> {
     /// Between two places where it may be divided it has more than a file takes; the control has no call.
     pub(super) fn divided(
         &mut self,
-        steps: &[Step<'a>],
+        steps: &[Step<'_>],
         borders: &[Border],
         whole: Size,
         progress: &dyn Progress,
