@@ -177,7 +177,7 @@ pub fn wire<'py>(
         make(&source, strict, &origin, machine.clone(), &settings, &file, &tolerances, &())
     })?;
     let account = &made.posted.account;
-    let report = reported(py, account, &made.report)?;
+    let report = reported(py, account, &made.report())?;
     if account.verdict != Verdict::Done {
         let error = raised(py, &account.findings);
         error.value(py).setattr("report", report)?;
