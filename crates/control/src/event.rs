@@ -128,7 +128,7 @@ pub enum Action {
     Arm(ArmAction),
     /// Words for the reader of the program.
     Comment(Box<str>),
-    /// Words for the operator's screen.
+    /// Words for the operator's screen; none where what stood there is taken away.
     Message(Box<str>),
     /// End of the program.
     End,

@@ -518,6 +518,18 @@ fn tools_are_put_in_by_hand_at_a_stop_where_no_program_changes_them() {
                 assert_eq!(rule_of(&hidden), Some("tool-by-hand"));
             }
         }
+        // What is taken away before the stop asks for no tool.
+        let erasers: &[(&str, &str)] = match name {
+            "kuka-kr6-r900" => &[
+                ("HALT", "WAIT FOR STRCLEAR($LOOP_MSG[])\r\nHALT"),
+                ("HALT", "$LOOP_CONT=FALSE\r\nHALT"),
+            ],
+            "abb-irb120-mill" => &[("Stop;", "TPErase;\r\nStop;")],
+            _ => &[],
+        };
+        for (stop, erased) in erasers {
+            assert_eq!(rule_of(&text.replace(stop, erased)), Some("tool-by-hand"), "{erased}");
+        }
         // Behind the stop the frame of the tool is stated anew: it is a longer one.
         let at = text.rfind(frame).unwrap();
         let line = text[at..].find('\n').unwrap();

@@ -176,7 +176,8 @@ impl State {
         let line = scan.line;
         match waiting {
             Waiting::Seconds(seconds) => channel.report(line, Action::Dwell(seconds)),
-            Waiting::Message => Ok(()),
+            // It is taken away.
+            Waiting::Message => channel.report(line, Action::Message("".into())),
             Waiting::Input(number, on) => {
                 let Ok(number) = u32::try_from(number) else {
                     return Err(scan.since(0, Rule::Index, "no input has this number"));

@@ -103,7 +103,14 @@ fn assign(
             channel.arm(line, ArmAction::Acceleration)
         }
         ("$VEL_AXIS", None) => joint_speed(state, scan, index, &value, channel),
-        (_, field) => mode(state, scan, name, field, &value),
+        (_, field) => {
+            let showed = state.shows;
+            mode(state, scan, name, field, &value)?;
+            if showed && !state.shows {
+                channel.report(line, Action::Message("".into()))?;
+            }
+            Ok(())
+        }
     }
 }
 

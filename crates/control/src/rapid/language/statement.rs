@@ -15,7 +15,7 @@ const MOST_ARGUMENTS: usize = 16;
 /// A statement of a procedure.
 #[derive(Debug)]
 pub(crate) enum Statement {
-    /// What changes nothing that is followed: `ConfJ`, `AccSet`, `TPErase`.
+    /// What changes nothing that is followed: `ConfJ`, `AccSet`.
     Nothing,
     Motion(Box<Motion>),
     /// `target := value`.
@@ -244,7 +244,8 @@ pub(crate) fn read(scan: &mut Scan, variables: &dyn Readable) -> Outcome<Stateme
             Value::Text(text) => Statement::Message(text),
             Value::Number(_) | Value::Flag(_) | Value::List(_) => Statement::Nothing,
         },
-        "TPERASE" => Statement::Nothing,
+        // The display is empty.
+        "TPERASE" => Statement::Message("".into()),
         "STOP" => Statement::Stop,
         "EXIT" => Statement::Exit,
         "RETURN" => Statement::Return,
