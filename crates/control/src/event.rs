@@ -263,6 +263,14 @@ impl Risk {
         refused: false,
     };
 
+    /// `G60` of FANUC and Haas (B-64484EN-2, "Single direction positioning (G60)"): past the end by parameter 5440, and back.
+    pub(crate) const ONE_SIDED: Risk = Risk {
+        rule: Rule::RapidPath,
+        what: "goes past the end of a rapid and comes back from one side (G60), as far as a parameter of the control says (5440 of FANUC)",
+        help: "write G0 in the place of G60",
+        refused: true,
+    };
+
     /// `A0` in a program of which only the control is known.
     pub(crate) const ROTARY_AT_ZERO: Risk = Risk {
         rule: Rule::RotaryAtZero,

@@ -803,7 +803,10 @@ impl Job {
         if calls_itself && files::name(&target) != self.file {
             let message =
                 format!("the program calls itself by the name of its file, {}", self.file);
-            return Err(refused(&message, "post it under the name that it is to be saved by"));
+            return Err(refused(
+                &message,
+                "keep the name, and give another folder; `toolpost post -o` writes it under another one",
+            ));
         }
         if self.keeps_name && files::name(&target) != self.file {
             let message = format!(

@@ -177,7 +177,7 @@ function Near({ screen }: { screen: Screen }) {
     return (
         <p class="near">
             In this folder, newest first:{" "}
-            {offered(entries.value).slice(0, NEAR).map(({ name, path }) => (
+            {offered(entries.value, studio.machines.value.map(({ name }) => name)).slice(0, NEAR).map(({ name, path }) => (
                 <button key={path} type="button" onClick={() => void studio.open({ file: path })}>
                     {name}
                 </button>

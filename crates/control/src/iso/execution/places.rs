@@ -177,6 +177,7 @@ impl Step<'_, '_, '_> {
         if target.named == 0 {
             return Ok(());
         }
+        self.actions.push(Action::Risk(Risk::ONE_SIDED.into()));
         self.straight(target, true)
     }
 
