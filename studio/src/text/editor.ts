@@ -304,6 +304,8 @@ export class Editor {
         this.view.dispatch({ effects: [this.locked.reconfigure(this.lock), this.more.reconfigure([])] });
         this.isSetting = false;
         this.draw(true);
+        // The cursor is in none of its lines: it begins at its head, wherever the one before it was scrolled to.
+        if (shown?.file !== origin?.file && this.marked.at === null) this.view.dispatch({ effects: EditorView.scrollIntoView(0, { y: "start" }) });
         if (this.isWhole) this.listener.whole(text, origin?.file ?? null);
     }
 
