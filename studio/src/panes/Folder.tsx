@@ -19,9 +19,11 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
     const { studio } = screen;
     const path = useSignal("");
     const entries = useSignal<Entry[]>([]);
+    // A page that has just been opened may have no connection yet, and one that was lost comes back.
+    const isOpen = studio.link.value === "open";
     useEffect(() => {
-        void studio.seam.ask("folder", { path: path.value }).then(({ done }) => (entries.value = done.entries));
-    }, [path.value]);
+        if (isOpen) void studio.seam.ask("folder", { path: path.value }).then(({ done }) => (entries.value = done.entries));
+    }, [path.value, isOpen]);
     const up: Choice[] =
         path.value === ""
             ? []

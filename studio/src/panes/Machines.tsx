@@ -11,8 +11,8 @@ export function Machines({ screen, close }: { screen: Screen; close(): void }) {
     const command = useSignal<Command | null>(null);
     const source = studio.work.value?.source;
     useEffect(() => {
-        // A machine file may have come into the folder.
-        void studio.seam.ask("machines", {}).then(({ done }) => (studio.machines.value = done));
+        // A machine file may have come into the folder. Without a connection those of before stay; all are asked for when there is one.
+        void studio.seam.ask("machines", {}).then(({ done }) => (studio.machines.value = done), () => {});
         if (source === undefined) return;
         const ask = () => studio.seam.ask("command", { source, machine: null }).then(({ done }) => void (command.value = done));
         // The form may ask the same meanwhile, which ends this one. What cannot be read says so when it is posted.

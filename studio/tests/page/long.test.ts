@@ -12,6 +12,20 @@ const source = (moves: number): string => {
     return ["UNITS/MM", "LOADTL/1", "SPINDL/900,RPM,CLW", "RAPID", "GOTO/0,0,50", "FEDRAT/900,MMPM", ...lines, "FINI", ""].join("\n");
 };
 
+/** It runs in the page: a connection is open a second later. */
+function opensLate(): void {
+    globalThis.WebSocket = class extends WebSocket {
+        constructor(...given: ConstructorParameters<typeof WebSocket>) {
+            super(...given);
+            this.addEventListener("open", (event) => {
+                if (!event.isTrusted) return;
+                event.stopImmediatePropagation();
+                setTimeout(() => this.dispatchEvent(new Event("open")), 1000);
+            });
+        }
+    };
+}
+
 describe.skipIf(absent() !== null)("a long program", () => {
     const browser = browserOfTests();
 
@@ -54,6 +68,16 @@ describe.skipIf(absent() !== null)("a long program", () => {
         expect(complaints).toEqual([]);
         await page.close();
     }, 150_000);
+
+    test("files are listed as soon as there is a connection, also where they are asked for before", async () => {
+        const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
+        writeFileSync(join(server.folder, "small.cls"), source(10));
+        const { page, complaints } = await visit(browser(), server.link, {}, opensLate);
+        await page.keyboard.press("Control+o");
+        await page.getByRole("dialog").getByText("small.cls").waitFor();
+        expect(complaints).toEqual([]);
+        await page.close();
+    });
 
     test("of a text that is kept whole the lines round the place come first; when all are here it can be edited", async () => {
         const server = await Server.start([], ["-m", "generic-3axis-fanuc"]);
