@@ -92,7 +92,7 @@ export class Studio {
             this.drafts.value = opened.drafts.filter(({ name }) => name !== this.kept);
             this.opened.value = opened;
             if (this.edited.value !== null) return this.prove(this.edited.value);
-            if (this.work.value !== null) return this.post(this.work.value);
+            if (this.work.value !== null) return this.post({ ...this.work.value, machine: this.work.value.machine ?? this.machine.value });
             return opened.source === null ? null : this.open(opened.source);
         });
         if (this.left !== null) await this.offer(this.left);
@@ -171,6 +171,8 @@ export class Studio {
         this.machine.value = machine;
         if (machine === null) {
             this.job.value = null;
+            // What is dropped before the first connection is posted with it: the command may have named a machine.
+            if (this.opened.value === null) return true;
             void this.askForm();
             this.asksMachine();
             return true;
