@@ -203,3 +203,24 @@ test("the end of an old run that comes behind the result of a newer one changes 
     await old;
     expect([studio.job.value?.revision, studio.canSave.value, studio.stop.value]).toEqual([2, true, null]);
 });
+
+test("what is dropped before there is a connection is posted with the machine that the command names", async () => {
+    const machines: (string | null)[] = [];
+    const opened = { machine: "mill", source: null, drafts: [] };
+    const seam = {
+        ask: (ask: string, params: { machine: string | null }) => {
+            if (ask === "post") machines.push(params.machine);
+            const job = { revision: 1, verdict: "done", findings: [], walk: { moves: 0, mismatch: null } };
+            return Promise.resolve({ done: { open: opened, machines: [], drafts: [], post: job }[ask], arrays: {} });
+        },
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("connecting"));
+    let asks = 0;
+    studio.asksMachine = () => asks++;
+    await studio.post({ ...work, machine: null });
+    await studio.begin();
+    expect([asks, machines, studio.work.value?.machine]).toEqual([0, ["mill"], "mill"]);
+    // From then on it is asked for.
+    await studio.post({ ...work, machine: null });
+    expect([asks, machines]).toEqual([1, ["mill"]]);
+});
