@@ -303,13 +303,17 @@ impl Folder {
         }
         let parent = inner.parent().unwrap_or(Path::new(""));
         let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
-        let there = |at: &Path| match self.dir.metadata(at) {
+        self.stays_in(parent, path)?;
+        self.stays_in(&inner, path)?;
+        Ok(self.path.join(inner))
+    }
+
+    /// Checks that what lies at `inner`, if anything does, is in the folder; `path`: as it was given.
+    fn stays_in(&self, inner: &Path, path: &str) -> Result<(), Box<Diagnostic>> {
+        match self.dir.metadata(inner) {
             Err(error) if is_escape(&error) => Err(leads_out(path)),
             _ => Ok(()),
-        };
-        there(parent)?;
-        there(&inner)?;
-        Ok(self.path.join(inner))
+        }
     }
 
     /// The whole path of a folder in the folder, or of that itself, given by it or by its path in the folder.
@@ -319,10 +323,8 @@ impl Folder {
     pub fn inner_folder(&self, path: &Path) -> Result<PathBuf, Box<Diagnostic>> {
         let path = self.within(path).to_string_lossy();
         let inner = inner(&path)?;
-        match self.dir.metadata(&inner) {
-            Err(error) if is_escape(&error) => Err(leads_out(&path)),
-            _ => Ok(self.path.join(inner)),
-        }
+        self.stays_in(&inner, &path)?;
+        Ok(self.path.join(inner))
     }
 
     /// The drafts that are kept, by their names.

@@ -103,14 +103,14 @@ fn assign(
             channel.arm(line, ArmAction::Acceleration)
         }
         ("$VEL_AXIS", None) => joint_speed(state, scan, index, &value, channel),
-        (_, field) => {
-            let showed = state.shows;
-            mode(state, scan, name, field, &value)?;
-            if showed && !state.shows {
-                channel.report(line, Action::Message("".into()))?;
-            }
-            Ok(())
-        }
+        ("$LOOP_CONT", None) => match value {
+            Value::Flag(shows) => match std::mem::replace(&mut state.shows, shows) && !shows {
+                true => channel.report(line, Action::Message("".into())),
+                false => Ok(()),
+            },
+            other => Err(unfit(scan, name, &other, "TRUE or FALSE")),
+        },
+        (_, field) => mode(state, scan, name, field, &value),
     }
 }
 
@@ -142,10 +142,6 @@ fn mode(state: &mut State, scan: &Scan, name: Name, field: Option<&str>, value: 
             let entries = [("BASE", false), ("PATH", true)];
             state.along_path = Some(chosen(scan, name, value, &entries)?);
         }
-        ("$LOOP_CONT", None) => match value {
-            Value::Flag(shows) => state.shows = *shows,
-            other => return Err(unfit(scan, name, other, "TRUE or FALSE")),
-        },
         ("$BWDSTART", None) if matches!(value, Value::Flag(_)) => {}
         _ => {
             let message = format!("what {name} does is not known here");
