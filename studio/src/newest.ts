@@ -31,6 +31,17 @@ export class Newest<T> {
     }
 }
 
+/** Of what is asked several times only the answer to the newest ask counts. */
+export class Latest {
+    private last = 0;
+
+    /** Begins an ask: whether it is still the newest. */
+    begin(): () => boolean {
+        const own = ++this.last;
+        return () => own === this.last;
+    }
+}
+
 /** What is begun in the same turn ends together: one frame shows all of it. */
 export class Together {
     private begun: Promise<unknown>[] = [];

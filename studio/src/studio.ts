@@ -2,7 +2,7 @@
 
 import { batch, computed, signal, type Signal } from "@preact/signals";
 import { Cursor } from "./cursor.ts";
-import { Newest } from "./newest.ts";
+import { Latest, Newest } from "./newest.ts";
 import type { Arrays } from "./protocol/frames.ts";
 import { said, Stopped, type Asking, type Progress, type Seam, type State } from "./protocol/seam.ts";
 import { readText } from "./protocol/text.ts";
@@ -57,6 +57,8 @@ export class Studio {
     /** The edit that the server has said to have kept. */
     private readonly known: Signal<Studio["edited"]["value"]> = signal(null);
     private readonly keeping = new Newest<Work>((work) => this.keepEdit(work));
+    /** What has asked for room last. */
+    private room: Promise<unknown> = Promise.resolve();
     /** An edit that was on the page when it was left, until a server has it. */
     left: Unkept | null = null;
     /** Why the server could not keep the edit: a full disk, a folder that is read only. */
@@ -71,7 +73,10 @@ export class Studio {
     readonly cursor: Cursor;
     /** A machine has to be chosen before anything can be posted. */
     asksMachine: () => void = () => {};
+    /** The command whose form is shown. */
     private formOf: Command | null = null;
+    private readonly forms = new Latest();
+    private readonly listed = new Latest();
     private abort: AbortController | null = null;
 
     constructor(
@@ -104,15 +109,18 @@ export class Studio {
     /** The options of the machine's command; while the machines have not come, this is asked behind them. */
     private async askForm(): Promise<void> {
         if (this.machines.value.length === 0) return;
+        const isNewest = this.forms.begin();
         const kind = this.machines.value.find(({ name }) => name === this.machine.value)?.kind;
         const ofMachine: Command = kind === "wire" || kind === "glass" ? kind : "post";
         const work = this.work.value;
         // What cannot be read says so when it is posted.
         const command = work === null ? ofMachine : await this.seam.ask("command", { source: work.source, machine: this.machine.value })
             .then(({ done }) => done, () => ofMachine);
-        if (this.formOf === command) return;
+        if (!isNewest() || this.formOf === command) return;
+        const { done: form } = await this.seam.ask("form", { command });
+        if (!isNewest()) return;
         this.formOf = command;
-        this.form.value = (await this.seam.ask("form", { command })).done;
+        this.form.value = form;
     }
 
     open(source: Given): Promise<void> {
@@ -392,27 +400,42 @@ export class Studio {
         return false;
     }
 
-    /** An edit makes room for something else: it stays among the drafts, and is offered. False where it cannot be kept: then nothing else is done. */
-    private async setAside(): Promise<boolean> {
-        const { edited, work } = this;
+    /**
+     * An edit makes room for something else: it stays among the drafts, and is offered. False where it cannot be kept: then nothing else is done.
+     * One behind the other: of two that ask for room the later one has it.
+     */
+    private setAside(): Promise<boolean> {
+        const made = this.room.then(() => this.makeRoom());
+        this.room = made.catch(() => {});
+        return made;
+    }
+
+    private async makeRoom(): Promise<boolean> {
+        const { edited, known, work } = this;
         if (edited.value === null || work.value === null) return true;
-        clearTimeout(this.typing);
         await this.keeping.rest();
-        if (edited.value !== null && this.known.value !== edited.value && !(await this.keep(work.value, edited.value))) {
+        // Keys may come while it is being kept.
+        while (edited.value !== null && edited.value !== known.value) {
+            const edit: Edit = edited.value;
+            await this.keeping.ask(work.value);
+            await this.keeping.rest();
+            if (known.value === edit || edited.value !== edit) continue;
             this.stopped.value = [said("edit-not-kept", `the edit on this page cannot be kept: ${this.notKept.value ?? "there is no server"}`, "save it, download it, or discard it; nothing else was done")];
             return false;
         }
+        clearTimeout(this.typing);
         this.aside = this.kept;
         this.kept = null;
         edited.value = null;
-        await this.askDrafts();
+        void this.askDrafts();
         return true;
     }
 
     /** What is kept of edits that are not on this page. */
     private async askDrafts(): Promise<void> {
+        const isNewest = this.listed.begin();
         const drafts = await this.seam.ask("drafts", {}).then(({ done }) => done, () => null);
-        if (drafts !== null) this.drafts.value = drafts.filter(({ name }) => name !== this.kept);
+        if (drafts !== null && isNewest()) this.drafts.value = drafts.filter(({ name }) => name !== this.kept);
     }
 
     /** Those of the program that is shown come first, and of them the one that made room last. */
@@ -475,6 +498,8 @@ export class Studio {
     async dropDraft(name: string): Promise<void> {
         this.drafts.value = this.drafts.value.filter((draft) => draft.name !== name);
         await this.seam.ask("drop_draft", { name }).catch(() => {});
+        // A list that was asked for before may have it in it.
+        await this.askDrafts();
     }
 
     /** Why the program cannot be saved as it stands on the page. */

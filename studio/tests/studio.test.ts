@@ -224,3 +224,69 @@ test("what is dropped before there is a connection is posted with the machine th
     await studio.post({ ...work, machine: null });
     expect([asks, machines]).toEqual([1, ["mill"]]);
 });
+
+test("the form is that of the machine that was chosen last, in whatever order its options come", async () => {
+    const forms: ((name: string) => void)[] = [];
+    const seam = {
+        ask: (ask: string) => new Promise((resolve) => {
+            if (ask === "form") forms.push((name) => resolve({ done: [{ name }], arrays: {} }));
+        }),
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    studio.machines.value = [{ name: "mill", kind: "mill" }, { name: "engraver", kind: "glass" }] as never;
+    void studio.choose("mill");
+    void studio.choose("engraver");
+    await settled();
+    const [ofMill, ofEngraver] = forms;
+    ofEngraver!("block");
+    await settled();
+    ofMill!("fixture");
+    await settled();
+    expect(studio.form.value.map(({ name }) => name)).toEqual(["block"]);
+    // Back again, the form is another one again.
+    void studio.choose("mill");
+    await settled();
+    forms[2]!("fixture");
+    await settled();
+    expect(studio.form.value.map(({ name }) => name)).toEqual(["fixture"]);
+});
+
+/** An edit that the server has not kept at once, and now does, the newest ask first. */
+async function unkept() {
+    const { studio } = open();
+    const { ask } = studio.seam;
+    await studio.post(work as never);
+    await settled();
+    const waiting: (() => void)[] = [];
+    const texts: string[] = [];
+    studio.seam.ask = (async (name: string, params: never, asking?: Asking) => {
+        if (name === "draft") {
+            if (texts.push(new TextDecoder().decode(asking!.arrays!.text)) === 1) throw new Stopped("failed", [said("write", "the disk is full", "")]);
+            await new Promise<void>((resolve) => waiting.push(resolve));
+        }
+        return ask(name as never, params, asking);
+    }) as never;
+    studio.typed("G0 X1\n");
+    const until = async (work: Promise<unknown>): Promise<void> => {
+        const answers = setInterval(() => waiting.pop()?.());
+        await work;
+        clearInterval(answers);
+    };
+    return { studio, texts, until };
+}
+
+test("of two machines that are chosen while the edit makes room the later one stays", async () => {
+    const { studio, until } = await unkept();
+    await until(Promise.all([studio.choose("lathe"), studio.choose("robot")]));
+    expect([studio.work.value?.machine, studio.machine.value]).toEqual(["robot", "robot"]);
+});
+
+test("keys that come while the edit makes room are in the draft", async () => {
+    const { studio, texts, until } = await unkept();
+    const chosen = studio.choose("lathe");
+    await expect.poll(() => texts.length).toBe(2);
+    studio.typed("G0 X12\n");
+    await until(chosen);
+    expect(texts.at(-1)).toBe("G0 X12\n");
+    expect(studio.edited.value).toBe(null);
+});

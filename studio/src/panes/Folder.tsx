@@ -22,7 +22,10 @@ export function Folder({ screen, close, take, takeFolder, takeOther }: Props) {
     // A page that has just been opened may have no connection yet, and one that was lost comes back.
     const isOpen = studio.link.value === "open";
     useEffect(() => {
-        if (isOpen) void studio.seam.ask("folder", { path: path.value }).then(({ done }) => (entries.value = done.entries));
+        if (!isOpen) return;
+        const asked = path.value;
+        // One may have gone on to another folder meanwhile.
+        void studio.seam.ask("folder", { path: asked }).then(({ done }) => asked === path.value && (entries.value = done.entries));
     }, [path.value, isOpen]);
     const up: Choice[] =
         path.value === ""

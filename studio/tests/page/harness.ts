@@ -104,6 +104,7 @@ export interface Visit {
 /** `watch` runs in the page before anything else there. */
 export async function visit(browser: Browser, link: string, more: Parameters<Browser["newPage"]>[0] = {}, watch: () => void = () => {}): Promise<Visit> {
     const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...more });
+    if (seed !== undefined) await page.addInitScript(tardy, seed);
     await page.addInitScript(watch);
     page.setDefaultTimeout(10_000);
     const complaints: string[] = [];
@@ -111,6 +112,45 @@ export async function visit(browser: Browser, link: string, more: Parameters<Bro
     page.on("pageerror", (error) => complaints.push(String(error)));
     await visitOn(page, link);
     return { page, complaints };
+}
+
+/** `TOOLPOST_LATE=1 npm test`: all that the page waits for comes late by chance, which this number begins. What it shows may not hang on it. */
+const seed = process.env.TOOLPOST_LATE;
+
+/** It runs in the page. Connections, answers and what is fetched come up to 400 ms late; what belongs to one ask stays in its order. */
+function tardy(seed: string): void {
+    let state = Number(seed) + 1;
+    const late = (): number => {
+        state = (state * 48271) % 2147483647;
+        return state % 3 === 0 ? state % 400 : 0;
+    };
+    const { fetch } = globalThis;
+    globalThis.fetch = async (...given) => {
+        const answer = await fetch(...given);
+        await new Promise((resolve) => setTimeout(resolve, late()));
+        return answer;
+    };
+    globalThis.WebSocket = class extends WebSocket {
+        private readonly due = new Map<number, number>();
+
+        constructor(...given: ConstructorParameters<typeof WebSocket>) {
+            super(...given);
+            const after = (event: Event, at: number, again: () => Event): void => {
+                event.stopImmediatePropagation();
+                setTimeout(() => this.dispatchEvent(again()), at - performance.now());
+            };
+            this.addEventListener("open", (event) => event.isTrusted && after(event, performance.now() + late(), () => new Event("open")));
+            this.addEventListener("message", (event) => {
+                if (!event.isTrusted) return;
+                const data = event.data as ArrayBuffer;
+                const head = new Uint8Array(data, 4, new DataView(data).getUint32(0, true));
+                const { id } = JSON.parse(new TextDecoder().decode(head)) as { id: number };
+                const at = Math.max(this.due.get(id) ?? 0, performance.now() + late());
+                this.due.set(id, at);
+                after(event, at, () => new MessageEvent("message", { data }));
+            });
+        }
+    };
 }
 
 /** In a page that is there. */
