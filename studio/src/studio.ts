@@ -52,8 +52,8 @@ export class Studio {
     private shown = "";
     /** Name of the draft that this page keeps its edit under. */
     private kept: string | null = null;
-    /** That of the edit which made room last. */
-    private aside: string | null = null;
+    /** Those of the edits which made room, the last one behind: the server's list may not have them yet. */
+    private aside: string[] = [];
     /** The edit that the server has said to have kept. */
     private readonly known: Signal<Studio["edited"]["value"]> = signal(null);
     private readonly keeping = new Newest<Work>((work) => this.keepEdit(work));
@@ -378,7 +378,7 @@ export class Studio {
         const of: Drafted = files.length === 1 && files[0]![0] === null ? work : { ...work, files };
         const name = draftName(work);
         // What is kept already is another edit, and stays as it is.
-        const offered = new Set(this.drafts.value.map((draft) => draft.name));
+        const offered = new Set([...this.drafts.value.map((draft) => draft.name), ...this.aside]);
         const names = new Set([this.kept ?? name, name, ...[2, 3, 4, 5, 6, 7, 8, 9].map((number) => `${name}-${number}`)]);
         if (this.kept === null && offered.has(name)) this.said.value = "there is another edit of this program: both edits are kept";
         for (const own of [...names].filter((one) => one === this.kept || !offered.has(one))) {
@@ -424,7 +424,7 @@ export class Studio {
             return false;
         }
         clearTimeout(this.typing);
-        this.aside = this.kept;
+        if (this.kept !== null) this.aside.push(this.kept);
         this.kept = null;
         edited.value = null;
         void this.askDrafts();
@@ -442,7 +442,7 @@ export class Studio {
     readonly offers = computed(() => {
         const work = this.work.value;
         const name = work === null ? null : draftName(work);
-        const rank = (draft: Draft): number => (name === null || draft.name.replace(/-\d$/, "") !== name ? 2 : draft.name === this.aside ? 0 : 1);
+        const rank = (draft: Draft): number => (name === null || draft.name.replace(/-\d$/, "") !== name ? 2 : draft.name === this.aside.at(-1) ? 0 : 1);
         return this.drafts.value.toSorted((a, b) => rank(a) - rank(b));
     });
 
@@ -489,14 +489,20 @@ export class Studio {
         this.work.value = work;
         this.kept = draft.name;
         this.machine.value = work.machine;
-        this.drafts.value = this.drafts.value.filter(({ name }) => name !== draft.name);
+        this.takeOut(draft.name);
         // It is an edit of what is posted today.
         this.base = null;
         await this.prove(editOf(arrays.text as Uint8Array | undefined, files));
     }
 
-    async dropDraft(name: string): Promise<void> {
+    /** It is offered no more. */
+    private takeOut(name: string): void {
+        this.aside = this.aside.filter((one) => one !== name);
         this.drafts.value = this.drafts.value.filter((draft) => draft.name !== name);
+    }
+
+    async dropDraft(name: string): Promise<void> {
+        this.takeOut(name);
         await this.seam.ask("drop_draft", { name }).catch(() => {});
         // A list that was asked for before may have it in it.
         await this.askDrafts();

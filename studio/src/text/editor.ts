@@ -156,6 +156,8 @@ export class Editor {
         }
         this.origin = origin;
         if (origin === null) return this.set("", { from: 1, to: 1 });
+        // Until it is here, what is seen is another text, and no key makes it an edit of this one.
+        this.lock();
         this.showing = this.fetch(this.marked.at ?? 1);
         await this.showing;
     }
@@ -166,8 +168,9 @@ export class Editor {
         this.reading++;
         this.coming = null;
         this.origin = origin;
-        if (isOne(origin, this.shown) && this.text === text) this.shown = origin;
-        else this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
+        if (!isOne(origin, this.shown) || this.text !== text) return this.set(text, { from: 1, to: Number.MAX_SAFE_INTEGER });
+        this.shown = origin;
+        this.lock();
     }
 
     /** All lines of a text, or of a long one those round `line`; the others come when the cursor rests. */
@@ -256,12 +259,15 @@ export class Editor {
 
     /** All lines are here: they may be edited. */
     private finish(): void {
-        this.view.dispatch({ effects: this.locked.reconfigure(this.lock) });
+        this.lock();
         this.listener.whole(this.text, this.shown?.file ?? null);
     }
 
-    private get lock(): Extension {
-        return EditorState.readOnly.of(!(this.origin?.isEditable === true && this.isWhole));
+    /** Only where all lines of the text are here it can be edited. */
+    private lock(): void {
+        const { origin, shown, isWhole } = this;
+        const isOpen = origin?.isEditable === true && origin === shown && isWhole;
+        this.view.dispatch({ effects: this.locked.reconfigure(EditorState.readOnly.of(!isOpen)) });
     }
 
     /** The lines that are not among the kept ones. */
@@ -301,7 +307,8 @@ export class Editor {
         this.shown = origin;
         this.isSetting = true;
         this.view.setState(left?.doc.toString() === text ? left : EditorState.create({ doc: text, extensions }));
-        this.view.dispatch({ effects: [this.locked.reconfigure(this.lock), this.more.reconfigure([])] });
+        this.view.dispatch({ effects: this.more.reconfigure([]) });
+        this.lock();
         this.isSetting = false;
         this.draw(true);
         // The cursor is in none of its lines: it begins at its head, wherever the one before it was scrolled to.

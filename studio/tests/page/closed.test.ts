@@ -3,7 +3,7 @@ import type { AddressInfo } from "node:net";
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import { absent, browserOfTests, covered, example, proven, readout, Server, visit } from "./harness.ts";
+import { absent, browserOfTests, covered, example, proven, readout, Server, visit, writable } from "./harness.ts";
 
 describe.skipIf(absent() !== null)("the page and others", () => {
     const browser = browserOfTests();
@@ -123,6 +123,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         writeFileSync(join(server.folder, ".toolpost"), "");
         const { page, complaints } = await visit(browser(), server.link);
         await proven(page);
+        await writable(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
         await page.keyboard.type(" (mine)");
@@ -139,6 +140,7 @@ describe.skipIf(absent() !== null)("the page and others", () => {
         const first = await Server.start(files, machine);
         const { page } = await visit(browser(), first.link);
         await proven(page);
+        await writable(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
         await page.keyboard.type(" (kept)");

@@ -153,6 +153,22 @@ function tardy(seed: string): void {
     };
 }
 
+/** It runs in the page: what the server says comes so many milliseconds late as `late` says. */
+export function answersLate(): void {
+    const global = globalThis as unknown as { late?: number };
+    globalThis.WebSocket = class extends WebSocket {
+        constructor(...given: ConstructorParameters<typeof WebSocket>) {
+            super(...given);
+            this.addEventListener("message", (event) => {
+                const { late = 0 } = global;
+                if (!event.isTrusted || late === 0) return;
+                event.stopImmediatePropagation();
+                setTimeout(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })), late);
+            });
+        }
+    };
+}
+
 /** In a page that is there. */
 export async function visitOn(page: Page, link: string): Promise<void> {
     if (newer !== undefined) await page.route(/\/(assets\/.*)?$/, (route) => serve(route, newer));
@@ -173,6 +189,11 @@ async function serve(route: Route, folder: string): Promise<void> {
 
 export async function proven(page: Page, timeout = 20_000): Promise<void> {
     await page.getByText("✓ PROVEN").waitFor({ timeout });
+}
+
+/** All lines of the program are here, so that keys go into it. */
+export async function writable(page: Page): Promise<void> {
+    await page.locator(".program .cm-content:not([aria-readonly])").waitFor();
 }
 
 /** The lit line of a pane: the number in its text, and what stands there. */

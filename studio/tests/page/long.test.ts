@@ -3,7 +3,7 @@
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import { absent, browserOfTests, covered, goTo, proven, Server, visit } from "./harness.ts";
+import { absent, browserOfTests, covered, goTo, proven, Server, visit, writable } from "./harness.ts";
 
 const MOVES = 400_000;
 
@@ -97,7 +97,7 @@ describe.skipIf(absent() !== null)("a long program", () => {
         expect(to).toBeLessThan(100);
         // Its last block stands beyond what came first.
         await goTo(page, "11000");
-        await expect.poll(() => page.locator(".program .cm-content").getAttribute("aria-readonly")).toBe(null);
+        await writable(page);
         await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");
         await page.keyboard.type(" (LOOK)");

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { afterEach, beforeAll, describe, expect, test } from "vitest";
-import { absent, accessible, browserOfTests, goTo, lit, proven, Server, visit, type Visit } from "./harness.ts";
+import { absent, accessible, answersLate, browserOfTests, goTo, lit, proven, Server, visit, type Visit } from "./harness.ts";
 
 /** Rows of cuts, a way up between any two. */
 const rows = Array.from({ length: 30 }, (_, i) => 30 + i).map((y) =>
@@ -15,22 +15,6 @@ const machine = 'extends = "kuka-kr6-r900"\n\n[capabilities]\nprogram_lines = 60
 
 /** As the command starts with a source and a machine that lie in its folder. */
 const start = (folder: string): Promise<Server> => Server.start([], [join(folder, "job.cls"), "-m", join(folder, "mine.toml")], folder);
-
-/** It runs in the page: what the server says comes so many milliseconds late as `late` says. */
-function answersLate(): void {
-    const global = globalThis as unknown as { late?: number };
-    globalThis.WebSocket = class extends WebSocket {
-        constructor(...given: ConstructorParameters<typeof WebSocket>) {
-            super(...given);
-            this.addEventListener("message", (event) => {
-                const { late = 0 } = global;
-                if (!event.isTrusted || late === 0) return;
-                event.stopImmediatePropagation();
-                setTimeout(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })), late);
-            });
-        }
-    };
-}
 
 describe.skipIf(absent() !== null)("the page with a program of several files", () => {
     const browser = browserOfTests();

@@ -2,7 +2,7 @@ import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync } from "
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, test } from "vitest";
-import { absent, accessible, example, goTo, launch, lit, proven, readout, Server, visit, type Visit } from "./harness.ts";
+import { absent, accessible, answersLate, example, goTo, launch, lit, proven, readout, Server, visit, writable, type Visit } from "./harness.ts";
 
 /** The numbers of a `GOTO/`. */
 const goto = (text: string): number[] => text.replace(/^GOTO\s*\//, "").split(",").map(Number);
@@ -160,6 +160,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
 
     test("an edit outlives a reload: it is offered again, and goes on", async () => {
         const page = await begin();
+        await writable(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
         await page.keyboard.type(" (mine)");
@@ -178,6 +179,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
     });
 
     const edit = async (page: Page, text: string): Promise<void> => {
+        await writable(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
         await page.keyboard.type(text);
@@ -212,6 +214,25 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.reload();
         await proven(page);
         await expect.poll(() => lit(page, "source")).toBe(at);
+    });
+
+    test("keys that come before the new program is here are no edit of it", async () => {
+        open = await visit(browser, server.link, {}, answersLate);
+        const { page } = open;
+        await proven(page);
+        await writable(page);
+        await page.evaluate(() => Object.assign(globalThis, { late: 1500 }));
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("generic-3axis-haas");
+        await page.keyboard.press("Enter");
+        // The text of the program before is still there.
+        await page.locator(".program .cm-content[aria-readonly=true]").focus();
+        await page.keyboard.type("?");
+        await page.evaluate(() => Object.assign(globalThis, { late: 0 }));
+        await writable(page);
+        expect(await page.locator(".program .cm-content").innerText()).not.toContain("?");
+        expect(await page.getByText("▲ edited").count()).toBe(0);
+        await proven(page);
     });
 
     test("an edit makes room for another machine, other options or a dropped program, and is offered each time; none overwrites another", async () => {
@@ -525,6 +546,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.dispatchEvent(".canvas", "drop", { dataTransfer: dropped });
         await page.getByRole("button", { name: "dropped.cls", exact: true }).waitFor();
         await proven(page);
+        await writable(page);
         await page.locator(".program .cm-line").first().click();
         await page.keyboard.press("End");
         await page.keyboard.type(" (kept)");
