@@ -15,7 +15,7 @@ export default defineConfig({
         projects: [
             { test: { name: "parts", include: ["tests/*.test.ts"] } },
             // Browsers, on two cores: one file after the other.
-            { test: { name: "page", include: ["tests/page/*.test.ts"], fileParallelism: false, testTimeout: 30_000, hookTimeout: 30_000, expect: { poll: { timeout: 10_000 } } } },
+            { test: { name: "page", include: ["tests/page/*.test.ts"], fileParallelism: false, testTimeout: 90_000, hookTimeout: 60_000, expect: { poll: { timeout: 20_000 } } } },
         ],
     },
 });

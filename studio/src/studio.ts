@@ -38,6 +38,11 @@ export class Studio {
     readonly given: Signal<string | null> = signal(null);
     /** The files of the program as they were posted, as far as they were read. */
     readonly posted = new Map<string | null, string>();
+    /** Warnings of the posting that are not of its program, as long as what is shown is that program or an edit of it. */
+    private readonly warned: Signal<Finding[]> = signal([]);
+    /** A posting runs: what is shown is not of what was chosen last, and takes no keys. */
+    readonly isPosting: Signal<boolean> = signal(false);
+    private readonly postings = new Latest();
     /** Grows with each program that is no edit of the one before. */
     program = 0;
     /** The file of the folder that was proven in the place of what is posted. */
@@ -67,7 +72,11 @@ export class Studio {
     readonly isAlone = computed(() => this.edited.value !== null && (this.link.value !== "open" || this.known.value !== this.edited.value));
     /** What stops the work comes first. */
     readonly findings = computed(() => {
-        const all = [...this.stopped.value, ...(this.job.value?.findings ?? [])];
+        const ofJob = this.job.value?.findings ?? [];
+        const told = new Set(ofJob.map(nameOf));
+        // What the posting has warned of is true of an edit too, whose proof does not look at all of it.
+        const stay = this.job.value === null ? [] : this.warned.value.filter((finding) => !told.has(nameOf(finding)));
+        const all = [...this.stopped.value, ...ofJob, ...stay];
         return all.toSorted((a, b) => Number(b.severity === "error") - Number(a.severity === "error"));
     });
     readonly cursor: Cursor;
@@ -129,13 +138,15 @@ export class Studio {
 
     /** Another source: a machine of another kind, which cannot take it, is not kept. */
     private async begunWith(work: Work): Promise<void> {
+        this.said.value = "";
         const kind = this.machines.value.find(({ name }) => name === work.machine)?.kind;
         const posting = this.post(work).then(() => {});
         if (kind === undefined) return posting;
         // What cannot be read says so when it is posted.
-        const command = await this.seam.ask("command", { source: work.source, machine: null }).then(({ done }) => done, () => null);
-        if (fits(kind, command) || this.work.value !== work) return posting;
-        this.cancel();
+        const kinds = await this.seam.ask("kinds", { source: work.source }).then(({ done }) => done, () => [kind]);
+        // An edit may still be making room for it.
+        await this.room;
+        if (kinds.includes(kind) || this.work.value !== work) return posting;
         await this.post({ ...work, machine: null });
     }
 
@@ -159,6 +170,7 @@ export class Studio {
 
     async choose(machine: string): Promise<void> {
         const work = this.work.value;
+        this.said.value = "";
         if (work !== null) {
             await this.post({ ...work, machine });
             return;
@@ -178,6 +190,7 @@ export class Studio {
         const { source, machine, options } = work;
         this.machine.value = machine;
         if (machine === null) {
+            this.end();
             this.job.value = null;
             // What is dropped before the first connection is posted with it: the command may have named a machine.
             if (this.opened.value === null) return true;
@@ -191,14 +204,18 @@ export class Studio {
             this.job.value = this.board.value = null;
         }
         this.shown = JSON.stringify(source);
+        const isNewest = this.postings.begin();
+        this.isPosting.value = true;
         const posting = this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done);
         void this.askForm();
         const job = await posting;
+        if (isNewest()) this.isPosting.value = false;
         // Something newer is under way, and what is shown belongs to it.
         if (this.work.value !== work) return true;
         if (job === undefined) this.cursor.keep();
         batch(() => {
             this.board.value = job?.board ?? null;
+            this.hasWarned(job ?? null);
             if (this.edited.value === null) this.isNew(job ?? null);
             this.show(job ?? null);
             this.isCurrent.value = job !== undefined && this.edited.value === null;
@@ -221,6 +238,10 @@ export class Studio {
         if (this.link.value !== "open" || this.running.value !== null || work.value === null || work.value.machine === null) return undefined;
         if (this.isCurrent.value || stop.value === null) return job.value?.revision;
         return stop.value === "cancelled" ? undefined : null;
+    }
+
+    private hasWarned(job: Job | null): void {
+        this.warned.value = (job?.findings ?? []).filter(({ severity, of }) => severity === "warning" && of !== "program");
     }
 
     /** The job of a program that is no edit of the one before. */
@@ -249,6 +270,7 @@ export class Studio {
         batch(() => {
             this.edited.value = null;
             this.work.value = ofProgram(this.work.value, job);
+            this.hasWarned(job);
             this.isNew(job);
             this.job.value = job;
             this.isCurrent.value = true;
@@ -281,6 +303,7 @@ export class Studio {
         batch(() => {
             this.edited.value = null;
             this.isNew(job);
+            this.warned.value = [];
             this.there = file;
             this.show(job);
             this.isCurrent.value = true;
@@ -296,6 +319,7 @@ export class Studio {
         if (edit.size === files.length) {
             if (!(await this.setAside())) return;
             this.given.value = files.find((file) => own(file) === null)?.name ?? null;
+            this.warned.value = [];
             return this.prove(edit);
         }
         const names = [...parts].join(", ") || "none";
@@ -356,6 +380,7 @@ export class Studio {
         if (signal?.aborted) return;
         this.shown = JSON.stringify(source);
         batch(() => {
+            this.hasWarned(job);
             this.isNew(job);
             for (const [name, text] of texts) this.posted.set(name, text);
             this.board.value = first.board;
@@ -538,6 +563,16 @@ export class Studio {
         this.abort?.abort();
     }
 
+    /** Ends what runs and forgets what it has said: it is of something else. */
+    private end(): void {
+        this.abort?.abort();
+        this.abort = null;
+        batch(() => {
+            this.running.value = this.stop.value = this.walking.value = null;
+            this.stopped.value = [];
+        });
+    }
+
     /** Runs one thing at a time: a newer one ends the older. What stops it is shown. */
     private async told<T>(run: (asking: Required<Pick<Asking, "signal" | "progress" | "walked">>) => Promise<T>): Promise<T | undefined> {
         this.abort?.abort();
@@ -574,9 +609,8 @@ export class Studio {
     }
 }
 
-/** Whether a machine of this kind is one for the source. */
-export const fits = (kind: string, command: Command | null): boolean =>
-    command === null || (command === "glass" || command === "wire" ? kind === command : kind !== "glass" && kind !== "wire");
+/** What tells one finding from another. */
+const nameOf = ({ rule, message, file, line }: Finding): string => [rule, message, file, line].join("\n");
 
 /** The server's rule where another page keeps a draft of that name. */
 const OTHER_PAGE = "studio-draft";

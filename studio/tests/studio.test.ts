@@ -290,3 +290,31 @@ test("keys that come while the edit makes room are in the draft", async () => {
     expect(texts.at(-1)).toBe("G0 X12\n");
     expect(studio.edited.value).toBe(null);
 });
+
+test("what the posting has warned of is said of an edit too, and once", async () => {
+    const warning = (message: string, of: string | null) => ({ ...said("deep-cut", message, ""), severity: "warning", of });
+    const posted = [warning("of the source", "source"), warning("of all", null), warning("of the program", "program")];
+    const seam = {
+        ask: (ask: string) => Promise.resolve({ done: ask === "drafts" ? [] : { revision: ask === "post" ? 1 : 2, verdict: "done", findings: ask === "post" ? posted : [posted[1]], walk: { moves: 0, mismatch: null } }, arrays: {} }),
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    await studio.post(work as never);
+    expect(studio.findings.value.map(({ message }) => message)).toEqual(["of the source", "of all", "of the program"]);
+    await studio.prove(main("G0 X1\n"));
+    expect(studio.findings.value.map(({ message }) => message)).toEqual(["of all", "of the source"]);
+});
+
+test("a machine that cannot take the source is not kept, and nothing is said of it", async () => {
+    const seam = {
+        ask: (ask: string, _: object, asking?: Asking) => new Promise((resolve, reject) => {
+            if (ask === "kinds") resolve({ done: ["mill"], arrays: {} });
+            asking?.signal?.addEventListener("abort", () => reject(new Stopped("cancelled", [said("cancelled", "the work was cancelled", "")])));
+        }),
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    studio.machines.value = [{ name: "engraver", kind: "glass" }] as never;
+    studio.machine.value = "engraver";
+    await studio.open({ file: "a.cls" });
+    await settled();
+    expect([studio.work.value?.machine, studio.stop.value, studio.stopped.value, studio.running.value, studio.isPosting.value]).toEqual([null, null, [], null, false]);
+});

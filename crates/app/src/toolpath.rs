@@ -9,6 +9,7 @@ use crate::parallel::parallel;
 use crate::pcb;
 use crate::summary::{Shape, number};
 use crate::watch::{Waits, Watch};
+use crate::wire;
 use control::{Folders, Setup, Units, WholeNumbers};
 use freecad::{Job, Listing};
 use geom::Vec3;
@@ -265,10 +266,13 @@ impl<SetUp: Fn(Machine) -> Machine> Reader<'_, SetUp> {
                 let reading = reading.map_err(|findings| match is_nc(source.path()) {
                     _ if watch.is_cancelled() => Stop::cancelled(),
                     _ if pcb::is_board(source) => {
-                        of_other(&file, "a file of a circuit board", "pcb")
+                        of_other(&file, "a file of a circuit board", "`toolpost pcb` makes")
                     }
                     _ if glass::is_body(source) => {
-                        of_other(&file, "a body, a picture or points", "glass")
+                        of_other(&file, "a body, a picture or points", "`toolpost glass` makes")
+                    }
+                    _ if wire::is_drawing(source) => {
+                        of_other(&file, "a drawing", "`toolpost wire` and `toolpost glass` make")
                     }
                     true => without_origin(&file),
                     false => Stop { verdict: Verdict::Invalid, findings },
@@ -438,9 +442,9 @@ fn without_origin(file: &str) -> Stop {
 }
 
 /// The refusal of what another command makes programs of.
-fn of_other(file: &str, what: &str, command: &str) -> Stop {
+fn of_other(file: &str, what: &str, commands: &str) -> Stop {
     Diagnostic::error(Rule::Source, format!("this is no toolpath but {what}"))
-        .help(format!("`toolpost {command}` makes programs of it"))
+        .help(format!("{commands} programs of it"))
         .file(file)
         .into()
 }

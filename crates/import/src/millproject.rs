@@ -291,9 +291,9 @@ impl Project<'_> {
                     self.state("speed", &typed(speed), line);
                 }
                 Some(first) if first == speed => {}
-                Some(first) => {
-                    self.left.push(format!("{key}={value} (all tools turn at --speed, {first})"))
-                }
+                Some(first) => self.left.push(format!(
+                    "{key}={value} (all tools turn at one speed: --speed, or else {first})"
+                )),
             }
         }
         Ok(())

@@ -420,6 +420,15 @@ pub struct CommandParams {
     pub machine: Option<String>,
 }
 
+/// `kinds { source }`: answers the [`MachineKind`]s of which a machine can take the source.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(deny_unknown_fields)]
+pub struct KindsParams {
+    /// What is made.
+    pub source: Given,
+}
+
 /// `form { command }`: answers the fields.
 #[derive(Debug, Deserialize)]
 #[cfg_attr(test, derive(TS))]
@@ -1260,6 +1269,7 @@ part: { on: number, frame: [[number, number, number], [number, number, number], 
             Given,
             Command,
             CommandParams,
+            KindsParams,
             FolderParams,
             Listing,
             Entry,

@@ -1,8 +1,8 @@
 //! A job: one source with one machine, its program, its verdict and its walk. What is asked of it is answered here.
 
 use crate::ask::{
-    self, Blocks, Command, Finding, Found, JobMachine, Level, Line, Mismatch, Moves, Of, Place,
-    Saved, Template, TextAbout, WalkAbout,
+    self, Blocks, Command, Finding, Found, JobMachine, Level, Line, MachineKind, Mismatch, Moves,
+    Of, Place, Saved, Template, TextAbout, WalkAbout,
 };
 use crate::board;
 use crate::drawing::Piece;
@@ -232,6 +232,24 @@ impl Sources {
             (Sources::Several(files), _) if files.iter().all(app::glass::is_body) => Command::Glass,
             (Sources::Several(_) | Sources::Folder(..), _) => Command::Pcb,
         }
+    }
+
+    /// Of which kinds a machine can take them, by their names and what they begin with.
+    pub fn kinds(&self) -> Vec<MachineKind> {
+        use MachineKind::{Glass, Mill, Robot, Wire};
+        let files = match self {
+            Sources::One(file) => std::slice::from_ref(file),
+            Sources::Several(files) | Sources::Folder(_, files) => files,
+        };
+        let own: &[MachineKind] = match self {
+            _ if files.iter().all(app::glass::is_body) => &[],
+            Sources::One(file) if app::pcb::is_board(file) => &[Mill, Robot],
+            Sources::One(file) if app::wire::is_drawing(file) => &[Wire],
+            Sources::One(_) => &[Mill, Robot, Wire],
+            Sources::Several(_) | Sources::Folder(..) => &[Mill, Robot],
+        };
+        let is_engraved = files.iter().all(|file| app::glass::check(file).is_ok());
+        own.iter().copied().chain(is_engraved.then_some(Glass)).collect()
     }
 }
 

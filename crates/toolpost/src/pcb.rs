@@ -47,11 +47,16 @@ fn made(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
 }
 
 /// Refuses a folder of output that is the board's own: what is saved there would be read as the board's the
-/// next time.
+/// next time, and takes the place of what its owner has there.
 fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
     let whole = |path: &Path| std::fs::canonicalize(path).ok();
     let output = whole(&args.output);
-    if args.board.iter().any(|path| path.is_dir() && whole(path) == output) {
+    let folder_of = |path: &Path| match path.parent() {
+        _ if path.is_dir() => whole(path),
+        Some(folder) if !folder.as_os_str().is_empty() => whole(folder),
+        _ => whole(Path::new(".")),
+    };
+    if output.is_some() && args.board.iter().any(|path| folder_of(path) == output) {
         let message = "the programs would be saved among the files of the board";
         let found = Diagnostic::error(Rule::OutputFolder, message).help("give a folder of its own");
         return Err(found.file(args.output.display().to_string()).into());

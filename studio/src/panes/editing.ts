@@ -73,6 +73,7 @@ export function keepUp(screen: Screen, of: Of, host: HTMLElement, compared: Sign
             if (edited !== undefined) editor.replace(edited, origin(job, text, name));
             else void editor.show(origin(job, text, name), edit !== null).catch(() => {});
         }),
+        effect(() => editor.hold(studio.isPosting.value)),
         effect(() => {
             void studio.job.value;
             const isEdited = of === "program" && studio.edited.value?.has(file.value);

@@ -15,8 +15,10 @@ import type {
     Given,
     Job,
     JobParams,
+    KindsParams,
     Listing,
     MachineEntry,
+    MachineKind,
     Moves,
     MovesParams,
     Nothing,
@@ -60,6 +62,7 @@ export interface Asks {
     folder: [FolderParams, Listing];
     machines: [NoParams, MachineEntry[]];
     command: [Asked<CommandParams>, Command];
+    kinds: [KindsParams, MachineKind[]];
     form: [{ command?: Command }, Field[]];
     post: [Asked<PostParams>, Job];
     prove: [Asked<ProveParams>, Job];

@@ -259,6 +259,15 @@ source: Given,
 machine: string | null, };
 
 /**
+ * `kinds { source }`: answers the [`MachineKind`]s of which a machine can take the source.
+ */
+export type KindsParams = { 
+/**
+ * What is made.
+ */
+source: Given, };
+
+/**
  * `folder { path }`.
  */
 export type FolderParams = { 

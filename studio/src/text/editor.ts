@@ -110,6 +110,7 @@ export class Editor {
     /** The part that was asked for last while more lines grew. */
     private asked: { origin: Origin; from: number; to: number; text: Promise<string> } | null = null;
     private isSetting = false;
+    private isHeld = false;
     private jumping: ReturnType<typeof setTimeout> | undefined;
     private resting: ReturnType<typeof setTimeout> | undefined;
 
@@ -123,6 +124,8 @@ export class Editor {
             keymap.of([...defaultKeymap, ...historyKeymap]),
             lineNumbers({ formatNumber: (line) => String(line + this.window.from - 1) }),
             EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
+            // The page takes a file that is dropped; the editor would put its text in.
+            EditorView.domEventHandlers({ drop: (event) => event.dataTransfer?.types.includes("Files") === true }),
             EditorView.updateListener.of((update) => this.updated(update)),
         ];
         this.view = new EditorView({ root, parent: root, state: EditorState.create({ extensions: this.extensions }) });
@@ -263,10 +266,16 @@ export class Editor {
         this.listener.whole(this.text, this.shown?.file ?? null);
     }
 
+    /** Held, it takes no keys: another text is to come. */
+    hold(isHeld: boolean): void {
+        this.isHeld = isHeld;
+        this.lock();
+    }
+
     /** Only where all lines of the text are here it can be edited. */
     private lock(): void {
-        const { origin, shown, isWhole } = this;
-        const isOpen = origin?.isEditable === true && origin === shown && isWhole;
+        const { origin, shown, isWhole, isHeld } = this;
+        const isOpen = origin?.isEditable === true && origin === shown && isWhole && !isHeld;
         this.view.dispatch({ effects: this.locked.reconfigure(EditorState.readOnly.of(!isOpen)) });
     }
 

@@ -106,7 +106,7 @@ export async function visit(browser: Browser, link: string, more: Parameters<Bro
     const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, reducedMotion: "reduce", ...more });
     if (seed !== undefined) await page.addInitScript(tardy, seed);
     await page.addInitScript(watch);
-    page.setDefaultTimeout(10_000);
+    page.setDefaultTimeout(20_000);
     const complaints: string[] = [];
     page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
     page.on("pageerror", (error) => complaints.push(String(error)));
@@ -156,14 +156,17 @@ function tardy(seed: string): void {
 /** It runs in the page: what the server says comes so many milliseconds late as `late` says. */
 export function answersLate(): void {
     const global = globalThis as unknown as { late?: number };
+    const come = new WeakSet<Event>();
     globalThis.WebSocket = class extends WebSocket {
         constructor(...given: ConstructorParameters<typeof WebSocket>) {
             super(...given);
             this.addEventListener("message", (event) => {
                 const { late = 0 } = global;
-                if (!event.isTrusted || late === 0) return;
+                if (come.has(event) || late === 0) return;
                 event.stopImmediatePropagation();
-                setTimeout(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })), late);
+                const again = new MessageEvent("message", { data: event.data });
+                come.add(again);
+                setTimeout(() => this.dispatchEvent(again), late);
             });
         }
     };
@@ -187,7 +190,7 @@ async function serve(route: Route, folder: string): Promise<void> {
     await route.fulfill({ path, headers: { "content-security-policy": policy } });
 }
 
-export async function proven(page: Page, timeout = 20_000): Promise<void> {
+export async function proven(page: Page, timeout = 30_000): Promise<void> {
     await page.getByText("✓ PROVEN").waitFor({ timeout });
 }
 
@@ -211,7 +214,10 @@ export async function goTo(page: Page, where: string): Promise<void> {
 
 /** What the readout says, by name. */
 export async function readout(page: Page): Promise<Record<string, string>> {
-    const parts = await page.locator(".readout > div").allInnerTexts();
+    const rows = page.locator(".readout > div");
+    // The place is asked for behind the verdict.
+    await rows.first().waitFor();
+    const parts = await rows.allInnerTexts();
     return Object.fromEntries(parts.map((part) => {
         const [name = "", ...rest] = part.split(/\s+/);
         return [name, rest.join(" ")];

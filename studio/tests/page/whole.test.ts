@@ -225,8 +225,8 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.keyboard.press("Control+m");
         await page.keyboard.type("generic-3axis-haas");
         await page.keyboard.press("Enter");
-        // The text of the program before is still there.
-        await page.locator(".program .cm-content[aria-readonly=true]").focus();
+        // Nothing is answered yet, and the text of the program before is still there.
+        await page.locator(".program .cm-content").focus();
         await page.keyboard.type("?");
         await page.evaluate(() => Object.assign(globalThis, { late: 0 }));
         await writable(page);
@@ -534,6 +534,25 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.mouse.move(5, 5);
         await page.waitForTimeout(600);
         expect(whole().length).toBe(length);
+    });
+
+    test("a program that is dropped into the text of the program is proven, and nothing is put into that text", async () => {
+        const page = await begin();
+        await writable(page);
+        const dropped = await page.evaluateHandle(() => {
+            const data = new DataTransfer();
+            data.items.add(new File(["%\n(dropped)\nM30\n%\n"], "other.nc"));
+            return data;
+        });
+        await page.dispatchEvent(".program .cm-line", "drop", { dataTransfer: dropped });
+        await page.locator(".program .cm-line", { hasText: "(dropped)" }).waitFor();
+        await page.getByText("✗ NOT PROVEN").waitFor();
+        expect(await page.locator(".program .cm-line").count()).toBeLessThan(6);
+        const texts = (): string[] => drafts(server).filter((name) => name.endsWith(".text"));
+        expect(texts().length).toBeLessThan(2);
+        await page.getByRole("button", { name: "Discard" }).click();
+        await proven(page);
+        await expect.poll(texts).toEqual([]);
     });
 
     test("a file that is dropped keeps its name, also in the notice of its edit", async () => {

@@ -21,6 +21,7 @@ use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, Rule, needs, not_both, wi
 use report::{Cut, Report};
 use serde_json::json;
 use source::Source;
+pub use source::is_drawing;
 
 /// The most segments that an [`Account`] lists; the report lists all.
 const MOST_LISTED: usize = 1000;

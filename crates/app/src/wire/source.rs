@@ -109,8 +109,8 @@ impl Source {
     }
 }
 
-/// Whether a file is a drawing.
-fn is_drawing(source: &input::Source) -> bool {
+/// Whether a file is a drawing, by its ending.
+pub fn is_drawing(source: &input::Source) -> bool {
     source.path().extension().unwrap_or_default().eq_ignore_ascii_case("dxf")
 }
 

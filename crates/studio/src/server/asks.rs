@@ -5,8 +5,8 @@ use super::socket::of_head;
 use super::{LIMITS, Studio};
 use crate::ask::{
     ChangesParams, CommandParams, DraftName, DraftParams, FolderParams, FormParams, JobParams,
-    Listing, MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams, ProveParams,
-    SaveParams, SearchParams, TextParams,
+    KindsParams, Listing, MovesParams, Nothing, Opened, PlaceParams, PlotParams, PostParams,
+    ProveParams, SaveParams, SearchParams, TextParams,
 };
 use crate::job::Waits;
 use crate::machines;
@@ -86,6 +86,10 @@ pub fn answer(
             let CommandParams { source, machine } = read(params)?;
             let machine = machine.map(|name| machines::open(&name, folder)).transpose()?;
             Answer::of(studio.command(&source, machine.as_ref())?)
+        }
+        "kinds" => {
+            let KindsParams { source } = read(params)?;
+            Answer::of(studio.kinds(&source)?)
         }
         "form" => {
             let FormParams { command } = read(params)?;

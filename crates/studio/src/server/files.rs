@@ -59,7 +59,7 @@ impl Uploads {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let found = kept.iter().find(|file| file.id == id);
         let Kept { name, bytes, .. } = found.ok_or_else(|| {
-            let message = "this upload is not kept any more: newer ones have taken its place";
+            let message = "this upload is not kept here: newer ones have taken its place, or the studio was started anew";
             Diagnostic::error(Rule::StudioLimit, message).help("drop the file again")
         })?;
         Ok(Source::Memory { name: name.into(), bytes: Arc::clone(bytes) })

@@ -8,7 +8,7 @@ mod metered;
 mod run;
 mod socket;
 
-use crate::ask::{Command, Field, FileOrUpload, Given, Limits, Of};
+use crate::ask::{Command, Field, FileOrUpload, Given, Limits, MachineKind, Of};
 use crate::folder::{Folder, SECRET};
 use crate::inputs::Inputs;
 use crate::job::{Options, Sources};
@@ -353,6 +353,21 @@ impl Studio {
             }
             Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
                 Ok(self.sources(given, &Inputs::default())?.command(machine))
+            }
+        }
+    }
+
+    /// Of which kinds a machine can take the source.
+    fn kinds(&self, given: &Given) -> Result<Vec<MachineKind>, Stop> {
+        match given {
+            // It is not read for that: the files of a board, or bodies.
+            Given::Folder(_) => Ok(vec![MachineKind::Mill, MachineKind::Robot, MachineKind::Glass]),
+            Given::File(path) if app::pcb::is_named_board(Path::new(path)).is_some() => {
+                self.folder.check(path)?;
+                Ok(Sources::One(Source::File(path.into())).kinds())
+            }
+            Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
+                Ok(self.sources(given, &Inputs::default())?.kinds())
             }
         }
     }

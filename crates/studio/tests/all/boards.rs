@@ -601,13 +601,28 @@ fn the_server_says_which_command_makes_a_source() {
         let params = json!({ "source": source, "machine": machine });
         assert_eq!(page.done("command", params), command, "{source}");
     }
+    let mut kinds = |source: Value| page.done("kinds", json!({ "source": source }));
+    fs::write(studio.own().join("plate.DXF"), "0\nEOF\n").unwrap();
+    fs::write(studio.own().join("points.txt"), "1 2 3\n").unwrap();
+    for (file, machines) in [
+        ("board.json", json!(["mill", "robot"])),
+        ("lamp/lamp.toml", json!(["mill", "robot"])),
+        ("bracket.json", json!(["mill", "robot", "wire"])),
+        ("dome.cls", json!(["mill", "robot", "wire"])),
+        ("plate.DXF", json!(["wire", "glass"])),
+    ] {
+        assert_eq!(kinds(json!({ "file": file })), machines, "{file}");
+    }
+    assert_eq!(kinds(json!({ "folder": "lamp" })), json!(["mill", "robot", "glass"]));
     for (file, rule) in [
         ("none.cls", "unreadable"),
         ("none.json", "unreadable"),
         ("lamp", "unreadable"),
         ("../x.cls", "folder-reach"),
     ] {
-        let params = json!({ "source": { "file": file }, "machine": null });
+        let source = json!({ "file": file });
+        assert_eq!(page.refused("kinds", json!({ "source": source })), rule, "{file}");
+        let params = json!({ "source": source, "machine": null });
         assert_eq!(page.refused("command", params), rule, "{file}");
     }
 }

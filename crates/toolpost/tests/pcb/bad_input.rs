@@ -538,9 +538,17 @@ fn a_folder_with_two_boards() {
 #[test]
 fn an_output_among_the_files_of_the_board() {
     let folder = small();
-    let said = folder.run(&["pcb", "board", "-o", "board", "-m", "grbl-3018", "--tool", "0.4"]);
-    assert_eq!(said.code, 2);
-    assert!(said.err.contains("error[output-folder]"), "{}", said.err);
+    std::fs::create_dir(folder.path().join("own")).unwrap();
+    std::fs::write(folder.path().join("own/lamp.toml"), "").unwrap();
+    std::fs::write(folder.path().join("own/report.json"), "mine").unwrap();
+    for (board, output) in
+        [("board", "board"), ("own/lamp.toml", "own"), ("own/lamp.toml", "board/../own")]
+    {
+        let said = folder.run(&["pcb", board, "-o", output, "-m", "grbl-3018", "--tool", "0.4"]);
+        assert_eq!(said.code, 2);
+        assert!(said.err.contains("error[output-folder]"), "{}", said.err);
+    }
+    assert_eq!(std::fs::read_to_string(folder.path().join("own/report.json")).unwrap(), "mine");
 }
 
 /// Copper is some hundredths of a millimetre thick: 2 mm are through a board of 1.6 mm, and cuts of 0.9 mm from both sides meet.
