@@ -43,6 +43,11 @@ export class Studio {
     /** A posting runs: what is shown is not of what was chosen last, and takes no keys. */
     readonly isPosting: Signal<boolean> = signal(false);
     private readonly postings = new Latest();
+    /** The program that was dropped with the toolpath, until that is posted. */
+    private beside: File[] | null = null;
+    /** A file that was dropped is on its way to the server. */
+    private isTaking = false;
+    private readonly drops = new Latest();
     /** Grows with each program that is no edit of the one before. */
     program = 0;
     /** The file of the folder that was proven in the place of what is posted. */
@@ -139,6 +144,7 @@ export class Studio {
     /** Another source: a machine of another kind, which cannot take it, is not kept. */
     private async begunWith(work: Work): Promise<void> {
         this.said.value = "";
+        this.beside = null;
         const kind = this.machines.value.find(({ name }) => name === work.machine)?.kind;
         const posting = this.post(work).then(() => {});
         if (kind === undefined) return posting;
@@ -153,25 +159,37 @@ export class Studio {
     /** A toolpath, and a program that is proven against it. */
     async dropBoth(toolpath: File, program: File): Promise<void> {
         await this.drop([toolpath]);
-        if (this.job.value !== null) await this.proveOther([program]);
+        if (this.job.value !== null) return this.proveOther([program]);
+        // A machine is still to be chosen, or an option to be set.
+        if (this.work.value?.name !== toolpath.name) return;
+        this.beside = [program];
+        this.said.value = `${program.name} is proven when ${toolpath.name} is posted`;
     }
 
     /** A file is a toolpath or a board; several are the files of a board. */
     async drop(files: File[]): Promise<void> {
+        const name = files.map((file) => file.name).join(", ");
+        const isNewest = this.drops.begin();
+        this.isTaking = true;
         const uploads = await this.told(async ({ signal }) => {
             const ids: string[] = [];
             for (const file of files) ids.push(await this.seam.upload(file, signal));
             return ids;
         });
-        if (uploads === undefined) return;
+        if (isNewest()) this.isTaking = false;
+        if (uploads === undefined) {
+            if (this.stop.value === null) this.said.value = `${name} is not taken: something else was begun meanwhile`;
+            return;
+        }
         const source = uploads.length === 1 ? { upload: uploads[0]! } : { uploads };
-        await this.begunWith({ source, name: files.map(({ name }) => name).join(", "), machine: this.machine.value, options: [] });
+        await this.begunWith({ source, name, machine: this.machine.value, options: [] });
     }
 
     async choose(machine: string): Promise<void> {
         const work = this.work.value;
         this.said.value = "";
-        if (work !== null) {
+        // It is for the file that comes.
+        if (work !== null && !this.isTaking) {
             await this.post({ ...work, machine });
             return;
         }
@@ -221,6 +239,12 @@ export class Studio {
             this.isCurrent.value = job !== undefined && this.edited.value === null;
         });
         if (this.edited.value === null) void this.askDrafts();
+        const { beside } = this;
+        if (beside !== null && job !== undefined) {
+            this.beside = null;
+            await this.proveOther(beside);
+            return true;
+        }
         const same = job?.board?.programs.find(({ file, revision }) => file === work.file && revision !== job.revision);
         if (same !== undefined && this.edited.value === null) await this.chooseProgram(same.revision);
         return true;
@@ -515,6 +539,7 @@ export class Studio {
         this.kept = draft.name;
         this.machine.value = work.machine;
         this.takeOut(draft.name);
+        void this.askForm();
         // It is an edit of what is posted today.
         this.base = null;
         await this.prove(editOf(arrays.text as Uint8Array | undefined, files));
@@ -592,7 +617,10 @@ export class Studio {
         };
         try {
             const done = await run({ signal: abort.signal, progress, walked });
-            return this.abort === abort ? done : undefined;
+            if (this.abort !== abort) return undefined;
+            // What was refused while it ran was refused for its sake.
+            this.stopped.value = [];
+            return done;
         } catch (error) {
             if (this.abort !== abort) return undefined;
             if (!(error instanceof Stopped)) throw error;

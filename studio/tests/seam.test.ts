@@ -94,3 +94,12 @@ test("a wrong token is not tried again", () => {
     expect(Other.last).toBe(before);
     expect(states.at(-1)).toBe("refused");
 });
+
+test("an upload that is ended says so, and one without a server that there is none", async () => {
+    const fails = (): Promise<never> => Promise.reject(new TypeError("failed to fetch"));
+    vi.stubGlobal("fetch", fails);
+    const abort = new AbortController();
+    await expect(seam.upload(new File([""], "a.cls"), abort.signal)).rejects.toMatchObject({ verdict: "cancelled", findings: [{ rule: "connection" }] });
+    abort.abort();
+    await expect(seam.upload(new File([""], "a.cls"), abort.signal)).rejects.toMatchObject({ verdict: "cancelled", findings: [{ rule: "cancelled" }] });
+});

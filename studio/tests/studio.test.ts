@@ -318,3 +318,67 @@ test("a machine that cannot take the source is not kept, and nothing is said of 
     await settled();
     expect([studio.work.value?.machine, studio.stop.value, studio.stopped.value, studio.running.value, studio.isPosting.value]).toEqual([null, null, [], null, false]);
 });
+
+test("a machine that is chosen while a file is on its way is for that file", async () => {
+    let arrives: (upload: string) => void = () => {};
+    const posts: object[] = [];
+    const seam = {
+        upload: () => new Promise<string>((resolve) => (arrives = resolve)),
+        ask: (ask: string, params: object) => {
+            if (ask === "post") posts.push(params);
+            return new Promise(() => {});
+        },
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    studio.work.value = work as never;
+    void studio.drop([new File([""], "b.cls")]);
+    await studio.choose("lathe");
+    arrives("u1");
+    await settled();
+    expect(posts).toEqual([{ source: { upload: "u1" }, machine: "lathe", options: [] }]);
+});
+
+test("a file that something else keeps from being taken is named", async () => {
+    const seam = {
+        upload: (_: File, signal: AbortSignal) => new Promise((_resolve, reject) => signal.addEventListener("abort", () => reject(new Stopped("cancelled", [])))),
+        ask: () => new Promise(() => {}),
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    studio.work.value = work as never;
+    void studio.drop([new File([""], "b.cls")]);
+    void studio.post(work as never);
+    await settled();
+    expect(studio.said.value).toBe("b.cls is not taken: something else was begun meanwhile");
+});
+
+test("a program that is dropped with its toolpath is proven when a machine has been chosen", async () => {
+    const asked: string[] = [];
+    const job = { revision: 1, verdict: "done", findings: [], parts: [], walk: { moves: 0, mismatch: null } };
+    const seam = {
+        upload: () => Promise.resolve("u1"),
+        ask: (ask: string, _: object, asking?: Asking) => {
+            if (ask === "post" || ask === "prove") asked.push(ask === "post" ? ask : new TextDecoder().decode(asking!.arrays!.text));
+            return Promise.resolve({ done: ask === "post" || ask === "prove" ? job : [], arrays: {} });
+        },
+    } as unknown as Seam;
+    const studio = new Studio(seam, signal<State>("open"));
+    await studio.dropBoth(new File(["GOTO"], "a.cls"), new File(["G0 X1\n"], "mine.nc"));
+    expect([asked, studio.said.value]).toEqual([[], "mine.nc is proven when a.cls is posted"]);
+    await studio.choose("mill");
+    expect(asked).toEqual(["post", "G0 X1\n"]);
+    expect(studio.given.value).toBe("mine.nc");
+    // For that source alone.
+    await studio.choose("lathe");
+    expect(asked.filter((one) => one !== "post").length).toBe(1);
+});
+
+test("what is refused while a posting runs is not said of what it gives", async () => {
+    const { studio } = open();
+    const posted = studio.post(work as never);
+    studio.running.subscribe((running) => {
+        if (running !== null) queueMicrotask(() => (studio.stopped.value = [studio.refusal()!]));
+    });
+    await posted;
+    expect(studio.canSave.value).toBe(true);
+    expect(studio.findings.value).toEqual([]);
+});

@@ -53,6 +53,8 @@ pub struct Options {
     pub tolerances: Tolerances,
     /// Options of the machine file.
     pub machine: Vec<(String, String)>,
+    /// Name of the program's file, with its ending or without; `None`: that of the source.
+    pub file: Option<String>,
     /// How a wire cuts, where the machine is one.
     pub wire: Option<wire::Settings>,
     /// How a board is made.
@@ -341,8 +343,13 @@ impl Job {
             }
         };
         let file = asked.file.unwrap_or_else(|| {
-            let name = source.path().with_extension(&machine.extension);
-            files::name(&name)
+            let named = options.file.as_deref().map(Path::new);
+            match named {
+                Some(name) if name.extension().is_some() => files::name(name),
+                _ => {
+                    files::name(&named.unwrap_or(source.path()).with_extension(&machine.extension))
+                }
+            }
         });
         let of = asked.program.as_ref().and_then(|given| given.of.clone());
         let made = match (&options.wire, asked.program) {
@@ -823,7 +830,7 @@ impl Job {
                 format!("the program calls itself by the name of its file, {}", self.file);
             return Err(refused(
                 &message,
-                "keep the name, and give another folder; `toolpost post -o` writes it under another one",
+                "keep the name, and give another folder; or post it with --output, which gives the program another name",
             ));
         }
         if self.keeps_name && files::name(&target) != self.file {

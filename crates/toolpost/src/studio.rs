@@ -107,10 +107,35 @@ fn form(command: ask::Command) -> Vec<Field> {
     let all = CommandLine::command();
     let own = all.find_subcommand(name(command));
     let arguments = own.into_iter().flat_map(|command| command.get_arguments());
-    arguments
+    let arguments = arguments
         .filter(|arg| !GIVEN.contains(&arg.get_id().as_str()) && !arg.is_global_set())
-        .filter_map(field)
-        .collect()
+        .filter_map(field);
+    let file = (command == ask::Command::Post).then(|| Field {
+        name: OUTPUT.to_owned(),
+        help: "Name of the program's file, where it is not that of the source: a robot's program calls itself by it.".to_owned(),
+        value: Some(String::from("NAME")),
+        values: Vec::new(),
+        default: None,
+        group: None,
+        repeats: false,
+    });
+    arguments.chain(file).collect()
+}
+
+/// The option that says the name of the program's file: the page says in which folder it is saved.
+const OUTPUT: &str = "output";
+
+/// Checks the name of a program's file.
+///
+/// # Errors
+/// It is none, or a path.
+fn file_name(name: &str) -> Result<(), Stop> {
+    let is_plain = |sign: char| !sign.is_control() && !"/\\:".contains(sign);
+    if !name.starts_with('.') && (1..=100).contains(&name.len()) && name.chars().all(is_plain) {
+        return Ok(());
+    }
+    let found = Diagnostic::error(Rule::StudioAsk, "--output is no name of a file");
+    Err(found.help("give a name without folders: the folder is asked for when it is saved").into())
 }
 
 fn field(arg: &Arg) -> Option<Field> {
@@ -164,6 +189,7 @@ fn options(
 ) -> Result<Options, Stop> {
     let form = form(command);
     let begin = ["toolpost", name(command), "--machine=m", "--output=o"];
+    let mut file = None;
     let mut words: Vec<String> = begin.map(str::to_owned).to_vec();
     // What the file says that this option names comes with it.
     for (name, value) in given.iter().filter(|(name, _)| more.is_none() || name != SETTINGS) {
@@ -172,6 +198,11 @@ fn options(
                 format!("there is no option `{}`", name.chars().take(80).collect::<String>());
             Diagnostic::error(Rule::StudioAsk, message)
         })?;
+        if name == OUTPUT {
+            file_name(value)?;
+            file = Some(value.clone());
+            continue;
+        }
         words.push(match field.value {
             Some(_) => format!("--{name}={value}"),
             None if value.is_empty() => format!("--{name}"),
@@ -215,11 +246,14 @@ fn options(
         tolerances: closeness.tolerances(),
         machine,
         wire,
+        file: None,
         board: None,
         glass: None,
     };
     match parsed.command {
-        Command::Post(post) => Ok(of(&post.source, &post.closeness, post.option, None)),
+        Command::Post(post) => {
+            Ok(Options { file, ..of(&post.source, &post.closeness, post.option, None) })
+        }
         Command::Wire(wire) => {
             let settings = wire.settings()?;
             Ok(of(&wire.source, &wire.closeness, Vec::new(), Some(settings)))
@@ -291,11 +325,15 @@ mod tests {
         assert_eq!(read.origin.from.as_deref(), Some("fanuc-31i"));
         assert_eq!(read.tolerances.position, Some(0.02));
         assert_eq!(read.machine, [(String::from("a"), String::from("b"))]);
+        assert_eq!(read.file, None);
+        assert_eq!(given(&[("output", "a_b")]).unwrap().file.as_deref(), Some("a_b"));
         for wrong in [
             ("units", "yards"),
             ("tolerance", "5"),
             ("machine", "x"),
             ("output", "/etc/x"),
+            ("output", "..\\x"),
+            ("output", ""),
             ("strict", "1"),
             ("no", ""),
         ] {

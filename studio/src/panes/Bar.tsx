@@ -56,7 +56,7 @@ export function Bar({ screen }: { screen: Screen }) {
                         Continue
                     </button>{" "}
                     <button type="button" onClick={() => void studio.dropDraft(draft.name)}>
-                        Drop it
+                        Delete it
                     </button>
                 </span>
             ))}

@@ -33,6 +33,11 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
         if (document.activeElement === document.body) document.querySelector<HTMLElement>(".bar button")?.focus();
         dialog.value = null;
     };
+    const done = (): void => {
+        close();
+        // An Enter too many would go into the text of a program.
+        if (document.activeElement?.closest(".program")) document.querySelector<HTMLElement>("#low")?.focus();
+    };
     const open = dialog.value;
     if (open === null) return null;
     return (
@@ -40,16 +45,16 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
             {open === "commands" && (
                 <Choose
                     label="Search the commands"
-                    close={close}
+                    close={done}
                     choices={commands.map(({ name, title, keys, run }) => ({ name, title, run, more: shownKey(keys?.[0]) }))}
                 />
             )}
             {open === "keys" && <Keys commands={commands} />}
-            {open === "machine" && <Machines screen={screen} close={close} />}
+            {open === "machine" && <Machines screen={screen} close={done} />}
             {open === "source" && (
                 <Folder
                     screen={screen}
-                    close={close}
+                    close={done}
                     take={(file) => void studio.open({ file })}
                     takeFolder={(folder) => void studio.open({ folder })}
                     takeOther={(files) => void studio.drop(files)}
@@ -58,13 +63,13 @@ export function Dialogs({ screen, commands }: { screen: Screen; commands: Comman
             {open === "program" && (
                 <Folder
                     screen={screen}
-                    close={close}
+                    close={done}
                     take={(file) => void studio.proveFile(file)}
                     takeOther={(files) => void studio.proveOther(files)}
                 />
             )}
-            {open === "options" && <Options screen={screen} close={close} />}
-            {open === "save" && <Save screen={screen} close={close} />}
+            {open === "options" && <Options screen={screen} close={done} />}
+            {open === "save" && <Save screen={screen} close={done} />}
             {open === "find" && <Find screen={screen} close={close} />}
             {open === "go" && <Go screen={screen} close={close} />}
         </Modal>

@@ -49,6 +49,8 @@ interface Pending {
 const lost = (): Stopped =>
     new Stopped("cancelled", [said("connection", "the connection was lost", "the page connects again by itself")]);
 
+const ended = (): Stopped => new Stopped("cancelled", [said("cancelled", "the file is not taken: something else was begun, or this was cancelled", "give it again")]);
+
 /** A finding of the page's own. */
 export const said = (rule: string, message: string, help: string): Finding => ({
     severity: "error", rule, message, help, file: "", of: null, line: 0, column: 0, width: 0, excerpt: "", count: 1, lines: [], places: [],
@@ -140,7 +142,9 @@ export class Socket implements Seam {
     }
 
     private async fetch(path: string, request: RequestInit): Promise<Response> {
-        const response = await fetch(path, { ...request, cache: "no-store", headers: { "x-toolpost-token": this.token } });
+        const response = await fetch(path, { ...request, cache: "no-store", headers: { "x-toolpost-token": this.token } }).catch(() => {
+            throw request.signal?.aborted ? ended() : lost();
+        });
         if (response.ok) return response;
         const message = (await response.text()).slice(0, 500) || `the server answers ${response.status}`;
         throw new Stopped("invalid", [said("connection", message, "")]);

@@ -191,6 +191,24 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         await expect.poll(kept).toBe("");
     });
 
+    test("a program that calls itself by the name of its file gets another one, where its controller takes none of the source", async () => {
+        writeFileSync(join(server.folder, "a-b.cls"), source);
+        open = await visit(browser(), server.link);
+        const { page } = open;
+        await proven(page);
+        await page.keyboard.press("Control+o");
+        await page.getByRole("listbox").getByText("a-b.cls", { exact: true }).click();
+        await page.getByText(/`a-b` is none/).waitFor();
+        await page.getByRole("button", { name: "Set --output…" }).first().click();
+        await page.locator("#option-output").fill("a_b");
+        await page.getByRole("button", { name: "Post", exact: true }).click();
+        await proven(page);
+        await page.keyboard.press("Control+s");
+        await page.keyboard.press("Enter");
+        await page.getByText(/saved a_b\.src/).waitFor();
+        expect(readFileSync(join(server.folder, "a_b.src"), "utf8")).toContain("DEF a_b");
+    });
+
     test("files of the program that are dropped on it take the place of those of the same names", async () => {
         const page = await begin();
         const posted = await text(page);

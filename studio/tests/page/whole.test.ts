@@ -235,6 +235,20 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await proven(page);
     });
 
+    test("an Enter too many behind the choice of a machine is no edit", async () => {
+        const page = await begin();
+        await writable(page);
+        await page.locator(".program .cm-line.at").click();
+        await page.keyboard.press("Control+m");
+        await page.keyboard.type("generic-3axis-haas");
+        for (let i = 0; i < 3; i++) await page.keyboard.press("Enter");
+        await page.getByRole("button", { name: "generic-3axis-haas" }).waitFor();
+        await writable(page);
+        await page.keyboard.press("Enter");
+        await proven(page);
+        expect(await page.getByText("▲ edited").count()).toBe(0);
+    });
+
     test("an edit makes room for another machine, other options or a dropped program, and is offered each time; none overwrites another", async () => {
         const page = await begin();
         const offer = page.getByText(/an edit of plate\.cls is kept/);
@@ -272,10 +286,10 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.getByRole("button", { name: "Discard" }).click();
         await proven(page);
         for (const left of [1, 0]) {
-            await page.getByRole("button", { name: "Drop it" }).click();
+            await page.getByRole("button", { name: "Delete it" }).click();
             await expect.poll(() => texts().length).toBe(left);
         }
-        await page.getByRole("button", { name: "Drop it" }).waitFor({ state: "detached" });
+        await page.getByRole("button", { name: "Delete it" }).waitFor({ state: "detached" });
     });
 
     test("a server that is killed takes no edit with it: the page asks before it goes, and goes on by the new link", async () => {
@@ -573,7 +587,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await page.waitForTimeout(800);
         await page.reload();
         await page.getByText("an edit of dropped.cls is kept").waitFor();
-        await page.getByRole("button", { name: "Drop it" }).click();
+        await page.getByRole("button", { name: "Delete it" }).click();
     });
 
     test("replay moves the cursor on, and stops at the end", async () => {

@@ -63,7 +63,8 @@ pub(super) fn check_file_name(file_name: &str) -> Outcome {
         Ok(_) | Err(_) => format!("`{stem}` is none"),
     };
     let message = format!("a KUKA finds a program by the name of its file: {why}");
-    let help = "a name of up to 24 letters, digits and _, a letter first, that neither the language nor KUKA's software has";
+    let help = "give the file a name of up to 24 letters, digits and _, a letter first, that neither the language nor KUKA's software has, by \
+                `post --output`";
     Err(Diagnostic::error(Rule::ProgramFrame, message).help(help).into())
 }
 
