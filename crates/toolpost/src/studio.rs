@@ -295,9 +295,11 @@ mod tests {
     fn the_form_has_the_options_of_post_and_none_that_the_page_gives() {
         let form = form(ask::Command::Post);
         let named = |name: &str| form.iter().find(|field| field.name == name);
-        for given in ["machine", "output", "json", "quiet", "help"] {
+        for given in ["machine", "json", "quiet", "help"] {
             assert_eq!(named(given), None);
         }
+        // A name: the page asks for the folder when the program is saved.
+        assert_eq!(named("output").unwrap().value.as_deref(), Some("NAME"));
         let units = named("units").unwrap();
         assert_eq!(units.value.as_deref(), Some("UNIT"));
         assert_eq!(units.values[1], (String::from("inch"), String::from("Inches")));
