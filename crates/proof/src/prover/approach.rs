@@ -226,7 +226,8 @@ impl Prover<'_> {
     /// By how much a steep tool is lower than the source ever goes along Z, mm: the places that are as high along the tool as the highest
     /// lie on a slope, which reaches into a pocket far from there.
     fn short_of_top(&mut self, place: &PartialPose) -> f64 {
-        if place.axis.z >= STEEP && place.known() {
+        // Rounding of the words: a tool of just this angle is none that stands.
+        if place.axis.z >= STEEP + 1e-4 && place.known() {
             self.top_along(Vec3::Z) - place.tip.z
         } else {
             f64::NEG_INFINITY

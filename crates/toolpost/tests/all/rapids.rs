@@ -639,6 +639,20 @@ fn under_traori_a_rapid_is_straight_whatever_the_axes_do_without() {
     assert_eq!(program, text(&other));
 }
 
+/// The words of a program round a tool axis to both sides of 60°, where a tool counts as one that stands.
+#[test]
+fn a_tool_that_leans_by_just_60_degrees_comes_from_home() {
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,50\nSPINDL/RPM,5000,CLW\nFEDRAT/MMPM,300\nRAPID\n\
+         GOTO/115.7471,41.1387,67.0000,0.8365163,0.2241439,0.5000000\n\
+         GOTO/2.3130,-40.4670,119.4420,0.1109416,-0.3538913,0.9286834\nRAPID\nGOTO/2.3130,-40.4670,150,0.1109416,-0.3538913,0.9286834\nFINI\n",
+    );
+    for name in ["fanuc-table-bc", "haas-umc-750", "linuxcnc-xyzac", "linuxcnc-xyzbc"] {
+        let machine = load(name).unwrap();
+        proven(&source, &machine, &text(&written(&source, &machine)));
+    }
+}
+
 /// A tool that leans by more than 60° in a head comes from home beside all cuts: to over its place along Z of the machine, where all axes may go
 /// together, and by Z alone down to as far out along itself as the source ever goes. That is free where each axis goes at its own speed too.
 #[test]
