@@ -7,6 +7,7 @@ use arm::{Arm, Joints, Posture, Structure, Vec3};
 use geom::ending::go_on;
 use geom::wrap;
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 /// Margins that nothing has made less.
 pub(crate) const NO_WORST: Worst = Worst {
@@ -213,18 +214,25 @@ fn out_of_reach(job: &Job, sample: &Sample, steps: usize) -> f64 {
     (0..steps).map(off).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or_default()
 }
 
-/// What ends every choice of these postures in an interval: the first sample that is not reached at all, or the least speed that is too much.
-pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize, of: &[Posture]) -> (usize, Why) {
-    for pair in samples.windows(2) {
+/// What ends every choice of these postures in an interval, and at which of its samples: the first one that is not reached at all, or
+/// the least speed that is too much.
+pub(crate) fn stopped(
+    job: &Job,
+    interval: RangeInclusive<usize>,
+    steps: usize,
+    of: &[Posture],
+) -> (usize, Why) {
+    for at in interval.start() + 1..=*interval.end() {
+        let [before, sample] = [&job.samples[at - 1], &job.samples[at]];
         let (mut speed, mut reached): (Option<Why>, bool) = (None, false);
         for step in 0..steps {
             let turn = step as f64 * job.step_angle();
             for &posture in of {
-                let Some(to) = solve(job, &pair[1], turn, posture) else { continue };
+                let Some(to) = solve(job, sample, turn, posture) else { continue };
                 reached = true;
-                let Some(from) = solve(job, &pair[0], turn, posture) else { continue };
+                let Some(from) = solve(job, before, turn, posture) else { continue };
                 let used =
-                    (0..6).map(|k| (k + 1, share(job.arm, k, wrap(to[k] - from[k]), pair[1].time)));
+                    (0..6).map(|k| (k + 1, share(job.arm, k, wrap(to[k] - from[k]), sample.time)));
                 let (joint, used) =
                     used.fold((0, 0.0), |most, now| if now.1 > most.1 { now } else { most });
                 let now = Why::Speed(joint, used, job.settings.speed);
@@ -234,11 +242,11 @@ pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize, of: &[Posture
             }
         }
         match speed {
-            _ if !reached => return (pair[1].point, nearest(job, &pair[1], steps, of)),
+            _ if !reached => return (at, nearest(job, sample, steps, of)),
             Some(Why::Speed(_, used, most)) if used <= most => {}
-            Some(why) => return (pair[1].point, why),
-            None => return (pair[1].point, Why::Apart),
+            Some(why) => return (at, why),
+            None => return (at, Why::Apart),
         }
     }
-    (samples.last().map_or(0, |sample| sample.point), Why::Apart)
+    (*interval.end(), Why::Apart)
 }

@@ -177,8 +177,19 @@ pub struct Choice {
 pub struct Blocked {
     /// The number of the point at which it ends, or on the way to which.
     pub point: usize,
+    /// Where within the motion to its end that is; `None` at its end, or where nothing says where.
+    pub within: Option<Within>,
     /// What ends it in the turn and posture that come nearest.
     pub why: Why,
+}
+
+/// A place within a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within {
+    /// The tool tip in the frame of the part, mm.
+    pub tip: Vec3,
+    /// What keeps the arm from the end of the motion, where that is not reached either.
+    pub end: Option<Why>,
 }
 
 /// What ends a section of which nothing is left.
@@ -205,12 +216,14 @@ pub enum Why {
     Numbers,
 }
 
-impl fmt::Display for Blocked {
+impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let degrees = |angle: f64| angle.to_degrees();
-        match self.why {
-            Why::Reach(mm) if mm < 0.0 => write!(f, "it is {:.1} mm too near to the arm", -mm),
-            Why::Reach(mm) => write!(f, "it is {mm:.1} mm out of reach"),
+        match *self {
+            Why::Reach(mm) if mm < 0.0 => {
+                write!(f, "the tool is {:.1} mm too near to the arm", -mm)
+            }
+            Why::Reach(mm) => write!(f, "the tool is {mm:.1} mm out of reach"),
             Why::Limit(joint, by) => {
                 write!(f, "joint {joint} would be {:.2} degrees beyond its limit", degrees(by))
             }
@@ -243,6 +256,19 @@ impl fmt::Display for Blocked {
                 f.write_str("no turn about the tool and no posture leads on from the point before")
             }
             Why::Numbers => f.write_str("its numbers make no point of a path"),
+        }
+    }
+}
+
+impl fmt::Display for Blocked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(Within { tip, end }) = self.within else { return self.why.fmt(f) };
+        // Without the sign of what rounds to 0.
+        let [x, y, z] = tip.to_array().map(|mm| (mm * 10.0).round() / 10.0 + 0.0);
+        write!(f, "at X{x} Y{y} Z{z}, before the end of the motion, {}", self.why)?;
+        match end {
+            Some(end) => write!(f, "; at the end {end}"),
+            None => Ok(()),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! A path as samples in the world: its points, and some between points that are far apart.
 
-use crate::{Blocked, Cell, Point, SPACING, Settings, Why};
-use arm::{Arm, Frame, Vec3};
+use crate::follow::nearest;
+use crate::{Blocked, Cell, Point, SPACING, Settings, Why, Within};
+use arm::{Arm, Frame, Posture, Vec3};
 use geom::{Mat3, angle_between, between, direction};
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -48,7 +49,7 @@ pub(crate) struct Job<'a> {
     /// The flange in the frame of the tool.
     flange: Frame,
     /// The world in the frame of the part.
-    to_part: Mat3,
+    to_part: Frame,
 }
 
 impl<'a> Job<'a> {
@@ -69,7 +70,7 @@ impl<'a> Job<'a> {
             && cell.tool.is_finite()
             && cell.part.is_finite();
         if !good {
-            return Err(Blocked { point: 0, why: Why::Numbers });
+            return Err(no_numbers(0));
         }
         let mut job = Job {
             arm,
@@ -77,7 +78,7 @@ impl<'a> Job<'a> {
             cuts: Vec::new(),
             samples: Vec::with_capacity(points.len()),
             flange: cell.tool.inverse(),
-            to_part: cell.part.matrix3.transpose(),
+            to_part: cell.part.inverse(),
         };
         for (number, point) in points.iter().enumerate() {
             job.add(number, point, &cell.part)?;
@@ -90,7 +91,7 @@ impl<'a> Job<'a> {
         let square = point.side.is_none_or(|side| unit(side) && side.dot(point.axis).abs() < 1e-4);
         let fed = !point.cut || (point.feed.is_finite() && point.feed > 0.0);
         if !point.tip.is_finite() || !unit(point.axis) || !square || !fed {
-            return Err(Blocked { point: number, why: Why::Numbers });
+            return Err(no_numbers(number));
         }
         let end = Sample {
             tip: part.transform_point3(point.tip),
@@ -126,7 +127,7 @@ impl<'a> Job<'a> {
         let turning = self.settings.slows_at.map_or(0.0, |rate| (lean + turned) / rate);
         let time = (length / speed).max(turning);
         if count > MOST {
-            return Err(Blocked { point: end.point, why: Why::Numbers });
+            return Err(no_numbers(end.point));
         }
         let mut side = last.side;
         for i in 1..=count as usize {
@@ -153,6 +154,21 @@ impl<'a> Job<'a> {
             cut.samples.end = self.samples.len();
         }
         Ok(())
+    }
+
+    /// What ends a path at a sample, in a cut whose turn has so many steps.
+    pub(crate) fn blocked(&self, at: usize, why: Why, steps: usize) -> Blocked {
+        let sample = &self.samples[at];
+        let is_end = |sample: &Sample| sample.is_point && !sample.inside;
+        let within = (!is_end(sample)).then(|| {
+            let end = self.samples[at..].iter().find(|sample| is_end(sample));
+            let far = end.map(|end| nearest(self, end, steps, &Posture::ALL));
+            Within {
+                tip: self.to_part.transform_point3(sample.tip),
+                end: far.filter(|why| matches!(why, Why::Reach(_))),
+            }
+        });
+        Blocked { point: sample.point, within, why }
     }
 
     /// How many steps the turn of a cut has.
@@ -183,8 +199,12 @@ impl<'a> Job<'a> {
 
     /// The tool's X in the frame of the part.
     pub(crate) fn side_in_part(&self, sample: &Sample, turn: f64) -> Vec3 {
-        self.to_part * self.side(sample, turn)
+        self.to_part.matrix3 * self.side(sample, turn)
     }
+}
+
+fn no_numbers(point: usize) -> Blocked {
+    Blocked { point, within: None, why: Why::Numbers }
 }
 
 /// The unit vector at right angles to `out` that is nearest to `side`; any one where `side` is along `out`.

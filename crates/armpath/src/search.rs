@@ -113,7 +113,7 @@ fn section(
         let (stopped, why) = match knots.get(steps.len() - 1..=steps.len()) {
             Some(&[from, to]) => {
                 let of = same_arm(posture);
-                let why = follow::stopped(job, &job.samples[from..=to], job.steps(cut), &of);
+                let why = follow::stopped(job, from..=to, job.steps(cut), &of);
                 match used_up {
                     Some(joint) if why.1 == Why::Apart => (why.0, Why::Range(joint)),
                     _ => why,
@@ -129,7 +129,7 @@ fn section(
         };
         let end = (start..=last).rfind(is_end);
         let Some(end) = end.filter(|end| *end > start || *end == last) else {
-            return Err(Blocked { point: stopped, why });
+            return Err(job.blocked(stopped, why, job.steps(cut)));
         };
         match follow::follow(job, &knots[..steps.len()], &steps, posture, before.0, worst) {
             Taken::Passed(mut section) => {
@@ -144,7 +144,7 @@ fn section(
             Taken::Nowhere => break,
         }
     }
-    Err(Blocked { point: job.samples[knots[usize::from(knots.len() > 1)]].point, why: Why::Apart })
+    Err(job.blocked(knots[usize::from(knots.len() > 1)], Why::Apart, job.steps(cut)))
 }
 
 /// The turn that leads from one step to a neighbour, as in [`TURNS`] with the opposite sign.
@@ -170,10 +170,8 @@ fn cheapest(
     let mut nodes = first;
     if nodes.iter().all(Node::is_dead) {
         let sample = &job.samples[knots[0]];
-        return Err(Blocked {
-            point: sample.point,
-            why: follow::nearest(job, sample, steps, &Posture::ALL),
-        });
+        let why = follow::nearest(job, sample, steps, &Posture::ALL);
+        return Err(job.blocked(knots[0], why, steps));
     }
     // From which step the cheapest comes, at each knot behind the first.
     let mut back: Vec<Vec<i8>> = Vec::new();
@@ -194,9 +192,8 @@ fn cheapest(
         }
     }
     if back.is_empty() && knots.len() > 1 {
-        let samples = &job.samples[knots[0]..=knots[1]];
-        let (point, why) = follow::stopped(job, samples, steps, &Posture::ALL);
-        return Err(Blocked { point, why });
+        let (at, why) = follow::stopped(job, knots[0]..=knots[1], steps, &Posture::ALL);
+        return Err(job.blocked(at, why, steps));
     }
     let cheapest = (0..labels.len()).min_by(|a, b| labels[*a].cost.total_cmp(&labels[*b].cost));
     let end = cheapest.unwrap_or_default();

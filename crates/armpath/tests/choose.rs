@@ -208,6 +208,30 @@ fn what_is_out_of_reach_or_too_near_is_refused_with_how_much() {
     );
 }
 
+/// A line far beyond the reach of the arm: the first place of it that is not reached lacks 0.1 mm or so, the end of it a metre and more.
+#[test]
+fn of_a_place_within_a_motion_it_says_where_that_is_and_how_far_the_end_is() {
+    let cell = cell(LEANING);
+    let blocked = way(&cell, &upright(2, |t| Vec3::new(2000.0 * t, 0.0, -2.0))).unwrap_err();
+    let within = blocked.within.unwrap();
+    let (Why::Reach(first), Some(Why::Reach(end))) = (blocked.why, within.end) else {
+        panic!("{blocked:?}")
+    };
+    assert!(blocked.point == 1 && within.tip.y.abs() < 1e-9 && (within.tip.z + 2.0).abs() < 1e-9);
+    // From the place to the end the line leads away from the shoulder, but for the height of that: 250 mm over 2500 mm.
+    let rest = 2000.0 - within.tip.x;
+    assert!((end - first - rest).abs() < 0.03 * rest, "{blocked:?}");
+    // A step before, the arm is within its reach.
+    let before = within.tip - Vec3::X * 10.0;
+    assert!(way(&cell, &upright(2, |t| before * t - Vec3::Z * 2.0 * (1.0 - t))).is_ok());
+    let said = blocked.to_string();
+    assert!(said.contains("before the end of the motion, the tool is"), "{said}");
+    assert!(said.ends_with(&format!("at the end the tool is {end:.1} mm out of reach")), "{said}");
+    // At the end of a motion there is nothing to add.
+    let far = upright(2, |t| Vec3::new(2000.0 + t, 0.0, 0.0));
+    assert_eq!(way(&cell, &far).unwrap_err().within, None);
+}
+
 #[test]
 fn a_feed_that_is_too_fast_for_a_joint_is_refused_far_from_any_singularity() {
     let line = |feed: f64| {
@@ -327,7 +351,7 @@ fn what_is_no_number_is_refused_with_its_point() {
         change(&mut points[7]);
         way(&cell(LEANING), &points).unwrap_err()
     };
-    let refused = Blocked { point: 7, why: Why::Numbers };
+    let refused = Blocked { point: 7, within: None, why: Why::Numbers };
     assert_eq!(with(&|point| point.tip.x = f64::NAN), refused);
     assert_eq!(with(&|point| point.axis = Vec3::ZERO), refused);
     assert_eq!(with(&|point| point.feed = 0.0), refused);

@@ -397,6 +397,15 @@ impl Risk {
         refused: false,
     };
 
+    /// `G7` of LinuxCNC ("G7 Lathe Diameter Mode"), `DIAMON` and `DIAM90` of SINUMERIK (PM, "Channel-specific diameter/radius
+    /// programming").
+    pub(crate) const DIAMETERS: Risk = Risk {
+        rule: Rule::DiameterMode,
+        what: "counts X as a diameter from here on, as lathes do (G7, DIAMON, DIAM90): X10 goes to 5",
+        help: "leave the word out, and write X as the place where the axis goes",
+        refused: true,
+    };
+
     /// A stop behind which somebody opens the door, reaches in or jogs, while the spindle turns or coolant runs. That the
     /// control stops both is sure on Haas alone (*Mill Operator's Manual*, M00); on a HEIDENHAIN `M0` stops the spindle.
     pub(crate) const STOP_RUNNING: Risk = Risk {

@@ -6,7 +6,7 @@ use crate::chain::{Chain, Joint};
 use crate::clock::{Clock, pump_limit};
 use crate::polar::{Branch, Polar};
 use crate::profile::{Limits, Profile};
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Misread, Rule};
 use serde::Deserialize;
 
 /// The machines that come with Toolpost: name and text.
@@ -312,12 +312,10 @@ impl Machine {
     /// Where it is none, with the line; or where a number cannot be.
     pub fn read(text: &str, file: &str) -> Result<Machine, Box<Diagnostic>> {
         let machine: Machine = toml::from_str(text).map_err(|error| {
-            let found =
-                Diagnostic::error(Rule::MachineFile, format!("is no machine: {}", error.message()));
-            found
-                .file(file)
-                .line(line_of(text, &error))
-                .help("`toolpost glass show glass-xyz-100hz` prints one that is")
+            let Misread { message, help } = Misread::of(error.message());
+            let found = Diagnostic::error(Rule::MachineFile, format!("is no machine: {message}"));
+            let found = found.help("`toolpost glass show glass-xyz-100hz` prints one that is");
+            found.file(file).line(line_of(text, &error)).help(help)
         })?;
         machine.check().map_err(|message| {
             let found = Diagnostic::error(Rule::MachineFile, message).file(file);

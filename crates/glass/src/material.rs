@@ -1,7 +1,7 @@
 //! What blocks are made of: a table that users edit.
 
 use crate::machine::line_of;
-use program::{Diagnostic, Rule};
+use program::{Diagnostic, Misread, Rule};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -48,14 +48,11 @@ pub fn find(
     wavelength: f64,
 ) -> Result<Material, Box<Diagnostic>> {
     let mut table: BTreeMap<String, Material> = toml::from_str(text).map_err(|error| {
-        let found = Diagnostic::error(
-            Rule::Materials,
-            format!("is no table of materials: {}", error.message()),
-        );
-        found
-            .file(file)
-            .line(line_of(text, &error))
-            .help("each material is a table with title, index and wavelength (nm)")
+        let Misread { message, help } = Misread::of(error.message());
+        let found =
+            Diagnostic::error(Rule::Materials, format!("is no table of materials: {message}"));
+        let found = found.help("each material is a table with title, index and wavelength (nm)");
+        found.file(file).line(line_of(text, &error)).help(help)
     })?;
     let names = table.keys().cloned().collect::<Vec<_>>().join(", ");
     let Some(material) = table.remove(name) else {

@@ -334,7 +334,7 @@ pub(crate) enum LinearName {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "a text, a number, true or false is needed")]
 pub(crate) enum OptionSheet {
     Flag(bool),
     Number(f64),

@@ -648,6 +648,21 @@ impl<'a> Templates<'a> {
         self.blocks[name as usize].is_some()
     }
 
+    /// What is wrong where the machine lacks a block that must be written.
+    pub(crate) fn missing(name: BlockName) -> Diagnostic {
+        let message = format!("the control has no block `{}`", name.name());
+        // No control but one of Haas has a number of its own for it.
+        let number = match name == BlockName::CoolantThrough {
+            true => " and the number of its M function, `through` under [coolant]",
+            false => "",
+        };
+        let help = format!(
+            "the block `{}` under [blocks] of the machine file{number}, or a toolpath that does without",
+            name.name()
+        );
+        Diagnostic::error(Rule::MissingBlock, message).help(help)
+    }
+
     /// Whether the machine has the block, and the block places the word.
     pub(crate) fn places(&self, name: BlockName, word: WordName) -> bool {
         self.blocks[name as usize].as_ref().is_some_and(|block| block.uses.has(word))

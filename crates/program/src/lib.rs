@@ -40,6 +40,7 @@ pub mod encoding;
 pub mod heights;
 pub mod lowering;
 mod magazine;
+mod misread;
 mod motion;
 mod pose;
 mod progress;
@@ -61,6 +62,7 @@ pub use diagnostic::{
     needs, not_both, within,
 };
 pub use digest::Digest;
+pub use misread::Misread;
 pub use motion::*;
 pub use pose::{FullPose, NoPose, Pose};
 pub use progress::{Progress, Pulse, cancelled};

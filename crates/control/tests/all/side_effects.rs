@@ -1661,3 +1661,18 @@ fn an_exact_stop_is_reported() {
         assert_eq!([reported("G9 G1 X5. F100."), reported("G1 X5. F100.")], [1, 0], "{dialect:?}");
     }
 }
+
+/// LinuxCNC "G7 Lathe Diameter Mode"; SINUMERIK PM, "Channel-specific diameter/radius programming (DIAMON, DIAM90)".
+#[test]
+fn where_x_is_a_diameter_the_word_that_says_so_is_reported() {
+    for (dialect, unit, on, off) in [
+        (Dialect::LinuxCnc, "G21", "G7", "G8"),
+        (Dialect::Sinumerik, "G71", "DIAMON", "DIAMOF"),
+        (Dialect::Sinumerik, "G71", "DIAM90", "DIAMOF"),
+    ] {
+        let text =
+            |word: &str| format!("{unit} G90 G17 G94 G54\n{word}\nG0 X10 Y0 Z5\n{off}\nM30\n");
+        assert_eq!(risks(dialect, &text(on)), ["diameter-mode"], "{on}");
+        assert_eq!(risks(dialect, &text(off)), [""; 0], "{off}");
+    }
+}

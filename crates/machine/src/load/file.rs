@@ -5,11 +5,12 @@ use crate::library;
 use crate::model::{Block, FileLocation, StatedKey};
 use crate::sheet::{Sheet, keys};
 use crate::upgrade::{is_header, turns_text};
-use program::{Diagnostic, Rule, encoding, nearest};
+use program::{Diagnostic, Misread, Rule, encoding, nearest};
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// Largest file that is read, bytes.
 const LARGEST_FILE: u64 = 4 << 20;
@@ -135,24 +136,30 @@ impl SheetFile {
                     .diagnostic(Rule::MachineFile, "this is no machine file".into(), span)
                     .into();
             }
-            let said = e.message().trim().replace('\n', "; ");
-            let key = self.key_before(span.start);
-            let message = if key.is_empty() { said.clone() } else { format!("{key}: {said}") };
-            let help = match said.as_str() {
-                "duplicate key" => self.first_of(span.start),
-                _ => self.meant(span.start, key, &said),
+            let Misread { message, help } = Misread::of(e.message());
+            // Of a name that is none, the name itself stands there.
+            let name = self.text.get(span.clone()).unwrap_or_default();
+            let is_name = e.message().starts_with("unknown field");
+            let key = if is_name { String::new() } else { self.key_at(span.start) };
+            let moved = self.belongs(span.start, if is_name { name } else { &key });
+            let help = match (message.as_str(), moved) {
+                ("duplicate key", _) => self.first_of(span.start).unwrap_or(help),
+                (_, Some(moved)) => moved,
+                (_, None) if help.is_empty() && !key.is_empty() => {
+                    format!(
+                        "correct the file at the mark; `toolpost explain {key}` says what it takes"
+                    )
+                }
+                (_, None) => help,
             };
-            let found = self.diagnostic(Rule::MachineFile, message, span);
-            Box::new(match help {
-                Some(help) => found.help(help),
-                None => found,
-            })
+            let message = if key.is_empty() { message } else { format!("{key}: {message}") };
+            Box::new(self.diagnostic(Rule::MachineFile, message, span).help(help))
         })
     }
 
     /// The keys that it states, table by table.
     pub(super) fn stated(&self) -> Vec<StatedKey> {
-        let Ok(file) = toml::de::DeTable::parse(&self.text) else { return Vec::new() };
+        let Ok(file) = DeTable::parse(&self.text) else { return Vec::new() };
         let place = |at: usize| FileLocation { file: self.name(), line: self.line_of(at) };
         let mut stated = Vec::new();
         for (name, value) in file.get_ref() {
@@ -191,7 +198,7 @@ impl SheetFile {
             true => String::from(header_of(line)),
             false => format!("{}.{}", self.table_before(start), line.split('=').next()?.trim()),
         };
-        let table = toml::de::DeTable::parse(&self.text[..start]).ok()?;
+        let table = DeTable::parse(&self.text[..start]).ok()?;
         let (mut table, mut first) = (table.get_ref(), None);
         for part in path.split('.').map(|part| part.trim().trim_matches(['"', '\''])) {
             if part.is_empty() {
@@ -210,29 +217,34 @@ impl SheetFile {
         })
     }
 
-    /// What is meant by `key`, or by the name that is refused at a byte: `said` is what is wrong there.
-    fn meant(&self, at: usize, key: &str, said: &str) -> Option<String> {
-        let mut names = said.split('`').skip(1).step_by(2);
-        let refused = said.starts_with("unknown ").then(|| names.next()).flatten();
-        let key = if said.starts_with("unknown field") { refused? } else { key };
+    /// Where `key`, which stands at a byte, belongs; nothing where it is in its table.
+    fn belongs(&self, at: usize, key: &str) -> Option<String> {
         let here = self.table_before(at);
         let root = |table: &str| String::from(table.split('.').next().unwrap_or_default().trim());
         let tables: Vec<&str> =
             keys().filter(|known| known.name == key).map(|known| known.table).collect();
-        if !tables.is_empty() && tables.iter().all(|table| root(table) != root(here)) {
-            let named = |table: &str| match table {
-                "" => String::from("at the top of the file, above all tables"),
-                table => format!("below [{table}]"),
-            };
-            let belongs: Vec<String> = tables.into_iter().map(named).collect();
-            let stands = if here.is_empty() { String::from("at the top") } else { named(here) };
-            return Some(format!(
-                "`{key}` belongs {}, and stands {stands} here: move it",
-                belongs.join(", or ")
-            ));
+        if tables.is_empty() || tables.iter().any(|table| root(table) == root(here)) {
+            return None;
         }
-        let near = nearest(refused?, names);
-        (!near.is_empty()).then(|| format!("did you mean {near}?"))
+        let named = |table: &str| match table {
+            "" => String::from("at the top of the file, above all tables"),
+            table => format!("below [{table}]"),
+        };
+        let belongs: Vec<String> = tables.into_iter().map(named).collect();
+        let stands = if here.is_empty() { String::from("at the top") } else { named(here) };
+        Some(format!(
+            "`{key}` belongs {}, and stands {stands} here: move it",
+            belongs.join(", or ")
+        ))
+    }
+
+    /// The key in whose value, or in a list of values, a byte lies; where the text is no TOML, the key before it. Empty where there
+    /// is none.
+    fn key_at(&self, at: usize) -> String {
+        match DeTable::parse(&self.text) {
+            Ok(file) => key_in(file.get_ref(), at).unwrap_or_default(),
+            Err(_) => String::from(self.key_before(at)),
+        }
     }
 
     /// The key whose value begins at a byte; empty where none stands before it.
@@ -284,6 +296,27 @@ impl SheetFile {
         let column = if opened { 1 } else { 1 + indent + quotes.min(3) };
         let column = u32::try_from(column).unwrap_or(u32::MAX);
         Block { text: value.into_inner(), file: self.name(), line, column }
+    }
+}
+
+/// The key in whose value a byte lies, as far in as there is one.
+fn key_in(table: &DeTable, at: usize) -> Option<String> {
+    table.iter().find_map(|(key, value)| {
+        let own = || value.span().contains(&at).then(|| key.get_ref().to_string());
+        key_within(value, at).or_else(own)
+    })
+}
+
+/// The key within a value in whose value a byte lies.
+fn key_within(value: &Spanned<DeValue>, at: usize) -> Option<String> {
+    match value.get_ref() {
+        DeValue::Table(table) => key_in(table, at),
+        DeValue::Array(values) => values.iter().find_map(|value| key_within(value, at)),
+        DeValue::String(_)
+        | DeValue::Integer(_)
+        | DeValue::Float(_)
+        | DeValue::Boolean(_)
+        | DeValue::Datetime(_) => None,
     }
 }
 

@@ -255,7 +255,9 @@ max = 200.5
     #[test]
     fn an_unknown_key_is_named_with_line_and_column() {
         let shown = refusal("reader = \"grbl\"\n[spindle]\nmaxx = 5\n");
-        assert!(shown.starts_with("mill.toml:3:1: error[machine-file]: unknown field `maxx`"));
+        assert!(shown.starts_with(
+            "mill.toml:3:1: error[machine-file]: no key of this table is called `maxx`"
+        ));
         assert!(shown.contains("`max`"));
     }
 
@@ -282,7 +284,12 @@ max = 200.5
         said("safe_heigth = 0\n", "1:1", "did you mean `safe_height`?");
         said("[settings]\nrapid_path = \"linaer\"\n", "2:14", "did you mean `linear`?");
         said("[axes]\nX = { rapd = 3 }\n", "2:7", "did you mean `rapid`?");
-        said("feed_max = \"fast\"\n", "1:12", "correct the file at the mark");
+        said("[settings]\ntool_radius = \"center\"\n", "2:15", "its values are `full`, `wear`");
+        said(
+            "feed_max = \"fast\"\n",
+            "1:12",
+            "correct the file at the mark; `toolpost explain feed_max` says what it takes",
+        );
         // The first of two.
         said("a = 1\nfeed_max = 3\nfeed_max = 4\n", "3:1", "the first one stands in line 2");
         said(
@@ -292,6 +299,29 @@ max = 200.5
         );
         said("[words.X]\ndecimals = 3\n'decimals' = 4\n", "3:1", "the first one stands in line 2");
         said("[[rotary]]\nmin = 3\n[[rotary]]\nmax = 1\nmax = 4\n", "5:1", "stands in line 4");
+    }
+
+    #[test]
+    fn a_wrong_value_is_told_with_its_key_and_what_it_takes() {
+        for (text, message) in [
+            ("[settings]\nrapid_path = \"linaer\"", "rapid_path: `linaer` is none of its values"),
+            ("[settings]\nstart_modes = [\"G177\"]", "start_modes: `G177` is none of its values"),
+            ("[capabilities]\ncycles = [\n \"drill\",\n \"bored\"]", "cycles: `bored` is none"),
+            ("[[rotary]]\nletter = \"B\"\n[[rotary]]\non = \"Table\"", "on: `Table` is none"),
+            (
+                "[axes]\nX = { min = 0, max = \"a\" }",
+                "max: the text \"a\" is given, and a number is needed",
+            ),
+            ("[axes.X]\nmax = \"a\"", "max: the text \"a\" is given"),
+            ("work_zero = [1, 2]", "work_zero: a list of 2 is given, and a list of 3 is needed"),
+            ("[feed_max]\na = 1", "feed_max: a table is given, and a number is needed"),
+            ("[settings]\nrapid_path = true", "rapid_path: a text is needed"),
+            ("[options]\nmine = [8]", "mine: a text, a number, true or false is needed"),
+        ] {
+            let found = refusal(&format!("{text}\n"));
+            assert!(found.contains(&format!("error[machine-file]: {message}")), "{text}: {found}");
+            assert!(!found.contains("invalid type") && !found.contains("expected"), "{found}");
+        }
     }
 
     #[test]

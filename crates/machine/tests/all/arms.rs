@@ -139,7 +139,7 @@ fn what_does_not_make_an_arm_is_refused_at_its_place() {
     );
     refused("c2 = 455", "c2 = 0", "c2 is 0");
     refused(", c4 = 80", "", "`lengths.c4` is missing");
-    refused("c4 = 80", "c5 = 80", "unknown field `c5`");
+    refused("c4 = 80", "c5 = 80", "no key of this table is called `c5`");
     refused("world_height = 0\n", "", "`world_height` is missing");
     refused("offsets = [0, -90, 0, 0, 0, 0]\n", "", "`offsets` is missing");
     refused("-90, 0, 0, 0, 0]", "-900, 0, 0, 0, 0]", "six numbers from -360 to 360 degrees");
@@ -147,7 +147,7 @@ fn what_does_not_make_an_arm_is_refused_at_its_place() {
     refused("coupling = \"none\"", "coupling = \"fanuc\"", "less-joint-2");
     refused("    { min = -170, max = 170, speed = 360 },\n", "", "six `joints` are needed, not 5");
     refused("max = 170", "max = -170", "joint 1: the lower limit is not below the upper one");
-    refused("max = 170", "maximum = 170", "unknown field `maximum`");
+    refused("max = 170", "maximum = 170", "no key of this table is called `maximum`");
     refused("speed = 388", "speed = 0", "a number above 0");
     refused(", speed = 388", "", "`speed` of joint 5 in `joints` is missing");
     refused("world_height = 0\n", "world_height = 0\ncoupled_min = 1\n", "both or not at all");
@@ -204,7 +204,7 @@ fn a_rail_carries_the_foot_of_an_arm_and_its_figures_have_to_make_one() {
         ("speed = 90000", "speed = 0", "above 0"),
         (", home = 250", "", "`rail.home` is missing"),
         ("origin = [100, 0, 600, 90, 0, 0], ", "", "`rail.origin` is missing"),
-        ("max = 3000", "most = 3000", "unknown field `most`"),
+        ("max = 3000", "most = 3000", "no key of this table is called `most`"),
     ] {
         let shown = refusal(&robot(&good.replace(from, to)));
         assert!(shown.contains(what), "{to}: {shown}");

@@ -109,7 +109,11 @@ fn a_body_that_hangs_on_nothing_or_has_no_inside_is_refused_with_its_line() {
     }
     let many = "[[body]]\non = \"X\"\nlow = [0, 0, 0]\nhigh = [1, 1, 1]\n".repeat(101);
     assert!(refused(&many).1.contains("100 bodies at the most"));
-    assert!(refused("[axes]\nX.on = \"ceiling\"\n").1.contains("table"));
+    let found = mill("[axes]\nX.on = \"ceiling\"\n").unwrap_err();
+    assert!(
+        found.message.starts_with("on: `ceiling`") && found.help.contains("`table`"),
+        "{found}"
+    );
 }
 
 /// Machines of each kind: heads and tables, a wire, arms by their lengths and by Denavit-Hartenberg parameters, joint 3 coupled.

@@ -18,7 +18,7 @@ mod sheet;
 
 use crate::board::{Artwork, Board};
 use crate::report::{Location, Report};
-use program::{Diagnostic, Rule, nearest};
+use program::{Diagnostic, Misread, Rule, nearest};
 use serde::Deserialize;
 use sheet::{Group, KEYS};
 use std::ops::Range;
@@ -121,15 +121,16 @@ fn parse(text: &[u8]) -> Result<Spanned<Group>, Mistake> {
 
 fn of_toml(error: &toml::de::Error, text: &str) -> Mistake {
     let span = error.span().unwrap_or(0..0);
-    let message = error.message().trim().replace('\n', "; ");
-    let meant = match message.starts_with("unknown field") {
+    let Misread { message, help } = Misread::of(error.message());
+    let meant = match error.message().starts_with("unknown field") {
         true => {
             nearest(text.get(span.clone()).unwrap_or_default().trim_matches('"'), KEYS.into_iter())
         }
         false => String::new(),
     };
     let help = match meant.as_str() {
-        "" => String::from("docs/sources/board.md shows how a board is written"),
+        "" if help.is_empty() => String::from("docs/sources/board.md shows how a board is written"),
+        "" => help,
         meant => format!("did you mean {meant}?"),
     };
     Mistake::new(message, help, span)

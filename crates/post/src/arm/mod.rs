@@ -421,7 +421,8 @@ impl<'a> Walk<'a> {
             Act::Output(output) => {
                 let OutputValue::Digital(on) = output.value else {
                     let message = "an analog output of the source is not written for robots";
-                    return Err(Diagnostic::error(Rule::Unsupported, message).into());
+                    let help = "a toolpath that sets digital outputs alone";
+                    return Err(Diagnostic::error(Rule::Unsupported, message).help(help).into());
                 };
                 self.begin()?;
                 self.writer.set(WordName::Signal, f64::from(output.number));
@@ -724,7 +725,6 @@ impl<'a> Walk<'a> {
         let Some(feed) = feed else {
             return Err(reentry.refusal(route.is_some(), self.cell).into());
         };
-        let blocked = armpath::Blocked { point: 0, why };
         let Some((route, height)) = route else {
             let (what, first) = match self.offsets {
                 true => (
@@ -736,7 +736,7 @@ impl<'a> Walk<'a> {
                     "",
                 ),
             };
-            let message = format!("behind this point {blocked}, and {what}");
+            let message = format!("behind this point {why}, and {what}");
             let help = format!(
                 "{first}another place of the part (`toolpost fit` looks for one), or cut it in two operations"
             );
@@ -745,7 +745,7 @@ impl<'a> Walk<'a> {
         self.follow(&route)?;
         let message = format!(
             "the tool leaves the cut here, {height:.0} mm along its axis, turns and enters again at the same place at {feed:.0} mm/min: \
-             without that {blocked}"
+             without that {why}"
         );
         let help = "look at the mark that it may leave; another place of the part (`toolpost fit`) may do without";
         let found = Diagnostic::warning(Rule::Rewind, message).help(help);
@@ -1048,10 +1048,15 @@ impl<'a> Walk<'a> {
         if self.spindle == self.sent.spindle {
             return Ok(false);
         }
-        let (block, speed) = match self.spindle {
+        let speed = match self.spindle {
             Spindle::Off => return self.stop_spindle().map(|()| false),
-            Spindle::Clockwise(speed) => (BlockName::SpindleCw, speed),
-            Spindle::CounterClockwise(speed) => (BlockName::SpindleCcw, speed),
+            Spindle::Clockwise(speed) => speed,
+            Spindle::CounterClockwise(_) => {
+                let message = "the source turns the spindle counter-clockwise, and the outputs of a cell state a speed and no direction";
+                let help =
+                    "a toolpath and tools that cut with the spindle clockwise (SPINDL with CLW)";
+                return Err(Diagnostic::error(Rule::Spindle, message).help(help).into());
+            }
         };
         let (Some(output), Some((channel, full))) =
             (self.cell.spindle_output, self.cell.spindle_analog)
@@ -1064,7 +1069,7 @@ impl<'a> Walk<'a> {
         self.writer.set(WordName::Signal, f64::from(output));
         self.writer.set(WordName::Channel, f64::from(channel));
         self.writer.set(WordName::Value, speed / full);
-        self.required(block)?;
+        self.required(BlockName::SpindleCw)?;
         self.sent.spindle = self.spindle;
         match self.machine.spindle.dwell {
             0.0 => Ok(false),
@@ -1134,9 +1139,7 @@ impl<'a> Walk<'a> {
         if self.templates.has(name) {
             return self.block(name);
         }
-        let message = format!("the control has no block `{}`", name.name());
-        let help = format!("`{}` in its file, or a toolpath that does without", name.name());
-        Err(Diagnostic::error(Rule::MissingBlock, message).help(help).into())
+        Err(Templates::missing(name).into())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::rail::{Group, Stand, groups};
 use super::rapid::RapidPlanner;
 use ::arm::{Arm, Joints};
-use armpath::{Blocked, Cell as Frames, Choice, Point, Settings, Why, Worst, choose};
+use armpath::{Cell as Frames, Choice, Point, Settings, Why, Worst, choose};
 use geom::{Arc, Frame, Mat3, Vec3};
 use machine::{Cell, Machine};
 use program::lowering::{HoleMove, feed_per_minute, hole};
@@ -57,9 +57,9 @@ pub(super) struct Reentry {
 impl Reentry {
     /// What is wrong where no cut may be left, and whether it would help to allow that.
     pub(super) fn refusal(&self, helps: bool, cell: &Cell) -> Diagnostic {
-        let blocked = Blocked { point: 0, why: self.why };
+        let why = self.why;
         let message = format!(
-            "no turn about the tool and no posture passes the whole cut: behind this point {blocked}, and the arm would have to retract, turn \
+            "no turn about the tool and no posture passes the whole cut: behind this point {why}, and the arm would have to retract, turn \
              and enter the cut again"
         );
         let help = match helps {
@@ -70,7 +70,7 @@ impl Reentry {
                 "that cannot be written here: another place of the part (`toolpost fit` looks for one), or cut it in two operations"
             }
         };
-        let help = with_cable(help.to_owned(), self.why, cell);
+        let help = with_cable(help.to_owned(), why, cell);
         Diagnostic::error(Rule::ArmPath, message).help(help).line(self.line)
     }
 }
@@ -423,6 +423,12 @@ struct Walk<'a, 'm> {
     path: Option<CompensatedPath>,
 }
 
+/// What is wrong with a record that is not written for robots.
+fn unwritten(record: &Record, help: &str) -> Diagnostic {
+    let message = format!("`{}` is not written for robots", record.op.kind().name());
+    Diagnostic::error(Rule::Unsupported, message).help(help)
+}
+
 /// # Errors
 /// No robot has cutter compensation: which path the coordinates are has to be known. A contour has been offset before (`crate::center`).
 fn check_path(path: Option<CompensatedPath>) -> Outcome {
@@ -523,10 +529,12 @@ impl<'a> Walk<'a, '_> {
             | Op::Auxiliary(_)
             | Op::ThreadWire
             | Op::CutWire
-            | Op::Taper(_)
-            | Op::OptionalStop => {
-                let message = format!("`{}` is not written for robots", record.op.kind().name());
-                return Err(Diagnostic::error(Rule::Unsupported, message).into());
+            | Op::Taper(_) => {
+                return Err(unwritten(record, "a toolpath without it, or a mill in place of the robot").into());
+            }
+            Op::OptionalStop => {
+                let help = "STOP in place of OPSTOP, or `optional_stop = \"\"` under [blocks] of the machine file, which leaves it out";
+                return Err(unwritten(record, help).into());
             }
         }
         Ok(())

@@ -585,9 +585,7 @@ impl<'a> Walk<'a> {
         if self.templates.has(name) {
             return self.block(name);
         }
-        let message = format!("the control has no block `{}`", name.name());
-        let help = format!("`{}` in its file, or a toolpath that does without", name.name());
-        Err(refuse(Rule::MissingBlock, message).help(help).into())
+        Err(Templates::missing(name).into())
     }
 
     fn text(&mut self, name: BlockName, text: &str) -> Outcome {

@@ -317,7 +317,7 @@ rules! {
         "`G18` under G41";
     CompensationRadius "compensation-radius" []
         "Compensation is switched on, and the radius of the tool is not known."
-        "give the radius of the tool, in a tool table (`--tools`) or by the program"
+        "give the radius of the tool by the program or, with an NC program as the source, in its tool table (`--tools`)"
         "`G41 D5` and no tool 5 in the tool table";
     CompensationUnknownPosition "compensation-unknown-position" []
         "Compensation is on at a position that is not known."
@@ -443,6 +443,10 @@ rules! {
         "The diameter of a tool is not above 0, is beyond what a tool can have, or is given twice."
         "give the diameter of the tool, mm"
         "`T1C0` in a drill file";
+    DiameterMode "diameter-mode" []
+        "X counts as a diameter, as on a lathe: the machine goes to half of it."
+        "leave the word out, and write X as the place where the axis goes"
+        "linuxcnc: `G7`";
     DocumentSize "document-size" []
         "A FreeCAD document is larger than is read."
         "save the job alone, or post from within FreeCAD"
@@ -1945,12 +1949,12 @@ rules! {
         "sinumerik: `T1 D1`, `M6`, `G0 Z20`";
     ToolLength "tool-length" []
         "The length of the tool is needed and not known."
-        "give the tool a length in the source or a tool table (`--tools`)"
+        "give the tool a length: LENGTH in the tool call of cutter-location data, a tool table (`--tools`) with an NC program"
         "A tilted head, and a tool without length";
     ToolNumber "tool-number" []
         "A tool that is needed is not called, or has no number."
-        "call the tool with its number in the toolpath, or give it one in a tool table (`--tools`)"
-        "`LOAD/TOOL,MILL10` without a tool table";
+        "call the tool by its number, from 1 on; a tool that an NC program calls by its name has it in a tool table (`--tools`)"
+        "apt: `LOADTL/0`";
     ToolOffset "tool-offset" []
         "An offset of a tool is not used."
         "nothing to do, if the control keeps the length"

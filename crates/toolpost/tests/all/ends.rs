@@ -399,6 +399,29 @@ fn what_a_program_leaves_on_is_refused_on_the_machines_of_the_library() {
     }
 }
 
+/// Wherever X is a diameter: what differs then is a matter of the word, and the word is named first.
+#[test]
+fn a_word_of_lathes_in_a_program_is_refused_for_what_it_is() {
+    for (name, word) in [
+        ("generic-3axis-linuxcnc", "G7"),
+        ("linuxcnc-xyzac", "G7"),
+        ("generic-3axis-sinumerik", "DIAMON"),
+        ("generic-3axis-sinumerik", "DIAM90"),
+    ] {
+        let job = Job::new(name);
+        for line in 1..job.end {
+            let mut lines = job.lines.clone();
+            lines.insert(line, word.to_owned());
+            let rules = job.judged(&job.whole(&lines));
+            assert_eq!(
+                rules.first(),
+                Some(&"diameter-mode"),
+                "{name}: {word} at {line}: {rules:?}"
+            );
+        }
+    }
+}
+
 /// GRBL and LinuxCNC reset these; the rest each program says itself before it counts.
 #[test]
 fn what_each_program_says_anew_may_stay_at_the_end() {

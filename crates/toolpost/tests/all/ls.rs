@@ -143,7 +143,7 @@ fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
     // Tenths of inch/min: 4 mm/min would be 0.2 of them, 5.08 mm/min, and 12 mm/min 0.5.
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,4", &machine, 10, "no more digits");
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,12", &machine, 10, "12.700 mm/min");
-    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "spindle_ccw");
+    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "counter-clockwise");
     let without = lrmate_with(&[("own_frame = 9\n", "")]);
     refused("LOADTL/1", "LOADTL/1", &without, 0, "own_frame");
     // Home at half a turn of joint 6: the tool comes there with it, and the turns hang on rounding.

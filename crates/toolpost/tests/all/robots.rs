@@ -243,11 +243,13 @@ fn of_200_single_damages_each_is_refused_or_changes_nothing() {
 fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
     let machine = kuka();
     refused("GOTO/60,0,-2", "GOTO/2000,0,-2", &machine, 10, "mm out of reach");
+    refused("GOTO/60,0,-2", "GOTO/2000,0,-2", &machine, 10, "before the end of the motion");
+    refused("LOADTL/1", "LOADTL/1\nOPSTOP", &machine, 4, "optional_stop = \"\"");
     // Through the axis on which the arm stands.
     refused("GOTO/60,0,-2", "GOTO/-800,0,-2", &machine, 10, "the arm");
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,13000", &machine, 10, "13000 mm/min");
     refused("RPM,12000,CLW", "RPM,30000,CLW", &machine, 4, "30000");
-    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "spindle_ccw");
+    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "counter-clockwise");
     refused("LOADTL/1", "LOADTL/1\nCUTCOM/LEFT", &machine, 4, "--cutcom centre");
     refused("RAPID\nGOTO/0,0,50\n", "", &machine, 6, "begins where nobody knows");
     let fast = kuka_with(&[("feed_max = 12000", "feed_max = 200000")]);

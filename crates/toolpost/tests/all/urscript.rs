@@ -241,7 +241,7 @@ fn what_the_arm_cannot_do_is_refused_with_line_and_margin() {
     // Through the axis on which the arm stands.
     refused("GOTO/60,0,-2", "GOTO/-900,0,-2", &machine, 10, "the arm");
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,13000", &machine, 10, "13000 mm/min");
-    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "spindle_ccw");
+    refused("RPM,12000,CLW", "RPM,12000,CCLW", &machine, 8, "counter-clockwise");
     let fast = ur5e_with(&[("feed_max = 6000", "feed_max = 200000")]);
     refused("FEDRAT/MMPM,1200", "FEDRAT/MMPM,190000", &fast, 10, "of its speed at this feed");
     let without = ur5e_with(&[("load_mass = 1.5\nload_center = [0, 0, 60]\n", "")]);

@@ -547,6 +547,9 @@ impl Step<'_, '_, '_> {
         }
         if let Some(G::Diameter(diameter)) = self.block.g(Group::Diameter) {
             self.state.diameter = diameter;
+            if diameter {
+                self.actions.push(Action::Risk(Risk::DIAMETERS.into()));
+            }
         }
         if let Some(G::Incremental(incremental)) = self.block.g(Group::Distance) {
             self.state.incremental = incremental;

@@ -83,7 +83,7 @@ impl Block<'_> {
             Some(reason) => fault.help(reason),
             None if letter == b'M' => fault.help(
                 "where the builder of the machine has added it and nothing moves for it, list it under \
-                 `auxiliary` in the machine's file",
+                 `auxiliary` in the machine's file, or where it switches coolant, under [coolant]",
             ),
             None => fault,
         };

@@ -16,7 +16,7 @@ use crate::kernel::source::Source;
 use crate::sinumerik::language::axis::AXIS_NAMES;
 use crate::sinumerik::language::block::{Block, Coordinate, Corner, Count, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
-use crate::sinumerik::language::commands::{self, Code, FeedType, Motion};
+use crate::sinumerik::language::commands::{self, Code, Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{AssignmentTarget, ELEMENTS_IN_A_TURN};
 use crate::sinumerik::models::Facts;
@@ -331,10 +331,9 @@ impl<'a, 's> Interpreter<'a, 's> {
             if !is_known && !self.settings.auxiliary.contains(m) {
                 let message = format!("M{m} is not an M function of the control");
                 let mut error = source.block_error(Rule::UnknownM, message);
-                error.help =
-                    "a function of the machine's builder that moves no axis belongs in the \
-                              list of auxiliary functions of the machine"
-                        .into();
+                error.help = "where the builder of the machine has added it and nothing moves for it, list it under `auxiliary` in the \
+                              machine's file, or where it switches coolant, under [coolant]"
+                    .into();
                 return Err(error);
             }
         }
@@ -391,6 +390,11 @@ impl<'a, 's> Interpreter<'a, 's> {
         if let Some(Code::RapidsTogether(together)) = block.code(55) {
             self.state.rapids_together = Some(together);
             self.report_rapids(source)?;
+        }
+        if let Some(Code::Diameter(diameter)) = block.code(29)
+            && diameter != Diameter::Off
+        {
+            self.emit(source, Action::Risk(Risk::DIAMETERS.into()))?;
         }
         let retracts = block.rare.as_ref().is_some_and(|rare| rare.retracts);
         if retracts || matches!(block.code(41), Some(Code::Retract)) {
