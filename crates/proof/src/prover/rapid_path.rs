@@ -97,7 +97,7 @@ impl Prover<'_> {
         // Where axes may turn off the line, each may go at its own speed: so with a leaning tool Z comes down from home.
         let confined: Vec<&PartialPose> =
             elsewhere.iter().filter(|place| self.short_of_free(place) > slack).collect();
-        if let Some(what) = self.below_its_end([here, to], &confined) {
+        if let Some(what) = self.below_its_end(way, [here, to], &confined) {
             self.note_rapid(way, confined.into_iter(), to.line);
             return Some(self.way_refused(to, &what));
         }
@@ -116,32 +116,41 @@ impl Prover<'_> {
         Some(self.way_refused(to, &what))
     }
 
-    /// What is wrong with the places to which axes that go each at its own speed lead the tool, where it does not turn: in a hole or a
+    /// What is wrong with the places off the way of the source to which a rapid leads the tool, where it does not turn: in a hole or a
     /// pocket that was there before, or was drilled by moves, the tool is beyond all cuts everywhere but at its bottom. So these places, at
     /// which it may not turn off the line, are not below the higher end, and with the tool along Z not below the zero of the part, else not
-    /// below where the source goes highest.
+    /// below where the source goes highest. Where rapids are straight, the higher end is that of the source's own way, and above the zero
+    /// of the part a tool along Z may be lower than that.
     fn below_its_end(
         &mut self,
+        way: &StraightPath,
         ends: [&ResolvedPose; 2],
         confined: &[&PartialPose],
     ) -> Option<String> {
         let axis = ends[1].place.axis;
-        let turns = ends[0].position.orientation != ends[1].position.orientation;
-        if self.gauge.straight_rapids || turns {
+        if ends[0].position.orientation != ends[1].position.orientation {
             return None;
         }
         let height = |place: &PartialPose| place.tip.dot(axis);
+        let higher = |ends: [&PartialPose; 2]| {
+            ends.map(height).into_iter().fold(f64::NEG_INFINITY, f64::max)
+        };
         let lowest = confined.iter().map(|place| height(place)).fold(f64::INFINITY, f64::min);
-        let higher = ends.iter().map(|end| height(&end.place)).fold(f64::NEG_INFINITY, f64::max);
         let allowed = self.gauge.machine.capabilities.rapid_corridor + self.gauge.slack(ends[0]);
         let is_upright =
             geom::angle_between(axis, Vec3::Z).to_degrees() <= self.gauge.allowed.axis_degrees;
-        let (low, what) = if higher - lowest > allowed {
-            (higher - lowest, "its higher end")
-        } else if !is_upright || lowest < -allowed {
-            (self.top_along(axis) - lowest, "where the source goes highest")
-        } else {
-            return None;
+        let is_above_zero = is_upright && lowest >= -allowed;
+        let below_end = match (self.gauge.straight_rapids, &way.straight) {
+            (false, _) => Some(higher(ends.map(|end| &end.place)) - lowest),
+            (true, _) if is_above_zero => return None,
+            (true, Some((from, to))) => Some(higher([from, to]) - lowest),
+            // From home.
+            (true, None) => None,
+        };
+        let (low, what) = match below_end {
+            Some(low) if low > allowed => (low, "its higher end"),
+            Some(_) if self.gauge.straight_rapids || is_above_zero => return None,
+            Some(_) | None => (self.top_along(axis) - lowest, "where the source goes highest"),
         };
         (low > allowed).then(|| {
             format!(

@@ -695,3 +695,95 @@ fn a_rapid_from_a_free_place_to_one_on_the_line_is_looked_at_between_them() {
     none_is_proven(&source, &straight, &good, [(way, "X50\nY100 Z0\n"), (way, "Y100\nX50 Z0\n")]);
     proven(&source, &straight, &good.replacen(way, "X50 Y100\nZ0\n", 1));
 }
+
+/// A bore along a leaning tool that was there before: the toolpath goes straight down it by rapid, to where it is fed on along the tool, and from
+/// that place back.
+fn along_a_bore() -> Program {
+    read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,60\nSPINDL/1000,RPM,CLW\nFEDRAT/600,MMPM\n\
+         RAPID\nGOTO/100,0,60,0.70710678,0,0.70710678\nRAPID\nGOTO/40,0,0\nGOTO/20,0,-20\n\
+         GOTO/21,0,-20,0.71,0,0.7042\nGOTO/20,0,-20,0.70710678,0,0.70710678\nGOTO/40,0,0\nRAPID\nGOTO/100,0,60\nFINI\n",
+    )
+}
+
+/// Where rapids are straight, a program may still go axis by axis, or in the order that whoever edits it likes. Beyond all cuts, which
+/// a plunge is at its bottom alone, the tool is in the wall of the bore all the same.
+#[test]
+fn beside_a_bore_along_a_leaning_tool_no_straight_rapid_goes_axis_by_axis() {
+    let source = along_a_bore();
+    let control = |name: &str, words: &str| {
+        let machine = load(name).unwrap();
+        let own = plain(&text(&written(&source, &machine)));
+        proven(&source, &machine, &own);
+        assert!(own.contains(words), "{own}");
+        (machine, own)
+    };
+    let (machine, own) = control("linuxcnc-xyzbc-head", "\nX40 Z0\n");
+    let (into, out) = ("\nX40 Z0\n", "\nG0 X100 Z60\n");
+    let changes = [
+        (into, "\nX40\nZ0\n"),
+        (into, "\nZ0\nX40\n"),
+        // From farther out along the tool, which is no way of the source either.
+        (into, "\nX140 Z100\nX40\nZ0\n"),
+        (out, "\nG0 X100\nZ60\n"),
+        (out, "\nG0 Z60\nX100\n"),
+    ];
+    none_is_proven(&source, &machine, &own, changes);
+    // On the way along the tool it may stop, and begin farther out.
+    for (block, good) in [
+        (into, "\nX70 Z30\nX40 Z0\n"),
+        (into, "\nX140 Z100\nX40 Z0\n"),
+        (out, "\nG0 X60 Z20\nX100 Z60\n"),
+    ] {
+        proven(&source, &machine, &own.replacen(block, good, 1));
+    }
+    let (machine, own) = control("fanuc-table-bc", "\nX40. Z0.\n");
+    let changes = [("\nX40. Z0.\n", "\nX40.\nZ0.\n"), ("\nX40. Z0.\n", "\nZ0.\nX40.\n")];
+    none_is_proven(&source, &machine, &own, changes);
+    let (machine, own) = control("sinumerik-840d-traori", "\nX40 Z0 A3=");
+    let changes = [("\nX40 Z0 A3=", "\nX40\nZ0 A3="), ("\nX40 Z0 A3=", "\nZ0\nX40 A3=")];
+    none_is_proven(&source, &machine, &own, changes);
+}
+
+/// The same where the bore is the first place behind home: there is no way of the source besides.
+#[test]
+fn from_home_into_a_bore_along_a_leaning_tool_no_straight_rapid_goes_axis_by_axis() {
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,60\nSPINDL/1000,RPM,CLW\nFEDRAT/600,MMPM\n\
+         RAPID\nGOTO/40,0,0,0.70710678,0,0.70710678\nGOTO/20,0,-20\nGOTO/21,0,-20\nRAPID\nGOTO/101,0,60\nFINI\n",
+    );
+    let machine = load("linuxcnc-xyzbc-head").unwrap();
+    let own = plain(&text(&written(&source, &machine)));
+    proven(&source, &machine, &own);
+    let into = "\nX40 Z0\n";
+    let changes = [(into, "\nX40\nZ0\n"), (into, "\nZ0\nX40\n")];
+    none_is_proven(&source, &machine, &own, changes);
+    proven(&source, &machine, &own.replacen(into, "\nX70 Z30\nX40 Z0\n", 1));
+}
+
+/// With the tool along Z it may stop beside the way of the source above the zero of the part; below that there may be a pocket.
+#[test]
+fn an_upright_tool_goes_axis_by_axis_above_the_zero_of_the_part() {
+    let job = |low: i32| {
+        read(&format!(
+            "UNITS/MM\nLOADTL/1,LENGTH,60\nSPINDL/1000,RPM,CLW\nFEDRAT/600,MMPM\nRAPID\nGOTO/100,0,60\n\
+             RAPID\nGOTO/40,0,{low}\nGOTO/40,0,-20\nGOTO/41,0,-20\nRAPID\nGOTO/41,0,60\nFINI\n"
+        ))
+    };
+    let machine = load("linuxcnc-mill").unwrap();
+    for low in [-5, 2] {
+        let source = job(low);
+        let own = plain(&text(&written(&source, &machine)));
+        let into = format!("\nX40 Z{low}\n");
+        assert!(own.contains(&into), "{own}");
+        let [across, down] = [format!("\nX40\nZ{low}\n"), format!("\nZ{low}\nX40\n")]
+            .map(|by| own.replacen(&into, &by, 1));
+        proven(&source, &machine, &across);
+        match low < 0 {
+            true => assert!(
+                refused(&source, &machine, &down).iter().any(|(rule, _)| *rule == "rapid-path")
+            ),
+            false => proven(&source, &machine, &down),
+        }
+    }
+}

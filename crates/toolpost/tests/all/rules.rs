@@ -6,7 +6,7 @@
 use control::{Action, Dialect, Settings};
 use program::{Diagnostic, Rule};
 use source::apt;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,17 +56,22 @@ fn the_documentation_lists_the_catalogue() {
     assert!(stored == page(), "TOOLPOST_DOCS=write cargo test -p toolpost --test all rules");
 }
 
-/// The texts of the Rust files below a folder, but for the catalogue.
-fn sources(folder: &Path, all: &mut String) {
+/// Looks at each Rust file below a folder, but for the catalogue.
+fn each_source(folder: &Path, look: &mut impl FnMut(&Path, &str)) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, all);
+            each_source(&path, look);
         } else if path.extension().is_some_and(|end| end == "rs") && !path.ends_with("catalogue.rs")
         {
-            all.push_str(&fs::read_to_string(&path).unwrap());
+            look(&path, &fs::read_to_string(&path).unwrap());
         }
     }
+}
+
+/// The texts of the Rust files below a folder, but for the catalogue.
+fn sources(folder: &Path, all: &mut String) {
+    each_source(folder, &mut |_, text| all.push_str(text));
 }
 
 #[test]
@@ -85,27 +90,31 @@ fn some_source_makes_a_finding_of_each_rule() {
     assert!(unused.is_empty(), "no source makes a finding of {}", unused.join(", "));
 }
 
-/// The options of all commands, with their dashes.
+/// What a command prints.
+fn printed(words: &[&str]) -> String {
+    let run = Command::new(env!("CARGO_BIN_EXE_toolpost")).args(words).output().unwrap();
+    String::from_utf8(run.stdout).unwrap()
+}
+
+/// The commands below the one whose help this is.
+fn commands(help: &str) -> Vec<String> {
+    let commands = help.split("Commands:").nth(1).unwrap_or_default();
+    let lines = commands.lines().skip(1).take_while(|line| !line.trim().is_empty());
+    let names = lines.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    names.map(|line| line.trim().split(' ').next().unwrap().to_owned()).collect()
+}
+
+/// The options of a command and of those below it, with their dashes.
+fn options_of(command: &str) -> BTreeSet<String> {
+    let help = printed(&[command, "-h"]);
+    let more = commands(&help).into_iter().map(|below| printed(&[command, &below, "-h"]));
+    let texts: Vec<String> = [help.clone()].into_iter().chain(more).collect();
+    texts.iter().flat_map(|text| named_options(text)).map(str::to_owned).collect()
+}
+
+/// The options of all commands.
 fn options() -> BTreeSet<String> {
-    let run = |words: &[&str]| {
-        let run = Command::new(env!("CARGO_BIN_EXE_toolpost")).args(words).output().unwrap();
-        String::from_utf8(run.stdout).unwrap()
-    };
-    let names = |help: &str| {
-        let commands = help.split("Commands:").nth(1).unwrap_or_default();
-        let lines = commands.lines().skip(1).take_while(|line| !line.trim().is_empty());
-        let names = lines.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
-        names.map(|line| line.trim().split(' ').next().unwrap().to_owned()).collect::<Vec<_>>()
-    };
-    let mut all = BTreeSet::new();
-    for command in names(&run(&["-h"])) {
-        let help = run(&[&command, "-h"]);
-        let more = names(&help).into_iter().map(|below| run(&[&command, &below, "-h"]));
-        for text in [help].into_iter().chain(more) {
-            all.extend(named_options(&text).map(str::to_owned));
-        }
-    }
-    all
+    commands(&printed(&["-h"])).iter().flat_map(|command| options_of(command)).collect()
 }
 
 /// The options that a text names.
@@ -150,6 +159,44 @@ fn every_option_that_is_named_in_a_text_exists() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The commands that say what stands in a source file: an option in its texts has to be one of each of them. None where it depends on more.
+fn said_by(file: &str) -> &'static [&'static str] {
+    let in_any = |parts: &[&str]| parts.iter().any(|part| file.contains(part));
+    match () {
+        // `show` draws what the others prove, in the frame that it is told.
+        () if in_any(&["crates/toolpost/", "crates/studio/", "crates/nc/src/pose.rs"]) => &[],
+        () if in_any(&["glass"]) => &["glass"],
+        () if in_any(&["crates/pcb/", "crates/levelling/", "/src/pcb"]) => &["pcb"],
+        () if in_any(&["crates/wire/", "crates/sketch/", "/src/wire"]) => &["wire"],
+        () if in_any(&["crates/post/"]) => &["post"],
+        () => &["post", "prove"],
+    }
+}
+
+/// A way out by an option that the command at hand does not take leads nowhere.
+#[test]
+fn an_option_in_a_text_is_one_of_the_command_that_says_it() {
+    let commands = ["post", "prove", "wire", "pcb", "glass"];
+    let known: BTreeMap<&str, BTreeSet<String>> =
+        commands.into_iter().map(|command| (command, options_of(command))).collect();
+    assert!(known["prove"].contains("--against") && !known["prove"].contains("--tabs"));
+    let (mut wrong, mut named) = (Vec::new(), 0);
+    let mut look = |path: &Path, text: &str| {
+        let file = path.display().to_string();
+        let texts = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        for option in texts.filter(|line| line.contains('"')).flat_map(named_options) {
+            named += 1;
+            let lacks = said_by(&file).iter().filter(|command| !known[**command].contains(option));
+            wrong.extend(lacks.map(|command| format!("{file}: {option} is none of {command}")));
+        }
+    };
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        each_source(&entry.unwrap().path().join("src"), &mut look);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(named > 80, "{named}");
 }
 
 /// The ways out of which a newcomer knew no option: these name it, as it is typed.
