@@ -388,7 +388,7 @@ fn what_a_program_leaves_on_is_refused_on_the_machines_of_the_library() {
             ],
         ),
         ("linuxcnc-xyzac", &["M428", "G7", "G96 S100"]),
-        ("generic-3axis-mach3", &["G68 A0 B0 R45", "G91", "G55"]),
+        ("generic-3axis-mach3", &["G68 A0 B0 R45", "G91", "G55", "M3 S500", "G18", "G95"]),
         ("generic-3axis-marlin", &["G91", "M3 S500", "G55"]),
     ] {
         let job = Job::new(name);
@@ -427,10 +427,16 @@ fn a_word_of_lathes_in_a_program_is_refused_for_what_it_is() {
 fn what_each_program_says_anew_may_stay_at_the_end() {
     for (name, blocks) in [
         ("generic-3axis-grbl", &["G55", "G91", "G20", "G18", "G93"][..]),
-        ("generic-3axis-linuxcnc", &["G55", "G91", "G20", "G18", "G93", "G43 H2", "G61"]),
+        (
+            "generic-3axis-linuxcnc",
+            &["G55", "G91", "G20", "G18", "G93", "G95", "G99", "G43 H2", "G61", "M3 S500"],
+        ),
+        ("generic-3axis-mach3", &["G20", "G99"]),
+        ("generic-3axis-marlin", &["G20"]),
+        ("generic-3axis-heidenhain", &["M3"]),
         ("generic-3axis-fanuc", &["G49", "S50", "F9", "T9", "G54"]),
-        ("generic-3axis-haas", &["G43 H2", "G49", "T9"]),
-        ("generic-3axis-sinumerik", &["G500", "D0", "T5", "F9", "S50"]),
+        ("generic-3axis-haas", &["G43 H2", "G49", "T9", "M3 S500"]),
+        ("generic-3axis-sinumerik", &["G500", "D0", "T5", "F9", "S50", "M3 S500"]),
     ] {
         let job = Job::new(name);
         for block in blocks {
