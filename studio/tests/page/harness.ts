@@ -210,6 +210,8 @@ export async function goTo(page: Page, where: string): Promise<void> {
     await page.keyboard.type(where);
     await page.keyboard.press("Enter");
     await page.getByRole("dialog").waitFor({ state: "detached" });
+    const move = /^m(\d+)$/.exec(where)?.[1];
+    if (move !== undefined) await expect.poll(async () => (await readout(page)).Move).toMatch(new RegExp(`^${move} `));
 }
 
 /** What the readout says, by name. */

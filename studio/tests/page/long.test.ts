@@ -3,7 +3,7 @@
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import { absent, browserOfTests, covered, goTo, proven, Server, visit, writable } from "./harness.ts";
+import { absent, browserOfTests, covered, goTo, lit, proven, Server, visit, writable } from "./harness.ts";
 
 const MOVES = 400_000;
 
@@ -96,7 +96,9 @@ describe.skipIf(absent() !== null)("a long program", () => {
         const { to } = JSON.parse(/\{"revision".*?\}/.exec(asked[first]!)![0]) as { to: number };
         expect(to).toBeLessThan(100);
         // Its last block stands beyond what came first.
+        const before = await lit(page, "program");
         await goTo(page, "11000");
+        await expect.poll(() => lit(page, "program")).not.toBe(before);
         await writable(page);
         await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");

@@ -170,3 +170,15 @@ fn increments_behind_a_rotation_count_where_it_leaves_the_coordinates_alone() {
     near(points("G0 X10 Y3 Z5\nMIRROR X0\nG91 Y2")[1], v(10.0, 5.0, 5.0));
     assert_eq!(error("G0 X10 Y3 Z5\nMIRROR X0\nG91 X2").rule.name(), "unknown-position");
 }
+
+/// Function manual K2 09/2011 p. 791: they delete the rotations of the frames by which a swivelled plane may be made. Without a plane they delete nothing.
+#[test]
+fn frames_of_part_and_tool_are_not_deleted_in_a_swivelled_plane() {
+    let plane = "CYCLE800(0,\"\",0,57,0,0,0,-30,0,0,0,0,0,1)\nG0 X1 Y2\nZ3";
+    for word in ["PAROTOF", "TOROTOF"] {
+        let found = error(&format!("{plane}\n{word}\nX4"));
+        assert_eq!(found.rule, program::Rule::TiltedPlane, "{word}");
+        assert!(found.message.contains("PAROTOF"), "{}", found.message);
+        blocks(&format!("{word}\n{plane}\nX4\nCYCLE800()\n{word}\nG0 X1 Y2"));
+    }
+}

@@ -447,6 +447,14 @@ impl<'a, 's> Interpreter<'a, 's> {
         if let Some(Code::GreatCircle(great_circle)) = block.code(51) {
             state.turning.great_circle = Some(great_circle);
         }
+        // They delete the rotations of $P_PARTFRAME and $P_TOOLFRAME (function manual K2 09/2011), of which the cycle may make its plane.
+        let ends_frame =
+            [52, 53].into_iter().any(|group| block.code(group) == Some(Code::FrameOff));
+        if ends_frame && state.frames.swivel().is_some() {
+            let message = "PAROTOF or TOROTOF in a plane of CYCLE800: it deletes frames by which the cycle may have turned the plane";
+            let found = source.block_error(Rule::TiltedPlane, message);
+            return Err(Box::new(found.help("write CYCLE800() before it")));
+        }
         if let Some(Code::Compensation(compensation)) = block.code(7) {
             self.select_compensation(source, compensation)?;
         }

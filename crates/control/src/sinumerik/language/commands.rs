@@ -59,6 +59,8 @@ pub(crate) enum Code {
     GreatCircle(bool),
     /// The control smooths how the tool turns, by its setting data, or not.
     TurnsLoosely(bool),
+    /// The frame of the part's or the tool's rotation is deleted.
+    FrameOff,
     /// How the control drives along the path, not where: dynamics, rounding and compression within
     /// the machine's tolerances, interpolation of the orientation between given ends.
     NoMotion,
@@ -382,9 +384,9 @@ pub(super) static COMMANDS: &[Command] = &[
     g("ORIAXES", 51, Code::GreatCircle(false)),
     not("ORIPATH", 51, "orientation from the path"),
     // 52, 53: frames from part and tool
-    same("PAROTOF", 52),
+    g("PAROTOF", 52, Code::FrameOff),
     not("PAROT", 52, TOOL_FRAME),
-    same("TOROTOF", 53),
+    g("TOROTOF", 53, Code::FrameOff),
     not("TOROT", 53, TOOL_FRAME),
     not("TOFRAME", 53, TOOL_FRAME),
     // 55, 57, 59, 61: rapid interpolation, corner slow-down, dynamics, smoothing
