@@ -106,7 +106,7 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
         expect(read("ball.prg.report.json")).toBe(read("command.prg.report.json"));
 
         await goTo(page, "9");
-        await expect.poll(() => lit(page, "program")).toMatch(/^PULSE/);
+        await expect.poll(() => lit(page, "program")).toMatch(/^N9 /);
         await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");
         await page.keyboard.press("Backspace");

@@ -211,7 +211,7 @@ export async function goTo(page: Page, where: string): Promise<void> {
     await page.keyboard.press("Enter");
     await page.getByRole("dialog").waitFor({ state: "detached" });
     const move = /^m(\d+)$/.exec(where)?.[1];
-    if (move !== undefined) await expect.poll(async () => (await readout(page)).Move).toMatch(new RegExp(`^${move} `));
+    if (move !== undefined) await expect.poll(async () => (await readout(page)).Move?.replaceAll(",", "")).toMatch(new RegExp(`^${move} `));
 }
 
 /** What the readout says, by name. */
