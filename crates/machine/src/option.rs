@@ -74,12 +74,23 @@ impl OptionKey {
 /// Why a number cannot be the value of that option.
 pub(crate) fn wrong_option(name: &str, value: f64) -> Option<String> {
     let (good, need) = match OptionKey::named(name).and_then(OptionKey::range) {
-        Some((least, most, unit)) => {
-            let none = if least > 0.0 { "0, or " } else { "" };
-            let good = value == 0.0 || (least..=most).contains(&value);
-            (good, format!("{none}a number from {least} to {most} {unit}"))
+        Some(range) => {
+            let good = value == 0.0 || (range.0..=range.1).contains(&value);
+            (good, needed(range))
         }
         None => (value.abs() <= 1e9, String::from("a number from -10^9 to 10^9")),
     };
     (!good).then(|| format!("{value:?} is given, and {need} is needed"))
+}
+
+/// Why what is no number cannot be the value of that option, where its numbers are bounded.
+pub(crate) fn no_number(name: &str, given: &str) -> Option<String> {
+    let range = OptionKey::named(name)?.range()?;
+    Some(format!("{given} is given, and {} is needed", needed(range)))
+}
+
+/// The numbers of a range: the least besides 0, the most and the unit.
+fn needed((least, most, unit): (f64, f64, &str)) -> String {
+    let none = if least > 0.0 { "0, or " } else { "" };
+    format!("{none}a number from {least} to {most} {unit}")
 }

@@ -74,7 +74,6 @@ fn given(value: &str) -> String {
         (Some(number), _) => number.into(),
         (None, "sequence") => "a list".into(),
         (None, "map") => "a table".into(),
-        (None, "unit value" | "null") => "nothing".into(),
         (None, value) => match value.strip_prefix("string ") {
             Some(text) => format!("the text {text}"),
             None => value.into(),

@@ -5,7 +5,7 @@ use super::arm::{self, PlacedArm};
 use super::file::SheetFile;
 use crate::linkage::Linkage;
 use crate::model::*;
-use crate::option::{OptionKey, wrong_option};
+use crate::option::{OptionKey, no_number, wrong_option};
 use crate::sheet::*;
 use geom::{Vec3, direction};
 use program::{CoolantFunctions, Diagnostic, Rule};
@@ -147,7 +147,8 @@ fn check_options(
     let checked = |(name, value): (String, Spanned<OptionSheet>)| {
         let wrong = match value.get_ref() {
             OptionSheet::Number(number) => wrong_option(&name, *number),
-            OptionSheet::Flag(_) | OptionSheet::Text(_) => None,
+            OptionSheet::Flag(flag) => no_number(&name, &flag.to_string()),
+            OptionSheet::Text(text) => no_number(&name, &format!("the text {text:?}")),
         };
         match wrong {
             Some(message) => Err(file.at(&name, &value, &message).into()),

@@ -316,6 +316,14 @@ max = 200.5
             ("work_zero = [1, 2]", "work_zero: a list of 2 is given, and a list of 3 is needed"),
             ("[feed_max]\na = 1", "feed_max: a table is given, and a number is needed"),
             ("[settings]\nrapid_path = true", "rapid_path: a text is needed"),
+            (
+                "[options]\npath_tolerance = \"x\"",
+                "path_tolerance: the text \"x\" is given, and a number from 0 to 10 mm is needed",
+            ),
+            (
+                "[options]\ntouch_feed = true",
+                "touch_feed: true is given, and 0, or a number from 1 to",
+            ),
             ("[options]\nmine = [8]", "mine: a text, a number, true or false is needed"),
         ] {
             let found = refusal(&format!("{text}\n"));

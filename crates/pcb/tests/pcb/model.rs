@@ -195,7 +195,7 @@ fn what_is_no_board() {
     refused(far, "node", (2, 18), "not a place");
     refused("[[holes]]\nnode = [0]\ndiameter = 1\n", "board-file", (2, 8), "[x, y]");
     refused("[[holes]]\nnode = [0, 0]\ndiametr = 1\n", "board-file", (3, 1), "mean `diameter`");
-    refused("[[holes]]\nnode = [0, 0]\n", "board-file", (1, 1), "missing field `diameter`");
+    refused("[[holes]]\nnode = [0, 0]\n", "board-file", (1, 1), "`diameter` is missing");
     refused(
         "[[pads]]\nnode = [0, 0]\nshape = \"oval\"\nsize = 1\n",
         "board-file",

@@ -318,7 +318,18 @@ impl<'a> Stretch<'a> {
         }
         let (rail, choice): (f64, Choice) = found.map_err(|blocked| {
             let message = format!("the arm cannot go here: {blocked}");
-            let place = "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed";
+            let place = match blocked.why {
+                Why::Speed(..) | Why::Apart => "move the part (`part` below [cell]), tilt the spindle on the flange, or take a lower feed",
+                Why::Reach(_)
+                | Why::Limit(..)
+                | Why::Range(_)
+                | Why::Wrist(_)
+                | Why::Shoulder(_)
+                | Why::Elbow(_)
+                | Why::Numbers => {
+                    "move the part (`part` below [cell]; `toolpost fit` looks for places), or tilt the spindle on the flange"
+                }
+            };
             let mut help = Vec::new();
             let at = points.get(blocked.point);
             let is_far = matches!(blocked.why, Why::Reach(_) | Why::Numbers);
