@@ -107,6 +107,40 @@ fn an_additive_plane_turns_in_the_axes_of_the_last() {
     near(poses(&ops)[0].axis().unwrap(), v(1.0, 0.0, 0.0));
 }
 
+/// Operating manual *Milling*, "Swivel plane (CYCLE800)": "new" deletes programmed frames, "additive" takes them into the swivel frame.
+#[test]
+fn a_plane_is_not_swivelled_while_a_programmable_frame_is_active() {
+    let new = "CYCLE800(0,\"\",0,57,0,0,0,0,-30,0,0,0,-5,1)";
+    let additive = new.replace("\"\",0", "\"\",1");
+    for frame in [
+        "TRANS Z5",
+        "ATRANS X1",
+        "ROT Z90",
+        "AROT RPL=10",
+        "SCALE X2 Y2 Z2",
+        "MIRROR X0",
+        "G58 X5",
+        "G59 X5",
+    ] {
+        for cycle in [new, &additive, "CYCLE800()", "CYCLE800(0,\"0\")"] {
+            let found = error(&format!("{frame}\n{cycle}"));
+            assert_eq!((found.rule.name(), found.line), ("tilted-plane", 2), "{frame} {cycle}");
+            assert!(found.help.contains("TRANS alone"), "{found}");
+        }
+    }
+    // Deleted before, or written in the plane.
+    let in_plane =
+        blocks(&format!("TRANS Z5\nTRANS\n{new}\nTRANS X2\nG0 X1 Y2\nZ3\nTRANS\nCYCLE800()"));
+    near(poses(&in_plane).last().unwrap().point, swivelled_at(new, v(3.0, 2.0, 3.0)));
+    let between = format!("{new}\nATRANS Z5\n{additive}");
+    assert_eq!(error(&between).rule.name(), "tilted-plane");
+}
+
+/// Where a point of the plane of this `CYCLE800` is.
+fn swivelled_at(cycle: &str, at: geom::Vec3) -> geom::Vec3 {
+    poses(&blocks(&format!("{cycle}\nG0 X{} Y{}\nZ{}", at.x, at.y, at.z))).last().unwrap().point
+}
+
 #[test]
 fn swivelling_lifts_as_asked_and_makes_the_position_unknown() {
     let ops =

@@ -77,6 +77,7 @@ impl Interpreter<'_, '_> {
         if self.state.modal.waits() {
             return error(Rule::Cycle, "CYCLE800 while MCALL is active");
         }
+        self.check_programmable_off(source)?;
         if call.arguments.is_empty() {
             return self.end_swivel();
         }
@@ -160,6 +161,18 @@ impl Interpreter<'_, '_> {
             self.emit(source, Action::Home(home))?;
         }
         self.emit(source, Action::Swivel(TiltChoice::Higher(direction > 0.0)))
+    }
+
+    /// Operating manual *Milling*, "Swivel plane (CYCLE800)": a new plane deletes the programmable frame; an additive one turns on
+    /// top of it. So where the tool goes behind the cycle depends on what the cycle of this control does with the frame.
+    fn check_programmable_off(&self, source: &Source) -> Outcome {
+        if self.state.frames.programmable() == Frame::IDENTITY {
+            return Ok(());
+        }
+        let message = "CYCLE800 while a programmable frame is active (TRANS, ROT, SCALE, MIRROR, G58, G59): what becomes of \
+                       the frame depends on the cycle";
+        let help = "write TRANS alone before CYCLE800, and the frame anew behind it where the program needs it";
+        Err(Box::new(source.block_error(Rule::TiltedPlane, message).help(help)))
     }
 
     /// Whether the tool may stand otherwise than along Z of the machine: an axis of the head may have turned.
