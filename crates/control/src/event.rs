@@ -678,6 +678,16 @@ impl Risk {
         refused: true,
     };
 
+    /// `G53` of SINUMERIK (Fundamentals 11/2006, p. 100): it suppresses the settable and the programmable offset; `G153` the total basic
+    /// frame too, `SUPA` all.
+    pub(crate) const BASIC_FRAME: Risk = Risk {
+        rule: Rule::MachinePosition,
+        what: "moves by G53, which leaves basic frames in (a zero set in JOG, a pallet, a swivelled table): where that is in the machine is \
+               not known",
+        help: "write SUPA, or G153, which suppress the basic frames too",
+        refused: true,
+    };
+
     /// `G25`, `G26` of SINUMERIK (PM, "Working area limitation", "Programmable spindle speed limitation"): SD43420, SD43430,
     /// SD43210, SD43220 keep them.
     pub(crate) const LIMITS_WRITTEN: Risk = Risk {

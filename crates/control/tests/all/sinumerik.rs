@@ -301,7 +301,7 @@ fn vectors_of_the_tool_have_any_length_and_hold() {
 
 #[test]
 fn moves_in_machine_coordinates_leave_their_axes_unknown() {
-    let ops = blocks("SUPA G0 Z0 D0\nG0 X5\nG74 X1=0 Y1=0\nG75 FP=2 Z1=0\nG53 G0 A0 C0\nG1 X1");
+    let ops = blocks("SUPA G0 Z0 D0\nG0 X5\nG74 X1=0 Y1=0\nG75 FP=2 Z1=0\nG153 G0 A0 C0\nG1 X1");
     let is_home = |op: &&Action| matches!(op, Action::Home(_) | Action::MachineMove(_));
     let homes: Vec<_> = ops.iter().filter(is_home).collect();
     assert_eq!(
@@ -325,6 +325,26 @@ fn moves_in_machine_coordinates_leave_their_axes_unknown() {
     assert!(poses[0].point.x == 5.0 && poses[0].point.y == 0.0 && poses[0].point.z.is_nan());
     assert!(poses[1].point.x == 1.0 && poses[1].point.y.is_nan());
     assert!(degrees(&poses[1]).0[0].is_nan());
+}
+
+/// Fundamentals 11/2006, p. 100: G53 suppresses the settable and the programmable offset, G153 the total basic frame too, SUPA all.
+#[test]
+fn g53_leaves_the_basic_frame_in() {
+    let risks = |word: &str, to: &str| {
+        let ops = blocks(&format!("D0\n{word} G0 {to}"));
+        let risk = |op: &Action| match op {
+            Action::Risk(risk) => Some((risk.rule.name(), risk.refused)),
+            _ => None,
+        };
+        ops.iter().filter_map(risk).collect::<Vec<_>>()
+    };
+    for to in ["Z0", "X0 Y0", "A0 C0"] {
+        assert_eq!(risks("G53", to), [("machine-position", true)], "{to}");
+        assert_eq!(risks("G153", to), [], "{to}");
+        assert_eq!(risks("SUPA", to), [], "{to}");
+    }
+    // It goes nowhere.
+    assert_eq!(risks("G53", "F100"), []);
 }
 
 #[test]

@@ -137,6 +137,25 @@ fn a_safe_height_lies_within_the_travel() {
     }
 }
 
+/// `G53` of a SINUMERIK leaves basic frames in: Z 0 of it is anywhere.
+#[test]
+fn a_sinumerik_goes_home_by_supa_or_g153() {
+    for name in ["generic-3axis-sinumerik", "generic-3axis-sinumerik-828d"] {
+        let machine = load(name).unwrap();
+        let text = posted(&machine).unwrap();
+        assert!(text.contains("G0 SUPA Z"), "{text}");
+        assert_eq!(proven(&machine, &text.replace("SUPA", "G153")), Ok(()), "{name}");
+        assert_eq!(proven(&machine, &text.replace("SUPA", "G53")), Err("machine-position"));
+        // As a source it is read, with a warning.
+        let setup = control::Setup::default();
+        let found = |text: &str| {
+            let read = nc::read(&machine, setup.clone(), "p.mpf", text.as_bytes()).unwrap();
+            read.warnings.iter().filter(|found| found.message.contains("G53")).count()
+        };
+        assert_eq!((found(&text), found(&text.replace("SUPA", "G53"))), (0, 1), "{name}");
+    }
+}
+
 /// A 3018 has no switches: where its machine zero is, nobody knows. Each retract goes over the work zero, above all cuts.
 #[test]
 fn a_machine_without_switches_retracts_over_its_work_zero() {

@@ -479,6 +479,9 @@ impl Interpreter<'_, '_> {
             self.use_feed(source)?;
         }
         let to = self.machine_target(source, block)?;
+        if block.command(9) == "G53" {
+            self.emit(source, Action::Risk(Risk::BASIC_FRAME.into()))?;
+        }
         self.leave_for(
             source,
             block.axes.map(|axis| axis.is_some()),
