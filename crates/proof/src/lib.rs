@@ -80,6 +80,7 @@ mod pace;
 mod prover;
 mod report;
 mod resolved_pose;
+mod speeds;
 mod state;
 mod stops;
 mod surfaces;

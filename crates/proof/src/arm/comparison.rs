@@ -13,6 +13,7 @@ use super::expected::{Expected, Step};
 use super::follow::Lost;
 use crate::observer::{Deviation, Walk};
 use crate::report::{ArmChecked, Report, SourceLine};
+use crate::speeds::Speeds;
 use ::arm::{Arm, Joints};
 use control::kernel::arc::through;
 use control::{Action, ArmAction, ArmMove, ArmPath, Corner, Dialect, Event, Rounding};
@@ -76,6 +77,8 @@ pub(super) struct Comparison<'a> {
     cuts: CutBox,
     /// How high the source goes.
     tops: Tops<'a>,
+    /// How fast it has its tools turn.
+    speeds: Speeds,
     expected: Vec<Expected>,
     next: usize,
     /// How much of the next step is done, 0 to 1.
@@ -134,6 +137,7 @@ impl<'a> Comparison<'a> {
             cell,
             cuts: CutBox::of(source),
             tops: Tops::of(source),
+            speeds: Speeds::of(source),
             expected,
             next: 0,
             done: 0.0,

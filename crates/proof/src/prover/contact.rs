@@ -2,6 +2,7 @@
 //! nowhere, the program does not switch on anywhere.
 
 use super::*;
+use crate::speeds::Speeds;
 use program::{CycleKind, Op, Program, Rule};
 
 /// What the spindle has done in the last motion, and where the tool is free of the part.
@@ -17,6 +18,8 @@ pub(super) struct Contact {
     switched: Option<(u32, Spindle)>,
     /// What the source switches on anywhere; counted where it is asked for.
     used: Option<Used>,
+    /// How fast the source has its tools turn; counted where it is asked for.
+    speeds: Option<Speeds>,
 }
 
 /// What a source switches on anywhere.
@@ -95,6 +98,7 @@ impl Contact {
             left_standing: false,
             switched: None,
             used: None,
+            speeds: None,
         }
     }
 
@@ -162,6 +166,26 @@ impl Prover<'_> {
         if !is_used {
             let message =
                 format!("the spindle is started {way}, as it turns nowhere in the source");
+            self.differs(line, (Rule::Spindle, message));
+        }
+    }
+
+    /// Refuses a spindle that turns faster than the source names a speed for the tool in it, also where nothing is cut.
+    pub(super) fn check_fastest(&mut self, line: u32, spindle: Spindle) {
+        let is = state::speed(spindle);
+        if is == 0.0 || self.gauge.machine.wire.is_some() {
+            return;
+        }
+        let source = self.source;
+        let speeds = self.contact.speeds.get_or_insert_with(|| Speeds::of(source));
+        let fastest = speeds.fastest(self.running.tool.as_ref());
+        // A source without any speed names no direction either.
+        if fastest > 0.0 && is > fastest + self.gauge.allowed.speed_per_min {
+            let message = format!(
+                "the spindle is switched on with {} 1/min, and the source names no speed above {} for this tool",
+                Number(is),
+                Number(fastest)
+            );
             self.differs(line, (Rule::Spindle, message));
         }
     }

@@ -403,6 +403,7 @@ impl<'a> Prover<'a> {
                 running.switch_spindle(line, *spindle, self.gauge.machine.spindle.dwell);
                 self.check_speed(line, *spindle);
                 self.check_direction(line, *spindle);
+                self.check_fastest(line, *spindle);
                 self.check_standing(line);
             }
             Action::SurfaceSpeed(speed) => running.surface_speed = *speed,

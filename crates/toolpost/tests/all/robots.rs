@@ -685,6 +685,40 @@ fn a_tool_leaves_a_cut_with_the_spindle_as_in_the_cut() {
     assert!(proof_of(&source, &machine, &free).proven);
 }
 
+/// A cutter bursts in the air too: no tool turns faster than the source names a speed for it, also on the way home.
+#[test]
+fn no_tool_turns_faster_on_a_robot_than_the_source_names_a_speed_for_it() {
+    let machine = kuka();
+    let tools = two_tools().replace("RPM,6000", "RPM,12000").replacen("RPM,12000", "RPM,6000", 1);
+    for (job, halves) in [(JOB.to_owned(), ["0.50000", "0.50100"]), (tools, ["0.25000", "0.50000"])]
+    {
+        let source = source(&job);
+        let text = proven(&source, &machine);
+        // The first way home behind the cuts.
+        let off = text.find("$OUT[1]=FALSE").unwrap();
+        let home = text[..off].rfind("PTP {A1").unwrap();
+        let found = |value: &str| {
+            let (before, behind) = text.split_at(home);
+            let damaged = format!("{before}$ANOUT[1]={value}\r\n{behind}");
+            let report = proof_of(&source, &machine, &damaged);
+            report.mismatches.iter().map(|found| found.rule.name()).collect::<Vec<_>>()
+        };
+        let [most, more] = halves;
+        assert_eq!(found(most), [""; 0], "{text}");
+        assert_eq!(found("0.10000"), [""; 0], "{text}");
+        assert_eq!(found(more), ["spindle"], "{text}");
+        assert_eq!(found("1.00000"), ["spindle"], "{text}");
+    }
+    // A tool that is switched on at the speed of the one before.
+    let source = source(&two_tools());
+    let text = proven(&source, &machine);
+    let slow = "$ANOUT[1]=0.25000\r\n$OUT[1]=TRUE\r\n";
+    let late = text.replace(slow, "$OUT[1]=TRUE\r\n$ANOUT[1]=0.25000\r\n");
+    assert_ne!(late, text);
+    let report = proof_of(&source, &machine, &late);
+    assert_eq!(report.mismatches[0].rule.name(), "spindle", "{late}");
+}
+
 /// A dwell behind SPINDL is for the spindle to run up, or to turn: it has to turn then. The cell waits 3 s behind each start, which a
 /// longer dwell of the source holds already.
 #[test]

@@ -333,6 +333,86 @@ fn near_the_part_the_spindle_turns_as_the_source_says_by_rapid_too() {
     }
 }
 
+/// A cutter bursts in the air too: no tool turns faster than the source names a speed for it, wherever it is.
+#[test]
+fn no_tool_turns_faster_than_the_source_names_a_speed_for_it() {
+    let on = |speed: f64| Op::Spindle(Spindle::Clockwise(speed));
+    let next = || Op::Tool(Box::new(Tool { number: 2, ..Tool::default() }));
+    let up = || Op::Rapid(at(10.0, 50.0));
+    let cut = || Op::Line(at(20.0, -1.0));
+    // T1 600 and 900, T2 2000, and T1 once more at 600.
+    let first = || Op::Tool(Box::new(Tool { number: 1, ..Tool::default() }));
+    let source = program(vec![
+        cut(),
+        up(),
+        on(900.0),
+        cut(),
+        up(),
+        next(),
+        on(2000.0),
+        up(),
+        cut(),
+        up(),
+        first(),
+        on(600.0),
+        up(),
+        cut(),
+        up(),
+    ]);
+    for (name, is_klartext) in [
+        ("generic-3axis-fanuc", false),
+        ("generic-3axis-haas", false),
+        ("generic-3axis-sinumerik", false),
+        ("generic-3axis-linuxcnc", false),
+        ("generic-3axis-heidenhain", true),
+    ] {
+        let machine = machine::load(name).unwrap();
+        let text = written(&machine, &source).unwrap_or_else(|| panic!("{name}"));
+        // Behind each retract that is high over the part: T1, T1 at 900, T2, T1.
+        let (mut high, mut low) = (Vec::new(), false);
+        let settings = nc::settings(&machine, Setup::default()).unwrap();
+        control::read(&settings, "p", text.as_bytes(), &mut |event| {
+            if let Some(to) = event.action.position() {
+                if low && to.point.z == 50.0 {
+                    high.push(event.line as usize);
+                }
+                low = to.point.z < 0.0;
+            }
+            Ok(())
+        })
+        .unwrap();
+        let [first, second, third, last] = high[..] else { panic!("{name} {high:?}\n{text}") };
+        for (line, speed, is_right) in [
+            (first, 900, true),
+            (first, 901, false),
+            (first, 15000, false),
+            (second, 300, true),
+            (second, 2000, false),
+            (third, 2000, true),
+            (third, 600, true),
+            (third, 2001, false),
+            (last, 900, true),
+            (last, 2000, false),
+        ] {
+            let word = match is_klartext {
+                true => format!("TOOL CALL Z S{speed}"),
+                false => format!("S{speed}"),
+            };
+            // Where the cut behind it needs its own speed.
+            let back = if line == first { "900" } else { "" };
+            let mut blocks = vec![(line, word.as_str())];
+            let again = match is_klartext {
+                true => format!("TOOL CALL Z S{back}"),
+                false => format!("S{back}"),
+            };
+            blocks.extend((!back.is_empty()).then_some((line, again.as_str())));
+            let changed = with(&machine, &text, &blocks);
+            let expected: &[&str] = if is_right { &[] } else { &["spindle"] };
+            assert_eq!(rules(&source, &machine, &changed), expected, "{name} {word}\n{changed}");
+        }
+    }
+}
+
 /// What the source itself switches at the bottom is right there, and no other.
 #[test]
 fn a_source_that_stops_the_spindle_before_it_draws_the_tool_out_is_followed() {

@@ -3,7 +3,7 @@
 use super::super::expected::Step;
 use super::{Comparison, refused};
 use geom::Vec3;
-use program::{Diagnostic, Outcome, Output, OutputValue, Rule};
+use program::{Diagnostic, Outcome, Output, OutputValue, Rule, Tool};
 
 /// So much longer than the spindle needs to its speed a program may wait for it, s.
 const MOST_WAITING: f64 = 60.0;
@@ -55,6 +55,7 @@ impl Comparison<'_> {
                     running.runs_up = self.machine.spindle.dwell;
                 }
                 running.is_on = on;
+                return self.turns_no_faster();
             }
             OutputValue::Digital(on) if self.cell.coolant_output == Some(output.number) => {
                 running.coolant = on;
@@ -70,6 +71,7 @@ impl Comparison<'_> {
                     running.runs_up = self.machine.spindle.dwell;
                 }
                 running.speed = Some(speed);
+                return self.turns_no_faster();
             }
             OutputValue::Digital(_) | OutputValue::Analog(_) => {
                 let output = *output;
@@ -81,6 +83,22 @@ impl Comparison<'_> {
             }
         }
         Ok(())
+    }
+
+    /// # Errors
+    /// The spindle turns faster than the source names a speed for the tool in it, also where nothing is cut.
+    fn turns_no_faster(&self) -> Outcome {
+        let (is_on, Some(speed)) = self.turns() else { return Ok(()) };
+        let held = self.changes.held.map(|number| Tool { number, ..Tool::default() });
+        let fastest = self.speeds.fastest(held.as_ref());
+        if !is_on || speed <= fastest + self.speed_step() {
+            return Ok(());
+        }
+        let message = format!(
+            "the spindle turns at {speed:.0} 1/min, and the source names no speed above {fastest:.0} for this tool"
+        );
+        let help = "state the speed of the tool before the output that switches the spindle on";
+        Err(Diagnostic::error(Rule::Spindle, message).help(help).into())
     }
 
     /// A dwell: one of the source, or the wait for the speed of the spindle.

@@ -93,16 +93,23 @@ impl Comparison<'_> {
 
     /// Whether the spindle is as the source has it.
     pub(super) fn turns_as(&self, wanted: Spindle) -> bool {
-        let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
-        let step = self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution);
         match wanted {
             Spindle::Off => !self.running.is_on,
             Spindle::Clockwise(speed) => {
                 self.running.is_on
-                    && self.running.speed.is_some_and(|own| (own - speed).abs() <= full * step)
+                    && self
+                        .running
+                        .speed
+                        .is_some_and(|own| (own - speed).abs() <= self.speed_step())
             }
             Spindle::CounterClockwise(_) => false,
         }
+    }
+
+    /// A step of the output that says the speed, 1/min.
+    pub(super) fn speed_step(&self) -> f64 {
+        let full = self.cell.spindle_analog.map_or(0.0, |(_, full)| full);
+        full * self.machine.words.get("VALUE").map_or(1e-3, machine::Word::resolution)
     }
 
     /// # Errors
