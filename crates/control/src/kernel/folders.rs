@@ -86,9 +86,15 @@ impl Folders {
     /// The program `name`, in a file with that ending: as it is written, or else in small letters; `None` where no folder has it.
     ///
     /// # Errors
-    /// As [`Folders::open`].
+    /// As [`Folders::open`]; two files differ in capitals alone.
     pub(crate) fn called(&self, name: &str, ending: &str) -> Result<Option<CalledFile>, String> {
         let Some(name) = self.find(name, ending) else { return Ok(None) };
+        if let Some(other) = self.spelled_otherwise(&name) {
+            return Err(format!(
+                "{name} and {other} are one file on the controller, where capitals make no difference, and which of the two it has is not \
+                 known: take one of them out of the folder"
+            ));
+        }
         let text = self.open(&name)?;
         Ok(Some(CalledFile { name, text }))
     }
@@ -98,6 +104,14 @@ impl Folders {
         let file = format!("{name}.{ending}");
         let spellings = [file.to_ascii_uppercase(), file.to_ascii_lowercase(), file];
         spellings.into_iter().rfind(|own| self.have(own))
+    }
+
+    /// Another file whose name differs from `name` in capitals alone; the first by its name.
+    fn spelled_otherwise(&self, name: &str) -> Option<String> {
+        let same = |other: &str| other != name && other.eq_ignore_ascii_case(name);
+        let files = self.paths.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten();
+        let in_folders = files.filter_map(|file| file.ok()?.file_name().into_string().ok());
+        self.texts.keys().cloned().chain(in_folders).filter(|other| same(other)).min()
     }
 
     /// Finds a called program, in the first folder that has it, and reads it.

@@ -25,6 +25,8 @@ struct Module<'t> {
     file: Option<Box<str>>,
     /// Where its procedures begin: behind their heads.
     routines: HashMap<Name, BlockLocation>,
+    /// Those of them that other modules do not see.
+    local: HashSet<Name>,
 }
 
 /// Whether a procedure has come to its end, or the program.
@@ -92,12 +94,12 @@ impl<'t> Module<'t> {
                 scan.take(b',');
             }
         }
-        let mut routines = HashMap::new();
+        let (mut routines, mut local) = (HashMap::new(), HashSet::new());
         let (mut declared, mut assigned) = (Vec::new(), HashSet::new());
         loop {
             scan.peek();
             let from = scan.at;
-            scan.take_word("LOCAL");
+            let is_local = scan.take_word("LOCAL");
             let word = scan.needed("a declaration, PROC or ENDMODULE")?;
             match word.as_str() {
                 "CONST" | "PERS" | "VAR" => {
@@ -110,6 +112,9 @@ impl<'t> Module<'t> {
                     if routines.insert(name, scan.location()).is_some() {
                         let message = format!("the module has two procedures {name}");
                         return Err(scan.since(from, Rule::Twice, message));
+                    }
+                    if is_local {
+                        local.insert(name);
                     }
                     over(&mut scan, &mut assigned)?;
                 }
@@ -126,7 +131,12 @@ impl<'t> Module<'t> {
         if scan.peek().is_some() {
             return Err(scan.wrong("something stands behind ENDMODULE"));
         }
-        Ok(Module { text, name, file, routines })
+        Ok(Module { text, name, file, routines, local })
+    }
+
+    /// Basic characteristics RAPID, "Routine scope": the scope of a local routine is the module in which it is.
+    fn seen_outside(&self, name: Name) -> Option<BlockLocation> {
+        self.routines.get(&name).copied().filter(|_| !self.local.contains(&name))
     }
 }
 
@@ -312,8 +322,10 @@ impl Run<'_, '_> {
             &mut self.state,
         )
         .map_err(inside)?;
-        let Some(place) = other.routines.get(&name).copied() else {
-            let message = format!("{} has no procedure {name}", called.name);
+        let Some(place) = other.seen_outside(name) else {
+            let is_local = other.local.contains(&name);
+            let hidden = if is_local { " that is not LOCAL" } else { "" };
+            let message = format!("{} has no procedure {name}{hidden}", called.name);
             return Err(refused(Rule::CalledProgram, message));
         };
         self.channel.arm(line, ArmAction::File(other.file.clone()))?;
@@ -397,10 +409,13 @@ impl Run<'_, '_> {
         let refused = |rule: Rule, message: String| scan.since(from, rule, message);
         let counted = self.channel.budget.call(depth, DEEPEST);
         counted.map_err(|(rule, message)| refused(rule, message))?;
-        let has = |module: &Module| {
-            of.is_none_or(|of| of == module.name) && module.routines.contains_key(&name)
+        let named = |module: &Module| of.is_some_and(|of| of == module.name);
+        // By the name of its module a local procedure is found as well.
+        let has = |module: &Module| match of {
+            Some(_) => named(module) && module.routines.contains_key(&name),
+            None => module.seen_outside(name).is_some(),
         };
-        let own = has(module).then(|| module.routines[&name]);
+        let own = module.routines.get(&name).copied().filter(|_| of.is_none() || named(module));
         let other = |at: &usize| self.loaded[*at].module.name != module.name;
         let mut found =
             (0..self.loaded.len()).filter(other).filter(|at| has(&self.loaded[*at].module));
@@ -409,7 +424,15 @@ impl Run<'_, '_> {
             (Some(place), None, _) => return self.routine(module, place, depth + 1),
             (None, Some(at), None) => at,
             (None, None, _) => {
-                let message = format!("no module that is loaded has a procedure {name}");
+                let hides = |loaded: &&Loaded| of.is_none() && loaded.module.local.contains(&name);
+                let message = match self.loaded.iter().find(hides).map(|loaded| loaded.module.name)
+                {
+                    None => format!("no module that is loaded has a procedure {name}"),
+                    Some(of) => format!(
+                        "{name} of the module {of} is LOCAL, which other modules do not see: leave LOCAL out there, or call it as \
+                         %\"{of}:{name}\"%"
+                    ),
+                };
                 return Err(refused(Rule::CalledProgram, message));
             }
             (Some(_), Some(_), _) | (None, Some(_), Some(_)) => {

@@ -364,6 +364,24 @@ fn a_called_program_is_found_in_a_file_whose_name_is_in_capitals() {
     assert!(events.iter().any(|event| event.action == Action::Stop), "{events:?}");
 }
 
+/// The file system of the controller keeps one file for both names.
+#[test]
+fn two_called_files_whose_names_differ_in_capitals_alone_are_refused() {
+    for other in ["JOB_2.SRC", "Job_2.src", "job_2.Src"] {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("job_2.src"), "DEF job_2()\nHALT\nEND\n").unwrap();
+        let mut settings = settings();
+        settings.setup.folders = vec![folder.path().to_path_buf()].into();
+        run_with(&settings, "DEF job()\njob_2()\nEND\n").unwrap();
+        std::fs::write(folder.path().join(other), "DEF job_2()\nEND\n").unwrap();
+        let found = run_with(&settings, "DEF job()\njob_2()\nEND\n").unwrap_err();
+        assert!(found.contains("job.src:2:") && found.contains(other), "{other}: {found}");
+        assert!(found.contains("one file on the controller"), "{found}");
+        // Nobody calls it.
+        run_with(&settings, "DEF job()\nHALT\nEND\n").unwrap();
+    }
+}
+
 #[test]
 fn a_tool_is_changed_by_the_program_of_the_operator_behind_which_nothing_is_known() {
     let mut settings = settings();

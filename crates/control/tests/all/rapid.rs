@@ -512,6 +512,38 @@ fn modules_that_are_not_there_or_there_twice_or_stay_are_refused() {
     }
 }
 
+/// *Basic characteristics RAPID*, "Routine scope": the scope of a local routine is the module in which it is.
+#[test]
+fn a_local_procedure_of_another_module_is_called_with_the_name_of_its_module_alone() {
+    let text = "MODULE Job\nPROC main()\nLoad \\Dynamic,\"HOME:/a.mod\";\n%\"go\"%;\nUnLoad \"HOME:/a.mod\";\nEXIT;\nENDPROC\nENDMODULE\n";
+    let run = |text: &str, module: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        for file in ["a.mod", "go.mod"] {
+            std::fs::write(folder.path().join(file), module).unwrap();
+        }
+        let mut settings = settings();
+        settings.setup.folders = vec![folder.path().to_path_buf()].into();
+        run_with(&settings, text)
+    };
+    let module = "MODULE A\nLOCAL PROC go()\nWaitTime 1;\nENDPROC\nENDMODULE\n";
+    let found = run(text, module).unwrap_err();
+    assert!(found.contains("job.mod:4:") && found.contains("LOCAL"), "{found}");
+    assert!(found.contains("called-program"), "{found}");
+    run(&text.replace("%\"go\"%", "%\"A:go\"%"), module).unwrap();
+    run(text, &module.replace("LOCAL ", "")).unwrap();
+    // A call within the module, by its text too.
+    let inside = module
+        .replace("WaitTime 1;", "%\"stay\"%;\nstay;")
+        .replace("LOCAL PROC go", "PROC go")
+        .replace("ENDMODULE", "LOCAL PROC stay()\nWaitTime 1;\nENDPROC\nENDMODULE");
+    run(text, &inside).unwrap();
+    // A call of a file of the name.
+    let direct = "MODULE Job\nPROC main()\ngo;\nEXIT;\nENDPROC\nENDMODULE\n";
+    let found = run(direct, module).unwrap_err();
+    assert!(found.contains("job.mod:3:") && found.contains("LOCAL"), "{found}");
+    run(direct, &module.replace("LOCAL ", "")).unwrap();
+}
+
 /// A module that is unloaded by its own procedure, and what is wrong in a module: with its file and line.
 #[test]
 fn what_is_wrong_in_a_module_has_its_file_and_line() {

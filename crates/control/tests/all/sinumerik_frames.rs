@@ -141,6 +141,31 @@ fn swivelled_at(cycle: &str, at: geom::Vec3) -> geom::Vec3 {
     poses(&blocks(&format!("{cycle}\nG0 X{} Y{}\nZ{}", at.x, at.y, at.z))).last().unwrap().point
 }
 
+/// The machine's builder says where `CYCLE800()` leaves the axes, also where no plane was swivelled. Rotary axes stay then.
+#[test]
+fn behind_the_end_of_swivelling_nothing_is_known_of_the_position() {
+    for end in ["CYCLE800()", "CYCLE800(0,\"0\")", "TRAORI\nG0 X0 Y0 Z5\nCYCLE800()"] {
+        let poses = poses(&blocks(&format!("{end}\nG1 X10")));
+        let last = poses.last().unwrap();
+        assert!(last.point.x == 10.0 && last.point.y.is_nan() && last.point.z.is_nan(), "{end}");
+        assert_eq!(degrees(last).0[0], 0.0, "{end}");
+    }
+}
+
+/// Hundred thousands of `_ST` are the direction as `_DIR` has it, 1 minus and 2 plus; `_DMODE` 1 is G17.
+#[test]
+fn the_status_of_a_swivelled_plane_may_say_its_direction_and_the_plane() {
+    let plain = swivelled("1,\"\",0,57,0,0,0,30,0,0,0,0,0,1");
+    for arguments in [
+        "1,\"\",200000,57,0,0,0,30,0,0,0,0,0,1,100,1",
+        "1,\"\",200010,57,0,0,0,30,0,0,0,0,0,1,,0",
+        "1,\"\",100000,57,0,0,0,30,0,0,0,0,0,-1,100,1",
+        "1,\"\",100011,57,0,0,0,30,0,0,0,0,0,-1",
+    ] {
+        assert_eq!(swivelled(arguments), plain, "{arguments}");
+    }
+}
+
 #[test]
 fn swivelling_lifts_as_asked_and_makes_the_position_unknown() {
     let ops =

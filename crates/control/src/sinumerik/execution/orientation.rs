@@ -20,6 +20,7 @@ const BEFORE: usize = 4;
 const ANGLES: usize = 7;
 const AFTER: usize = 10;
 const DIRECTION: usize = 13;
+const DISPLAY: usize = 15;
 const PARAMETERS: usize = 16;
 
 impl Interpreter<'_, '_> {
@@ -110,15 +111,41 @@ impl Interpreter<'_, '_> {
                 "_MODE of CYCLE800 must swivel axis by axis (57 is X Y Z, 27 is Z Y X)",
             );
         };
-        let on_top = match whole(STATE, "_ST")? % 1000 {
+        let direction = number(DIRECTION)?;
+        if !matches!(direction, -1.0 | 1.0) {
+            let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
+                           machine";
+            return error(Rule::Unsupported, message);
+        }
+        let status = whole(STATE, "_ST")?;
+        let on_top = match status % 100_000 {
             0 | 10 => false,
             1 | 11 => true,
-            other => {
-                let message =
-                    format!("_ST = {other} of CYCLE800 (tool alignment) is not supported");
+            _ => {
+                let message = format!(
+                    "_ST = {status} of CYCLE800 is not supported: new (0) or additive (1) in the ones, the tip tracked (0, 1) in the \
+                     tens, and the direction in the hundred thousands"
+                );
                 return Err(source.block_error(Rule::Unsupported, message));
             }
         };
+        let directions = match status / 100_000 {
+            0 => direction,
+            1 => -1.0,
+            2 => 1.0,
+            _ => f64::NAN,
+        };
+        if directions != direction {
+            let message = format!(
+                "_ST = {status} of CYCLE800 says another direction than _DIR = {direction}: its hundred thousands are 1 for minus, 2 for \
+                 plus, or 0"
+            );
+            return Err(source.block_error(Rule::Unsupported, message));
+        }
+        if self.state.plane_normal != 2 || !matches!(whole(DISPLAY, "_DMODE")?, 0 | 1) {
+            let message = "CYCLE800 in another plane than G17 (_DMODE 0 is the plane that is active, 1 is G17)";
+            return error(Rule::Unsupported, message);
+        }
         let retract = whole(RETRACT, "_FR")?;
         let home = match retract {
             // None; along the tool by _FR_I: where the axes then are the block does not say.
@@ -132,12 +159,6 @@ impl Interpreter<'_, '_> {
                 return Err(source.block_error(Rule::Unsupported, message));
             }
         };
-        let direction = number(DIRECTION)?;
-        if !matches!(direction, -1.0 | 1.0) {
-            let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
-                           machine";
-            return error(Rule::Unsupported, message);
-        }
         let data_set = match call.arguments.get(DATA_SET) {
             Some(Argument::Text(name)) => name.as_str(),
             _ => "",
@@ -182,10 +203,11 @@ impl Interpreter<'_, '_> {
         (0..3).any(|i| rotary[i] && !table[i] && !(stands && self.state.rotary[i] == 0.0))
     }
 
-    /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.
+    /// `CYCLE800()`: no plane. Where the axes are left is the business of the machine's builder, whose `CUST_800` runs in the cycle;
+    /// rotary axes that nothing has swivelled stay.
     fn end_swivel(&mut self) -> Outcome {
+        self.state.lose_position();
         if self.state.frames.swivel().is_some() {
-            self.state.lose_position();
             self.state.lose_rotary(self.settings.rotary);
             self.state.frames.set_swivel(None);
         }
