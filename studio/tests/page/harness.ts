@@ -191,7 +191,9 @@ async function serve(route: Route, folder: string): Promise<void> {
 }
 
 export async function proven(page: Page, timeout = 30_000): Promise<void> {
-    await page.getByText("✓ PROVEN").waitFor({ timeout });
+    await page.getByText("✓ PROVEN").waitFor({ timeout }).catch(async (error: Error) => {
+        throw new Error(`${error.message}\nThe page says: ${await page.locator("main").innerText()}`);
+    });
 }
 
 /** All lines of the program are here, so that keys go into it. */
