@@ -4,7 +4,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { describe, expect, test } from "vitest";
-import { absent, accessible, browserOfTests, example, lit, proven, readout, Server, visit } from "./harness.ts";
+import { absent, accessible, browserOfTests, example, lit, proven, readout, Server, visit, writable } from "./harness.ts";
 
 const HEAD = "%FSLAX46Y46*%\n%MOMM*%\n";
 const track = `${HEAD}%ADD10C,1.0*%\nD10*\nX2000000Y2000000D02*\nX8000000Y2000000D01*\nM02*\n`;
@@ -104,6 +104,7 @@ describe.skipIf(absent() !== null)("circuit boards", () => {
         await choose(page, "drill");
         await page.getByText("G21 G17").first().waitFor();
         const line = page.locator(".program .cm-line").filter({ hasText: /^G1 Z-|^Z-/ }).first();
+        await writable(page);
         await line.click();
         await page.keyboard.press("End");
         await page.keyboard.press("Backspace");

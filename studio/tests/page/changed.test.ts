@@ -4,7 +4,7 @@ import { copyFileSync, existsSync, mkdtempSync, readFileSync, renameSync, unlink
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { describe, expect, test } from "vitest";
-import { absent, accessible, browserOfTests, example, goTo, lit, proven, Server, visit } from "./harness.ts";
+import { absent, accessible, browserOfTests, example, goTo, lit, proven, Server, visit, writable } from "./harness.ts";
 
 const MILL = 'extends = "generic-3axis-linuxcnc"\n';
 
@@ -96,6 +96,7 @@ describe.skipIf(absent() !== null)("files that change while they are open", () =
     test("an edit by hand is kept and offered, and Post again is a command", async () => {
         const { own, page, complaints } = await begin();
         await proven(page);
+        await writable(page);
         await page.locator(".program .cm-content").focus();
         await page.keyboard.press("Control+End");
         await page.keyboard.type("(by hand)");

@@ -4,7 +4,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import type { Page } from "playwright-core";
 import { describe, expect, test } from "vitest";
-import { absent, accessible, browserOfTests, covered, goTo, lit, proven, readout, Server, visit } from "./harness.ts";
+import { absent, accessible, browserOfTests, covered, goTo, lit, proven, readout, Server, visit, writable } from "./harness.ts";
 
 const command = process.env.TOOLPOST ?? join(process.env.CARGO_TARGET_DIR ?? resolve(import.meta.dirname, "../../../target"), "debug/toolpost");
 
@@ -107,6 +107,7 @@ describe.skipIf(absent() !== null)("engraving inside glass", () => {
 
         await goTo(page, "9");
         await expect.poll(() => lit(page, "program")).toMatch(/^N9 /);
+        await writable(page);
         await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");
         await page.keyboard.press("Backspace");

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { afterEach, beforeAll, describe, expect, test } from "vitest";
-import { absent, accessible, answersLate, browserOfTests, goTo, lit, proven, Server, visit, type Visit } from "./harness.ts";
+import { absent, accessible, answersLate, browserOfTests, goTo, lit, proven, Server, visit, writable, type Visit } from "./harness.ts";
 
 /** Rows of cuts, a way up between any two. */
 const rows = Array.from({ length: 30 }, (_, i) => 30 + i).map((y) =>
@@ -48,6 +48,7 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         page.locator(".program .cm-line", { hasText: `DEF ${file.replace(".src", "")} ( )` }).waitFor();
     /** Behind the text of a line. */
     const type = async (page: Page, line: string, text: string): Promise<void> => {
+        await writable(page);
         await page.locator(".program .cm-line", { hasText: line }).first().click();
         await page.keyboard.press("End");
         await page.keyboard.type(text);
@@ -107,6 +108,7 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         await shows(page, "job_2.src");
         expect(await text(page)).toContain("; mine");
         // Its place is one: the block in the part, the record, and the template that wrote it.
+        await writable(page);
         await page.locator(".program .cm-line", { hasText: "LIN {X 120." }).first().click();
         await expect.poll(() => lit(page, "program")).toContain("LIN {X 120.");
         expect(await lit(page, "source")).toMatch(/^GOTO\/120,/);
@@ -127,6 +129,7 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         expect(await text(page)).not.toContain("; mine");
         await proven(page);
         // A wrong number: the file and the line are named, and nothing can be saved.
+        await writable(page);
         await page.locator(".program .cm-line", { hasText: "LIN {X 120." }).first().click();
         await page.keyboard.press("Home");
         for (let at = 0; at < 7; at++) await page.keyboard.press("ArrowRight");
@@ -136,6 +139,7 @@ describe.skipIf(absent() !== null)("the page with a program of several files", (
         expect(await page.getByRole("region", { name: "First mismatch" }).innerText()).toContain("job_2.src line");
         expect(await page.getByLabel("File of the program").locator("option", { hasText: "job_2.src" }).innerText()).toContain("✗▲");
         expect(await page.getByRole("button", { name: "Save…" }).isDisabled()).toBe(true);
+        await writable(page);
         await page.locator(".program .cm-content").focus();
         await page.keyboard.press("Control+z");
         await proven(page);

@@ -140,6 +140,7 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         const page = await begin();
         await goTo(page, "m8");
         const text = await lit(page, "program");
+        await writable(page);
         await page.locator(".program .cm-line.at").click();
         await page.keyboard.press("End");
         await page.keyboard.type(" Z-7.777");
@@ -191,11 +192,13 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await goTo(page, "m8");
         await page.getByLabel("Speed of the replay").selectOption({ label: "× 50" });
         const at = await lit(page, "source");
+        await writable(page);
         await page.locator(".program .cm-line").nth(1).click();
         await page.keyboard.press("End");
         await page.keyboard.type(" (last key)");
         await goTo(page, "m8");
         page.on("dialog", (dialog) => void dialog.accept());
+        await writable(page);
         await page.locator(".program .cm-line").nth(1).click();
         await page.keyboard.press("End");
         await page.keyboard.type("(!)");
