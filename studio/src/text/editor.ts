@@ -128,7 +128,12 @@ export class Editor {
             EditorView.domEventHandlers({ drop: (event) => event.dataTransfer?.types.includes("Files") === true }),
             EditorView.updateListener.of((update) => this.updated(update)),
         ];
-        this.view = new EditorView({ root, parent: root, state: EditorState.create({ extensions: this.extensions }) });
+        this.view = new EditorView({ root, parent: root, state: this.state("", "iso") });
+        this.lock();
+    }
+
+    private state(doc: string, family: Family): EditorState {
+        return EditorState.create({ doc, extensions: [this.extensions, coloured(family), this.locked.of([]), this.more.of([])] });
     }
 
     close(): void {
@@ -311,11 +316,10 @@ export class Editor {
         if (shown !== null && shown.file !== origin?.file && undoDepth(this.view.state) > 0) this.left.set(shown.file, this.view.state);
         if (shown?.program !== origin?.program) this.left.clear();
         const left = this.left.get(origin?.file ?? null);
-        const extensions = [this.extensions, coloured(origin?.family ?? "iso"), this.locked.of([]), this.more.of([])];
         this.window = window;
         this.shown = origin;
         this.isSetting = true;
-        this.view.setState(left?.doc.toString() === text ? left : EditorState.create({ doc: text, extensions }));
+        this.view.setState(left?.doc.toString() === text ? left : this.state(text, origin?.family ?? "iso"));
         this.view.dispatch({ effects: this.more.reconfigure([]) });
         this.lock();
         this.isSetting = false;

@@ -2,7 +2,7 @@ import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync } from "
 import { join } from "node:path";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, test } from "vitest";
-import { absent, accessible, answersLate, example, goTo, launch, lit, proven, readout, Server, visit, writable, type Visit } from "./harness.ts";
+import { absent, accessible, answersLate, example, goTo, launch, lit, proven, readout, Server, visit, visitOn, writable, type Visit } from "./harness.ts";
 
 /** The numbers of a `GOTO/`. */
 const goto = (text: string): number[] => text.replace(/^GOTO\s*\//, "").split(",").map(Number);
@@ -219,14 +219,36 @@ describe.skipIf(absent() !== null)("the page on a mill of three axes", () => {
         await expect.poll(() => lit(page, "source")).toBe(at);
     });
 
+    test("keys that come before the first program is here are no edit", async () => {
+        const page = await browser.newPage();
+        open = { page, complaints: [] };
+        await page.addInitScript(answersLate);
+        // The editor comes when there is a program already, and its text behind it.
+        let comes = (): void => {};
+        const coming = new Promise<void>((resolve) => (comes = resolve));
+        await page.route(/\/editing-[^/]*\.js$/, (route) => coming.then(() => route.continue()));
+        await visitOn(page, server.link);
+        await proven(page);
+        await page.evaluate(() => Object.assign(globalThis, { late: 1000 }));
+        comes();
+        await page.locator(".program .cm-content").waitFor();
+        expect(await page.locator(".program .cm-content").getAttribute("aria-readonly")).toBe("true");
+        await page.locator(".program .cm-content").focus();
+        await page.keyboard.type("?");
+        await writable(page);
+        expect(await page.locator(".program .cm-content").innerText()).not.toContain("?");
+        expect(await page.getByText("▲ edited").count()).toBe(0);
+    });
+
     test("keys that come before the new program is here are no edit of it", async () => {
         open = await visit(browser, server.link, {}, answersLate);
         const { page } = open;
         await proven(page);
         await writable(page);
-        await page.evaluate(() => Object.assign(globalThis, { late: 1500 }));
         await page.keyboard.press("Control+m");
         await page.keyboard.type("generic-3axis-haas");
+        await page.getByRole("dialog").getByRole("option").first().waitFor();
+        await page.evaluate(() => Object.assign(globalThis, { late: 1500 }));
         await page.keyboard.press("Enter");
         // Nothing is answered yet, and the text of the program before is still there.
         await page.locator(".program .cm-content").focus();
