@@ -108,7 +108,8 @@ export class Studio {
         // What is worked on is asked for first, the lists behind it, without waiting for one another.
         const work = batch(() => {
             this.machine.value ??= this.work.value?.machine ?? opened.machine;
-            this.drafts.value = opened.drafts.filter(({ name }) => name !== this.kept);
+            // What was left behind is offered when it is kept: it would be kept behind the back of who goes on with it.
+            if (this.left === null) this.drafts.value = opened.drafts.filter(({ name }) => name !== this.kept);
             this.opened.value = opened;
             if (this.edited.value !== null) return this.prove(this.edited.value);
             if (this.work.value !== null) return this.post({ ...this.work.value, machine: this.work.value.machine ?? this.machine.value });
@@ -506,8 +507,7 @@ export class Studio {
     private async offer({ of, edit, name }: Unkept): Promise<void> {
         // What was kept of the same edit before is older.
         this.kept = name;
-        if (!(await this.keep(of, new Map(edit)))) return;
-        this.left = this.kept = null;
+        if (await this.keep(of, new Map(edit))) this.left = this.kept = null;
         await this.askDrafts();
     }
 
