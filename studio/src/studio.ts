@@ -40,14 +40,12 @@ export class Studio {
     readonly posted = new Map<string | null, string>();
     /** Warnings of the posting that are not of its program, as long as what is shown is that program or an edit of it. */
     private readonly warned: Signal<Finding[]> = signal([]);
-    /** A posting runs: what is shown is not of what was chosen last, and takes no keys. */
-    readonly isPosting: Signal<boolean> = signal(false);
-    private readonly postings = new Latest();
+    /** What runs, where that matters to others: a posting, or files that are on their way to the server. */
+    private readonly doing: Signal<"post" | "upload" | null> = signal(null);
+    /** What is shown is not of what was chosen last, and takes no keys. */
+    readonly isPosting = computed(() => this.doing.value === "post");
     /** The program that was dropped with the toolpath, until that is posted. */
     private beside: File[] | null = null;
-    /** A file that was dropped is on its way to the server. */
-    private isTaking = false;
-    private readonly drops = new Latest();
     /** Grows with each program that is no edit of the one before. */
     program = 0;
     /** The file of the folder that was proven in the place of what is posted. */
@@ -170,14 +168,11 @@ export class Studio {
     /** A file is a toolpath or a board; several are the files of a board. */
     async drop(files: File[]): Promise<void> {
         const name = files.map((file) => file.name).join(", ");
-        const isNewest = this.drops.begin();
-        this.isTaking = true;
         const uploads = await this.told(async ({ signal }) => {
             const ids: string[] = [];
             for (const file of files) ids.push(await this.seam.upload(file, signal));
             return ids;
-        });
-        if (isNewest()) this.isTaking = false;
+        }, "upload");
         if (uploads === undefined) {
             if (this.stop.value === null) this.said.value = `${name} is not taken: something else was begun meanwhile`;
             return;
@@ -190,7 +185,7 @@ export class Studio {
         const work = this.work.value;
         this.said.value = "";
         // It is for the file that comes.
-        if (work !== null && !this.isTaking) {
+        if (work !== null && this.doing.value !== "upload") {
             await this.post({ ...work, machine });
             return;
         }
@@ -223,12 +218,9 @@ export class Studio {
             this.job.value = this.board.value = null;
         }
         this.shown = JSON.stringify(source);
-        const isNewest = this.postings.begin();
-        this.isPosting.value = true;
-        const posting = this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done);
+        const posting = this.told(async (asking) => (await this.seam.ask("post", { source, machine, options }, asking)).done, "post");
         void this.askForm();
         const job = await posting;
-        if (isNewest()) this.isPosting.value = false;
         // Something newer is under way, and what is shown belongs to it.
         if (this.work.value !== work) return true;
         if (job === undefined) this.cursor.keep();
@@ -593,17 +585,18 @@ export class Studio {
         this.abort?.abort();
         this.abort = null;
         batch(() => {
-            this.running.value = this.stop.value = this.walking.value = null;
+            this.running.value = this.doing.value = this.stop.value = this.walking.value = null;
             this.stopped.value = [];
         });
     }
 
     /** Runs one thing at a time: a newer one ends the older. What stops it is shown. */
-    private async told<T>(run: (asking: Required<Pick<Asking, "signal" | "progress" | "walked">>) => Promise<T>): Promise<T | undefined> {
+    private async told<T>(run: (asking: Required<Pick<Asking, "signal" | "progress" | "walked">>) => Promise<T>, doing: "post" | "upload" | null = null): Promise<T | undefined> {
         this.abort?.abort();
         const abort = new AbortController();
         this.abort = abort;
         this.running.value = { step: "reading", part: null };
+        this.doing.value = doing;
         this.stopped.value = [];
         this.stop.value = null;
         this.walking.value = null;
@@ -631,7 +624,7 @@ export class Studio {
         } finally {
             if (this.abort === abort) {
                 this.abort = null;
-                this.running.value = null;
+                this.running.value = this.doing.value = null;
             }
         }
     }
