@@ -340,34 +340,34 @@ impl Studio {
         Ok(found.map(read).transpose()?.map(beside))
     }
 
-    /// What writes the programs of something: a file of the folder is read where its name does not say it.
+    /// What writes the programs of something.
     fn command(&self, given: &Given, machine: Option<&Any>) -> Result<Command, Stop> {
-        match given {
-            Given::Folder(_) => Ok(match machine {
-                Some(Any::Fires(_)) => Command::Glass,
-                _ => Command::Pcb,
-            }),
-            Given::File(path) if app::pcb::is_named_board(Path::new(path)).is_some() => {
-                self.folder.check(path)?;
-                Ok(Sources::One(Source::File(path.into())).command(machine))
-            }
-            Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
-                Ok(self.sources(given, &Inputs::default())?.command(machine))
-            }
-        }
+        Ok(match (self.looked_at(given)?, machine) {
+            (Some(sources), _) => sources.command(machine),
+            (None, Some(Any::Fires(_))) => Command::Glass,
+            (None, _) => Command::Pcb,
+        })
     }
 
     /// Of which kinds a machine can take the source.
     fn kinds(&self, given: &Given) -> Result<Vec<MachineKind>, Stop> {
+        Ok(match self.looked_at(given)? {
+            Some(sources) => sources.kinds(),
+            // The files of a board, or bodies.
+            None => vec![MachineKind::Mill, MachineKind::Robot, MachineKind::Glass],
+        })
+    }
+
+    /// Something, to say what it is: a file of the folder is read where its name does not say it. `None`: a folder, which is not read for that.
+    fn looked_at(&self, given: &Given) -> Result<Option<Sources>, Stop> {
         match given {
-            // It is not read for that: the files of a board, or bodies.
-            Given::Folder(_) => Ok(vec![MachineKind::Mill, MachineKind::Robot, MachineKind::Glass]),
+            Given::Folder(_) => Ok(None),
             Given::File(path) if app::pcb::is_named_board(Path::new(path)).is_some() => {
                 self.folder.check(path)?;
-                Ok(Sources::One(Source::File(path.into())).kinds())
+                Ok(Some(Sources::One(Source::File(path.into()))))
             }
             Given::File(_) | Given::Upload(_) | Given::Uploads(_) => {
-                Ok(self.sources(given, &Inputs::default())?.kinds())
+                Ok(Some(self.sources(given, &Inputs::default())?))
             }
         }
     }
