@@ -11,7 +11,6 @@ pub(crate) struct Speeds {
 
 impl Speeds {
     /// The speeds of a source.
-    #[expect(clippy::wildcard_enum_match_arm, reason = "all else neither moves nor waits")]
     pub fn of(source: &Program) -> Speeds {
         let mut tools: Vec<(Option<Tool>, f64)> = Vec::new();
         let mut at = tool(&mut tools, None);
@@ -42,13 +41,33 @@ impl Speeds {
                 | Op::Auxiliary(_)
                 | Op::Dwell(_)
                 | Op::Stop
-                | Op::OptionalStop
-                    if !is_named =>
-                {
-                    tools[at].1 = holds.max(tools[at].1);
-                    is_named = true;
+                | Op::OptionalStop => {
+                    if !is_named {
+                        tools[at].1 = holds.max(tools[at].1);
+                        is_named = true;
+                    }
                 }
-                _ => {}
+                // The tool is neither moved nor waited with.
+                Op::Cycle(_)
+                | Op::CycleOff
+                | Op::Feed(_)
+                | Op::PathMode(_)
+                | Op::SurfaceSpeed(_)
+                | Op::Coolant(_)
+                | Op::Preselect(_)
+                | Op::Compensation(_)
+                | Op::Frame(_)
+                | Op::WorkOffset(_)
+                | Op::WorkOffsetData(_)
+                | Op::Surface(_)
+                | Op::Clamp(_)
+                | Op::Operation(_)
+                | Op::EndOfOperation
+                | Op::Comment(_)
+                | Op::Message(_)
+                | Op::End => {}
+                // No spindle turns there.
+                Op::Beam(_) | Op::Pulses(_) | Op::ThreadWire | Op::CutWire | Op::Taper(_) => {}
             }
         }
         Speeds { tools }
